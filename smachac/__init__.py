@@ -1,0 +1,1 @@
+"""smachac: a compiler for robot task state machines."""
