@@ -1,0 +1,170 @@
+"""What the compiler says: codes, findings, and the two decorators that file them.
+
+A *problem* is declared by the phases before the IR, a *rule* judges the IR. Both are functions
+whose docstring is the documentation (`smachac explain`, docs/rules.md) and, through its examples,
+a test.
+"""
+
+from __future__ import annotations
+
+import difflib
+from collections.abc import Callable, Iterable, Iterator
+from dataclasses import dataclass, field
+from enum import Enum
+from typing import Any, ParamSpec
+
+from smachac.source import Span
+
+P = ParamSpec("P")
+
+
+class Severity(Enum):
+    """How bad a finding is. Errors stop a build; warnings do so under `--strict`."""
+
+    ERROR = "error"
+    WARNING = "warning"
+    INFO = "info"
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Code:
+    """A kind of finding: permanent code, name of the fault, usual severity, explanation."""
+
+    code: str
+    name: str
+    severity: Severity
+    explanation: str
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Related:
+    """Another place that a finding speaks of."""
+
+    span: Span
+    message: str
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Finding:
+    """One fault at one place: what is wrong, where, the other places, what to do.
+
+    `path` is a witness: names of states in the order in which they are entered.
+    `severity` overrides that of the code. `node` is the path of the state it is about.
+    """
+
+    span: Span
+    message: str
+    help: str | None = None
+    related: tuple[Related, ...] = ()
+    path: tuple[str, ...] = ()
+    severity: Severity | None = None
+    node: str | None = None
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Diagnostic:
+    """A finding with its code: what reports print."""
+
+    code: Code
+    severity: Severity
+    finding: Finding = field()
+
+    @property
+    def span(self) -> Span:
+        return self.finding.span
+
+
+Report = list[Diagnostic]
+RuleFunction = Callable[[Any], Iterator[Finding]]
+
+CODES: dict[str, Code] = {}
+"""Every code there is, problems and rules alike."""
+
+RULES: dict[str, RuleFunction] = {}
+"""The rules over the IR by code: functions from a machine to findings."""
+
+
+def _register(code: str, name: str, severity: Severity, function: Callable[..., Any]) -> Code:
+    if code in CODES:
+        raise ValueError(f"{code} is taken by {CODES[code].name}")
+    CODES[code] = Code(code=code, name=name, severity=severity, explanation=function.__doc__ or "")
+    return CODES[code]
+
+
+def _diagnostic(code: Code, finding: Finding) -> Diagnostic:
+    return Diagnostic(code=code, severity=finding.severity or code.severity, finding=finding)
+
+
+def problem(
+    code: str, name: str, severity: Severity
+) -> Callable[[Callable[P, Finding]], Callable[P, Diagnostic]]:
+    """Declare a fault that a phase before the IR finds: the function words it."""
+
+    def declare(function: Callable[P, Finding]) -> Callable[P, Diagnostic]:
+        entry = _register(code, name, severity, function)
+
+        def build(*args: P.args, **kwargs: P.kwargs) -> Diagnostic:
+            return _diagnostic(entry, function(*args, **kwargs))
+
+        build.__doc__ = function.__doc__
+        build.__name__ = function.__name__
+        return build
+
+    return declare
+
+
+def rule(code: str, name: str, severity: Severity) -> Callable[[RuleFunction], RuleFunction]:
+    """Declare a rule over the IR: the function yields its findings."""
+
+    def declare(function: RuleFunction) -> RuleFunction:
+        _register(code, name, severity, function)
+        RULES[code] = function
+        return function
+
+    return declare
+
+
+def run_rules(machine: object) -> Iterator[Diagnostic]:
+    """The findings of every rule over a machine, in the order of the codes."""
+    for code in sorted(RULES):
+        for finding in RULES[code](machine):
+            yield _diagnostic(CODES[code], finding)
+
+
+def in_order(report: Iterable[Diagnostic]) -> Report:
+    """A report as users read it: by file as first met, then by place; each fault once.
+
+    A sub-script that is called twice yields the same finding twice; the second is dropped.
+    """
+    files: dict[int, int] = {}
+    unique: dict[tuple[object, ...], Diagnostic] = {}
+    for item in report:
+        files.setdefault(id(item.span.source), len(files))
+        unique.setdefault((item.code.code, item.span, item.finding.message), item)
+    return sorted(
+        unique.values(),
+        key=lambda item: (
+            files[id(item.span.source)],
+            item.span.start,
+            item.code.code,
+            item.finding.message,
+        ),
+    )
+
+
+def has_errors(report: Iterable[Diagnostic]) -> bool:
+    return any(item.severity is Severity.ERROR for item in report)
+
+
+MOST_CANDIDATES = 1000
+"""Beyond so many names only a difference in case is looked for, so that no run is quadratic."""
+
+
+def did_you_mean(word: str, candidates: Iterable[str]) -> str | None:
+    """The help line for a misspelt name, or None when nothing is near."""
+    names = list(dict.fromkeys(candidates))
+    folded = word.casefold()
+    nearest = [name for name in names if name.casefold() == folded and name != word]
+    if not nearest and len(names) <= MOST_CANDIDATES:
+        nearest = difflib.get_close_matches(word, names, n=1, cutoff=0.6)
+    return f"did you mean `{nearest[0]}`?" if nearest else None

@@ -1,0 +1,240 @@
+"""The typed state graph: what a script means, whatever the text looked like.
+
+Values are frozen; spans say where a thing was written and do not count in equality. A node is
+named by its path, `sm/PICK_BLOCK/OPEN_GRIPPER` (see walk.py). The graph is total: a transition to
+nowhere stays in it, for the rules to find.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, field
+from typing import Literal, TypeAlias
+
+from smachac.ir.types import ANY, Type
+from smachac.source import NOWHERE, Span
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Expression:
+    """Code over userdata, kept as written: a portable expression or Python (language.md)."""
+
+    text: str
+    span: Span = field(compare=False, repr=False)
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Struct:
+    """A mapping inside a value, in the order of the script."""
+
+    entries: tuple[tuple[str, Data], ...]
+
+
+Data: TypeAlias = "bool | int | float | str | Expression | Struct | tuple[Data, ...] | None"
+"""What a value is made of; a YAML list is a tuple."""
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Value:
+    """A constant of the script, with expressions anywhere in it."""
+
+    data: Data
+    span: Span = field(compare=False, repr=False)
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Variable:
+    """A variable of a leaf's state type, as the script sets it."""
+
+    name: str
+    value: Value
+    span: Span = field(compare=False, repr=False)
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Key:
+    """A typed userdata key that a state or container declares."""
+
+    name: str
+    type: Type = ANY
+    doc: str = ""
+    span: Span = field(compare=False, repr=False)
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Preset:
+    """Userdata that a container holds before it runs: `sm.userdata.key = value`."""
+
+    key: str
+    value: Value
+    type: Type = ANY
+    span: Span = field(compare=False, repr=False)
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Outcome:
+    """A declared outcome of a state or container."""
+
+    name: str
+    doc: str = ""
+    span: Span = field(compare=False, repr=False)
+
+
+Origin = Literal["written", "implicit", "connector"]
+"""Why a transition exists: the script says so; the container has an outcome of that name
+(smach-semantics M6); or a Sequence links its states (Q1)."""
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Transition:
+    """An edge: on `outcome`, go to the sibling `target` or leave with the outcome `target`.
+
+    Where a sibling and an outcome share the name the sibling is meant, but never by an implicit
+    edge (M7). `span` is the outcome's place, `target_span` the target's.
+    """
+
+    outcome: str
+    target: str
+    origin: Origin = "written"
+    span: Span = field(compare=False, repr=False)
+    target_span: Span = field(default=NOWHERE, compare=False, repr=False)
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Remap:
+    """A state's key stands for a key of its container."""
+
+    key: str
+    to: str
+    span: Span = field(compare=False, repr=False)
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Condition:
+    """Part of a rule of a concurrence: this child ended with this outcome."""
+
+    child: str
+    outcome: str
+    span: Span = field(compare=False, repr=False)
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class OutcomeRule:
+    """A concurrence ends with `outcome` when all conditions hold."""
+
+    outcome: str
+    when: tuple[Condition, ...]
+    span: Span = field(compare=False, repr=False)
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class _State:
+    """What every node has: its interface and its place in the container around it.
+
+    `type` is the state type (the template's name). `via` are the calls of sub-scripts that led
+    here, outermost first. `in`/`out` keys are `inputs`/`outputs`.
+    """
+
+    name: str
+    type: str
+    doc: str = ""
+    outcomes: tuple[Outcome, ...] = ()
+    inputs: tuple[Key, ...] = ()
+    outputs: tuple[Key, ...] = ()
+    transitions: tuple[Transition, ...] = ()
+    remaps: tuple[Remap, ...] = ()
+    claims: tuple[str, ...] = ()
+    span: Span = field(compare=False, repr=False)
+    via: tuple[Span, ...] = field(default=(), compare=False, repr=False)
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Leaf(_State):
+    """One skill of a state type.
+
+    `open`: the state type has no interface, so nothing is known of its keys and outcomes.
+    `blocking`: it waits for the outside world (the interface says so).
+    """
+
+    variables: tuple[Variable, ...] = ()
+    open: bool = False
+    blocking: bool = False
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class _Container(_State):
+    """What every container has: states in the order of the script, and presets of userdata."""
+
+    children: tuple[Node, ...] = ()
+    userdata: tuple[Preset, ...] = ()
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class StateMachine(_Container):
+    """States that follow one another along transitions.
+
+    `initial` is empty when there is no state. `forever`: meant to loop without an end.
+    """
+
+    initial: str = ""
+    forever: bool = False
+    initial_span: Span = field(default=NOWHERE, compare=False, repr=False)
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Sequence(_Container):
+    """A state machine whose states are linked in order by one outcome."""
+
+    connector_outcome: str = ""
+    initial: str = ""
+    initial_span: Span = field(default=NOWHERE, compare=False, repr=False)
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Concurrence(_Container):
+    """Children that start together; rules over their outcomes give the container's.
+
+    `join`: "all" waits for every child, "any" preempts the rest when the first has ended.
+    Of several matching rules the one with most conditions wins.
+    """
+
+    default_outcome: str = ""
+    rules: tuple[OutcomeRule, ...] = ()
+    join: Literal["all", "any"] = "all"
+    default_span: Span = field(default=NOWHERE, compare=False, repr=False)
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Iterator(_Container):
+    """One child run once for each item, which it finds under the key `item_key`.
+
+    The items are the value `items`, or what the container's userdata holds under `items_key`.
+    Outcomes of the child in `loop_outcomes` go on; every other one ends the iteration. The ending
+    outcome, or `exhausted_outcome`, goes through `final_map` (pairs from, to).
+    """
+
+    items: Value | None = None
+    items_key: str = ""
+    item_key: str = "it_data"
+    exhausted_outcome: str = "exhausted"
+    loop_outcomes: tuple[str, ...] = ()
+    final_map: tuple[tuple[str, str], ...] = ()
+
+
+Container: TypeAlias = StateMachine | Sequence | Concurrence | Iterator
+Node: TypeAlias = Leaf | Container
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Machine:
+    """A whole program: the outermost container and what the base template needs to know.
+
+    `base` is the base template; `variables` are the base's own variables (`node_name`,
+    `function_name`, `manifest`, those of the base's interface). `source` is the name of the script
+    without its folder and `digest` a SHA-256 over the texts of the script and its sub-scripts.
+    """
+
+    root: StateMachine
+    base: str = "Base"
+    variables: tuple[Variable, ...] = ()
+    source: str = ""
+    digest: str = field(default="", compare=False)

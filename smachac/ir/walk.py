@@ -1,0 +1,36 @@
+"""Nodes with their paths, in the order of the script."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+
+from smachac.ir.nodes import Container, Leaf, Node, Transition
+
+
+def walk(node: Node, path: str = "") -> Iterator[tuple[str, Node]]:
+    """A node and all below it with their paths, parents before children.
+
+    Iterative, so that deep nesting costs nothing.
+    """
+    stack: list[tuple[str, Node]] = [(path or node.name, node)]
+    while stack:
+        here, current = stack.pop()
+        yield here, current
+        if not isinstance(current, Leaf):
+            stack.extend((f"{here}/{child.name}", child) for child in reversed(current.children))
+
+
+def containers(node: Node) -> Iterator[tuple[str, Container]]:
+    """The containers among `walk(node)`."""
+    for path, current in walk(node):
+        if not isinstance(current, Leaf):
+            yield path, current
+
+
+def outcome_names(node: Node) -> tuple[str, ...]:
+    return tuple(outcome.name for outcome in node.outcomes)
+
+
+def leads_to_child(transition: Transition, children: frozenset[str]) -> bool:
+    """Whether a transition goes to a sibling, not out of the container (see Transition)."""
+    return transition.origin != "implicit" and transition.target in children

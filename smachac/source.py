@@ -1,0 +1,86 @@
+"""Text and places in it: the layer everything else stands on."""
+
+from __future__ import annotations
+
+from bisect import bisect_right
+from dataclasses import dataclass
+from functools import cached_property
+from typing import NamedTuple, NoReturn
+
+
+@dataclass(frozen=True, eq=False)
+class Source:
+    """One text with the name it is shown under (a path as the user gave it).
+
+    Two sources are the same only when they are one object.
+    """
+
+    name: str
+    text: str
+
+    @cached_property
+    def line_starts(self) -> list[int]:
+        """Offset of the first character of each line (lines end with a line feed)."""
+        starts = [0]
+        find = self.text.find
+        at = find("\n")
+        while at >= 0:
+            starts.append(at + 1)
+            at = find("\n", at + 1)
+        return starts
+
+    def position(self, offset: int) -> tuple[int, int]:
+        """Line and column of an offset, both counted from 1."""
+        line = bisect_right(self.line_starts, offset)
+        return line, offset - self.line_starts[line - 1] + 1
+
+    def line(self, number: int) -> str:
+        """The text of a line (counted from 1) without its end; empty past the last one."""
+        starts = self.line_starts
+        if not 1 <= number <= len(starts):
+            return ""
+        end = starts[number] - 1 if number < len(starts) else len(self.text)
+        return self.text[starts[number - 1] : end].rstrip("\r")
+
+
+class Span(NamedTuple):
+    """A stretch of one source, as offsets in characters: `start` included, `end` not."""
+
+    source: Source
+    start: int
+    end: int
+
+    @property
+    def line(self) -> int:
+        return self.source.position(self.start)[0]
+
+    @property
+    def column(self) -> int:
+        return self.source.position(self.start)[1]
+
+    @property
+    def text(self) -> str:
+        return self.source.text[self.start : self.end]
+
+    def __str__(self) -> str:
+        line, column = self.source.position(self.start)
+        return f"{self.source.name}:{line}:{column}"
+
+    def __repr__(self) -> str:
+        return f"Span({self})"
+
+
+NOWHERE = Span(Source("<none>", ""), 0, 0)
+"""The place of what no text holds: machines built by a program, such as a test."""
+
+
+class Word(NamedTuple):
+    """A name and where it stands."""
+
+    text: str
+    span: Span
+
+
+def assert_never(value: NoReturn) -> NoReturn:
+    """The end of a `match` that knows every kind; reaching it is a bug of ours."""
+    raise AssertionError(f"unexpected kind: {value!r}")
