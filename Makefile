@@ -1,0 +1,54 @@
+# Each target makes what it needs itself: on a new machine `make demo` and `make test` are all there is to type.
+PYTHON ?=
+ARGS ?=
+export PYTHON
+
+RUN := .venv/bin/python -m
+SMACHAC := .venv/bin/smachac
+DEMO := examples/08_pick_and_place/main.yml
+
+.DEFAULT_GOAL := help
+.PHONY: help demo test check golden docs bench build clean
+
+help: ## Print this list
+	@awk -F ':.*## ' '/^[a-z]+:.*## / {printf "  make %-8s %s\n", $$1, $$2}' Makefile
+
+demo: ## From YAML to a robot that moves: compile, check, simulate, draw; everything lands in out/
+	@scripts/setup.sh sim
+	$(SMACHAC) build $(DEMO) --target python -o out/
+	$(SMACHAC) check $(DEMO)
+	$(SMACHAC) run $(DEMO) --record out/pick_and_place.gif --trace out/trace.jsonl
+	$(SMACHAC) build $(DEMO) --target dot -o out/
+	@if command -v dot >/dev/null; then for graph in out/*.dot; do dot -Tsvg "$$graph" -o "$${graph%.dot}.svg" || exit; done; fi
+	@ls -l out/
+
+test: ## Run all tests; ARGS="-k trace" narrows them
+	@scripts/setup.sh dev
+	$(RUN) pytest -n auto --maxprocesses 8 $(ARGS)
+
+check: ## Lint, formatting and types; a warning fails
+	@scripts/setup.sh dev
+	$(RUN) ruff check
+	$(RUN) ruff format --check
+	$(RUN) mypy
+	$(RUN) pyright --warnings
+
+golden: ## Rewrite what the tests expect under tests/cases and docs; review it with git diff
+	@scripts/setup.sh dev
+	SMACHAC_GOLDEN=rewrite $(RUN) pytest -q -k golden
+
+docs: ## Rewrite docs/rules.md from the docstrings of the rules
+	@scripts/setup.sh dev
+	$(SMACHAC) explain --all >docs/rules.md
+
+bench: ## Run the benchmarks; never part of the tests
+	@scripts/setup.sh dev
+	@for bench in bench/*.py; do echo "$$bench"; .venv/bin/python "$$bench" $(ARGS) || exit; done
+
+build: ## Make the source archive and the wheel in dist/
+	@scripts/setup.sh dev
+	@$(RUN) build --version >/dev/null 2>&1 || $(RUN) pip install -q build
+	$(RUN) build --outdir dist
+
+clean: ## Remove everything that the other targets made
+	rm -rf .venv out dist build smachac.egg-info .mypy_cache .ruff_cache .pytest_cache .hypothesis

@@ -1,0 +1,133 @@
+#!/usr/bin/env bash
+# Makes .venv ready: `setup.sh sim` for running and simulating, `setup.sh dev` for tests and checks too.
+# Quick when nothing changed, safe to interrupt, safe to start twice. PYTHON=... chooses the interpreter.
+set -euo pipefail
+CDPATH='' cd -- "$(dirname -- "${BASH_SOURCE[0]}")/.."
+
+say() { printf 'setup: %s\n' "$*" >&2; }
+
+fail() {
+  say "$@"
+  exit 1
+}
+
+# Installs Debian packages where that is allowed; otherwise prints the line to run, and fails.
+install_packages() {
+  local apt=(env DEBIAN_FRONTEND=noninteractive apt-get -q -o DPkg::Lock::Timeout=300)
+  ((EUID == 0)) || apt=(sudo -n "${apt[@]}")
+  if command -v apt-get >/dev/null && { ((EUID == 0)) || sudo -n true 2>/dev/null; }; then
+    say "installing $*"
+    local install=("${apt[@]}" install -y --no-install-recommends "$@")
+    "${install[@]}" </dev/null >/dev/null 2>&1 && return
+    "${apt[@]}" update </dev/null >/dev/null && "${install[@]}" </dev/null >/dev/null && return
+  fi
+  say "missing: $*. Run: sudo apt-get install -y $*"
+  return 1
+}
+
+# Prints `path version` of an interpreter, a shim or a virtual environment followed to its origin.
+# Fails where it does not run, is older than 3.10, or cannot import the modules named after it.
+probe() {
+  "$1" -c '
+import importlib, sys
+if sys.version_info < (3, 10): sys.exit(1)
+for name in sys.argv[1:]: importlib.import_module(name)
+print(sys._base_executable, "%d.%d" % sys.version_info[:2], sep="\t")' "${@:2}" 2>/dev/null
+}
+
+# The first interpreter that serves, in the order of how readily PyBullet installs on it.
+find_python() {
+  local names=(python3.11 python3.10 python3.12 python3.13 python3.14 python3) name path
+  [[ -z ${PYTHON:-} ]] || names=("$PYTHON")
+  for name in "${names[@]}"; do
+    while IFS= read -r path; do
+      probe "$path" "$@" && return
+    done < <(type -aP -- "$name")
+  done
+  return 1
+}
+
+choose_python() {
+  local found packages=(python3 python3-venv)
+  if ! found=$(find_python venv ensurepip); then
+    [[ -z ${PYTHON:-} ]] || find_python >/dev/null || fail "PYTHON=$PYTHON does not run, or is older than 3.10"
+    if found=$(find_python); then packages=("python${found##*$'\t'}-venv"); fi
+    install_packages "${packages[@]}" || exit 1
+    found=$(find_python venv ensurepip) || fail "no Python 3.10 or newer with venv was found"
+  fi
+  python=${found%$'\t'*} version=${found##*$'\t'}
+}
+
+# A virtual environment carries the file `unfinished` from its first moment until all is in it.
+make_venv() {
+  if [[ -z ${PYTHON:-} && -x .venv/bin/python && ! -e .venv/unfinished ]]; then
+    PYTHON=.venv/bin/python choose_python
+  else
+    choose_python
+  fi
+  if [[ -e .venv/unfinished ]] || [[ "$(probe .venv/bin/python pip)" != "$python"$'\t'* ]]; then
+    say "making .venv with Python $version ($python)"
+    rm -rf .venv
+    mkdir .venv
+    touch .venv/unfinished
+    "$python" -m venv .venv
+  fi
+  touch .venv/unfinished
+}
+
+pip() { .venv/bin/python -m pip --disable-pip-version-check --no-input "$@" </dev/null; }
+
+# Prints the packages that compiling an extension for this Python still needs.
+compiler_parts() {
+  command -v g++ >/dev/null || echo g++
+  "$python" -c 'import pathlib, sys, sysconfig
+sys.exit(not pathlib.Path(sysconfig.get_path("include"), "Python.h").exists())' || echo "python$version-dev"
+}
+
+prepare_pybullet() {
+  if pip show -qq pybullet 2>/dev/null || pip index versions --only-binary :all: pybullet &>/dev/null; then return; fi
+  say "no ready-made PyBullet for Python $version: compiling it, which takes about three minutes"
+  say "(Python 3.11 and 3.10 need no compiling: PYTHON=python3.11 make ...)"
+  local parts
+  mapfile -t parts < <(compiler_parts)
+  ((${#parts[@]} == 0)) || install_packages "${parts[@]}" || exit 1
+}
+
+# What tests and pictures gain from; everything else goes on without it.
+prepare_optional() {
+  command -v dot >/dev/null || install_packages graphviz || say "going on without Graphviz: no pictures"
+  [[ $level == dev ]] || return 0
+  local parts
+  mapfile -t parts < <(compiler_parts)
+  ((${#parts[@]} == 0)) || install_packages "${parts[@]}" || say "going on without a compiler"
+}
+
+# The state of .venv that a stamp stands for; the folder, because installed scripts name it.
+key() { { cat pyproject.toml scripts/setup.sh && printf '%s\n' "$PWD" "${PYTHON:-}"; } | cksum; }
+
+is_ready() { [[ -x .venv/bin/python && ! -e .venv/unfinished && -e .venv/ready-$level && $(<".venv/ready-$level") == "$(key)" ]]; }
+
+set_up() {
+  make_venv
+  prepare_pybullet
+  prepare_optional
+  local extras=sim
+  [[ $level == sim ]] || extras=sim,dev
+  say "installing smachac[$extras] (about 150 MB)"
+  pip install -q -e ".[$extras]"
+  pip install -q -e '.[fast]' &>.venv/fast.log ||
+    say "note: the fast YAML parser did not compile (.venv/fast.log); the slower one reads the same"
+  key >.venv/ready-sim
+  [[ $level == sim ]] || key >.venv/ready-dev
+  rm .venv/unfinished
+}
+
+level=${1:-}
+[[ $level == sim || $level == dev ]] || fail "usage: setup.sh sim|dev"
+is_ready && exit
+exec 9<pyproject.toml
+if command -v flock >/dev/null && ! flock -n 9; then
+  say "waiting for another set-up to end"
+  flock 9
+fi
+is_ready || set_up
