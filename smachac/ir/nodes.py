@@ -8,7 +8,7 @@ nowhere stays in it, for the rules to find.
 from __future__ import annotations
 
 from dataclasses import dataclass, field
-from typing import Literal, TypeAlias
+from typing import Literal, NewType, TypeAlias
 
 from smachac.ir.types import ANY, Type
 from smachac.source import NOWHERE, Span
@@ -238,3 +238,8 @@ class Machine:
     variables: tuple[Variable, ...] = ()
     source: str = ""
     digest: str = field(default="", compare=False)
+
+
+Checked = NewType("Checked", Machine)
+"""A machine that passed every rule without an error: what targets accept. Only the driver's
+`check` makes one."""
