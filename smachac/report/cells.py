@@ -1,0 +1,119 @@
+"""Text as a terminal shows it: in columns, with everything visible and nothing obeyed."""
+
+from __future__ import annotations
+
+from typing import NamedTuple
+from unicodedata import category, combining, east_asian_width
+
+TAB = 4
+"""Columns between two tab stops."""
+
+ELLIPSIS = "…"
+LEAD = 8
+"""Columns kept before a span that is wider than the screen."""
+
+
+class Line(NamedTuple):
+    """A line as printed: its text, and the column of each character of the original.
+
+    `columns` has one entry more than there are characters: the end. Characters that were cut off
+    stand at the edge.
+    """
+
+    text: str
+    columns: tuple[int, ...]
+    first: int
+
+    def column(self, index: int) -> int:
+        """The column of a character of the original line, wherever it is."""
+        return self.columns[min(max(index - self.first, 0), len(self.columns) - 1)]
+
+
+def _joins(character: str) -> bool:
+    """Whether a character is drawn over the one before it (marks, Hangul vowels and finals)."""
+    return (
+        combining(character) != 0
+        or category(character) in ("Mn", "Me")
+        or "\u1160" <= character <= "\u11ff"
+    )
+
+
+def _glyph(character: str, column: int, *, alone: bool) -> tuple[str, int]:
+    """What is printed for a character that starts at `column`, and how many columns it takes.
+
+    Nothing a text holds may steer the terminal or hide: controls have pictures (Unicode block
+    2400), other invisible characters appear as `<U+202E>`.
+    """
+    if " " <= character <= "~":
+        return character, 1
+    if character == "\t":
+        size = TAB - column % TAB
+        return " " * size, size
+    if character < " ":
+        return chr(0x2400 + ord(character)), 1
+    if character == "\x7f":
+        return "\u2421", 1
+    if category(character) in ("Cc", "Cf", "Cs", "Co", "Cn", "Zl", "Zp", "Zs") or (
+        alone and _joins(character)
+    ):
+        name = f"<U+{ord(character):04X}>"
+        return name, len(name)
+    if _joins(character):
+        return character, 0
+    return character, 2 if east_asian_width(character) in "WF" else 1
+
+
+def _glyphs(text: str) -> tuple[list[str], list[int]]:
+    printed: list[str] = []
+    starts = [0]
+    for character in text:
+        glyph, size = _glyph(character, starts[-1], alone=not printed)
+        printed.append(glyph)
+        starts.append(starts[-1] + size)
+    return printed, starts
+
+
+def visible(text: str) -> str:
+    """A text with every invisible character made visible; line feeds stay."""
+    return "\n".join("".join(_glyphs(line)[0]) for line in text.split("\n"))
+
+
+def columns(text: str) -> int:
+    """How many columns a text takes that holds neither tabs nor line feeds."""
+    return _glyphs(text)[1][-1]
+
+
+def _left_edge(start: int, end: int, total: int, room: int) -> int:
+    """The first column of the window through which a span of a long line is best seen."""
+    span = end - start
+    before = (room - span) // 2 if span + 2 < room else LEAD
+    return max(0, min(start - before, total - room + 1))
+
+
+def lay_out(text: str, start: int, end: int, room: int) -> Line:
+    """A line in at most `room` columns, in which the characters `start` to `end` stay in view.
+
+    Only the neighbourhood of the span is looked at, so a line of megabytes costs no more than
+    one that fills the screen.
+    """
+    room = max(room, 20)
+    low, high = max(0, start - 4 * room), min(len(text), start + 4 * room)
+    printed, starts = _glyphs(text[low:high])
+    total = starts[-1]
+    if low == 0 and high == len(text) and total <= room:
+        return Line("".join(printed), tuple(starts), 0)
+    from_column = starts[min(start, high) - low]
+    to_column = starts[min(max(end, start), high) - low]
+    left = 0
+    if low > 0 or (to_column >= room and from_column > room // 3):
+        left = _left_edge(from_column, to_column, total, room)
+    cut_left = low > 0 or left > 0
+    first = next(i for i, at in enumerate(starts) if at >= left + cut_left or i == len(printed))
+    limit = left + room
+    cut_right = high < len(text) or total > limit
+    last = max(i for i, at in enumerate(starts) if at <= limit - cut_right or i == first)
+    body = "".join(printed[first:last])
+    shown = ELLIPSIS * cut_left + body + ELLIPSIS * cut_right
+    edge = starts[first] - cut_left
+    placed = tuple(min(max(at, starts[first] - cut_left), starts[last]) - edge for at in starts)
+    return Line(shown, placed, low)
