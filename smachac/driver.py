@@ -1,0 +1,74 @@
+"""The pipeline: text to tree to script to machine to judgement to files."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+
+from smachac.checks import check_machine
+from smachac.diagnostics import Report, has_errors, in_order
+from smachac.ir.nodes import Checked, Machine
+from smachac.lower import lower
+from smachac.script import resolve
+from smachac.source import Source
+from smachac.states import Library
+from smachac.syntax import parse
+from smachac.targets import Context, Files, Target
+
+
+def load(source: Source, library: Library, report: Report) -> Machine | None:
+    """The machine a script describes, as far as it can be read."""
+    tree = parse(source, report)
+    script = resolve(source, tree, library, report)
+    return None if script is None else lower(script)
+
+
+def check(machine: Machine, report: Report) -> Checked | None:
+    """Judge a machine by every rule; the machine again, if neither they nor `report` object."""
+    report.extend(check_machine(machine))
+    return None if has_errors(report) else Checked(machine)
+
+
+def analyse(source: Source, library: Library) -> tuple[Machine | None, Report]:
+    """The machine of a script and everything there is to say about it, in order."""
+    report: Report = []
+    machine = load(source, library, report)
+    if machine is not None:
+        check(machine, report)
+    return machine, in_order(report)
+
+
+def build(
+    machine: Checked,
+    target: Target,
+    library: Library,
+    report: Report,
+    options: Mapping[str, str] | None = None,
+) -> Files:
+    """The files a target prints; none if a template is at fault (SM605)."""
+    context = Context(template=library.template, options=options or {})
+    files = target.emit(machine, context, report)
+    return {} if has_errors(report) else files
+
+
+def memory_library(files: Mapping[str, str], built_in: Library) -> Library:
+    """A library over texts in memory; templates not among them come from `built_in`."""
+    sources = {name: Source(name, text) for name, text in files.items()}
+
+    def script(name: str, caller: str) -> Source | None:
+        names = (name, f"{name}.yml", f"{name}.yaml")
+        return next((sources[name] for name in names if name in sources), None)
+
+    def template(name: str) -> Source | None:
+        return sources.get(f"templates/{name}") or built_in.template(name)
+
+    return Library(
+        script=script,
+        template=template,
+        script_folders=lambda caller: ["."],
+        template_folders=lambda: ["templates", *built_in.template_folders()],
+        script_names=lambda caller: [name.removesuffix(".yml") for name in sources],
+        template_names=lambda: [
+            *(name.removeprefix("templates/").split(".")[0] for name in sources),
+            *built_in.template_names(),
+        ],
+    )

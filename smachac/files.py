@@ -1,0 +1,238 @@
+"""The disk: the only module of the compiler that reads scripts and templates or writes outputs."""
+
+from __future__ import annotations
+
+import contextlib
+import os
+import tempfile
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+from pathlib import Path
+
+from smachac import problems
+from smachac.diagnostics import Report
+from smachac.source import Source, Span
+from smachac.states import Library
+
+BUILT_IN = Path(__file__).parent / "states"
+"""The folder of the built-in state types."""
+
+SUFFIXES = ("", ".yml", ".yaml")
+MAX_BYTES = 50_000_000
+
+
+def read_source(path: Path, report: Report) -> Source | None:
+    """A text file as a source under the path as given; SM007 where it cannot be read."""
+    try:
+        if path.stat().st_size > MAX_BYTES:
+            place = Span(Source(str(path), ""), 0, 0)
+            report.append(problems.too_big(place, f"the file has {path.stat().st_size:,} bytes"))
+            return None
+        return Source(str(path), _decoded(path.read_bytes()))
+    except OSError as error:
+        span = Span(Source(str(path), ""), 0, 0)
+        report.append(problems.unreadable_file(span, (error.strerror or str(error)).lower()))
+    except UnicodeDecodeError as error:
+        text = error.object[: error.start].decode("utf-8", "replace")
+        span = Span(Source(str(path), text), len(text), len(text))
+        byte = error.object[error.start]
+        report.append(
+            problems.unreadable_file(span, f"byte 0x{byte:02x} is not UTF-8: is it a text file?")
+        )
+    return None
+
+
+def _decoded(data: bytes) -> str:
+    """UTF-8 with or without a byte order mark, or UTF-16 with one (YAML 1.2.2, section 5.2)."""
+    if data[:2] in (b"\xff\xfe", b"\xfe\xff"):
+        return data.decode("utf-16")
+    return data.decode("utf-8-sig")
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Project:
+    """Settings of a project file: search folders, each absolute or as seen from here."""
+
+    scripts: tuple[Path, ...] = ()
+    templates: tuple[Path, ...] = ()
+
+
+def find_project(main: Path, report: Report) -> Project:
+    """The settings of the nearest `smachac.toml`, or `[tool.smachac]` of a `pyproject.toml`.
+
+    Looked for from the script's folder upwards, as far as the root of the git repository.
+    """
+    for folder in (main.parent, *_parents(main.parent)):
+        for name in ("smachac.toml", "pyproject.toml"):
+            path = folder / name
+            if path.is_file():
+                settings = _read_settings(path, report)
+                if settings is not None:
+                    return _project(path, settings, report)
+        if (folder / ".git").exists():
+            break
+    return Project()
+
+
+def _parents(folder: Path) -> list[Path]:
+    """The folders above, in the user's terms: `..` where the path is relative."""
+    if folder.is_absolute():
+        return list(folder.parents)
+    named = [parent for parent in folder.parents if str(parent) != "."]
+    above = Path.cwd().parents
+    here = [Path()] if str(folder) != "." else []
+    return [*named, *here, *(Path(*[".."] * (n + 1)) for n in range(len(above)))]
+
+
+def _read_settings(path: Path, report: Report) -> dict[str, object] | None:
+    try:
+        import tomllib as toml
+    except ImportError:  # Python 3.10
+        import tomli as toml  # type: ignore[import-not-found,no-redef,unused-ignore]
+    source = read_source(path, report)
+    if source is None:
+        return {}
+    try:
+        data = toml.loads(source.text)
+    except toml.TOMLDecodeError as error:
+        report.append(problems.unreadable_file(Span(source, 0, 0), f"not TOML: {error}"))
+        return {}
+    if path.name == "smachac.toml":
+        return data
+    settings = data.get("tool", {}).get("smachac")
+    return settings if isinstance(settings, dict) else None
+
+
+def _project(path: Path, settings: Mapping[str, object], report: Report) -> Project:
+    folders: dict[str, tuple[Path, ...]] = {}
+    for key, value in settings.items():
+        span = Span(Source(str(path), ""), 0, 0)
+        if key not in ("scripts", "templates"):
+            known = "it has `scripts` and `templates`"
+            report.append(problems.unreadable_file(span, f"unknown setting `{key}`", known))
+        elif not isinstance(value, list) or not all(isinstance(item, str) for item in value):
+            report.append(problems.unreadable_file(span, f"`{key}` must be a list of folders"))
+        else:
+            folders[key] = tuple(path.parent / item for item in value)
+    return Project(**folders)
+
+
+def disk_library(
+    main: Path, report: Report, *, scripts: Sequence[Path] = (), templates: Sequence[Path] = ()
+) -> Library:
+    """The library of a script on disk.
+
+    Scripts are looked for in the folder of the calling file, then in `scripts`, then in the
+    project file's; templates in `templates`, the project file's, `templates/` beside the main
+    script, and the built-in ones. Nothing outside these folders is read.
+    """
+    project = find_project(main, report)
+    own_scripts = [*scripts, *project.scripts]
+    template_folders = [*templates, *project.templates, main.parent / "templates", BUILT_IN]
+    cache: dict[Path, Source | None] = {}
+
+    def read(path: Path) -> Source | None:
+        key = path.resolve()
+        if key not in cache:
+            cache[key] = read_source(path, report)
+        return cache[key]
+
+    def script_folders(caller: str) -> list[Path]:
+        return list(dict.fromkeys([Path(caller).parent, *own_scripts]))
+
+    def script(name: str, caller: str) -> Source | None:
+        path = _found(name, script_folders(caller), SUFFIXES)
+        return read(path) if path else None
+
+    def template(name: str) -> Source | None:
+        path = _found(name, template_folders, ("",))
+        return read(path) if path else None
+
+    return Library(
+        script=script,
+        template=template,
+        script_folders=lambda caller: [str(folder) for folder in script_folders(caller)],
+        template_folders=lambda: [
+            *(str(folder) for folder in template_folders[:-1]),
+            "the built-in ones",
+        ],
+        script_names=lambda caller: _stems(script_folders(caller), (".yml", ".yaml")),
+        template_names=lambda: _stems(template_folders, (".tpl.py", ".tpl", ".yml")),
+    )
+
+
+def _found(name: str, folders: Sequence[Path], suffixes: Sequence[str]) -> Path | None:
+    """The first file of that name that lies inside one of the folders."""
+    if "\0" in name:
+        return None
+    for folder in folders:
+        for suffix in suffixes:
+            path = folder / f"{name}{suffix}"
+            with contextlib.suppress(OSError):  # a name too long for the file system is not there
+                if path.is_file() and path.resolve().is_relative_to(folder.resolve()):
+                    return path
+    return None
+
+
+def _stems(folders: Sequence[Path], suffixes: Sequence[str]) -> list[str]:
+    names = []
+    for folder in folders:
+        with contextlib.suppress(OSError):
+            for path in sorted(folder.iterdir()):
+                for suffix in suffixes:
+                    if path.name.endswith(suffix):
+                        names.append(path.name.removesuffix(suffix))
+                        break
+    return list(dict.fromkeys(names))
+
+
+MARK = "Made by smachac"
+"""What every file we write says in its first lines: so we know our own."""
+
+
+def foreign_files(folder: Path, files: Mapping[str, str]) -> list[Path]:
+    """Files that are in the way: they exist and were not written by us."""
+    found = []
+    for name in files:
+        path = folder / name
+        if path.exists():
+            with contextlib.suppress(OSError), path.open(encoding="utf-8", errors="replace") as old:
+                if MARK in old.read(2000):
+                    continue
+            found.append(path)
+    return found
+
+
+def changed_files(folder: Path, files: Mapping[str, str]) -> list[Path]:
+    """Files whose content on disk is not what would be written."""
+    changed = []
+    for name, text in files.items():
+        path = folder / name
+        if not path.is_file() or path.read_bytes() != text.encode("utf-8"):
+            changed.append(path)
+    return changed
+
+
+def write_files(folder: Path, files: Mapping[str, str]) -> list[Path]:
+    """Write all files or none, each to a temporary file that is then renamed.
+
+    Raises OSError; nothing is left behind then.
+    """
+    written: list[tuple[str, Path]] = []
+    try:
+        for name, text in files.items():
+            path = folder / name
+            path.parent.mkdir(parents=True, exist_ok=True)
+            handle, temporary = tempfile.mkstemp(prefix=f".{path.name}.", dir=path.parent)
+            written.append((temporary, path))
+            with os.fdopen(handle, "w", encoding="utf-8", newline="") as stream:
+                stream.write(text)
+            Path(temporary).chmod(0o644)
+        for temporary, path in written:
+            Path(temporary).replace(path)
+    except BaseException:
+        for temporary, _ in written:
+            with contextlib.suppress(OSError):
+                Path(temporary).unlink()
+        raise
+    return [path for _, path in written]

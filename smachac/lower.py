@@ -1,0 +1,302 @@
+"""A script to the state graph. Total: whatever the script holds has a graph; rules judge it."""
+
+from __future__ import annotations
+
+import hashlib
+from collections.abc import Iterable
+from dataclasses import replace
+from pathlib import PurePath
+from typing import Any
+
+from smachac import schema, shapes
+from smachac.ir.nodes import (
+    Concurrence,
+    Condition,
+    Container,
+    Iterator,
+    Key,
+    Leaf,
+    Machine,
+    Node,
+    Outcome,
+    OutcomeRule,
+    Preset,
+    Remap,
+    Sequence,
+    StateMachine,
+    Transition,
+    Value,
+    Variable,
+)
+from smachac.ir.types import ANY, parse_type
+from smachac.script import Script, State
+from smachac.source import Word
+from smachac.syntax import Map, Scalar, Tree
+from smachac.values import as_value
+
+_NOT_VARIABLES = frozenset(schema.names_for("state")) | {"script"}
+"""What of a leaf's fields belongs to the language; the rest are variables of its state type."""
+
+_BASE_VARIABLES = ("node_name", "function_name", "manifest")
+
+
+def lower(script: Script) -> Machine:
+    """The machine that a script describes."""
+    base = script.base
+    root = _container(base, "StateMachine")
+    assert isinstance(root, StateMachine)
+    digest = hashlib.sha256()
+    for source in script.sources:
+        digest.update(source.text.encode("utf-8", "surrogatepass"))
+        digest.update(b"\0")
+    names = [*_BASE_VARIABLES, *base.type.variables]
+    return Machine(
+        root=replace(root, type="StateMachine"),
+        base=base.type.name or "Base",
+        variables=tuple(_variable(base, name) for name in names if name in base.fields),
+        source=PurePath(script.sources[0].name).name,
+        digest=digest.hexdigest(),
+    )
+
+
+def _tree(state: State, name: str) -> Tree | None:
+    entry = state.fields.get(name)
+    return entry.value if entry is not None else None
+
+
+def _words(state: State, name: str) -> tuple[Word, ...]:
+    tree = _tree(state, name)
+    return shapes.as_names(tree, []) if tree is not None else ()
+
+
+def _pairs(state: State, name: str) -> tuple[tuple[Word, Word], ...]:
+    tree = _tree(state, name)
+    return shapes.as_pairs(tree, []) if tree is not None else ()
+
+
+def _word(state: State, name: str, default: str = "") -> Word:
+    tree = _tree(state, name)
+    word = shapes.as_name(tree, []) if tree is not None else None
+    return word or Word(default, state.name.span)
+
+
+def _variable(state: State, name: str) -> Variable:
+    entry = state.fields[name]
+    value = as_value(entry.value, code=name == "callbacks")
+    return Variable(name=name, value=value, span=entry.key.span)
+
+
+def _keys(state: State, name: str, known: tuple[Key, ...]) -> tuple[Key, ...]:
+    """The keys of an interface and those the script adds."""
+    tree = _tree(state, name)
+    if tree is None:
+        return known
+    keys = {key.name: key for key in known}
+    for word, type_ in shapes.as_keys(tree, []):
+        found = parse_type(type_.text) if type_ is not None else None
+        below = keys.get(word.text)
+        keys[word.text] = Key(
+            name=word.text,
+            type=found or (below.type if below else ANY),
+            doc=below.doc if below else "",
+            span=word.span,
+        )
+    return tuple(keys.values())
+
+
+def _presets(state: State) -> Iterable[Preset]:
+    """Userdata in the short form `key: value` or the long one `key: {type: T, value: V}`."""
+    tree = _tree(state, "userdata")
+    for entry in shapes.as_map(tree, []) if tree is not None else ():
+        value, type_ = entry.value, ANY
+        if isinstance(value, Map) and _is_long_form(value):
+            inner = {item.key.value: item.value for item in value.entries}
+            named = inner.get("type")
+            if isinstance(named, Scalar) and isinstance(named.value, str):
+                type_ = parse_type(named.value) or ANY
+            value = inner["value"]
+        yield Preset(
+            key=str(entry.key.value), value=as_value(value), type=type_, span=entry.key.span
+        )
+
+
+def _is_long_form(tree: Map) -> bool:
+    keys = {entry.key.value for entry in tree.entries}
+    return "value" in keys and keys <= {"type", "value", "doc"}
+
+
+def _interface(state: State) -> dict[str, Any]:
+    """The fields that every node has, without outcomes."""
+    doc = _tree(state, "doc")
+    type_ = state.type
+    return {
+        "name": state.name.text,
+        "type": type_.name,
+        "doc": shapes.as_text(doc, []).strip() if doc is not None else "",
+        "inputs": _keys(state, "input_keys", type_.input_keys),
+        "outputs": _keys(state, "output_keys", type_.output_keys),
+        "transitions": tuple(
+            Transition(outcome=key.text, target=target.text, span=key.span, target_span=target.span)
+            for key, target in _pairs(state, "transitions")
+        ),
+        "remaps": tuple(
+            Remap(key=key.text, to=to.text, span=key.span) for key, to in _pairs(state, "remapping")
+        ),
+        "claims": tuple(
+            dict.fromkeys((*type_.claims, *(word.text for word in _words(state, "claims"))))
+        ),
+        "span": state.name.span,
+        "via": state.via,
+    }
+
+
+def _leaf(state: State) -> Leaf:
+    type_ = state.type
+    fields = _interface(state)
+    outcomes = {outcome.name: outcome for outcome in type_.outcomes}
+    if type_.open or "outcomes" in type_.given:
+        given = [*_words(state, "outcomes")]
+        if "default_outcome" in state.fields:
+            given.append(_word(state, "default_outcome"))
+        if type_.open and not given:
+            given += [key for key, _ in _pairs(state, "transitions")]
+        for word in given:
+            outcomes.setdefault(word.text, Outcome(name=word.text, span=word.span))
+    return Leaf(
+        **fields,
+        outcomes=tuple(outcomes.values()),
+        variables=tuple(
+            _variable(state, name) for name in state.fields if name not in _NOT_VARIABLES
+        ),
+        open=type_.open,
+        blocking=type_.blocking,
+    )
+
+
+def _container(state: State, owner: str) -> Container:
+    children = tuple(_node(child) for child in state.states)
+    lifted = [
+        preset for child in state.states if child.owner == "state" for preset in _presets(child)
+    ]
+    presets = {preset.key: preset for preset in (*_presets(state), *lifted)}
+    fields = _interface(state)
+    fields["outcomes"] = tuple(
+        Outcome(name=word.text, span=word.span) for word in _words(state, "outcomes")
+    )
+    fields["userdata"] = tuple(presets.values())
+    outcomes = frozenset(outcome.name for outcome in fields["outcomes"])
+    match owner:
+        case "Concurrence":
+            return _concurrence(state, fields, children)
+        case "Iterator":
+            return _iterator(state, fields, children)
+        case "Sequence":
+            connector = _word(state, "connector_outcome")
+            children = _linked(children, connector.text)
+            fields["connector_outcome"] = connector.text
+    fields["children"] = tuple(_with_implicit(child, outcomes) for child in children)
+    first = children[0].name if children else ""
+    initial = _word(state, "initial", first)
+    fields["initial"] = initial.text
+    fields["initial_span"] = initial.span
+    if owner == "Sequence":
+        return Sequence(**fields)
+    forever = _tree(state, "forever")
+    fields["forever"] = isinstance(forever, Scalar) and forever.value is True
+    return StateMachine(**fields)
+
+
+def _node(state: State) -> Node:
+    return _leaf(state) if state.owner == "state" else _container(state, state.owner)
+
+
+def _linked(children: tuple[Node, ...], connector: str) -> tuple[Node, ...]:
+    """The states of a sequence, each linked to the next by the connector (smach-semantics Q2)."""
+    linked = []
+    for child, after in zip(children, (*children[1:], None), strict=True):
+        has = any(outcome.name == connector for outcome in child.outcomes)
+        own = any(transition.outcome == connector for transition in child.transitions)
+        if after is not None and has and not own:
+            link = Transition(
+                outcome=connector, target=after.name, origin="connector", span=child.span
+            )
+            child = replace(child, transitions=(*child.transitions, link))
+        linked.append(child)
+    return tuple(linked)
+
+
+def _with_implicit(child: Node, outcomes: frozenset[str]) -> Node:
+    """The child with the edges that its container's outcomes imply (smach-semantics M6)."""
+    own = {transition.outcome for transition in child.transitions}
+    implied = tuple(
+        Transition(outcome=o.name, target=o.name, origin="implicit", span=child.span)
+        for o in child.outcomes
+        if o.name not in own and o.name in outcomes
+    )
+    if not implied:
+        return child
+    return replace(child, transitions=(*child.transitions, *implied))
+
+
+def _concurrence(state: State, fields: dict[str, Any], children: tuple[Node, ...]) -> Concurrence:
+    default = _word(state, "default_outcome")
+    tree = _tree(state, "outcome_map")
+    rules = shapes.as_rules(tree, []) if tree is not None else ()
+    return Concurrence(
+        **fields,
+        children=children,
+        default_outcome=default.text,
+        default_span=default.span,
+        rules=tuple(
+            OutcomeRule(
+                outcome=outcome.text,
+                span=outcome.span,
+                when=tuple(
+                    Condition(child=child.text, outcome=ending.text, span=child.span)
+                    for child, ending in conditions
+                ),
+            )
+            for outcome, conditions in rules
+        ),
+        join="any" if _word(state, "join").text == "any" else "all",
+    )
+
+
+def _iterator(state: State, fields: dict[str, Any], children: tuple[Node, ...]) -> Iterator:
+    """An iterator with its looping outcomes spelt out (smach-semantics I1, I3)."""
+    items, items_key = _items(_tree(state, "it"))
+    own = [outcome.name for child in children[:1] for outcome in child.outcomes]
+    breaks = [word.text for word in _words(state, "break_outcomes")]
+    loops = [word.text for word in _words(state, "loop_outcomes")]
+    if breaks:
+        loops = [name for name in own if name not in breaks]
+    exhausted = _word(state, "exhausted_outcome", "exhausted")
+    final = {key.text: to.text for key, to in _pairs(state, "final_outcome_map")}
+    declared: tuple[Outcome, ...] = fields["outcomes"]
+    results = [final.get(exhausted.text, exhausted.text)]
+    if not declared:
+        results += [final.get(name, name) for name in own if name not in loops]
+    known = {outcome.name for outcome in declared}
+    fields["outcomes"] = declared + tuple(
+        Outcome(name=name, span=exhausted.span)
+        for name in dict.fromkeys(results)
+        if name not in known
+    )
+    return Iterator(
+        **fields,
+        children=children,
+        items=items,
+        items_key=items_key,
+        item_key=_word(state, "it_label", "it_data").text,
+        exhausted_outcome=exhausted.text,
+        loop_outcomes=tuple(loops),
+        final_map=tuple(final.items()),
+    )
+
+
+def _items(tree: Tree | None) -> tuple[Value | None, str]:
+    """What an iterator runs over: a value, or the name of a key of its userdata."""
+    if tree is None:
+        return None, ""
+    value = as_value(tree)
+    return (None, value.data) if isinstance(value.data, str) else (value, "")

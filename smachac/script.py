@@ -1,0 +1,355 @@
+"""A script as its author meant it: shorthand expanded, sub-scripts called, look-ups filled in,
+every state with its type; one self-contained tree that lowering only has to read.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass, field, replace
+
+from smachac import problems, schema, shapes
+from smachac.diagnostics import Related, Report, did_you_mean
+from smachac.lookups import Scope, child_scope, fill_in
+from smachac.source import Source, Span, Word
+from smachac.states import Library, StateType, find_state_type
+from smachac.syntax import Entry, Map, Scalar, Seq, Tree, parse
+
+MAX_STATES = 1_000_000
+"""The most states a script may have once its sub-scripts are called."""
+
+Fields = Mapping[str, Entry]
+"""Variables by long name; the entry's key is where the name stands."""
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class State:
+    """A state or container of a script, or the script's base.
+
+    `owner` says which variables of the schema it may have: "base", a container type or "state".
+    `via`: the calls of sub-scripts that led here, outermost first.
+    """
+
+    name: Word
+    owner: str
+    type: StateType
+    fields: Fields
+    states: tuple[State, ...] = ()
+    via: tuple[Span, ...] = ()
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Script:
+    """A whole script. `sources`: its text and those of its sub-scripts, in the order of use."""
+
+    base: State
+    sources: tuple[Source, ...]
+
+
+@dataclass(frozen=True, slots=True)
+class _Place:
+    """Where resolving stands: the source, the params in scope, the calls that led there."""
+
+    source: Source
+    scope: Scope = field(default_factory=dict)
+    calls: tuple[tuple[str, Span], ...] = ()
+
+    @property
+    def via(self) -> tuple[Span, ...]:
+        return tuple(span for _, span in self.calls)
+
+
+def resolve(source: Source, tree: Tree | None, library: Library, report: Report) -> Script | None:
+    """The script that a tree holds, as far as it can be read; None where it holds none."""
+    if tree is None:
+        if not report:
+            span = Span(source, 0, 0)
+            report.append(
+                problems.wrong_shape(
+                    span, "the script is empty", "a script begins with `name:` and has `states:`"
+                )
+            )
+        return None
+    if not isinstance(tree, Map):
+        sub_script = isinstance(tree, Seq)
+        report.append(
+            problems.wrong_shape(
+                Span(source, tree.span.start, tree.span.start + 1),
+                "a script is a mapping; this is a sub-script"
+                if sub_script
+                else f"a script is a mapping, not {shapes.kind_of(tree)}",
+                "check or build the script that calls it" if sub_script else None,
+            )
+        )
+        return None
+    return _Resolver(library, report).script(source, tree)
+
+
+class _Resolver:
+    """What the functions of one run share: the library, the report, what was read before."""
+
+    def __init__(self, library: Library, report: Report) -> None:
+        self.library = library
+        self.report = report
+        self.main = ""
+        self.sources: dict[int, Source] = {}
+        self.types: dict[str, StateType | None] = {}
+        self.sub_scripts: dict[tuple[str, str], tuple[Source, Tree | None] | None] = {}
+        self.count = 0
+
+    def script(self, source: Source, tree: Map) -> Script:
+        self.sources[id(source)] = source
+        self.main = source.name
+        fields = self.expand(tree.entries)
+        name = shapes.as_name(fields["name"].value, []) if "name" in fields else None
+        start = tree.entries[0].key.span if tree.entries else tree.span
+        base = self.state(name or Word("sm", start), fields, _Place(source), "base")
+        return Script(base=base, sources=tuple(self.sources.values()))
+
+    def expand(self, entries: tuple[Entry, ...]) -> dict[str, Entry]:
+        """Entries by long name."""
+        fields: dict[str, Entry] = {}
+        for entry in entries:
+            word = shapes.as_name(entry.key, self.report)
+            if word is None:
+                continue
+            name = schema.LONG.get(word.text, word.text)
+            first = fields.setdefault(name, entry)
+            if first is not entry and first.key.value != entry.key.value:
+                self.report.append(problems.duplicate_key(word, first.key.span))
+        return fields
+
+    def state(self, name: Word, own: dict[str, Entry], place: _Place, role: str = "") -> State:
+        """A state from its variables; `role` is "base" for the script itself."""
+        params = own.get("params")
+        scope = child_scope(place.scope, params.value if params else None, self.report)
+        place = replace(place, scope=scope)
+        fields = {
+            key: entry if key in ("params", "states") else self.filled(key, entry, scope)
+            for key, entry in own.items()
+        }
+        type_, owner = self.type_of(name, fields, role)
+        if role != "base":
+            self.count += 1
+        self.check_variables(name, fields, owner, type_)
+        children: tuple[State, ...] = ()
+        if "states" in fields and owner != "state":
+            children = self.children(fields["states"].value, place)
+        return State(
+            name=name, owner=owner, type=type_, fields=fields, states=children, via=place.via
+        )
+
+    def filled(self, key: str, entry: Entry, scope: Scope) -> Entry:
+        value = entry.value
+        if isinstance(value, Scalar):
+            return entry
+        row = schema.VARIABLES.get(key)
+        names = row is not None and row.shape in ("names", "keys")
+        new = fill_in(value, scope, self.report, names=names)
+        return entry if new is value else Entry(entry.key, new)
+
+    def children(self, tree: Tree, place: _Place) -> tuple[State, ...]:
+        if not isinstance(tree, Seq):
+            shapes.wrong(tree, "a list of states", self.report, "write each as `- NAME: {...}`")
+            return ()
+        found = []
+        for item in tree.items:
+            if self.count >= MAX_STATES:
+                message = f"the script has more than {MAX_STATES:,} states"
+                self.report.append(problems.too_big(item.span, message))
+                break
+            state = self.item(item, place)
+            if state is not None:
+                found.append(state)
+        return tuple(found)
+
+    def item(self, tree: Tree, place: _Place) -> State | None:
+        """The state of one item of a list of states, in either layout."""
+        if not isinstance(tree, Map) or not tree.entries:
+            shapes.wrong(tree, "a state", self.report, "write it as `- NAME: {template: ...}`")
+            return None
+        first, rest = tree.entries[0], tree.entries[1:]
+        name = shapes.as_name(first.key, self.report)
+        if name is None:
+            return None
+        nothing = isinstance(first.value, Scalar) and first.value.value is None
+        if nothing and rest:
+            return self.called(name, self.expand(rest), place)
+        if nothing or not isinstance(first.value, Map):
+            message = f"`{name.text}` must be followed by the variables of the state"
+            if not nothing:
+                message += f", not by {shapes.kind_of(first.value)}"
+            help = f"write `- {name.text}: {{template: ...}}`"
+            self.report.append(problems.wrong_shape(name.span, message, help))
+            return None
+        if rest:
+            other = rest[0].key
+            self.report.append(
+                problems.wrong_shape(
+                    other.span,
+                    f"this item holds `{name.text}` and `{other.value}`; a state item has one key",
+                    f"begin another item with `- {other.value}:`, or indent it below"
+                    f" `{name.text}:`",
+                    (Related(span=name.span, message="the first key"),),
+                )
+            )
+        return self.called(name, self.expand(first.value.entries), place)
+
+    def called(self, name: Word, own: dict[str, Entry], place: _Place) -> State | None:
+        """The state itself or, when it calls a sub-script, what the sub-script makes of it."""
+        while "script" in own:
+            entry = own.pop("script")
+            scope = child_scope(place.scope, own["params"].value if "params" in own else None, [])
+            word = shapes.as_name(fill_in(entry.value, scope, self.report), self.report)
+            if word is None or not word.text:
+                return None
+            found = self.sub_script(word, place)
+            if found is None:
+                return None
+            source, inner = found
+            call = Span(place.source, entry.key.span.start, entry.value.span.end)
+            place = _Place(source, place.scope, (*place.calls, (source.name, call)))
+            own = _overridden(inner, own)
+        return self.state(name, own, place)
+
+    def sub_script(self, word: Word, place: _Place) -> tuple[Source, dict[str, Entry]] | None:
+        key = (word.text, place.source.name)
+        if key not in self.sub_scripts:
+            source = self.library.script(word.text, place.source.name)
+            self.sub_scripts[key] = (source, parse(source, self.report)) if source else None
+        found = self.sub_scripts[key]
+        if found is None:
+            caller = place.source.name
+            searched = self.library.script_folders(caller)
+            known = self.library.script_names(caller)
+            self.report.append(problems.script_not_found(word, searched, known))
+            return None
+        source, tree = found
+        chain = [*place.calls, (source.name, word.span)]
+        if source.name == self.main or source.name in [name for name, _ in place.calls]:
+            self.report.append(problems.recursive_include(chain))
+            return None
+        self.sources.setdefault(id(source), source)
+        if tree is None:
+            if not source.text.strip():
+                span = Span(source, 0, 0)
+                message = "the sub-script is empty"
+                self.report.append(problems.bad_sub_script(span, message, word.span))
+            return None
+        inner = self.sub_script_body(tree, word)
+        return None if inner is None else (source, inner)
+
+    def sub_script_body(self, tree: Tree, call: Word) -> dict[str, Entry] | None:
+        """The variables of the one state that a sub-script holds."""
+        start = Span(tree.span.source, tree.span.start, tree.span.start + 1)
+        if isinstance(tree, Map):
+            message = "a sub-script is a list with one state; this is a mapping"
+            self.report.append(problems.bad_sub_script(start, message, call.span))
+            return None
+        if not isinstance(tree, Seq) or len(tree.items) != 1:
+            count = f"{len(tree.items)} states" if isinstance(tree, Seq) else shapes.kind_of(tree)
+            message = f"a sub-script is a list with one state; this is {count}"
+            self.report.append(problems.bad_sub_script(start, message, call.span))
+            return None
+        item = tree.items[0]
+        if not isinstance(item, Map) or not item.entries:
+            self.report.append(
+                problems.bad_sub_script(start, "the sub-script's item is no state", call.span)
+            )
+            return None
+        first, rest = item.entries[0], item.entries[1:]
+        if isinstance(first.value, Map) and not rest:
+            return self.expand(first.value.entries)
+        if isinstance(first.value, Scalar) and first.value.value is None and rest:
+            return self.expand(rest)
+        message = "a sub-script is a list with one state that has one key: its name"
+        self.report.append(problems.bad_sub_script(first.key.span, message, call.span))
+        return None
+
+    def type_of(self, name: Word, fields: Fields, role: str) -> tuple[StateType, str]:
+        """The state type a state names, and which variables of the schema are its own."""
+        entry = fields.get("template")
+        word = shapes.as_name(entry.value, self.report) if entry else None
+        if entry is None and role == "base":
+            word = Word("Base", name.span)
+        if entry is None and role != "base":
+            self.report.append(problems.missing_variable(name.span, "template", name.text))
+        nested = "StateMachine" if "states" in fields else "state"
+        if word is None or not word.text:
+            return StateType(name="", open=True), role or nested
+        if not role and word.text in schema.CONTAINERS:
+            return StateType(name=word.text, kind="container"), word.text
+        if word.text not in self.types:
+            self.types[word.text] = find_state_type(word.text, self.library, self.report)
+        found = self.types[word.text]
+        if found is None:
+            searched = self.library.template_folders()
+            known = [*self.library.template_names(), *([] if role else schema.CONTAINERS)]
+            self.report.append(problems.template_not_found(word, searched, known))
+            return StateType(name=word.text, open=True), role or nested
+        return found, role or ("StateMachine" if found.kind == "container" else nested)
+
+    def check_variables(self, name: Word, fields: Fields, owner: str, type_: StateType) -> None:
+        """SM003, SM004 and SM005 over the variables of one state."""
+        for key, entry in fields.items():
+            row = schema.VARIABLES.get(key)
+            if key in type_.variables:
+                shape = row.shape if row is not None else "value"
+            elif row is not None and owner in row.owners:
+                shape = row.shape
+            elif type_.open or "variables" in type_.given:
+                shape = "value"
+            else:
+                known = [*schema.names_for(owner), *type_.variables]
+                word = Word(str(entry.key.value), entry.key.span)
+                whose = f"state type `{type_.name}`" if owner == "state" else _called(owner)
+                self.report.append(problems.unknown_variable(word, whose, known))
+                continue
+            if key not in ("template", "states"):
+                shapes.READERS[shape](entry.value, self.report)
+        if owner == "state" and not type_.open:
+            self.check_interface(fields, type_)
+        required = [*schema.REQUIRED[owner]]
+        required += [key for key, variable in type_.variables.items() if variable.required]
+        for key in required:
+            if key not in fields:
+                whose = f"state type `{type_.name}`" if key in type_.variables else _called(owner)
+                self.report.append(problems.missing_variable(name.span, key, whose))
+
+    def check_interface(self, fields: Fields, type_: StateType) -> None:
+        """What a state lists beyond an interface that is complete."""
+        declared = {
+            "input_keys": type_.input_keys,
+            "output_keys": type_.output_keys,
+            "outcomes": type_.outcomes,
+        }
+        for part, entries in declared.items():
+            if part in type_.given or part not in fields:
+                continue
+            known = [entry.name for entry in entries]
+            for word, _ in shapes.as_keys(fields[part].value, []):
+                if word.text not in known:
+                    what = part.replace("_", " ").removesuffix("s")
+                    message = f"state type `{type_.name}` has no {what} `{word.text}`"
+                    listed = ", ".join(f"`{name}`" for name in known) or "none"
+                    help = did_you_mean(word.text, known) or f"it has {listed}"
+                    self.report.append(problems.wrong_shape(word.span, message, help))
+
+
+def _called(owner: str) -> str:
+    if owner == "base":
+        return "the script"
+    return "a state" if owner == "state" else f"a container of type `{owner}`"
+
+
+def _overridden(inner: dict[str, Entry], call: dict[str, Entry]) -> dict[str, Entry]:
+    """The variables of a sub-script under those of its call: mappings merge, the rest replaces."""
+    merged = dict(inner)
+    for key, entry in call.items():
+        below = merged.get(key)
+        if below is None or not isinstance(below.value, Map) or not isinstance(entry.value, Map):
+            merged[key] = entry
+            continue
+        own = {item.key.value: item for item in entry.value.entries}
+        entries = [own.pop(item.key.value, item) for item in below.value.entries]
+        merged[key] = Entry(entry.key, Map((*entries, *own.values()), entry.value.span))
+    return merged

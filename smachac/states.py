@@ -1,0 +1,264 @@
+"""State types: what is known of a state without looking into its code.
+
+An interface is one YAML file `Name.yml`, or the `{% block meta %}` of a template as SMACHA has it.
+A template without either makes an open type: anything goes, nothing is known.
+"""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Callable, Mapping, Sequence
+from dataclasses import dataclass, field
+from typing import Literal
+
+from smachac import problems, shapes
+from smachac.diagnostics import Report
+from smachac.ir.nodes import Key, Outcome
+from smachac.ir.types import ANY, Type
+from smachac.source import Source, Span, Word
+from smachac.syntax import Entry, Map, Scalar, Seq, Tree, parse
+
+Kind = Literal["base", "container", "state"]
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Library:
+    """How the compiler reaches files: by functions, so that it never touches a disk itself.
+
+    `script(name, caller)` is the text of a sub-script named in the source `caller`;
+    `template(file)` that of an interface or template by file name (`MoveTo.yml`,
+    `MoveTo.tpl.py`). The folders and names serve messages.
+    """
+
+    script: Callable[[str, str], Source | None]
+    template: Callable[[str], Source | None]
+    script_folders: Callable[[str], Sequence[str]] = lambda caller: ()
+    template_folders: Callable[[], Sequence[str]] = lambda: ()
+    script_names: Callable[[str], Sequence[str]] = lambda caller: ()
+    template_names: Callable[[], Sequence[str]] = lambda: ()
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class VariableType:
+    """A variable of a state type. Without a default it is required."""
+
+    name: str
+    type: Type = ANY
+    required: bool = True
+    doc: str = ""
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class StateType:
+    """The interface of a state.
+
+    `given` names what the script itself supplies, beyond what stands here: any of
+    "variables", "input_keys", "output_keys", "outcomes" (`"*": {}` in the interface).
+    `code` maps a language to a template's file name or to a reference to code. `open`: there is no
+    interface.
+    """
+
+    name: str
+    kind: Kind = "state"
+    doc: str = ""
+    variables: Mapping[str, VariableType] = field(default_factory=dict)
+    input_keys: tuple[Key, ...] = ()
+    output_keys: tuple[Key, ...] = ()
+    outcomes: tuple[Outcome, ...] = ()
+    given: frozenset[str] = frozenset()
+    claims: tuple[str, ...] = ()
+    blocking: bool = False
+    code: Mapping[str, str] = field(default_factory=dict)
+    open: bool = False
+
+
+TEMPLATE_FILES = ("{}.tpl.py", "{}.tpl")
+"""Names under which the template of a state type may be found, for targets that print Python."""
+
+_META = re.compile(r"\{%-?\s*block\s+meta\s*-?%\}(.*?)\{%-?\s*endblock", re.DOTALL)
+
+_FIELDS: dict[str, str] = {
+    "name": "name",
+    "doc": "text",
+    "kind": "name",
+    "variables": "map",
+    "input_keys": "map",
+    "output_keys": "map",
+    "outcomes": "map",
+    "writes": "map",
+    "claims": "names",
+    "blocking": "flag",
+    "code": "map",
+}
+
+
+def find_state_type(name: str, library: Library, report: Report) -> StateType | None:
+    """The state type of that name, or None where there is neither interface nor template."""
+    interface = library.template(f"{name}.yml")
+    if interface is not None:
+        return _read_interface(name, interface, report)
+    for pattern in TEMPLATE_FILES:
+        template = library.template(pattern.format(name))
+        if template is not None:
+            return _read_meta(name, template, pattern.format(name))
+    return None
+
+
+def _read_interface(name: str, source: Source, report: Report) -> StateType:
+    tree = parse(source, report)
+    if not isinstance(tree, Map):
+        span = tree.span if tree is not None else Span(source, 0, 0)
+        report.append(problems.wrong_shape(span, f"the interface of `{name}` must be a mapping"))
+        return StateType(name=name, open=True)
+    fields: dict[str, Tree] = {}
+    for entry in shapes.as_map(tree, report):
+        key = str(entry.key.value)
+        if key not in _FIELDS:
+            word = Word(key, entry.key.span)
+            report.append(problems.unknown_variable(word, "an interface", _FIELDS))
+            continue
+        shapes.READERS[_FIELDS[key]](entry.value, report)
+        fields[key] = entry.value
+    return StateType(
+        name=name,
+        kind=_kind(fields.get("kind"), report),
+        doc=shapes.as_text(fields["doc"], []) if "doc" in fields else "",
+        variables={
+            key: _variable(key, value, report) for key, value in _declared(fields.get("variables"))
+        },
+        input_keys=_keys(fields.get("input_keys"), report),
+        output_keys=_keys(fields.get("output_keys"), report),
+        outcomes=tuple(
+            Outcome(name=key, doc=_doc(value), span=value.span)
+            for key, value in _declared(fields.get("outcomes"))
+        ),
+        given=frozenset(
+            part
+            for part in ("variables", "input_keys", "output_keys", "outcomes")
+            if isinstance(tree := fields.get(part), Map) and tree.get("*") is not None
+        ),
+        claims=tuple(word.text for word in shapes.as_names(fields["claims"], []))
+        if "claims" in fields
+        else (),
+        blocking="blocking" in fields and shapes.as_flag(fields["blocking"], []),
+        code={
+            key: str(value.value)
+            for key, value in _declared(fields.get("code"))
+            if isinstance(value, Scalar)
+        },
+    )
+
+
+def _kind(tree: Tree | None, report: Report) -> Kind:
+    word = shapes.as_name(tree, []) if tree is not None else None
+    match word.text if word is not None else "state":
+        case "base":
+            return "base"
+        case "container":
+            return "container"
+        case "state":
+            return "state"
+    assert word is not None
+    report.append(
+        problems.wrong_shape(word.span, "the kind is one of `state`, `container`, `base`")
+    )
+    return "state"
+
+
+def _declared(tree: Tree | None) -> list[tuple[str, Tree]]:
+    """The named entries of an interface's mapping, without the star."""
+    if not isinstance(tree, Map):
+        return []
+    return [(str(entry.key.value), entry.value) for entry in tree.entries if entry.key.value != "*"]
+
+
+def _doc(tree: Tree) -> str:
+    entry: Entry | None = tree.get("doc") if isinstance(tree, Map) else None
+    return str(entry.value.value) if entry and isinstance(entry.value, Scalar) else ""
+
+
+def _type(tree: Tree | None, report: Report) -> Type:
+    """The type an interface names: `{type: T}` or `T` alone. One it cannot read is `any`."""
+    from smachac.ir.types import parse_type
+
+    if isinstance(tree, Map):
+        entry = tree.get("type")
+        tree = entry.value if entry else None
+    if not isinstance(tree, Scalar) or not isinstance(tree.value, str):
+        return ANY
+    found = parse_type(tree.value)
+    if found is None:
+        report.append(
+            problems.wrong_shape(
+                tree.span,
+                f"`{tree.value}` is not a type",
+                "types read like float, float<rad>[7], list[Pose], one_of[open, close]",
+            )
+        )
+    return found or ANY
+
+
+def _variable(name: str, tree: Tree, report: Report) -> VariableType:
+    return VariableType(
+        name=name,
+        type=_type(tree, report),
+        required=not (isinstance(tree, Map) and tree.get("default") is not None),
+        doc=_doc(tree),
+    )
+
+
+def _keys(tree: Tree | None, report: Report) -> tuple[Key, ...]:
+    return tuple(
+        Key(name=key, type=_type(value, report), doc=_doc(value), span=value.span)
+        for key, value in _declared(tree)
+    )
+
+
+def _read_meta(name: str, template: Source, file: str) -> StateType:
+    """The state type of a template in SMACHA's style: its meta block, or an open type.
+
+    Meta blocks served SMACHA's help only and many are loose; what cannot be read is left out.
+    """
+    found = _META.search(template.text)
+    tree = parse(Source(template.name, found.group(1)), []) if found else None
+    if not isinstance(tree, Map):
+        return StateType(name=name, open=True, code={"python": file})
+
+    def listed(part: str) -> list[tuple[str, Tree, bool]]:
+        entry = tree.get(part)
+        return list(_meta_items(entry.value, False)) if entry else []
+
+    kind_entry = tree.get("type")
+    kind = (
+        str(kind_entry.value.value) if kind_entry and isinstance(kind_entry.value, Scalar) else ""
+    )
+    return StateType(
+        name=name,
+        kind="base" if kind == "Base" else "container" if kind == "Container" else "state",
+        doc=_meta_doc(tree),
+        variables={
+            key: VariableType(name=key, required=False) for key, _, _ in listed("variables")
+        },
+        input_keys=tuple(Key(name=key, span=value.span) for key, value, _ in listed("input_keys")),
+        output_keys=tuple(
+            Key(name=key, span=value.span) for key, value, _ in listed("output_keys")
+        ),
+        outcomes=tuple(Outcome(name=key, span=value.span) for key, value, _ in listed("outcomes")),
+        given=frozenset(["variables", "input_keys", "output_keys", "outcomes"]),
+        code={"python": file},
+    )
+
+
+def _meta_doc(tree: Map) -> str:
+    entry = tree.get("description")
+    return str(entry.value.value) if entry and isinstance(entry.value, Scalar) else ""
+
+
+def _meta_items(tree: Tree, optional: bool) -> list[tuple[str, Tree, bool]]:
+    """Names in a meta list: `- x: {...}` or `- x`; a nested list holds optional ones."""
+    if isinstance(tree, Scalar):
+        return [(str(tree.value), tree, optional)] if tree.value is not None else []
+    if isinstance(tree, Map):
+        return [(str(entry.key.value), entry.value, optional) for entry in tree.entries]
+    assert isinstance(tree, Seq)
+    return [found for item in tree.items for found in _meta_items(item, isinstance(item, Seq))]

@@ -1,0 +1,37 @@
+"""Trees to the values of the IR: literals, lists, mappings, expressions."""
+
+from __future__ import annotations
+
+from smachac.ir.expressions import looks_like_expression, parse_expression
+from smachac.ir.nodes import Data, Expression, Struct, Value
+from smachac.syntax import Scalar, Seq, Tree
+
+
+def as_value(tree: Tree, *, code: bool = False) -> Value:
+    """The value of a tree. `code`: every string in it is an expression, as in `callbacks`."""
+    return Value(data=_data(tree, code), span=tree.span)
+
+
+def _data(tree: Tree, code: bool) -> Data:
+    if isinstance(tree, Scalar):
+        return _scalar(tree, code)
+    if isinstance(tree, Seq):
+        return tuple([_data(item, code) for item in tree.items])
+    return Struct(
+        entries=tuple((str(entry.key.value), _data(entry.value, code)) for entry in tree.entries)
+    )
+
+
+def _scalar(tree: Scalar, code: bool) -> Data:
+    """Backticks mark an expression; in plain scalars so does the look of a call or dotted name."""
+    value = tree.value
+    if not isinstance(value, str):
+        return value
+    text = value.strip()
+    if len(text) > 2 and text[0] == text[-1] == "`":
+        return Expression(text=text[1:-1].strip(), span=tree.span)
+    if code:
+        return Expression(text=text, span=tree.span)
+    if tree.plain and looks_like_expression(value) and parse_expression(value) is not None:
+        return Expression(text=text, span=tree.span)
+    return value
