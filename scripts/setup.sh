@@ -113,7 +113,7 @@ set_up() {
   prepare_optional
   local extras=sim
   [[ $level == sim ]] || extras=sim,dev
-  say "installing smachac[$extras] (about 150 MB)"
+  say "installing smachac[$extras]: a minute or two"
   pip install -q -e ".[$extras]"
   pip install -q -e '.[fast]' &>.venv/fast.log ||
     say "note: the fast YAML parser did not compile (.venv/fast.log); the slower one reads the same"

@@ -1,4 +1,4 @@
-"""What every test run shares: examples that repeat, and no silent skip where nothing may lack."""
+"""What every test run shares: examples that repeat, no silent skip where all must be there."""
 
 from __future__ import annotations
 

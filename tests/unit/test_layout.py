@@ -1,0 +1,209 @@
+"""The shape of the repository: where things are, how big they may grow, who may touch the disk."""
+
+from __future__ import annotations
+
+import ast
+import re
+from collections.abc import Iterator
+from pathlib import Path
+
+import pytest
+
+ROOT = Path(__file__).parents[2]
+
+LINKS = ("ir", "targets", "grammars")
+"""The table of contents at the root: links to the parts of the compiler."""
+
+LONGEST_FILE = 400
+LONGEST_FUNCTION = 70
+"""In lines. What grows beyond holds two things."""
+
+TOUCHES = {
+    "smachac/files.py": "the compiler's one place that touches the disk",
+    "smachac/cli.py": "arguments and streams",
+    "smachac/execute.py": "runs what was built, and keeps its output",
+    "smachac/runtime/trace.py": "writes traces",
+    "smachac/runtime/smach/log.py": "prints what SMACH prints",
+    "smachac/sim/film.py": "writes films",
+    "smachac/sim/engine.py": "keeps the physics engine's banner off the streams",
+}
+"""The modules that may use files and streams, each with its reason."""
+
+DISK_NAMES = {"open", "print", "input", "breakpoint"}
+DISK_METHODS = {"read_text", "read_bytes", "write_text", "write_bytes", "mkdir", "unlink", "touch"}
+STREAMS = {"stdin", "stdout", "stderr", "__stdin__", "__stdout__", "__stderr__"}
+
+TEXTS = (
+    *("", ".cfg", ".dot", ".hpp", ".html", ".json", ".jsonl", ".lark", ".md", ".py", ".sh"),
+    *(".smir", ".svg", ".toml", ".txt", ".yaml", ".yml"),
+)
+"""Endings of the files that are read for paths of somebody's machine."""
+
+ABSOLUTE = re.compile(r"(?<![\w.<])/(?:home|mnt|root|tmp|work|Users)/\w")
+
+
+def modules() -> list[Path]:
+    """The modules of the package: a name with a dot in it, as `Name.tpl.py`, is a template."""
+    return [path for path in sorted((ROOT / "smachac").rglob("*.py")) if "." not in path.stem]
+
+
+def files_of_tests() -> list[Path]:
+    return sorted((ROOT / "tests").rglob("test_*.py"))
+
+
+def name(path: Path) -> str:
+    return path.relative_to(ROOT).as_posix()
+
+
+def functions(tree: ast.AST) -> Iterator[ast.FunctionDef | ast.AsyncFunctionDef]:
+    for node in ast.walk(tree):
+        if isinstance(node, ast.FunctionDef | ast.AsyncFunctionDef):
+            yield node
+
+
+def disk_faults(text: str) -> Iterator[str]:
+    """Each use of files or streams, as `line: what`. Data of the package itself may be read."""
+    for node in ast.walk(ast.parse(text)):
+        match node:
+            case ast.Call(func=ast.Name(id=called)) if called in DISK_NAMES:
+                yield f"{node.lineno}: {called}"
+            case ast.Call(func=ast.Attribute(value=owner, attr=called)):
+                if called in DISK_METHODS and not is_package_data(owner):
+                    yield f"{node.lineno}: {called}"
+                if called == "open" and opens_a_file(node, owner):
+                    yield f"{node.lineno}: open"
+            case ast.Attribute(value=ast.Name(id="sys"), attr=stream) if stream in STREAMS:
+                yield f"{node.lineno}: sys.{stream}"
+            case ast.ImportFrom(module="sys", names=names):
+                yield from (f"{node.lineno}: sys.{n.name}" for n in names if n.name in STREAMS)
+
+
+def is_package_data(owner: ast.expr) -> bool:
+    """Whether a value comes from `importlib.resources.files(...)`."""
+    calls = (node.func for node in ast.walk(owner) if isinstance(node, ast.Call))
+    return any(ast.unparse(func) in {"files", "resources.files"} for func in calls)
+
+
+def opens_a_file(call: ast.Call, owner: ast.expr) -> bool:
+    """Whether `x.open(...)` is that of a path or of `io`: a container of SMACH has one too."""
+    return bool(call.args or call.keywords) or ast.unparse(owner) in {"io", "os"}
+
+
+def asserts(function: ast.AST) -> bool:
+    """Whether a test can fail: by `assert`, by `pytest.raises` or by a function named for it."""
+    for node in ast.walk(function):
+        if isinstance(node, ast.Assert):
+            return True
+        if isinstance(node, ast.Call):
+            called = ast.unparse(node.func)
+            if called in {"pytest.raises", "pytest.warns", "pytest.fail"}:
+                return True
+            if called.rpartition(".")[2].startswith(("assert_", "check_", "expect_")):
+                return True
+    return False
+
+
+@pytest.mark.parametrize("link", LINKS)
+def test_links_at_the_root_lead_into_the_package(link: str) -> None:
+    assert (ROOT / link).resolve() == ROOT.resolve() / "smachac" / link
+    assert (ROOT / link).is_dir()
+
+
+def test_examples_are_numbered_and_explained() -> None:
+    folders = [path for path in sorted((ROOT / "examples").glob("[!._]*")) if path.is_dir()]
+    for folder in folders:
+        assert re.fullmatch(r"\d\d_[a-z0-9_]+", folder.name), folder
+        assert (folder / "main.yml").is_file(), folder
+        assert (folder / "README.md").read_text("utf-8").strip(), folder
+    numbers = [folder.name[:2] for folder in folders]
+    assert len(set(numbers)) == len(numbers), numbers
+
+
+def test_package_says_that_it_is_typed() -> None:
+    assert (ROOT / "smachac" / "py.typed").is_file()
+
+
+def test_modules_and_functions_stay_small() -> None:
+    faults = []
+    for path in modules():
+        text = path.read_text("utf-8")
+        if (lines := text.count("\n")) > LONGEST_FILE:
+            faults.append(f"{name(path)}: {lines} lines")
+        for function in functions(ast.parse(text)):
+            lines = (function.end_lineno or function.lineno) - function.lineno + 1
+            if lines > LONGEST_FUNCTION:
+                faults.append(f"{name(path)}:{function.lineno}: {function.name}, {lines} lines")
+    assert faults == []
+
+
+def test_public_modules_say_what_they_are() -> None:
+    public = [p for p in modules() if p.stem == "__init__" or not p.stem.startswith("_")]
+    trees = {name(path): ast.parse(path.read_text("utf-8")) for path in public}
+    assert [path for path, tree in trees.items() if not ast.get_docstring(tree)] == []
+
+
+def test_only_the_listed_modules_touch_files_and_streams() -> None:
+    faults = {name(path): list(disk_faults(path.read_text("utf-8"))) for path in modules()}
+    assert {p: found for p, found in faults.items() if found and p not in TOUCHES} == {}
+
+
+def test_every_test_asserts() -> None:
+    silent = []
+    for path in files_of_tests():
+        for function in functions(ast.parse(path.read_text("utf-8"))):
+            if function.name.startswith("test_") and not asserts(function):
+                silent.append(f"{name(path)}:{function.lineno}: {function.name}")
+    assert silent == []
+
+
+def test_no_file_names_a_path_of_a_machine() -> None:
+    folders = ("smachac", "tests", "docs", "examples", "bench", "scripts", ".ci")
+    paths = [path for path in ROOT.iterdir() if path.is_file()]
+    paths += [path for folder in folders for path in (ROOT / folder).rglob("*")]
+    found = []
+    for path in paths:
+        if path.is_dir() or path.suffix not in TEXTS or "__pycache__" in path.parts:
+            continue
+        for number, line in enumerate(path.read_text("utf-8", "replace").splitlines(), 1):
+            if ABSOLUTE.search(line):
+                found.append(f"{name(path)}:{number}: {line.strip()}")
+    assert found == []
+
+
+@pytest.mark.parametrize(
+    ("text", "fault"),
+    [
+        ("open('x')", "1: open"),
+        ("def f():\n    print(1)", "2: print"),
+        ("path.write_text('')", "1: write_text"),
+        ("Path('x').read_bytes()", "1: read_bytes"),
+        ("path.open('w')", "1: open"),
+        ("import io\nio.open", None),
+        ("import sys\nsys.stdout.write('')", "2: sys.stdout"),
+        ("from sys import stderr", "1: sys.stderr"),
+        ("container.open()", None),
+        ("resources.files('smachac').joinpath('x').read_text()", None),
+        ("files(__package__).joinpath('x').read_text()", None),
+    ],
+)
+def test_uses_of_files_and_streams_are_found(text: str, fault: str | None) -> None:
+    assert list(disk_faults(text)) == ([fault] if fault else [])
+
+
+@pytest.mark.parametrize(
+    ("text", "able"),
+    [
+        ("def test_a():\n    f()", False),
+        ("def test_a():\n    with pytest.raises(E):\n        f()", True),
+        ("def test_a():\n    for x in y:\n        assert x", True),
+        ("def test_a():\n    traces.expect_same(a, b)", True),
+    ],
+)
+def test_tests_that_cannot_fail_are_found(text: str, able: bool) -> None:
+    assert asserts(ast.parse(text)) is able
+
+
+@pytest.mark.parametrize("folder", ["home", "root", "tmp", "work"])
+def test_paths_of_a_machine_are_found(folder: str) -> None:
+    assert ABSOLUTE.search(f"see /{folder}/x/notes.txt")
+    assert not ABSOLUTE.search(f"see out/{folder}/x, ./{folder}/x and sm/{folder}")
