@@ -1,0 +1,92 @@
+"""SMACH's public names, for machines without ROS.
+
+Code written for `import smach` runs on this package unchanged:
+`from smachac.runtime import smach`. What differs from SMACH is what could not be relied on there:
+hangs raise, an exception while building leaves nothing open, the caller's dicts and lists are not
+written to, Ctrl-C stops a machine, and values in userdata are never wrapped.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+
+from . import (
+    concurrence,
+    container,
+    exceptions,
+    iterator,
+    log,
+    sequence,
+    state,
+    state_machine,
+    user_data,
+    util,
+)
+from .concurrence import Concurrence
+from .container import Container
+from .exceptions import (
+    InvalidConstructionError,
+    InvalidStateError,
+    InvalidTransitionError,
+    InvalidUserCodeError,
+)
+from .iterator import Iterator
+from .sequence import Sequence
+from .state import CBState, State
+from .state_machine import StateMachine
+from .user_data import Remapper, UserData
+from .util import CBInterface, cb_interface, has_smach_interface
+
+__all__ = [
+    "CBInterface",
+    "CBState",
+    "Concurrence",
+    "Container",
+    "InvalidConstructionError",
+    "InvalidStateError",
+    "InvalidTransitionError",
+    "InvalidUserCodeError",
+    "Iterator",
+    "Remapper",
+    "Sequence",
+    "State",
+    "StateMachine",
+    "UserData",
+    "cb_interface",
+    "concurrence",
+    "container",
+    "exceptions",
+    "has_smach_interface",
+    "is_shutdown",
+    "iterator",
+    "log",
+    "logdebug",
+    "logerr",
+    "loginfo",
+    "logwarn",
+    "sequence",
+    "set_loggers",
+    "set_shutdown_check",
+    "state",
+    "state_machine",
+    "user_data",
+    "util",
+]
+
+loginfo: log.Logger = log.loginfo
+logwarn: log.Logger = log.logwarn
+logdebug: log.Logger = log.logdebug
+logerr: log.Logger = log.logerr
+is_shutdown: Callable[[], bool] = log.is_shutdown
+
+
+def set_loggers(info: log.Logger, warn: log.Logger, debug: log.Logger, error: log.Logger) -> None:
+    """Replace the four loggers; `smach.log.quiet` drops what it is given."""
+    global loginfo, logwarn, logdebug, logerr
+    loginfo, logwarn, logdebug, logerr = info, warn, debug, error
+
+
+def set_shutdown_check(cb: Callable[[], bool]) -> None:
+    """Replace the function that running containers ask whether to stop."""
+    global is_shutdown
+    is_shutdown = cb

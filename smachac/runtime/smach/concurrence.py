@@ -1,0 +1,247 @@
+"""Concurrence: all children at the same time, one thread each."""
+
+from __future__ import annotations
+
+import traceback
+from collections.abc import Callable, Iterable, Mapping, Sequence
+from typing import Any, TypeVar
+
+from smachac.runtime import smach
+
+from .branches import Branches
+from .container import Container, open_container, withdraw
+from .exceptions import InvalidStateError, InvalidTransitionError, InvalidUserCodeError
+from .log import quiet
+from .state import State
+from .user_data import UserData
+
+S = TypeVar("S", bound=State)
+OutcomeMap = Mapping[str, Mapping[str, str]]
+"""Outcome of the concurrence -> child label -> outcome that the child must have ended with."""
+
+
+class Concurrence(Container):
+    """A container whose children start together; it ends when all have ended.
+
+    Of the entries of `outcome_map` that hold, the last decides; `default_outcome` if none does;
+    `outcome_cb` overrides both when it returns a string. When `child_termination_cb` returns
+    something true, the children that still run are preempted.
+    """
+
+    def __init__(
+        self,
+        outcomes: Iterable[str],
+        default_outcome: str,
+        input_keys: list[str] | None = None,
+        output_keys: list[str] | None = None,
+        outcome_map: OutcomeMap | None = None,
+        outcome_cb: Callable[[dict[str, str | None]], str | None] | None = None,
+        child_termination_cb: Callable[[dict[str, str | None]], object] | None = None,
+    ) -> None:
+        super().__init__(outcomes, input_keys, output_keys)
+        self._default = default_outcome
+        self._outcome_map = {name: dict(rule) for name, rule in (outcome_map or {}).items()}
+        self._outcome_cb = outcome_cb
+        self._child_termination_cb = child_termination_cb
+        self._states: dict[str, State] = {}
+        self._remappings: dict[str, dict[str, str]] = {}
+        self._branches: Branches | None = None
+        self._left_flagged = False
+        self._check_policy()
+
+    def _check_policy(self) -> None:
+        if not isinstance(self._default, str) or self._default not in self._outcomes:
+            raise InvalidStateError(f"default outcome '{self._default}' is not registered")
+        for name in self._outcome_map:
+            if name not in self._outcomes:
+                raise InvalidStateError(f"outcome '{name}' in the outcome map is not registered")
+        for callback in (self._outcome_cb, self._child_termination_cb):
+            if callback is not None and not callable(callback):
+                raise InvalidStateError(f"the callback {callback!r} cannot be called")
+
+    # Construction
+
+    @staticmethod
+    def add(label: str, state: S, remapping: dict[str, str] | None = None) -> S:
+        """Add a child to the innermost open concurrence, in place of one of the same label."""
+        concurrence = open_container(Concurrence)
+        smach.logdebug(f"adding state '{label}'")
+        concurrence._states[label] = state
+        concurrence._remappings[label] = {} if remapping is None else remapping
+        return state
+
+    def check_consistency(self) -> None:
+        """Raise InvalidTransitionError for an outcome in the map that the child lacks.
+
+        Raises KeyError for a label in the map that is no child.
+        """
+        faults = []
+        for name, rule in self._outcome_map.items():
+            for label, outcome in rule.items():
+                if outcome not in self._states[label].get_registered_outcomes():
+                    faults.append(f"'{name}' asks for '{label}':'{outcome}'")
+        if faults:
+            raise InvalidTransitionError(f"outcomes that never come: {'; '.join(faults)}")
+
+    def set_initial_state(
+        self, initial_states: Sequence[str], userdata: UserData | None = None
+    ) -> None:
+        """Merge `userdata`; all children start in any case. KeyError for an unknown label."""
+        for label in initial_states:
+            if label not in self._states:
+                raise KeyError(label)
+        if userdata is not None:
+            self.userdata.update(userdata)
+
+    # Introspection
+
+    def get_children(self) -> dict[str, State]:
+        """The contained states by label."""
+        return self._states
+
+    def get_initial_states(self) -> list[str]:
+        """All labels."""
+        return list(self._states)
+
+    def get_active_states(self) -> list[str]:
+        """The labels that still run; after an error, those that failed stay."""
+        return [] if self._branches is None else list(self._branches.active)
+
+    def get_internal_edges(self) -> list[tuple[str, str, str | None]]:
+        """(child outcome, label, outcome of the concurrence) for every entry of the map."""
+        return [
+            (outcome, label, name)
+            for name, rule in self._outcome_map.items()
+            for label, outcome in rule.items()
+        ]
+
+    # Execution
+
+    def execute(self, parent_ud: Any = None) -> str | None:
+        """Run all children to their ends, and say what they amount to.
+
+        Raises:
+            InvalidStateError: there are no children, a child raised or returned no outcome, or
+                the concurrence runs already. The cause is chained.
+            InvalidUserCodeError: `outcome_cb` raised.
+        """
+        if not self._states:
+            raise InvalidStateError("a concurrence without children cannot run")
+        self._claim()
+        try:
+            branches = self._branches = Branches(self._states, self._run_child)
+            self._recall_leftovers()
+            self.copy_input_keys(parent_ud)
+            if smach.loginfo is not quiet:
+                smach.loginfo(f"concurrence starting with userdata {self.userdata.keys()}")
+            self.call_start_cbs()
+            self._run_branches(branches)
+            outcome = self._outcome(branches.outcomes)
+            self._settle(branches)
+            self.call_termination_cbs(list(self._states), outcome)
+            self.copy_output_keys(parent_ud)
+            return outcome
+        finally:
+            self._running.release()
+
+    def _run_branches(self, branches: Branches) -> None:
+        """Run the children, and pass on preempt requests meanwhile. Raises what went wrong."""
+        try:
+            branches.start()
+            if self._preempt_requested:
+                branches.request()
+            if branches.take():
+                self._preempt(branches)
+            branches.release()
+            while branches.wait():
+                self._preempt(branches)
+        except BaseException:
+            branches.abort()
+            self._preempt(branches)
+            raise
+        finally:
+            branches.join()
+        if branches.failure is None:
+            return
+        self._left_flagged = True
+        label, error = branches.failure
+        if not isinstance(error, Exception):
+            raise error
+        raise InvalidStateError(f"branch '{label}' failed: {error}") from error
+
+    def _run_child(self, branches: Branches, label: str) -> None:
+        """What the thread of a child does."""
+        state = self._states[label]
+        self.call_transition_cbs()
+        outcome = state.execute(self._view(state, self._remappings[label]))
+        if outcome is None and not smach.is_shutdown():
+            raise InvalidStateError(f"state '{label}' ended without an outcome")
+        with branches.ending:
+            branches.outcomes[label] = outcome
+            del branches.active[label]
+            if smach.loginfo is not quiet:
+                smach.loginfo(f"branch '{label}' ended with outcome '{outcome}'")
+            if self._child_termination_cb is not None and self._ends_all(branches):
+                branches.stop()
+        self.call_transition_cbs()
+
+    def _ends_all(self, branches: Branches) -> bool:
+        """Whether the callback wants the children still running preempted."""
+        assert self._child_termination_cb is not None
+        try:
+            return bool(self._child_termination_cb(branches.outcomes))
+        except Exception as error:
+            raise InvalidUserCodeError(
+                f"child_termination_cb failed:\n{traceback.format_exc()}"
+            ) from error
+
+    def _outcome(self, outcomes: dict[str, str | None]) -> str | None:
+        """What the children's outcomes amount to. Raises KeyError for an unknown label."""
+        result = self._default
+        for name, rule in self._outcome_map.items():
+            if all(outcomes[label] == outcome for label, outcome in rule.items()):
+                result = name
+        if self._outcome_cb is not None:
+            try:
+                chosen = self._outcome_cb(dict(outcomes))
+            except Exception as error:
+                raise InvalidUserCodeError(
+                    f"outcome_cb failed:\n{traceback.format_exc()}"
+                ) from error
+            if chosen and isinstance(chosen, str):
+                result = chosen
+        if smach.loginfo is not quiet:
+            smach.loginfo(f"concurrence ending with outcome '{result}' from {outcomes}")
+        return result
+
+    # Preemption
+
+    def request_preempt(self) -> None:
+        """Ask all children that run, or else all that start next, to end early."""
+        super().request_preempt()
+        if self._branches is not None:
+            self._branches.request()
+
+    def _preempt(self, branches: Branches) -> None:
+        for label in list(branches.active):
+            state = self._states[label]
+            try:
+                if not state.preempt_requested():
+                    state.request_preempt()
+            except Exception:
+                smach.logerr(f"request_preempt failed:\n{traceback.format_exc()}")
+
+    def _settle(self, branches: Branches) -> None:
+        """Take back what the children did not answer; see `Branches.answered`."""
+        flagged = [state for state in self._states.values() if state.preempt_requested()]
+        for state in flagged:
+            withdraw(state)
+        if self._preempt_requested and branches.answered() and not flagged:
+            self.service_preempt()
+
+    def _recall_leftovers(self) -> None:
+        """Take back what the children were told in a run that failed."""
+        if self._left_flagged:
+            self._left_flagged = False
+            for state in self._states.values():
+                withdraw(state)

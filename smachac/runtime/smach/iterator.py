@@ -1,0 +1,199 @@
+"""Iterator: one state, run once for each item."""
+
+from __future__ import annotations
+
+import traceback
+from collections.abc import Callable, Iterable, Mapping, Sequence
+from typing import Any
+
+from smachac.runtime import smach
+
+from .container import Container, open_container, withdraw
+from .exceptions import InvalidUserCodeError
+from .log import quiet
+from .state import State
+from .user_data import UserData
+
+_NO_MORE = object()
+
+
+class Iterator(Container):
+    """A container that runs its one child for each item in turn.
+
+    The child gets the iterator's own userdata, where the item is under `it_label`.
+    `it` is an iterable, or a callable without arguments that gives one at each start.
+    """
+
+    def __init__(
+        self,
+        outcomes: Iterable[str],
+        input_keys: list[str] | None = None,
+        output_keys: list[str] | None = None,
+        it: Iterable[Any] | Callable[[], Iterable[Any]] = (),
+        it_label: str = "it_data",
+        exhausted_outcome: str = "exhausted",
+    ) -> None:
+        super().__init__(outcomes, input_keys, output_keys)
+        self.register_outcomes([exhausted_outcome])
+        self._exhausted = exhausted_outcome
+        self._items = it
+        self._item_key = it_label
+        self._label = ""
+        self._state: State | None = None
+        self._looping: tuple[str, ...] = ()
+        self._breaking: tuple[str, ...] = ()
+        self._final: dict[Any, str] = {}
+        self._active: State | None = None
+        self._left_flagged = False
+
+    # Construction
+
+    @staticmethod
+    def set_contained_state(
+        label: str,
+        state: State,
+        loop_outcomes: Iterable[str] = (),
+        break_outcomes: Iterable[str] = (),
+        final_outcome_map: Mapping[str, str] | None = None,
+    ) -> None:
+        """Set the child of the innermost open iterator.
+
+        With `break_outcomes` all other outcomes of the child go on with the next item; otherwise
+        only `loop_outcomes` do. With neither, the first item is the last.
+        `final_outcome_map` renames the outcome with which the iterator ends.
+        """
+        iterator = open_container(Iterator)
+        breaking, looping = tuple(break_outcomes), tuple(loop_outcomes)
+        if breaking:
+            if looping:
+                smach.logwarn(f"'{label}': loop_outcomes are ignored beside break_outcomes")
+            looping = tuple(o for o in state.get_registered_outcomes() if o not in breaking)
+        iterator._label, iterator._state = label, state
+        iterator._looping, iterator._breaking = looping, breaking
+        iterator._final = dict(final_outcome_map or {})
+
+    @staticmethod
+    def set_iteritems(
+        it: Iterable[Any] | Callable[[], Iterable[Any]], it_label: str = "it_data"
+    ) -> None:
+        """Set the items of the innermost open iterator, and their userdata key."""
+        iterator = open_container(Iterator)
+        iterator._items, iterator._item_key = it, it_label
+
+    def check_consistency(self) -> None:
+        """Nothing is asked of an iterator before it runs."""
+
+    def set_initial_state(
+        self, initial_states: Sequence[str], userdata: UserData | None = None
+    ) -> None:
+        """Merge `userdata`; KeyError for a label other than the child's."""
+        for label in initial_states:
+            if label != self._label:
+                raise KeyError(label)
+        if userdata is not None:
+            self.userdata.update(userdata)
+
+    # Introspection
+
+    def get_children(self) -> dict[str, State]:
+        """The one child by its label."""
+        return {} if self._state is None else {self._label: self._state}
+
+    def get_initial_states(self) -> list[str]:
+        """The child's label."""
+        return [self._label]
+
+    def get_active_states(self) -> list[str]:
+        """The child's label while the iterator runs."""
+        return [self._label] if self._running.locked() else []
+
+    def get_internal_edges(self) -> list[Sequence[str | None]]:
+        """[outcome, label, label] for looping outcomes, else (outcome, label, renamed or None)."""
+        if self._state is None:
+            return []
+        edges: list[Sequence[str | None]] = []
+        for outcome in self._state.get_registered_outcomes():
+            if self._loops(outcome):
+                edges.append([outcome, self._label, self._label])
+            else:
+                edges.append((outcome, self._label, self._final.get(outcome)))
+        return edges
+
+    # Execution
+
+    def execute(self, parent_ud: Any = None) -> str | None:
+        """Run the child for each item, up to a breaking outcome or the last item.
+
+        Raises InvalidUserCodeError if the child raises; what the items raise passes unchanged.
+        """
+        self._claim()
+        try:
+            if self._left_flagged and self._state is not None:
+                withdraw(self._state)
+            self._left_flagged = False
+            self.copy_input_keys(parent_ud)
+            self.call_start_cbs()
+            outcome = self._loop(iter(self._items() if callable(self._items) else self._items))
+            self.copy_output_keys(parent_ud)
+            self.call_termination_cbs(self._label, outcome)
+            return outcome
+        finally:
+            self._active = None
+            self._running.release()
+
+    def _loop(self, items: Any) -> str | None:
+        """Item after item; the outcome, as renamed by the final map."""
+        state: Any = self._state
+        self._active = state
+        outcome: str | None = self._exhausted
+        while not smach.is_shutdown():
+            item = next(items, _NO_MORE)
+            if item is _NO_MORE:
+                outcome = self._exhausted
+                break
+            self.userdata[self._item_key] = item
+            if smach.loginfo is not quiet:
+                smach.loginfo(f"iterator running '{self._label}' for {item!r}")
+            outcome = self._run_child(state)
+            if self._preempt_requested:
+                with self._preempting:
+                    self._active = None
+                    self.service_preempt()
+                break
+            if not self._loops(outcome):
+                break
+            self.call_transition_cbs()
+        return self._final.get(outcome, outcome)
+
+    def _run_child(self, state: Any) -> str | None:
+        try:
+            outcome: str | None = state.execute(self.userdata)
+        except InvalidUserCodeError:
+            raise
+        except Exception as error:
+            raise InvalidUserCodeError(
+                f"state '{self._label}' of type {type(state).__name__} failed:\n"
+                f"{traceback.format_exc()}"
+            ) from error
+        return outcome
+
+    def _loops(self, outcome: str | None) -> bool:
+        if self._looping:
+            return outcome in self._looping
+        return bool(self._breaking) and outcome not in self._breaking
+
+    # Preemption
+
+    def request_preempt(self) -> None:
+        """Ask the iterator to end after the current item, and its child to end early."""
+        with self._preempting:
+            super().request_preempt()
+            state = self._active
+            if state is None:
+                return
+            self._left_flagged = True
+            try:
+                if not state.preempt_requested():
+                    state.request_preempt()
+            except Exception:
+                smach.logerr(f"request_preempt failed:\n{traceback.format_exc()}")

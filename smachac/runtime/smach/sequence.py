@@ -1,0 +1,61 @@
+"""Sequence: a state machine whose states lead to each other in the order of adding."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Mapping
+from typing import Any, TypeVar
+
+from smachac.runtime import smach
+
+from .container import open_container
+from .state import State
+from .state_machine import StateMachine
+
+S = TypeVar("S", bound=State)
+
+
+class Sequence(StateMachine):
+    """A state machine with one outcome, the connector, that leads to the state added next.
+
+    The connector of the last state ends the sequence with the outcome of that name.
+    """
+
+    def __init__(
+        self,
+        outcomes: Iterable[str],
+        connector_outcome: str,
+        input_keys: list[str] | None = None,
+        output_keys: list[str] | None = None,
+    ) -> None:
+        super().__init__(outcomes, input_keys, output_keys)
+        self._connector = connector_outcome
+        self._last: str | None = None
+
+    @staticmethod
+    def add(
+        label: str,
+        state: S,
+        transitions: Mapping[str, str | None] | None = None,
+        remapping: dict[str, str] | None = None,
+        constants: Mapping[str, Any] | None = None,
+    ) -> S:
+        """Add a state to the innermost open sequence, and return it.
+
+        The state added before leads to it, unless it has another target for the connector.
+        Arguments and errors as for `StateMachine.add`.
+        """
+        sequence = open_container(Sequence)
+        sequence._link(label)
+        sequence._add(label, state, transitions, remapping, constants)
+        sequence._last = label
+        return state
+
+    def _link(self, label: str) -> None:
+        """Let the connector of the state last added lead to `label`, if it leads nowhere yet."""
+        if self._last is None:
+            return
+        transitions = self._transitions[self._last]
+        if self._connector not in transitions:
+            smach.logerr(f"'{self._last}' lacks the connector outcome '{self._connector}'")
+        if transitions.get(self._connector) is None:
+            transitions[self._connector] = label

@@ -1,0 +1,207 @@
+# ruff: noqa: SIM401 (reads and writes are hot, and `d.get(k, k)` is the slower form)
+"""Userdata: the store of a container, and the part of it that one child may see."""
+
+from __future__ import annotations
+
+import copy
+from collections.abc import Collection, Iterable, Mapping, MutableMapping
+from typing import Any, ClassVar, TypeAlias
+
+from smachac.runtime import smach
+
+from .exceptions import InvalidUserCodeError
+
+View: TypeAlias = tuple[
+    Collection[str], Collection[str], Mapping[str, str], MutableMapping[str, Any]
+]
+"""(keys that may be read, keys that may be written, own key -> key in the store, the store)."""
+
+
+class UserData:
+    """A store with string keys, read and written by item (`ud["k"]`) or attribute (`ud.k`).
+
+    Attributes that begin with an underscore belong to the object and are no keys.
+    Reading an absent key raises KeyError, by attribute too.
+    """
+
+    __iter__: ClassVar[None] = None
+    _data: dict[str, Any]
+
+    def __init__(self) -> None:
+        object.__setattr__(self, "_data", {})
+
+    def __getitem__(self, key: str) -> Any:
+        try:
+            return self._data[key]
+        except KeyError:
+            raise _absent(key, self._data) from None
+
+    def __setitem__(self, key: str, value: Any) -> None:
+        self._data[key] = value
+
+    def __getattr__(self, key: str) -> Any:
+        if key.startswith("_"):
+            raise AttributeError(key)
+        return self[key]
+
+    def __setattr__(self, key: str, value: Any) -> None:
+        if key.startswith("_"):
+            object.__setattr__(self, key, value)
+        else:
+            self._data[key] = value
+
+    def __contains__(self, key: object) -> bool:
+        return key in self._data
+
+    def keys(self) -> list[str]:
+        """The keys, in the order in which they were first written."""
+        return list(self._data)
+
+    def update(self, ud: UserData) -> None:
+        """Take over every key of another store."""
+        for key in ud.keys():  # noqa: SIM118 (a store is no mapping)
+            self._data[key] = ud[key]
+
+    def extract(self, keys: Iterable[str], remapping: Mapping[str, str]) -> UserData:
+        """A new store with shallow copies of `keys`, renamed by the inverse of `remapping`."""
+        inverse = {outer: inner for inner, outer in remapping.items()}
+        if len(inverse) != len(remapping):
+            smach.logerr(f"the remapping {dict(remapping)} cannot be inverted")
+        extracted = UserData()
+        for key in keys:
+            extracted[inverse.get(key, key)] = copy.copy(self[key])
+        return extracted
+
+    def merge(self, ud: UserData, keys: Iterable[str], remapping: Mapping[str, str]) -> None:
+        """Take shallow copies of `keys` from another store, renamed by `remapping`."""
+        for key in keys:
+            self._data[remapping.get(key, key)] = copy.copy(ud[key])
+
+
+class Remapper:
+    """What a child sees of its container's store: declared keys, under the child's own names.
+
+    `input_keys` may be read, `output_keys` written, at once visible to the container.
+    `remapping` (child's key -> container's key) is followed one step.
+    Reading an undeclared key raises InvalidUserCodeError, an absent one KeyError;
+    writing an undeclared key is logged as an error and dropped.
+    Dicts given as keys or remapping are used as they are, so that later changes show.
+    """
+
+    __iter__: ClassVar[None] = None
+    _view: View = ((), (), {}, {})
+
+    def __init__(
+        self,
+        ud: Any,
+        input_keys: Iterable[str] = (),
+        output_keys: Iterable[str] = (),
+        remapping: Mapping[str, str] | None = None,
+    ) -> None:
+        view: View = (
+            input_keys if isinstance(input_keys, dict) else dict.fromkeys(input_keys),
+            output_keys if isinstance(output_keys, dict) else dict.fromkeys(output_keys),
+            {} if remapping is None else remapping,
+            store(ud),
+        )
+        object.__setattr__(self, "_view", view)
+
+    def __getitem__(self, key: str) -> Any:
+        inputs, _, remapping, data = self._view
+        if key in inputs:
+            try:
+                return data[remapping[key] if key in remapping else key]
+            except KeyError:
+                pass
+        raise self._refusal(key)
+
+    __getattr__ = __getitem__
+
+    def __setitem__(self, key: str, value: Any) -> None:
+        _, outputs, remapping, data = self._view
+        if key in outputs:
+            data[remapping[key] if key in remapping else key] = value
+        else:
+            self._drop(key)
+
+    def __setattr__(self, key: str, value: Any) -> None:
+        _, outputs, remapping, data = self._view
+        if key in outputs:
+            data[remapping[key] if key in remapping else key] = value
+        elif key.startswith("_"):
+            object.__setattr__(self, key, value)
+        else:
+            self._drop(key)
+
+    def __contains__(self, key: str) -> bool:
+        inputs, _, remapping, data = self._view
+        return key in inputs and remapping.get(key, key) in data
+
+    def keys(self) -> list[str]:
+        """The declared inputs that are present, under the child's names."""
+        return [key for key in self._view[0] if key in self]
+
+    def update(self, ud: UserData | Remapper) -> None:
+        """Write every key of another store, by the same rules as single writes."""
+        for key in ud.keys():  # noqa: SIM118 (a store is no mapping)
+            self[key] = ud[key]
+
+    def _refusal(self, key: str) -> Exception:
+        inputs, _, remapping, data = self._view
+        if key in inputs:
+            return _absent(remapping.get(key, key), data)
+        if isinstance(key, str) and key.startswith("_"):
+            return AttributeError(key)
+        return InvalidUserCodeError(
+            f"userdata key '{key}' is read, but is no input key; input keys: {list(inputs)}"
+        )
+
+    def _drop(self, key: str) -> None:
+        outputs = list(self._view[1])
+        smach.logerr(
+            f"userdata key '{key}' is written, but is no output key; output keys: {outputs}"
+        )
+
+
+def store(ud: Any) -> Any:
+    """The mapping behind a UserData; anything else stands for itself."""
+    return ud._data if isinstance(ud, UserData) else ud
+
+
+def read_keys(source: Any, keys: Iterable[str], data: MutableMapping[str, Any]) -> list[str]:
+    """Copy `keys` by reference from a UserData, Remapper or mapping; the keys not found."""
+    inputs, _, remapping, held = _opened(source, keys)
+    missing = []
+    for key in keys:
+        if key not in inputs:
+            raise source._refusal(key)
+        name = remapping[key] if key in remapping else key
+        if name in held:
+            data[key] = held[name]
+        else:
+            missing.append(key)
+    return missing
+
+
+def write_keys(target: Any, keys: Iterable[str], data: Mapping[str, Any]) -> list[str]:
+    """Copy `keys` by reference to a UserData, Remapper or mapping; the keys not found in `data`."""
+    _, outputs, remapping, held = _opened(target, keys)
+    missing = []
+    for key in keys:
+        if key not in data:
+            missing.append(key)
+        elif key in outputs:
+            held[remapping[key] if key in remapping else key] = data[key]
+        else:
+            target._drop(key)
+    return missing
+
+
+def _opened(ud: Any, keys: Any) -> View:
+    return ud._view if isinstance(ud, Remapper) else (keys, keys, {}, store(ud))
+
+
+def _absent(key: object, data: Collection[str]) -> KeyError:
+    present = list(data) if isinstance(data, dict) else "another kind of store"
+    smach.logerr(f"userdata key '{key}' is absent; present: {present}")
+    return KeyError()
