@@ -114,9 +114,10 @@ set_up() {
   local extras=sim
   [[ $level == sim ]] || extras=sim,dev
   say "installing smachac[$extras]: a minute or two"
-  pip install -q -e ".[$extras]"
-  pip install -q -e '.[fast]' &>.venv/fast.log ||
-    say "note: the fast YAML parser did not compile (.venv/fast.log); the slower one reads the same"
+  if ! pip install -q -e ".[$extras,fast]" &>.venv/fast.log; then
+    say "note: without the fast YAML parser (see .venv/fast.log); the other one reads the same"
+    pip install -q -e ".[$extras]"
+  fi
   key >.venv/ready-sim
   [[ $level == sim ]] || key >.venv/ready-dev
   rm .venv/unfinished
