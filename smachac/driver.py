@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
+from dataclasses import dataclass
 
 from smachac.checks import check_machine
 from smachac.diagnostics import Report, has_errors, in_order
@@ -28,13 +29,21 @@ def check(machine: Machine, report: Report) -> Checked | None:
     return None if has_errors(report) else Checked(machine)
 
 
-def analyse(source: Source, library: Library) -> tuple[Machine | None, Report]:
-    """The machine of a script and everything there is to say about it, in order."""
-    report: Report = []
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Analysis:
+    """What there is to say about a script: its machine as far as it could be read, the machine
+    again if it is without error, and every finding in order."""
+
+    machine: Machine | None = None
+    checked: Checked | None = None
+    report: Report
+
+
+def analyse(source: Source, library: Library, report: Report) -> Analysis:
+    """Read a script and judge it by every rule; findings already in `report` count as well."""
     machine = load(source, library, report)
-    if machine is not None:
-        check(machine, report)
-    return machine, in_order(report)
+    checked = check(machine, report) if machine is not None else None
+    return Analysis(machine=machine, checked=checked, report=in_order(report))
 
 
 def build(
@@ -45,7 +54,7 @@ def build(
     options: Mapping[str, str] | None = None,
 ) -> Files:
     """The files a target prints; none if a template is at fault (SM605)."""
-    context = Context(template=library.template, options=options or {})
+    context = Context(library=library, options=options or {})
     files = target.emit(machine, context, report)
     return {} if has_errors(report) else files
 

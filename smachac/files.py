@@ -14,8 +14,9 @@ from smachac.diagnostics import Report
 from smachac.source import Source, Span
 from smachac.states import Library
 
-BUILT_IN = Path(__file__).parent / "states"
-"""The folder of the built-in state types."""
+_HERE = Path(__file__).parent
+BUILT_IN = (_HERE / "states", _HERE / "targets" / "python" / "templates")
+"""The folders of the built-in state types, and of the templates of containers."""
 
 SUFFIXES = ("", ".yml", ".yaml")
 MAX_BYTES = 50_000_000
@@ -128,7 +129,7 @@ def disk_library(
     """
     project = find_project(main, report)
     own_scripts = [*scripts, *project.scripts]
-    template_folders = [*templates, *project.templates, main.parent / "templates", BUILT_IN]
+    template_folders = [*templates, *project.templates, main.parent / "templates", *BUILT_IN]
     cache: dict[Path, Source | None] = {}
 
     def read(path: Path) -> Source | None:
@@ -153,11 +154,11 @@ def disk_library(
         template=template,
         script_folders=lambda caller: [str(folder) for folder in script_folders(caller)],
         template_folders=lambda: [
-            *(str(folder) for folder in template_folders[:-1]),
+            *(str(folder) for folder in template_folders[: -len(BUILT_IN)]),
             "the built-in ones",
         ],
         script_names=lambda caller: _stems(script_folders(caller), (".yml", ".yaml")),
-        template_names=lambda: _stems(template_folders, (".tpl.py", ".tpl", ".yml")),
+        template_names=lambda: _stems(template_folders[:-1], (".tpl.py", ".tpl", ".yml")),
     )
 
 

@@ -207,6 +207,33 @@ def too_big(span: Span, message: str, help: str | None = None) -> Finding:
     return Finding(span=span, message=message, help=help)
 
 
+@problem("SM007", "unreadable-file", Severity.ERROR)
+def unreadable_file(span: Span, message: str, help: str | None = None) -> Finding:
+    """A file is missing, is a folder, is not text, or may not be read.
+
+    A robot must not start on half of its script, so nothing is compiled.
+
+    Wrong:
+        name: sm
+        template: Base
+        outcomes: [succeeded]
+        states:
+          - PICK: {template: ScriptedState, outcomes: [done], transitions: {done: succeeded}}
+        == smachac.toml ==
+        scripts: [no, toml]
+
+    Right:
+        name: sm
+        template: Base
+        outcomes: [succeeded]
+        states:
+          - PICK: {template: ScriptedState, outcomes: [done], transitions: {done: succeeded}}
+        == smachac.toml ==
+        scripts = ["sub_scripts"]
+    """
+    return Finding(span=span, message=message, help=help)
+
+
 @problem("SM011", "script-not-found", Severity.ERROR)
 def script_not_found(word: Word, searched: Sequence[str], known: Iterable[str]) -> Finding:
     """A state calls a sub-script that is in none of the folders.

@@ -12,7 +12,7 @@ from importlib.metadata import entry_points
 
 from smachac.diagnostics import Report
 from smachac.ir.nodes import Checked
-from smachac.source import Source
+from smachac.states import Library
 
 GROUP = "smachac.targets"
 
@@ -24,11 +24,11 @@ Files = dict[str, str]
 class Context:
     """What a target gets beside the machine.
 
-    `template` finds the text of a template by file name (`Base.tpl.py`) in the folders of the
-    user, then the built-in ones. `options` are the `--option NAME=VALUE` of the command line.
+    `library` finds templates and interfaces. `options` are the `--option NAME=VALUE` of the
+    command line.
     """
 
-    template: Callable[[str], Source | None]
+    library: Library
     options: Mapping[str, str] = field(default_factory=dict)
 
 

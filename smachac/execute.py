@@ -1,0 +1,101 @@
+"""Runs a generated Python program here and now, watched and stoppable."""
+
+from __future__ import annotations
+
+import linecache
+import random
+import signal
+import sys
+from collections.abc import Callable, Iterator, Mapping
+from contextlib import contextmanager
+from pathlib import Path
+from types import FrameType, ModuleType
+from typing import Any
+
+from smachac.ir.nodes import Machine
+from smachac.ir.walk import walk
+
+Event = Mapping[str, Any]
+
+
+def places(machine: Machine) -> dict[str, str]:
+    """Path of each state to its place in the script, `pick_block.yml:12`."""
+    return {
+        path: f"{Path(node.span.source.name).name}:{node.span.line}"
+        for path, node in walk(machine.root)
+    }
+
+
+def execute(
+    name: str,
+    text: str,
+    machine: Machine,
+    observe: Callable[[Event], None] | None,
+    *,
+    folder: Path,
+    seed: int = 0,
+    gui: bool = False,
+    record: Path | None = None,
+    on_preempt: Callable[[], None] = lambda: None,
+) -> str | None:
+    """Run the module `text` and return the outcome of its machine.
+
+    `folder` is where the program may import modules of the user from: that of the script.
+    `observe` gets every event of the trace. Ctrl-C asks the machine to preempt (`on_preempt` is
+    called), a second one raises KeyboardInterrupt. What the program raises passes through.
+    """
+    from smachac.runtime import trace
+
+    random.seed(seed)
+    module = ModuleType(name.removesuffix(".py"))
+    module.__file__ = name
+    linecache.cache[name] = (len(text), None, text.splitlines(keepends=True), name)
+    sys.path.insert(0, str(folder.resolve()))
+    try:
+        exec(compile(text, name, "exec"), module.__dict__)
+        if record is not None or gui or "smachac.sim" in sys.modules:
+            from smachac import sim
+
+            sim.configure(seed=seed, gui=gui, record=record)
+        build = module.__dict__["build"]
+        built: list[Any] = []
+
+        def watched_build() -> Any:
+            root = build()
+            if observe is not None:
+                trace.attach(root, machine.root.name, observe, places(machine))
+            built.append(root)
+            return root
+
+        module.__dict__["build"] = watched_build
+        with _preempting(built, on_preempt):
+            outcome: str | None = module.__dict__[main_function(machine)]()
+        return outcome
+    finally:
+        sys.path.remove(str(folder.resolve()))
+
+
+def main_function(machine: Machine) -> str:
+    """The name of the generated program's main function."""
+    for variable in machine.variables:
+        if variable.name == "function_name" and isinstance(variable.value.data, str):
+            return variable.value.data
+    return "main"
+
+
+@contextmanager
+def _preempting(built: list[Any], on_preempt: Callable[[], None]) -> Iterator[None]:
+    """Ctrl-C as a preempt request; the second one as ever."""
+
+    def preempt(number: int, frame: FrameType | None) -> None:
+        signal.signal(signal.SIGINT, signal.default_int_handler)
+        if not built:
+            raise KeyboardInterrupt
+        on_preempt()
+        built[-1].request_preempt()
+
+    before = signal.signal(signal.SIGINT, preempt)
+    try:
+        yield
+    finally:
+        signal.signal(signal.SIGINT, before)

@@ -1,0 +1,4 @@
+{% block body %}
+# {{ place }}
+{{ add }}
+{% endblock %}

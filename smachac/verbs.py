@@ -1,0 +1,184 @@
+"""What the commands do: the only module that writes to streams."""
+
+from __future__ import annotations
+
+import argparse
+import os
+import sys
+from collections.abc import Callable
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+if TYPE_CHECKING:
+    from smachac.diagnostics import Report
+    from smachac.driver import Analysis
+    from smachac.states import Library
+    from smachac.targets import Target
+
+OK, FINDINGS, USAGE = 0, 1, 2
+"""Exit codes: clean; findings or a failed run; wrong usage."""
+
+
+def _wants_colour(arguments: argparse.Namespace, stream: Any) -> bool:
+    if arguments.colour != "auto":
+        return bool(arguments.colour == "always")
+    return bool(stream.isatty()) and "NO_COLOR" not in os.environ
+
+
+def _load(path: Path, arguments: argparse.Namespace) -> tuple[Analysis, Library | None]:
+    """A script read and judged by every rule."""
+    from smachac.driver import Analysis, analyse
+    from smachac.files import disk_library, read_source
+
+    found: Report = []
+    source = read_source(path, found)
+    if source is None:
+        return Analysis(report=found), None
+    library = disk_library(path, found, scripts=arguments.scripts, templates=arguments.templates)
+    return analyse(source, library, found), library
+
+
+def _shown(report: Report) -> Report:
+    """What people are shown of a report: all but information."""
+    from smachac.diagnostics import Severity
+
+    return [item for item in report if item.severity is not Severity.INFO]
+
+
+def _print_report(report: Report, arguments: argparse.Namespace, stream: Any) -> None:
+    from smachac.report.text import render_text
+
+    if report:
+        print(render_text(report, colour=_wants_colour(arguments, stream)), file=stream)
+
+
+def _check(arguments: argparse.Namespace) -> int:
+    from smachac.diagnostics import Severity
+    from smachac.report.text import summary
+
+    report: Report = []
+    for path in dict.fromkeys(arguments.script):
+        report += _load(path, arguments)[0].report
+    if arguments.format == "json":
+        from smachac.report.json import render_json
+
+        sys.stdout.write(render_json(report))
+    else:
+        _print_report(_shown(report), arguments, sys.stdout)
+        print(summary(report))
+    failing = {Severity.ERROR, Severity.WARNING} if arguments.strict else {Severity.ERROR}
+    return FINDINGS if any(item.severity in failing for item in report) else OK
+
+
+def _build(arguments: argparse.Namespace) -> int:
+    from smachac.targets import load_target, target_names
+
+    target = load_target(arguments.target)
+    if target is None:
+        return _usage(f"there is no target `{arguments.target}`", arguments.target, target_names())
+    options: dict[str, str] = {}
+    for text in arguments.option:
+        name, equals, value = text.partition("=")
+        if not equals:
+            return _usage(f"--option wants NAME=VALUE, not `{text}`")
+        if name not in target.options:
+            message = f"target `{target.name}` has no option `{name}`"
+            return _usage(message, name, list(target.options))
+        options[name] = value
+    _, files = _compile(arguments, target, options)
+    return FINDINGS if files is None else _put(files, arguments)
+
+
+def _compile(
+    arguments: argparse.Namespace, target: Target, options: dict[str, str]
+) -> tuple[Analysis, dict[str, str] | None]:
+    """The files of a target; none, with a report on stderr, where the script has errors."""
+    from smachac.driver import build
+
+    analysis, library = _load(arguments.script, arguments)
+    files: dict[str, str] | None = None
+    report = analysis.report
+    if analysis.checked is not None and library is not None:
+        found: Report = []
+        files = build(analysis.checked, target, library, found, options)
+        report = [*report, *found]
+        files = None if found else files
+    _print_report(_shown(report), arguments, sys.stderr)
+    return analysis, files
+
+
+def _put(files: dict[str, str], arguments: argparse.Namespace) -> int:
+    from smachac.files import changed_files, foreign_files, write_files
+
+    folder: Path = arguments.output
+    if str(folder) == "-":
+        sys.stdout.write("".join(files.values()))
+        return OK
+    if arguments.check:
+        changed = changed_files(folder, files)
+        for path in changed:
+            print(f"{path} is not up to date: run `smachac build` again")
+        return FINDINGS if changed else OK
+    foreign = [] if arguments.force else foreign_files(folder, files)
+    if foreign:
+        for path in foreign:
+            print(f"{path} was not written by smachac; --force overwrites it", file=sys.stderr)
+        return FINDINGS
+    try:
+        for path in write_files(folder, files):
+            print(f"wrote {path}")
+    except OSError as error:
+        print(f"cannot write to {folder}: {error.strerror or error}", file=sys.stderr)
+        return FINDINGS
+    return OK
+
+
+def _run(arguments: argparse.Namespace) -> int:
+    from smachac.runs import run
+
+    return run(arguments, _load, _compile)
+
+
+def _explain(arguments: argparse.Namespace) -> int:
+    import smachac.checks
+    from smachac.diagnostics import CODES
+    from smachac.report.explain import render_code
+
+    assert smachac.checks is not None  # imported for the rules it files
+    code = CODES.get(arguments.code.upper())
+    if code is None:
+        return _usage(f"there is no code `{arguments.code}`", arguments.code.upper(), list(CODES))
+    print(render_code(code))
+    return OK
+
+
+def _targets(arguments: argparse.Namespace) -> int:
+    from smachac.targets import load_target, target_names
+
+    for name in target_names():
+        target = load_target(name)
+        assert target is not None
+        print(f"{name:<10} {target.description}")
+        for option, text in target.options.items():
+            print(f"{'':<10}   --option {option}=...  {text}")
+    return OK
+
+
+def _usage(message: str, word: str = "", known: list[str] | None = None) -> int:
+    """Wrong usage, in the words of argparse, with what may have been meant."""
+    from smachac.diagnostics import did_you_mean
+
+    print(f"smachac: error: {message}", file=sys.stderr)
+    if known:
+        print(did_you_mean(word, known) or f"known: {', '.join(known)}", file=sys.stderr)
+    return USAGE
+
+
+VERBS: dict[str, Callable[[argparse.Namespace], int]] = {
+    "check": _check,
+    "build": _build,
+    "run": _run,
+    "explain": _explain,
+    "targets": _targets,
+}
+"""Command to function."""
