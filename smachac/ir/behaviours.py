@@ -1,0 +1,143 @@
+"""What leaves of the built-in state types do in the interpreter; a stand-in for all others."""
+
+from __future__ import annotations
+
+import inspect
+import random
+from collections.abc import Callable
+
+from smachac.ir.nodes import Data, Expression, Leaf, Struct
+from smachac.ir.result import PREEMPTED, Behaviour
+from smachac.ir.userdata import BehaviourError, Fields, Userdata, evaluated, python_data
+from smachac.ir.walk import outcome_names
+
+GOOD_OUTCOMES = ("succeeded", "success", "done", "ok", "true")
+"""Names of the outcome that a state of an unknown type is taken to have."""
+
+
+def built_in(seed: int = 0) -> Behaviour:
+    """The behaviour of every leaf by its state type.
+
+    A leaf that a request to stop has reached ends as `preempted` where it declares that. `seed`
+    settles what leaves draw that have no seed of their own.
+    """
+    behaviours = {**_BEHAVIOURS, "RandomOutcomeState": _draws(seed)}
+
+    def behave(path: str, leaf: Leaf, visit: int, userdata: Userdata) -> str:
+        behaviour = behaviours.get(leaf.type, _default)
+        return behaviour(path, leaf, visit, userdata)
+
+    return stopping_when_asked(behave)
+
+
+def stopping_when_asked(behaviour: Behaviour) -> Behaviour:
+    """A behaviour that answers a request to stop with `preempted` where the leaf declares it."""
+
+    def behave(path: str, leaf: Leaf, visit: int, userdata: Userdata) -> str:
+        if userdata.preempted and PREEMPTED in outcome_names(leaf):
+            userdata.service_preempt()
+            return PREEMPTED
+        return behaviour(path, leaf, visit, userdata)
+
+    return behave
+
+
+def default_outcome(leaf: Leaf) -> str:
+    """The declared outcome by which a state usually ends: a good one, else the first."""
+    declared = outcome_names(leaf) or tuple(edge.outcome for edge in leaf.transitions)
+    good = [name for name in declared if name in GOOD_OUTCOMES]
+    return [*good, *declared, GOOD_OUTCOMES[0]][0]
+
+
+def variable(leaf: Leaf, name: str) -> Data:
+    """What the script sets a variable of a leaf to, or None."""
+    for candidate in leaf.variables:
+        if candidate.name == name:
+            return candidate.value.data
+    return None
+
+
+def _default(path: str, leaf: Leaf, visit: int, userdata: Userdata) -> str:
+    return default_outcome(leaf)
+
+
+def _scripted(path: str, leaf: Leaf, visit: int, userdata: Userdata) -> str:
+    steps = python_data(variable(leaf, "steps"))
+    if not isinstance(steps, list) or not steps:
+        return next(iter(outcome_names(leaf)), default_outcome(leaf))
+    step = steps[min(visit, len(steps)) - 1]
+    if not isinstance(step, dict):
+        raise BehaviourError(f"step {visit} is no mapping of `outcome` and `set`")
+    for key, value in (step.get("set") or {}).items():
+        userdata[key] = value
+    return str(step.get("outcome") or default_outcome(leaf))
+
+
+def _callbacks(leaf: Leaf) -> dict[str, Expression]:
+    """The functions of a leaf by key or outcome."""
+    data = variable(leaf, "callbacks")
+    if data is None:
+        return {}
+    if not isinstance(data, Struct):
+        raise BehaviourError("`callbacks` is no mapping")
+    found = {key: value for key, value in data.entries if isinstance(value, Expression)}
+    for key, _ in data.entries:
+        if key not in found:
+            raise BehaviourError(f"the callback `{key}` is no expression")
+    return found
+
+
+def _call(function: Expression, userdata: Userdata) -> object:
+    """The result of a function of the script: a lambda over userdata, or of nothing."""
+    fields = Fields(userdata)
+    value = evaluated(function, ud=fields, userdata=fields)
+    if not callable(value):
+        return value
+    return value(fields) if inspect.signature(value).parameters else value()
+
+
+def _run_callbacks(path: str, leaf: Leaf, visit: int, userdata: Userdata) -> str:
+    callbacks = _callbacks(leaf)
+    for key in sorted(callbacks):
+        userdata[key] = _call(callbacks[key], userdata)
+    return default_outcome(leaf)
+
+
+def _first_true(path: str, leaf: Leaf, visit: int, userdata: Userdata) -> str:
+    callbacks = _callbacks(leaf)
+    for outcome in outcome_names(leaf):
+        if outcome in callbacks and _call(callbacks[outcome], userdata):
+            return outcome
+    otherwise = variable(leaf, "default_outcome")
+    if not isinstance(otherwise, str):
+        raise BehaviourError("no condition holds, and there is no `default_outcome`")
+    return otherwise
+
+
+def _draws(seed: int) -> Behaviour:
+    sources: dict[str, random.Random] = {}
+
+    def draw(path: str, leaf: Leaf, visit: int, userdata: Userdata) -> str:
+        if path not in sources:
+            own = variable(leaf, "seed")
+            sources[path] = random.Random(own if isinstance(own, int) else f"{seed}:{path}")
+        return sources[path].choice(outcome_names(leaf) or (default_outcome(leaf),))
+
+    return draw
+
+
+def _sleep(path: str, leaf: Leaf, visit: int, userdata: Userdata) -> str:
+    seconds = python_data(variable(leaf, "time"))
+    if not isinstance(seconds, int | float):
+        raise BehaviourError("`time` is no number of seconds")
+    userdata.sleep(seconds)
+    return default_outcome(leaf)
+
+
+_BEHAVIOURS: dict[str, Callable[[str, Leaf, int, Userdata], str]] = {
+    "ScriptedState": _scripted,
+    "CallbacksState": _run_callbacks,
+    "ConditionalOutcomeState": _first_true,
+    "SleepState": _sleep,
+}
+"""By state type. PrintUserdataState prints nothing here, so the stand-in does."""

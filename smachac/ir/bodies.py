@@ -1,0 +1,219 @@
+"""What the containers do: generators that yield the time at which they can go on."""
+
+from __future__ import annotations
+
+from collections.abc import Generator, Mapping
+from dataclasses import dataclass
+from typing import TYPE_CHECKING, Any, TypeAlias
+
+from smachac.ir.nodes import (
+    Concurrence,
+    Container,
+    Expression,
+    Iterator,
+    Node,
+    Sequence,
+    StateMachine,
+)
+from smachac.ir.result import Failure, RunError
+from smachac.ir.userdata import python_data
+from smachac.ir.walk import leads_to_child, outcome_names
+
+if TYPE_CHECKING:
+    from smachac.ir.run import Interpreter
+
+Run: TypeAlias = "Generator[float, None, str]"
+"""A state on its way to its outcome."""
+
+
+def body(run: Interpreter, node: Container, path: str, own: dict[str, object]) -> Run:
+    """What a container does between its entry and its end, over its own userdata."""
+    if not node.children:
+        run.fail("no-state", path, "has no states", node.span)
+    match node:
+        case Concurrence():
+            return _concurrence(run, node, path, own)
+        case Iterator():
+            return _iterator(run, node, path, own)
+    return _machine(run, node, path, own)
+
+
+def _machine(
+    run: Interpreter, node: StateMachine | Sequence, path: str, own: dict[str, object]
+) -> Run:
+    routes = run.routes.get(path) or run.routes.setdefault(path, _routes(node))
+    name, inside, here = node.initial or node.children[0].name, True, None
+    if name not in routes.children:
+        run.fail("no-target", path, f"has no state `{name}` to start with", node.span)
+    while inside:
+        child, previous, here = routes.children[name], here, f"{path}/{name}"
+        run.preemption.before_next(path, previous, here)
+        run.preemption.running[path] = {here: _nothing}
+        outcome = yield from run.visit(child, here, own)
+        if outcome not in routes.targets[name]:
+            message = f"no transition for outcome `{outcome}`"
+            run.fail("no-transition", here, message, child.span)
+        name, inside = routes.targets[name][outcome]
+        if not inside and name not in outcome_names(node):
+            message = f"`{name}` is neither a state nor an outcome of `{path}`"
+            run.fail("no-target", here, message, child.span)
+        to = f"{path}/{name}" if inside else f"{path}:{name}"
+        run.emit("transition", here, outcome=outcome, to=to)
+    run.preemption.at_end(path, [here] if here else [])
+    return name
+
+
+@dataclass(frozen=True, slots=True)
+class Routes:
+    """A machine's children by name, and for each child where its outcomes lead.
+
+    The flag says whether the target is a child.
+    """
+
+    children: dict[str, Node]
+    targets: dict[str, dict[str, tuple[str, bool]]]
+
+
+def _routes(node: StateMachine | Sequence) -> Routes:
+    children = {child.name: child for child in reversed(node.children)}
+    names = frozenset(children)
+    targets = {
+        name: {
+            edge.outcome: (edge.target, leads_to_child(edge, names))
+            for edge in reversed(child.transitions)
+        }
+        for name, child in children.items()
+    }
+    return Routes(children, targets)
+
+
+def _concurrence(run: Interpreter, node: Concurrence, path: str, own: dict[str, object]) -> Run:
+    children = {f"{path}/{child.name}": child for child in node.children}
+    live = {here: _Branch(run.visit(child, here, own)) for here, child in children.items()}
+    running = run.preemption.running[path] = {here: live[here].wake for here in live}
+    if path in run.preemption.asked:
+        for here in children:
+            run.preemption.request(here)
+    starting = list(live)
+    ended: dict[str, str | Failure] = {}
+    told = False
+    while live:
+        turn = starting.pop(0) if starting else _choose(run, live)
+        if turn is None:
+            yield min(branch.ready_at for branch in live.values())
+            continue
+        end = _advance(live[turn])
+        if end is None:
+            if not starting:
+                yield run.clock
+            continue
+        del live[turn], running[turn]
+        ended[children[turn].name] = end
+        if isinstance(end, Failure) and end.kind == "no-end":
+            break
+        if not told and (node.join == "any" or isinstance(end, Failure)):
+            told = True
+            for other in live:
+                run.preemption.request(other)
+    run.preemption.at_end(path, children)
+    for end in ended.values():
+        if isinstance(end, Failure):
+            raise RunError(end)
+    return _outcome_of(node, ended)
+
+
+@dataclass(slots=True)
+class _Branch:
+    """A child of a concurrence that has not ended, and when it can go on."""
+
+    body: Run
+    ready_at: float = 0.0
+
+    def wake(self) -> None:
+        self.ready_at = 0.0
+
+
+def _advance(branch: _Branch) -> str | Failure | None:
+    """Let a branch go on until it is in its next leaf; how it ended, if it did."""
+    try:
+        branch.ready_at = next(branch.body)
+    except StopIteration as end:
+        outcome: str = end.value
+        return outcome
+    except RunError as failed:
+        return failed.failure
+    return None
+
+
+def _choose(run: Interpreter, live: Mapping[str, _Branch]) -> str | None:
+    """Whose turn it is among the branches that can go on now."""
+    ready = [path for path, branch in live.items() if branch.ready_at <= run.clock]
+    if len(ready) > 1:
+        return ready[run.random.randrange(len(ready))]
+    return ready[0] if ready else None
+
+
+def _outcome_of(node: Concurrence, ended: Mapping[str, str | Failure]) -> str:
+    """The outcome of the matching rule with most conditions, the last among equals (N5, N6)."""
+    best, most = node.default_outcome, 0
+    for rule in node.rules:
+        holds = all(ended.get(one.child) == one.outcome for one in rule.when)
+        if holds and len(rule.when) >= most:
+            best, most = rule.outcome, len(rule.when)
+    return best
+
+
+def _iterator(run: Interpreter, node: Iterator, path: str, own: dict[str, object]) -> Run:
+    child = node.children[0]
+    here = f"{path}/{child.name}"
+    result = node.exhausted_outcome
+    outcome = None
+    items = _items_of(run, node, path, own)
+    position = 0
+    while position < len(items):
+        own[node.item_key] = items[position]
+        position += 1
+        if path in run.preemption.asked:
+            run.preemption.request(here)
+        run.preemption.running[path] = {here: _nothing}
+        outcome = yield from run.visit(child, here, own, loose=True)
+        if path in run.preemption.asked or outcome not in node.loop_outcomes:
+            run.preemption.recall(path)
+            result = outcome
+            break
+        if position < len(items):
+            run.emit("transition", here, outcome=outcome, to=here)
+    run.preemption.running.pop(path, None)
+    result = dict(node.final_map).get(result, result)
+    if outcome is not None:
+        run.emit("transition", here, outcome=outcome, to=f"{path}:{result}")
+    return result
+
+
+def _items_of(
+    run: Interpreter, node: Iterator, path: str, own: Mapping[str, object]
+) -> list[object]:
+    """What an iterator goes through, found as it starts."""
+    span = node.items.span if node.items else node.span
+    items: Any
+    if node.items_key:
+        if node.items_key not in own:
+            message = f"finds no items: its userdata has no `{node.items_key}`"
+            run.fail("no-items", path, message, span)
+        items = own[node.items_key]
+    else:
+        if node.items and path not in run.items:
+            run.items[path] = python_data(node.items.data)
+        items = run.items.get(path)
+    if isinstance(items, Expression):
+        message = f"its items, `{items.text}`, cannot be evaluated here"
+        run.fail("no-items", path, message, span)
+    try:
+        found: Any = items() if callable(items) else items
+        return found if isinstance(found, list) else list(found)
+    except Exception as error:
+        run.fail("no-items", path, f"its items: {type(error).__name__}: {error}", span)
+
+
+def _nothing() -> None:
+    """What a request has to wake in a state that waits for no time to come."""

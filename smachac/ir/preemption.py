@@ -1,0 +1,60 @@
+"""Requests to stop, and which states they have reached (P*)."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Collection
+from dataclasses import dataclass, field
+
+
+@dataclass(slots=True)
+class Preemption:
+    """The states, by path, that were asked to stop and have not answered yet.
+
+    `running` holds the children of each running container that have not ended, each with what is
+    to be called when a request reaches it. `told` hears of every request that reaches a state.
+    """
+
+    told: Callable[[str], None]
+    asked: set[str] = field(default_factory=set)
+    running: dict[str, dict[str, Callable[[], None]]] = field(default_factory=dict)
+
+    def request(self, path: str) -> None:
+        """Ask a state and all that runs in it, outer before inner (P2)."""
+        pending = [path]
+        while pending:
+            here = pending.pop()
+            self.asked.add(here)
+            self.told(here)
+            running = self.running.get(here, {})
+            for wake in running.values():
+                wake()
+            pending.extend(reversed(running))
+
+    def recall(self, path: str) -> None:
+        """Take requests back from a state and all below it."""
+        below = path + "/"
+        self.asked -= {one for one in self.asked if one == path or one.startswith(below)}
+
+    def before_next(self, path: str, previous: str | None, child: str) -> None:
+        """A machine goes on to its next state (P3, P5): what was not answered is asked again."""
+        if path not in self.asked:
+            return
+        if previous is not None and previous not in self.asked:
+            self.asked.discard(path)
+            return
+        if previous is not None:
+            self.recall(previous)
+        self.request(child)
+
+    def at_end(self, path: str, children: Collection[str]) -> None:
+        """A container has ended (P4, P10): its request is served if no child still holds one.
+
+        `children` are those that ran last. Without a request to the container itself, what the
+        children hold is taken back, or it would stop a later visit.
+        """
+        self.running.pop(path, None)
+        held = [child for child in children if child in self.asked]
+        for child in held:
+            self.recall(child)
+        if not held:
+            self.asked.discard(path)

@@ -1,0 +1,73 @@
+"""What a run is told and tells: what leaves do, events, how it ended."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass, field
+from typing import Any, Literal, TypeAlias
+
+from smachac.ir.nodes import Leaf
+from smachac.ir.userdata import Userdata, UserdataFault
+from smachac.source import Span
+
+Event: TypeAlias = dict[str, Any]
+"""One line of a trace: `seq`, `event`, `path`, then what the event has of `outcome`, `to`, `key`,
+`value`, `message`, then `t` in seconds and, where known, `src` as `file:line`."""
+
+Behaviour = Callable[[str, Leaf, int, Userdata], str]
+"""What a leaf does: from its path, node, number of this visit (from 1) and userdata to an outcome.
+
+It may raise: the run then ends with an error.
+"""
+
+Fault = Literal[
+    UserdataFault,
+    "behaviour",
+    "undeclared-outcome",
+    "no-transition",
+    "no-target",
+    "no-state",
+    "no-items",
+    "no-end",
+]
+"""Why a run failed: what a leaf did wrong, a graph that leads nowhere, or no end in sight."""
+
+PREEMPTED = "preempted"
+"""The outcome by which a state says that it stopped because it was asked to."""
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Failure:
+    """Where and why a run failed."""
+
+    kind: Fault
+    path: str
+    message: str
+    span: Span = field(compare=False, repr=False)
+
+    def __str__(self) -> str:
+        return f"{self.path}: {self.message}"
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Result:
+    """How a run ended: an outcome or an error, with all userdata as it was left.
+
+    `scopes` holds the userdata of every container by its path, `userdata` that of the outermost.
+    `steps` counts states entered; `time` is virtual, in seconds.
+    """
+
+    outcome: str | None
+    userdata: dict[str, object]
+    error: Failure | None = None
+    scopes: Mapping[str, dict[str, object]] = field(default_factory=dict)
+    steps: int = 0
+    time: float = 0.0
+
+
+class RunError(Exception):
+    """Carries a failure up to the next concurrence, or out of the run."""
+
+    def __init__(self, failure: Failure) -> None:
+        super().__init__(str(failure))
+        self.failure = failure
