@@ -1,0 +1,164 @@
+"""Things to put into the world: primitives as data, or any URDF or SDF file."""
+
+from dataclasses import dataclass
+from pathlib import Path
+
+from .engine import Engine, data_file, quiet
+from .geometry import IDENTITY, Pose, compose, inverse
+
+RGB = tuple[float, float, float]
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Box:
+    """A box: edge lengths and centre (m) in the model's frame."""
+
+    size: tuple[float, float, float]
+    centre: tuple[float, float, float] = (0.0, 0.0, 0.0)
+    colour: RGB | None = None
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Model:
+    """A rigid body of boxes. Mass 0 (kg) stands still; `solid` false is only seen, never touched.
+
+    `colours` are taken in turn, so that two blocks can be told apart.
+    """
+
+    boxes: tuple[Box, ...]
+    colours: tuple[RGB, ...]
+    mass: float = 0.0
+    friction: float = 0.8
+    solid: bool = True
+
+
+def _table(size: tuple[float, float], height: float, wood: RGB) -> Model:
+    """A table with its origin on the floor, in the middle; 4 cm thick top on four legs."""
+    x, y = size[0] / 2 - 0.04, size[1] / 2 - 0.04
+    leg, low = height - 0.04, (height - 0.04) / 2
+    grey = (0.38, 0.40, 0.44)
+    corners = ((x, y), (x, -y), (-x, y), (-x, -y))
+    return Model(
+        boxes=(
+            Box(size=(*size, 0.04), centre=(0.0, 0.0, height - 0.02)),
+            *(Box(size=(0.04, 0.04, leg), centre=(*at, low), colour=grey) for at in corners),
+        ),
+        colours=(wood,),
+    )
+
+
+_PAINTS: tuple[RGB, ...] = (
+    (0.86, 0.20, 0.18),
+    (0.16, 0.42, 0.80),
+    (0.95, 0.70, 0.13),
+    (0.50, 0.27, 0.62),
+)
+_GREY: RGB = (0.60, 0.60, 0.60)
+_GREEN: RGB = (0.16, 0.66, 0.36)
+
+MODELS: dict[str, Model] = {
+    "table": _table((0.7, 1.0), 0.4, (0.80, 0.66, 0.48)),
+    "cafe_table": _table((0.913, 0.913), 0.775, (0.80, 0.66, 0.48)),
+    "block": Model(boxes=(Box(size=(0.05, 0.05, 0.05)),), colours=_PAINTS, mass=0.1, friction=1.0),
+    "brick": Model(boxes=(Box(size=(0.10, 0.05, 0.05)),), colours=_PAINTS, mass=0.2, friction=1.0),
+    "wall": Model(boxes=(Box(size=(0.02, 0.4, 0.3), centre=(0, 0, 0.15)),), colours=(_GREY,)),
+    "goal": Model(
+        boxes=(
+            Box(size=(0.075, 0.075, 0.002), centre=(0.0, 0.0, 0.001)),
+            Box(size=(0.061, 0.061, 0.002), centre=(0.0, 0.0, 0.0016), colour=(0.93, 0.95, 0.90)),
+        ),
+        colours=(_GREEN,),
+        solid=False,
+    ),
+}
+
+
+def build(engine: Engine, model: Model, pose: Pose, turn: int = 0) -> int:
+    """Make the body of `model` at `pose` (world frame) and return its number; `turn` picks
+    the colour."""
+    paint = model.colours[turn % len(model.colours)]
+    halves = [[edge / 2 for edge in box.size] for box in model.boxes]
+    centres = [list(box.centre) for box in model.boxes]
+    kinds = [engine.GEOM_BOX] * len(model.boxes)
+    colours = [[*(box.colour or paint), 1.0] for box in model.boxes]
+    shape = -1
+    if model.solid:
+        shape = engine.createCollisionShapeArray(
+            shapeTypes=kinds, halfExtents=halves, collisionFramePositions=centres
+        )
+    look = engine.createVisualShapeArray(
+        shapeTypes=kinds, halfExtents=halves, visualFramePositions=centres, rgbaColors=colours
+    )
+    body: int = engine.createMultiBody(model.mass, shape, look, pose[0], pose[1])
+    for k, colour in enumerate(colours):
+        engine.changeVisualShape(body, -1, shapeIndex=k, rgbaColor=colour)
+    touch(engine, body, model.friction)
+    return body
+
+
+def floor(engine: Engine) -> None:
+    """The ground at z = 0 of the world."""
+    ground = Model(
+        boxes=(Box(size=(4.0, 4.0, 0.1), centre=(0, 0, -0.05)),), colours=((0.72, 0.76, 0.80),)
+    )
+    build(engine, ground, IDENTITY)
+
+
+def stand(
+    engine: Engine, size: tuple[float, float], centre: tuple[float, float], base: Pose
+) -> None:
+    """The box under a robot's base, from the floor up; none for a base on the floor."""
+    height = base[0][2]
+    if height <= 0.0:
+        return
+    # A little lower than the base, so that the two never touch.
+    box = Box(size=(*size, height - 0.002), centre=(*centre, -height / 2 - 0.001))
+    build(engine, Model(boxes=(box,), colours=((0.30, 0.33, 0.38),)), base)
+
+
+def touch(engine: Engine, body: int, friction: float) -> None:
+    """Give every link of `body` the friction that grasps were measured with."""
+    for link in range(-1, engine.getNumJoints(body)):
+        engine.changeDynamics(
+            body, link, lateralFriction=friction, spinningFriction=0.001, restitution=0.0
+        )
+
+
+def read(engine: Engine, path: str | Path, pose: Pose) -> int | str:
+    """Load a URDF or SDF file at `pose` (world frame): the body's number, or why not."""
+    found = data_file(path)
+    if found is None:
+        return f"model file `{path}` not found"
+    try:
+        with quiet():
+            if found.suffix == ".sdf":
+                bodies = engine.loadSDF(str(found))
+            else:
+                bodies = (engine.loadURDF(str(found), pose[0], pose[1]),)
+    except Exception as error:  # PyBullet raises its own class, pybullet.error
+        return f"model file `{path}` cannot be loaded: {error}"
+    if not bodies or bodies[0] < 0:
+        return f"model file `{path}` holds no model"
+    for extra in bodies[1:]:
+        engine.removeBody(extra)
+    place(engine, bodies[0], pose)
+    return int(bodies[0])
+
+
+def place(engine: Engine, body: int, pose: Pose) -> None:
+    """Put the model frame of `body` at `pose` (world frame), at rest."""
+    centre = compose(pose, _mass_frame(engine, body))
+    engine.resetBasePositionAndOrientation(body, centre[0], centre[1])
+    engine.resetBaseVelocity(body, (0.0, 0.0, 0.0), (0.0, 0.0, 0.0))
+
+
+def where(engine: Engine, body: int) -> Pose:
+    """The pose of the model frame of `body` in the world frame."""
+    position, rotation = engine.getBasePositionAndOrientation(body)
+    return compose((position, rotation), inverse(_mass_frame(engine, body)))
+
+
+def _mass_frame(engine: Engine, body: int) -> Pose:
+    """The frame PyBullet speaks of, at the centre of mass, seen from the model frame."""
+    known = engine.getDynamicsInfo(body, -1)
+    return known[3], known[4]
