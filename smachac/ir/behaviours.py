@@ -2,13 +2,12 @@
 
 from __future__ import annotations
 
-import inspect
 import random
 from collections.abc import Callable
 
 from smachac.ir.nodes import Data, Expression, Leaf, Struct
 from smachac.ir.result import PREEMPTED, Behaviour
-from smachac.ir.userdata import BehaviourError, Fields, Userdata, evaluated, python_data
+from smachac.ir.userdata import BehaviourError, Userdata, called, python_data
 from smachac.ir.walk import outcome_names
 
 GOOD_OUTCOMES = ("succeeded", "success", "done", "ok", "true")
@@ -87,26 +86,17 @@ def _callbacks(leaf: Leaf) -> dict[str, Expression]:
     return found
 
 
-def _call(function: Expression, userdata: Userdata) -> object:
-    """The result of a function of the script: a lambda over userdata, or of nothing."""
-    fields = Fields(userdata)
-    value = evaluated(function, ud=fields, userdata=fields)
-    if not callable(value):
-        return value
-    return value(fields) if inspect.signature(value).parameters else value()
-
-
 def _run_callbacks(path: str, leaf: Leaf, visit: int, userdata: Userdata) -> str:
     callbacks = _callbacks(leaf)
     for key in sorted(callbacks):
-        userdata[key] = _call(callbacks[key], userdata)
+        userdata[key] = called(callbacks[key], userdata)
     return default_outcome(leaf)
 
 
 def _first_true(path: str, leaf: Leaf, visit: int, userdata: Userdata) -> str:
     callbacks = _callbacks(leaf)
     for outcome in outcome_names(leaf):
-        if outcome in callbacks and _call(callbacks[outcome], userdata):
+        if outcome in callbacks and called(callbacks[outcome], userdata):
             return outcome
     otherwise = variable(leaf, "default_outcome")
     if not isinstance(otherwise, str):

@@ -2,9 +2,9 @@
 
 from __future__ import annotations
 
-from collections.abc import Generator, Mapping
+from collections.abc import Generator, Iterable, Mapping
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, Any, TypeAlias
+from typing import TYPE_CHECKING, TypeAlias
 
 from smachac.ir.nodes import (
     Concurrence,
@@ -16,7 +16,7 @@ from smachac.ir.nodes import (
     StateMachine,
 )
 from smachac.ir.result import Failure, RunError
-from smachac.ir.userdata import python_data
+from smachac.ir.userdata import BehaviourError, called, python_data
 from smachac.ir.walk import leads_to_child, outcome_names
 
 if TYPE_CHECKING:
@@ -48,7 +48,7 @@ def _machine(
     while inside:
         child, previous, here = routes.children[name], here, f"{path}/{name}"
         run.preemption.before_next(path, previous, here)
-        run.preemption.running[path] = {here: _nothing}
+        run.preemption.running[path] = [here]
         outcome = yield from run.visit(child, here, own)
         if outcome not in routes.targets[name]:
             message = f"no transition for outcome `{outcome}`"
@@ -90,7 +90,8 @@ def _routes(node: StateMachine | Sequence) -> Routes:
 def _concurrence(run: Interpreter, node: Concurrence, path: str, own: dict[str, object]) -> Run:
     children = {f"{path}/{child.name}": child for child in node.children}
     live = {here: _Branch(run.visit(child, here, own)) for here, child in children.items()}
-    running = run.preemption.running[path] = {here: live[here].wake for here in live}
+    run.preemption.wake.update((here, branch.wake) for here, branch in live.items())
+    running = run.preemption.running[path] = list(live)
     if path in run.preemption.asked:
         for here in children:
             run.preemption.request(here)
@@ -107,7 +108,8 @@ def _concurrence(run: Interpreter, node: Concurrence, path: str, own: dict[str, 
             if not starting:
                 yield run.clock
             continue
-        del live[turn], running[turn]
+        del live[turn], run.preemption.wake[turn]
+        running.remove(turn)
         ended[children[turn].name] = end
         if isinstance(end, Failure) and end.kind == "no-end":
             break
@@ -175,7 +177,7 @@ def _iterator(run: Interpreter, node: Iterator, path: str, own: dict[str, object
         position += 1
         if path in run.preemption.asked:
             run.preemption.request(here)
-        run.preemption.running[path] = {here: _nothing}
+        run.preemption.running[path] = [here]
         outcome = yield from run.visit(child, here, own, loose=True)
         if path in run.preemption.asked or outcome not in node.loop_outcomes:
             run.preemption.recall(path)
@@ -195,25 +197,21 @@ def _items_of(
 ) -> list[object]:
     """What an iterator goes through, found as it starts."""
     span = node.items.span if node.items else node.span
-    items: Any
+    items: object
     if node.items_key:
         if node.items_key not in own:
             message = f"finds no items: its userdata has no `{node.items_key}`"
             run.fail("no-items", path, message, span)
         items = own[node.items_key]
+    elif node.items and isinstance(node.items.data, Expression):
+        try:
+            items = called(node.items.data, own)
+        except BehaviourError as error:
+            run.fail("no-items", path, str(error), span)
     else:
         if node.items and path not in run.items:
             run.items[path] = python_data(node.items.data)
         items = run.items.get(path)
-    if isinstance(items, Expression):
-        message = f"its items, `{items.text}`, cannot be evaluated here"
-        run.fail("no-items", path, message, span)
-    try:
-        found: Any = items() if callable(items) else items
-        return found if isinstance(found, list) else list(found)
-    except Exception as error:
-        run.fail("no-items", path, f"its items: {type(error).__name__}: {error}", span)
-
-
-def _nothing() -> None:
-    """What a request has to wake in a state that waits for no time to come."""
+    if not isinstance(items, Iterable):
+        run.fail("no-items", path, f"its items cannot be gone through: {items!r}", span)
+    return items if isinstance(items, list) else list(items)

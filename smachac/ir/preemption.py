@@ -10,13 +10,15 @@ from dataclasses import dataclass, field
 class Preemption:
     """The states, by path, that were asked to stop and have not answered yet.
 
-    `running` holds the children of each running container that have not ended, each with what is
-    to be called when a request reaches it. `told` hears of every request that reaches a state.
+    `running` names the children of each running container that have not ended; `wake` is what to
+    call when a request reaches a branch that may be waiting. `told` hears of every request that
+    reaches a state.
     """
 
     told: Callable[[str], None]
     asked: set[str] = field(default_factory=set)
-    running: dict[str, dict[str, Callable[[], None]]] = field(default_factory=dict)
+    running: dict[str, list[str]] = field(default_factory=dict)
+    wake: dict[str, Callable[[], None]] = field(default_factory=dict)
 
     def request(self, path: str) -> None:
         """Ask a state and all that runs in it, outer before inner (P2)."""
@@ -25,10 +27,9 @@ class Preemption:
             here = pending.pop()
             self.asked.add(here)
             self.told(here)
-            running = self.running.get(here, {})
-            for wake in running.values():
-                wake()
-            pending.extend(reversed(running))
+            if here in self.wake:
+                self.wake[here]()
+            pending.extend(reversed(self.running.get(here, ())))
 
     def recall(self, path: str) -> None:
         """Take requests back from a state and all below it."""

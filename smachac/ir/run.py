@@ -102,6 +102,7 @@ class Interpreter:
         root, path = self._root, self._root.name
         own = self._scopes[path]
         self.preemption.running.clear()
+        self.preemption.wake.clear()
         self._steps = self._leaves = 0
         self.emit("start", path)
         if 0 in self._preempt_at:

@@ -5,9 +5,12 @@ from __future__ import annotations
 import json
 import re
 from collections.abc import Callable, Mapping
-from typing import Literal
+from typing import TYPE_CHECKING, Literal, Protocol
 
 from smachac.ir.nodes import Data, Expression, Leaf, Node, Struct
+
+if TYPE_CHECKING:
+    from smachac.ir.expressions import Expr
 
 UserdataFault = Literal["missing-key", "undeclared-read"]
 
@@ -24,10 +27,18 @@ class UserdataError(BehaviourError):
         self.kind: UserdataFault = kind
 
 
+class Readable(Protocol):
+    """Something with keys: what a leaf sees, or the userdata of a container."""
+
+    def __getitem__(self, key: str, /) -> object: ...
+
+    def __contains__(self, key: object, /) -> bool: ...
+
+
 def python_data(data: Data) -> object:
     """A fresh Python object for data of the script: lists, dicts, and expressions evaluated.
 
-    An expression that cannot be evaluated here (code that needs the robot) stands for itself.
+    A lambda, and what cannot be evaluated here (code that needs the robot), stands for itself.
     """
     match data:
         case tuple():
@@ -41,22 +52,45 @@ def python_data(data: Data) -> object:
 
 def _evaluated(expression: Expression) -> object:
     try:
-        return evaluated(expression)
+        value = _value(_parsed(expression), {}, expression.text)
     except BehaviourError:
         return expression
+    return expression if callable(value) else value
 
 
-def evaluated(expression: Expression, **names: object) -> object:
-    """The value of an expression over names. Raises BehaviourError where it has none here."""
-    from smachac.ir.expressions import EvaluationError, evaluate, parse_expression
+def called(expression: Expression, userdata: Readable) -> object:
+    """The result of a function of the script: a lambda over userdata, or of nothing.
+
+    An expression that is no lambda is taken for the body of one over `ud`. Raises BehaviourError.
+    """
+    from smachac.ir.expressions import Lambda
+
+    body: Expr = _parsed(expression)
+    names = {"ud": Fields(userdata), "userdata": Fields(userdata)}
+    if isinstance(body, Lambda):
+        names = {body.parameter: Fields(userdata)} if body.parameter else {}
+        body = body.body
+    return _value(body, names, expression.text)
+
+
+def _parsed(expression: Expression) -> Expr:
+    from smachac.ir.expressions import parse_expression
 
     parsed = parse_expression(expression.text)
     if parsed is None:
         raise BehaviourError(f"`{expression.text}` is Python code, which is not run here")
+    return parsed
+
+
+def _value(expr: Expr, names: Mapping[str, object], text: str) -> object:
+    from smachac.ir.evaluate import EvaluationError, evaluate
+
     try:
-        return evaluate(parsed, names)
+        return evaluate(expr, names)
     except EvaluationError as error:
-        raise BehaviourError(f"`{expression.text}`: {error}") from error
+        if isinstance(error.__cause__, UserdataError):
+            raise error.__cause__ from None
+        raise BehaviourError(f"`{text}`: {error}") from error
 
 
 def trace_value(value: object) -> object:
@@ -162,7 +196,7 @@ class Fields:
 
     __slots__ = ("_userdata",)
 
-    def __init__(self, userdata: Userdata) -> None:
+    def __init__(self, userdata: Readable) -> None:
         self._userdata = userdata
 
     def __getattr__(self, name: str) -> object:

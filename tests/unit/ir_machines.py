@@ -211,7 +211,7 @@ def acting(acts: Act) -> Behaviour:
         act = acts.get(node.name, node.outcomes[0].name)
         if isinstance(act, list):
             act = act[min(visit, len(act)) - 1]
-        return act(userdata) if callable(act) else act
+        return str(act(userdata)) if callable(act) else str(act)
 
     return behave
 

@@ -1,0 +1,142 @@
+"""Scenarios: read from plain data, and acted out."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import pytest
+from ir_machines import iterator, leaf, machine, ran, short
+
+from smachac.ir.behaviours import built_in
+from smachac.ir.nodes import Machine
+from smachac.ir.scenario import Scenario, Step, acted, read_scenario
+
+
+def picking() -> Machine:
+    """Two containers that both hold a GRASP, a CHECK between them, and an iterator."""
+    pick = machine(
+        "PICK",
+        "ok failed",
+        leaf("GRASP", {"succeeded": "ok", "aborted": "failed"}, outs="width"),
+        to={"ok": "CHECK", "failed": "PICK"},
+        outs="width",
+    )
+    check = leaf("CHECK", {"true": "PLACE", "false": "PICK"})
+    place = machine("PLACE", "ok", leaf("GRASP", {"succeeded": "ok"}), to={"ok": "EACH"})
+    each = iterator("EACH", "exhausted", leaf("LOOK", outcomes="seen"), to={"exhausted": "done"})
+    return Machine(root=machine("sm", "done", pick, check, place, each))
+
+
+def read(states: Any) -> tuple[Scenario, list[str]]:
+    return read_scenario({"states": states}, picking())
+
+
+def test_the_forms_of_a_scenario() -> None:
+    scenario, problems = read(
+        {
+            "sm/PICK/GRASP": [
+                {"outcome": "aborted"},
+                {"outcome": "succeeded", "set": {"width": 1}},
+            ],
+            "CHECK": False,
+            "PLACE/GRASP": ["succeeded"],
+            "LOOK": {"set": {"anything": [1]}},
+        }
+    )
+    assert problems == []
+    assert scenario.steps == {
+        "sm/PICK/GRASP": (
+            Step(outcome="aborted"),
+            Step(outcome="succeeded", writes=(("width", 1),)),
+        ),
+        "sm/CHECK": (Step(outcome="false"),),
+        "sm/PLACE/GRASP": (Step(outcome="succeeded"),),
+        "sm/EACH/LOOK": (Step(writes=(("anything", [1]),)),),
+    }
+
+
+@pytest.mark.parametrize(
+    ("states", "problem"),
+    [
+        ({"GRASP": "succeeded"}, "`GRASP` may be any of `sm/PICK/GRASP`, `sm/PLACE/GRASP`"),
+        ({"PICK": "ok"}, "`PICK` is a container: it ends as its states make it end"),
+        ({"CHEKC": True}, "there is no state `CHEKC`; did you mean `CHECK`?"),
+        (
+            {"sm/PICK/GRAPS": "x"},
+            "there is no state `sm/PICK/GRAPS`; did you mean `sm/PICK/GRASP`?",
+        ),
+        (
+            {"PICK/GRASP": "suceeded"},
+            "sm/PICK/GRASP, step 1: `suceeded` is not one of its outcomes; did you mean"
+            " `succeeded`?",
+        ),
+        (
+            {"PICK/GRASP": ["aborted", {"outcome": "succeeded", "set": {"widht": 1}}]},
+            "sm/PICK/GRASP, step 2: `widht` is not one of its output keys; did you mean `width`?",
+        ),
+        (
+            {"CHECK": {"outcom": "true"}},
+            "sm/CHECK, step 1: unknown key `outcom`; did you mean `outcome`?",
+        ),
+        (
+            {"CHECK": 3},
+            "sm/CHECK, step 1: a step is an outcome, or a mapping with `outcome` and `set`",
+        ),
+        ({"CHECK": {"set": 3}}, "sm/CHECK, step 1: `set` is a mapping of userdata keys to values"),
+        ({"CHECK": []}, "`CHECK` has no steps"),
+        (
+            {"CHECK": True, "sm/CHECK": True},
+            "`sm/CHECK` is given twice, the second time as `sm/CHECK`",
+        ),
+    ],
+)
+def test_what_is_wrong_is_told(states: Any, problem: str) -> None:
+    assert read(states)[1] == [problem]
+
+
+@pytest.mark.parametrize("given", [None, [], {"states": []}, {"steps": {}}])
+def test_a_scenario_is_a_mapping_of_states(given: Any) -> None:
+    scenario, problems = read_scenario(given, picking())
+    assert scenario.steps == {}
+    assert problems == ["a scenario is a mapping with `states`: a mapping of paths"]
+
+
+def test_other_keys_beside_states_are_told() -> None:
+    assert read_scenario({"states": {}, "state": {}}, picking())[1] == [
+        "unknown key `state`; a scenario has only `states`"
+    ]
+
+
+def test_a_scenario_is_acted_out_and_the_rest_acts_itself() -> None:
+    scenario = Scenario(
+        steps={
+            "PICK/GRASP": (
+                Step(outcome="aborted"),
+                Step(outcome="succeeded", writes=(("width", [5]),)),
+            ),
+            "CHECK": (Step(outcome="false"), Step(outcome="true")),
+        }
+    )
+    given = picking()
+    result, events = ran(given.root, acted(scenario, given, built_in()))
+    assert [line for line in short(events) if "exit" in line and line.count("/") > 1] == [
+        "exit sm/PICK/GRASP aborted",
+        "exit sm/PICK/GRASP succeeded",
+        "exit sm/PICK/GRASP succeeded",
+        "exit sm/PLACE/GRASP succeeded",
+    ]
+    assert short(events).count("write sm/PICK/GRASP width [5]") == 2
+    assert result.userdata == {"width": [5]}
+
+
+def test_a_step_without_outcome_ends_as_usual() -> None:
+    given = picking()
+    scenario = Scenario(steps={"sm/PICK/GRASP": (Step(writes=(("width", 1),)),)})
+    result, _ = ran(given.root, acted(scenario, given, built_in()), max_steps=4)
+    assert result.scopes["sm/PICK"] == {"width": 1}
+
+
+def test_a_scenario_for_no_leaf_is_refused() -> None:
+    scenario = Scenario(steps={"GRASP": (Step(outcome="x"),)})
+    with pytest.raises(ValueError, match="may be any of"):
+        acted(scenario, picking(), built_in())
