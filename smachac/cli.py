@@ -29,7 +29,7 @@ exit codes: 0 clean, 1 findings, 2 wrong usage, 70 a bug in smachac
 def _parser() -> argparse.ArgumentParser:
     parser = argparse.ArgumentParser(
         prog="smachac",
-        description="Compiles robot task state machines: YAML in, checked; Python and pictures out.",
+        description="Compiles robot task state machines from YAML, and checks them.",
         epilog=EPILOG,
         formatter_class=argparse.RawDescriptionHelpFormatter,
     )
@@ -63,8 +63,7 @@ def _parser() -> argparse.ArgumentParser:
     run.add_argument("--record", type=Path, metavar="FILE", help="film it: .gif or .mp4")
     run.add_argument("--trace", type=Path, metavar="FILE", help="write every event, a JSON a line")
     run.add_argument("--seed", type=int, default=0, help="of everything random (default 0)")
-    run.add_argument("--mock", type=Path, metavar="FILE",
-                     help="a scenario: outcomes and keys per state; no robot is needed")  # fmt: skip
+    run.add_argument("--mock", type=Path, metavar="FILE", help="play a scenario instead")
     run.add_argument("--expect", metavar="OUTCOME", help="fail unless it ends with this outcome")
     run.add_argument("--quiet", "-q", action="store_true", help="no progress, only the outcome")
     _search_folders(run)

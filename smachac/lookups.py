@@ -10,7 +10,7 @@ from collections.abc import Mapping
 from smachac import problems
 from smachac.diagnostics import Report
 from smachac.source import Word
-from smachac.syntax import Entry, Map, Scalar, Seq, Tree
+from smachac.syntax import Entry, Map, Scalar, Seq, Tree, known_wrong
 
 Scope = Mapping[str, Tree]
 """The params that are seen from a state."""
@@ -36,8 +36,7 @@ def fill_in(tree: Tree, scope: Scope, report: Report, *, names: bool = False) ->
     """The tree with every look-up and string construct replaced by what it means.
 
     `names`: the tree is a list of names, whose items are filled in one by one instead of being
-    joined to one string. A look-up that fails is reported (SM015) and becomes the empty string,
-    which later phases pass over.
+    joined to one string. A look-up that fails is reported (SM015) and becomes `known_wrong`.
     """
     if isinstance(tree, Scalar):
         return tree
@@ -64,7 +63,7 @@ def _found(word: Word, scope: Scope, report: Report) -> Tree:
     value = scope.get(word.text)
     if value is None:
         report.append(problems.unresolved_look_up(word, scope))
-        return Scalar("", False, word.span)
+        return known_wrong(word.span)
     return value
 
 
@@ -82,8 +81,8 @@ def _joined(items: tuple[Tree, ...], tree: Seq, report: Report) -> Tree | None:
                 tree.span, f"this string construct makes {len(text):,} characters", None
             )
         )
-        return Scalar("", False, tree.span)
-    return Scalar(text, True, tree.span)
+        return known_wrong(tree.span)
+    return Scalar(text, text != "", tree.span)
 
 
 def child_scope(scope: Scope, own: Tree | None, report: Report) -> Scope:
@@ -97,7 +96,7 @@ def child_scope(scope: Scope, own: Tree | None, report: Report) -> Scope:
             report.append(
                 problems.too_big(entry.value.span, "this param grows beyond the limit", None)
             )
-            value = Scalar("", False, entry.value.span)
+            value = known_wrong(entry.value.span)
         inner[str(entry.key.value)] = value
     return inner
 

@@ -9,6 +9,7 @@ from dataclasses import dataclass, field, replace
 
 from smachac import problems, schema, shapes
 from smachac.diagnostics import Related, Report, did_you_mean
+from smachac.ir.nodes import Key, Outcome
 from smachac.lookups import Scope, child_scope, fill_in
 from smachac.source import Source, Span, Word
 from smachac.states import Library, StateType, find_state_type
@@ -180,7 +181,7 @@ class _Resolver:
                 message += f", not by {shapes.kind_of(first.value)}"
             help = f"write `- {name.text}: {{template: ...}}`"
             self.report.append(problems.wrong_shape(name.span, message, help))
-            return None
+            return _unknown(name, {}, place)
         if rest:
             other = rest[0].key
             self.report.append(
@@ -194,17 +195,15 @@ class _Resolver:
             )
         return self.called(name, self.expand(first.value.entries), place)
 
-    def called(self, name: Word, own: dict[str, Entry], place: _Place) -> State | None:
+    def called(self, name: Word, own: dict[str, Entry], place: _Place) -> State:
         """The state itself or, when it calls a sub-script, what the sub-script makes of it."""
         while "script" in own:
             entry = own.pop("script")
             scope = child_scope(place.scope, own["params"].value if "params" in own else None, [])
             word = shapes.as_name(fill_in(entry.value, scope, self.report), self.report)
-            if word is None or not word.text:
-                return None
-            found = self.sub_script(word, place)
+            found = self.sub_script(word, place) if word is not None and word.text else None
             if found is None:
-                return None
+                return _unknown(name, own, place)
             source, inner = found
             call = Span(place.source, entry.key.span.start, entry.value.span.end)
             place = _Place(source, place.scope, (*place.calls, (source.name, call)))
@@ -317,7 +316,7 @@ class _Resolver:
 
     def check_interface(self, fields: Fields, type_: StateType) -> None:
         """What a state lists beyond an interface that is complete."""
-        declared = {
+        declared: dict[str, tuple[Key, ...] | tuple[Outcome, ...]] = {
             "input_keys": type_.input_keys,
             "output_keys": type_.output_keys,
             "outcomes": type_.outcomes,
@@ -333,6 +332,14 @@ class _Resolver:
                     listed = ", ".join(f"`{name}`" for name in known) or "none"
                     help = did_you_mean(word.text, known) or f"it has {listed}"
                     self.report.append(problems.wrong_shape(word.span, message, help))
+
+
+def _unknown(name: Word, fields: Fields, place: _Place) -> State:
+    """What stands for a state that cannot be read: its name is a target, no more is known."""
+    kept = {key: entry for key, entry in fields.items() if key == "transitions"}
+    return State(
+        name=name, owner="state", type=StateType(name="", open=True), fields=kept, via=place.via
+    )
 
 
 def _called(owner: str) -> str:

@@ -11,7 +11,7 @@ from collections.abc import Callable
 from smachac import problems
 from smachac.diagnostics import Report
 from smachac.source import Word
-from smachac.syntax import Entry, Map, Scalar, Seq, Tree
+from smachac.syntax import Entry, Map, Scalar, Seq, Tree, is_known_wrong
 
 _YAML_1_1_BOOLEANS = frozenset(["yes", "no", "on", "off", "true", "false"])
 
@@ -33,6 +33,8 @@ def kind_of(tree: Tree) -> str:
 
 
 def wrong(tree: Tree, wanted: str, report: Report, help: str | None = None) -> None:
+    if is_known_wrong(tree):
+        return
     report.append(
         problems.wrong_shape(tree.span, f"{wanted} is due here, not {kind_of(tree)}", help)
     )

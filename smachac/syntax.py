@@ -60,6 +60,19 @@ class Map:
 
 Tree: TypeAlias = Scalar | Seq | Map
 
+
+def known_wrong(span: Span) -> Scalar:
+    """What stands for a value that was reported already, so that nobody reports it again.
+
+    No text parses to it: nothing at all, unquoted, is None there.
+    """
+    return Scalar("", True, span)
+
+
+def is_known_wrong(tree: Tree) -> bool:
+    return isinstance(tree, Scalar) and tree.value == "" and tree.plain
+
+
 _NULL = frozenset(["", "~", "null", "Null", "NULL"])
 _BOOL = {
     **dict.fromkeys(["true", "True", "TRUE"], True),
@@ -134,7 +147,7 @@ def _pure_events(text: str) -> Iterator[Any]:
 def _c_events(text: str) -> Iterator[Any]:
     """The events of the C parser; none at all where it is not installed."""
     try:
-        from ruamel.yaml.cyaml import CParser
+        from ruamel.yaml.cyaml import CParser  # type: ignore[attr-defined]
     except ImportError:
         return iter(())
     return iter(CParser(text).get_event, None)

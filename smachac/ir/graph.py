@@ -75,6 +75,11 @@ def _is_open(child: Node) -> bool:
     return isinstance(child, Leaf) and child.open
 
 
+def is_unread(child: Node) -> bool:
+    """Whether a state stands for one that could not be read: it may go anywhere."""
+    return isinstance(child, Leaf) and child.open and not child.type
+
+
 def _transition_edges(container: nodes.StateMachine | nodes.Sequence) -> Iterator[Edge]:
     names = frozenset(child.name for child in container.children)
     exits = frozenset(outcome_names(container))
@@ -142,8 +147,9 @@ def _surely_has_items(container: nodes.Iterator) -> bool:
 
 
 def reachable(container: Container) -> frozenset[str]:
-    """The children that can be entered. An initial state that does not exist hides nothing.
+    """The children that can be entered.
 
+    An initial state that does not exist hides nothing, nor does a state that could not be read.
     Linear in the size of the container.
     """
     names = [child.name for child in container.children]
@@ -154,7 +160,9 @@ def reachable(container: Container) -> frozenset[str]:
     followers: dict[Place, list[Place]] = {}
     for edge in edges(container):
         followers.setdefault(edge.source, []).append(edge.target)
-    return _children_from([START], followers)
+    found = _children_from([START], followers)
+    unread = any(child.name in found and is_unread(child) for child in container.children)
+    return frozenset(names) if unread else found
 
 
 def can_end(container: Container) -> frozenset[str]:

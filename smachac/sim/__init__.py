@@ -15,6 +15,7 @@ from .engine import SimUnavailable, UnknownNameError
 from .faults import Fault
 from .geometry import grasp_pose
 from .models import MODELS
+from .placing import check_placed, scattered
 from .scene import Event, World
 from .settings import close, configure, world
 from .skills import Result
@@ -28,9 +29,11 @@ __all__ = [
     "SimUnavailable",
     "UnknownNameError",
     "World",
+    "check_placed",
     "close",
     "configure",
     "grasp_pose",
     "robots",
+    "scattered",
     "world",
 ]

@@ -57,15 +57,15 @@ _GREY: RGB = (0.60, 0.60, 0.60)
 _GREEN: RGB = (0.16, 0.66, 0.36)
 
 MODELS: dict[str, Model] = {
-    "table": _table((0.7, 1.0), 0.4, (0.80, 0.66, 0.48)),
+    "table": _table((0.6, 0.8), 0.4, (0.80, 0.66, 0.48)),
     "cafe_table": _table((0.913, 0.913), 0.775, (0.80, 0.66, 0.48)),
     "block": Model(boxes=(Box(size=(0.05, 0.05, 0.05)),), colours=_PAINTS, mass=0.1, friction=1.0),
     "brick": Model(boxes=(Box(size=(0.10, 0.05, 0.05)),), colours=_PAINTS, mass=0.2, friction=1.0),
     "wall": Model(boxes=(Box(size=(0.02, 0.4, 0.3), centre=(0, 0, 0.15)),), colours=(_GREY,)),
     "goal": Model(
         boxes=(
-            Box(size=(0.075, 0.075, 0.002), centre=(0.0, 0.0, 0.001)),
-            Box(size=(0.061, 0.061, 0.002), centre=(0.0, 0.0, 0.0016), colour=(0.93, 0.95, 0.90)),
+            Box(size=(0.08, 0.08, 0.002), centre=(0.0, 0.0, -0.024)),
+            Box(size=(0.058, 0.058, 0.002), centre=(0.0, 0.0, -0.0234), colour=(0.93, 0.95, 0.90)),
         ),
         colours=(_GREEN,),
         solid=False,

@@ -216,12 +216,13 @@ def _gather(template: str, variables: dict[str, object], gathered: _Gathered) ->
     """Put the blocks of a template to those of the same name."""
     variables = {"defined_headers": gathered.defined_headers, **variables}
     found = gathered.blocks.names(template)
-    for name in APPENDED:
-        if name in found and (text := gathered.blocks.render(template, name, variables)).strip():
-            gathered.buffers[name].append(text)
-    for name in PREPENDED:
-        if name in found and (text := gathered.blocks.render(template, name, variables)).strip():
-            gathered.buffers[name].insert(0, text)
+    for name in (*APPENDED, *PREPENDED):
+        if name not in found:
+            continue
+        text = gathered.blocks.render(template, name, variables)
+        buffer = gathered.buffers[name]
+        if text.strip() and text not in buffer:  # templates share definitions by `extends`
+            buffer.insert(0 if name in PREPENDED else len(buffer), text)
 
 
 def _whole(

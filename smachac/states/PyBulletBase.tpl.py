@@ -1,0 +1,14 @@
+{% extends "Base.tpl.py" %}
+{%- block main %}
+    """Run the state machine once in a simulated world and return its outcome."""
+    with sim.World(robot=sim.robots.{{ robot | default("panda") }}()) as world:
+        {{ sm_name }} = build()
+        world.attach({{ sm_name }}, {{ sm_name | tojson }})
+        outcome = {{ sm_name }}.execute()
+        print(f"simulated time: {world.time:.2f} s")
+        for name in world.bodies:
+            x, y, z = world.pose(name)[0]
+            rest = "at rest" if world.at_rest(name) else "moving"
+            print(f"{name}: x {x:.4f} m, y {y:.4f} m, z {z:.4f} m, {rest}")
+    return outcome
+{%- endblock %}

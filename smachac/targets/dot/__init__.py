@@ -1,0 +1,39 @@
+"""The picture of a machine for Graphviz."""
+
+from __future__ import annotations
+
+from smachac import __version__
+from smachac.diagnostics import Report
+from smachac.ir.nodes import Checked
+from smachac.targets import Context, Files, Target
+from smachac.targets.dot.picture import picture
+
+DIRECTIONS = ("TB", "LR", "BT", "RL")
+
+
+def emit(machine: Checked, context: Context, report: Report) -> Files:
+    """One DOT file, named after the machine.
+
+    Raises `ValueError` for an option whose value makes no sense.
+    """
+    depth = context.options.get("depth")
+    if depth is not None and not (depth.isdecimal() and int(depth) > 0):
+        raise ValueError(f"depth={depth}: a number of levels from 1 is due")
+    rankdir = context.options.get("rankdir", "TB")
+    if rankdir not in DIRECTIONS:
+        raise ValueError(f"rankdir={rankdir}: one of {', '.join(DIRECTIONS)} is due")
+    made_by = f"// Made by smachac {__version__} from {machine.source} "
+    made_by += f"(sha256 {machine.digest[:16]})."
+    lines = picture(machine, depth=int(depth) if depth else None, rankdir=rankdir)
+    return {f"{machine.root.name}.dot": "\n".join([made_by, *lines, ""])}
+
+
+TARGET = Target(
+    name="dot",
+    description="a picture for Graphviz",
+    emit=emit,
+    options={
+        "depth": "levels of containers that are drawn open; deeper ones are closed boxes",
+        "rankdir": "where the picture runs to: TB (down, the default), LR, BT or RL",
+    },
+)

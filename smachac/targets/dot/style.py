@@ -1,0 +1,92 @@
+"""How pictures look: colours, names and labels in the DOT language."""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Iterable, Mapping
+from html import escape
+
+FONT = "Helvetica,Arial,sans-serif"
+
+INK = "#24292f"
+LINE = "#57606a"
+FAINT = "#6e7781"
+BORDER = "#8c959f"
+STATE_FILL = "#ffffff"
+FILLS = ("#f6f8fa", "#eaeef2")
+"""Of containers, by turns with the depth."""
+
+PARALLEL_FILL, PARALLEL_BORDER = "#f0f6ff", "#54aeff"
+LOOP_FILL, LOOP_BORDER = "#fff8e5", "#d4a72c"
+
+TONES = {
+    "success": ("#1a7f37", "#dafbe1"),
+    "failure": ("#cf222e", "#ffebe9"),
+    "warning": ("#bc4c00", "#fff1e5"),
+    "neutral": (LINE, "#ffffff"),
+}
+"""Line and fill of what an outcome's name promises."""
+
+_WORDS = {
+    "success": "succeeded success successful done ok finished completed complete reached true yes",
+    "failure": "aborted failed failure fail error errored invalid rejected lost crashed collision"
+    " unreachable fatal",
+    "warning": "preempted timeout timed_out exhausted cancelled canceled interrupted recalled"
+    " stopped invalid_input",
+}
+_TONE = {word: tone for tone, words in _WORDS.items() for word in words.split()}
+
+_ODD = re.compile("[\x00-\x08\x0b\x0c\x0e-\x1f\ud800-\udfff\ufffe\uffff]")
+"""What XML 1.0 has no way to say."""
+
+
+def tone(outcome: str) -> str:
+    """What the name of an outcome promises: a key of `TONES`."""
+    word = outcome.casefold()
+    return _TONE.get(word) or _TONE.get(word.rsplit("_", 1)[-1]) or "neutral"
+
+
+def identifier(path: Iterable[str]) -> str:
+    """The name of a node for a path of names, of which no two give the same."""
+    return "/".join(re.sub(r"[^\w.-]", lambda odd: f"%{ord(odd[0]):X}.", name) for name in path)
+
+
+def quoted(text: str) -> str:
+    """A DOT string that shows the text as it is."""
+    text = _ODD.sub("\ufffd", text)
+    for odd, plain in (("\\", "\\\\"), ('"', '\\"'), ("\n", "\\n"), ("&", "&amp;")):
+        text = text.replace(odd, plain)
+    return f'"{text}"'
+
+
+def html(text: str) -> str:
+    """Text within an HTML label, on one line and never empty, which Graphviz refuses."""
+    return escape(_ODD.sub("\ufffd", " ".join(text.split()))) or "&#160;"
+
+
+def font(text: str, *, colour: str, size: int | None = None) -> str:
+    """Markup in a colour and, if given, a size in points."""
+    points = f' POINT-SIZE="{size}"' if size else ""
+    return f'<FONT COLOR="{colour}"{points}>{text}</FONT>'
+
+
+def attributes(values: Mapping[str, str]) -> str:
+    """An attribute list. Values that start with `<` are HTML labels, the others are quoted."""
+    if not values:
+        return ""
+    parts = (
+        f"{name}={value if value.startswith('<') else quoted(value)}"
+        for name, value in values.items()
+    )
+    return f" [{', '.join(parts)}]"
+
+
+def lines(texts: Iterable[str]) -> str:
+    """An HTML label of these lines of markup."""
+    return f"<{'<BR/>'.join(texts)}>"
+
+
+def spaced(texts: Iterable[str]) -> str:
+    """As `lines`, with room for underscores between them."""
+    rows = "".join(f"<TR><TD>{text}</TD></TR>" for text in texts)
+    return f'<<TABLE BORDER="0" CELLBORDER="0" CELLPADDING="0" CELLSPACING="1">{rows}</TABLE>>'

@@ -1,0 +1,3 @@
+{% block body %}
+{{ nowhere }}
+{% endblock %}

@@ -1,0 +1,67 @@
+"""Scripts with what is expected of them: report, IR, every target. `make golden` rewrites it."""
+
+from __future__ import annotations
+
+import os
+import shutil
+from pathlib import Path
+
+import pytest
+
+from smachac.driver import analyse, build
+from smachac.files import disk_library, read_source
+from smachac.report.text import render_text
+from smachac.targets import load_target, target_names
+
+ROOT = Path(__file__).parent
+CASES = sorted(path.parent for path in (ROOT / "cases").glob("*/main.yml"))
+EXAMPLES = sorted(path.parent for path in (ROOT.parent / "examples").glob("*/main.yml"))
+REWRITE = os.environ.get("SMACHAC_GOLDEN") == "rewrite"
+
+
+def expected_folder(case: Path) -> Path:
+    """Beside the script; for examples, which users read, among the cases."""
+    if case in EXAMPLES:
+        return ROOT / "cases" / "examples" / case.name / "expected"
+    return case / "expected"
+
+
+def outputs() -> dict[str, str]:
+    """Everything smachac says of `main.yml` in the current folder, by file name."""
+    report = []
+    source = read_source(Path("main.yml"), report)
+    assert source is not None
+    library = disk_library(Path("main.yml"), report)
+    analysis = analyse(source, library, report)
+    found = analysis.report
+    files: dict[str, str] = {}
+    for name in target_names() if analysis.checked is not None else []:
+        target = load_target(name)
+        assert target is not None
+        problems = []
+        assert analysis.checked is not None
+        made = build(analysis.checked, target, library, problems)
+        found = [*found, *problems]
+        files.update({f"{name}/{file}": text for file, text in made.items()})
+    return {"report.txt": render_text(found), **files}
+
+
+@pytest.mark.parametrize("case", [*CASES, *EXAMPLES], ids=lambda case: case.name)
+def test_golden(case: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.chdir(case)
+    found = outputs()
+    folder = expected_folder(case)
+    if REWRITE:
+        shutil.rmtree(folder, ignore_errors=True)
+        for name, text in found.items():
+            path = folder / name
+            path.parent.mkdir(parents=True, exist_ok=True)
+            path.write_bytes(text.encode())
+    expected = {
+        path.relative_to(folder).as_posix(): path.read_bytes().decode()
+        for path in sorted(folder.rglob("*"))
+        if path.is_file()
+    }
+    assert sorted(found) == sorted(expected)
+    for name, text in found.items():
+        assert text == expected[name], f"{folder / name} differs"
