@@ -1,0 +1,14 @@
+"""The rules over the state graph: each is one function, filed by its code."""
+
+from __future__ import annotations
+
+from smachac.checks import concurrence, liveness, names, structure
+from smachac.diagnostics import Report, run_rules
+from smachac.ir.nodes import Machine
+
+__all__ = ["check_machine", "concurrence", "liveness", "names", "structure"]
+
+
+def check_machine(machine: Machine) -> Report:
+    """What every rule has to say about a machine, in the order of the codes."""
+    return list(run_rules(machine))

@@ -1,0 +1,166 @@
+"""Rules over concurrences: whether there is something to run, and rules that can match."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+
+from smachac.checks.hints import Guesser, calls, did_you_mean, guesser
+from smachac.checks.outline import is_open
+from smachac.diagnostics import Finding, Severity, rule
+from smachac.ir import nodes
+from smachac.ir.nodes import Concurrence, Condition, Machine, Node
+from smachac.ir.walk import containers, outcome_names
+from smachac.problems import listed
+
+
+@rule("SM403", "dead-rule", Severity.ERROR)
+def dead_rule(machine: Machine) -> Iterator[Finding]:
+    """A rule can never match: it names a child or an outcome that does not exist, or nothing.
+
+    The case it was written for falls to the default outcome; the robot goes on as if that case
+    had never been thought of. SMACH does not even run a concurrence whose rule names an unknown
+    child, and its versions disagree on a rule without conditions.
+
+    Wrong:
+        name: sm
+        template: Base
+        outcomes: [ready, failed]
+        states:
+          - BOTH:
+              template: Concurrence
+              outcomes: [ready, failed]
+              default_outcome: failed
+              outcome_map:
+                ready: {LEFT: done, RIHGT: done}
+              states:
+                - LEFT: {template: ScriptedState, outcomes: [done]}
+                - RIGHT: {template: ScriptedState, outcomes: [done]}
+              transitions: {ready: ready, failed: failed}
+
+    Right:
+        name: sm
+        template: Base
+        outcomes: [ready, failed]
+        states:
+          - BOTH:
+              template: Concurrence
+              outcomes: [ready, failed]
+              default_outcome: failed
+              outcome_map:
+                ready: {LEFT: done, RIGHT: done}
+              states:
+                - LEFT: {template: ScriptedState, outcomes: [done]}
+                - RIGHT: {template: ScriptedState, outcomes: [done]}
+              transitions: {ready: ready, failed: failed}
+    """
+    for path, container in containers(machine.root):
+        match container:
+            case Concurrence():
+                yield from _dead_rules(path, container)
+            case nodes.Iterator():
+                yield from _dead_renames(path, container)
+
+
+def _dead_rules(path: str, container: Concurrence) -> Iterator[Finding]:
+    children = {child.name: child for child in container.children}
+    guess = guesser(children)
+    for entry in container.rules:
+        if not entry.when:
+            yield Finding(
+                span=entry.span,
+                message=f"the rule for `{entry.outcome}` names no child, so it says nothing",
+                help="name the children and their outcomes, or drop the rule",
+                related=calls(container, entry.span),
+                node=path,
+            )
+        for condition in entry.when:
+            yield from _dead_condition(path, container, condition, children, guess)
+
+
+def _dead_condition(
+    path: str,
+    container: Concurrence,
+    condition: Condition,
+    children: dict[str, Node],
+    guess: Guesser,
+) -> Iterator[Finding]:
+    child = children.get(condition.child)
+    related = calls(container, condition.span)
+    if child is None:
+        help = did_you_mean(guess(condition.child)) or _states(container)
+        message = f"`{condition.child}` is no state of `{container.name}`"
+        yield Finding(span=condition.span, message=message, help=help, related=related, node=path)
+    elif not is_open(child) and condition.outcome not in (names := outcome_names(child)):
+        meant = guesser(names)(condition.outcome)
+        known = f"its outcomes are {listed(names)}" if names else "it has no outcomes"
+        message = f"`{child.name}` has no outcome `{condition.outcome}`"
+        help = did_you_mean(meant) or known
+        yield Finding(span=condition.span, message=message, help=help, related=related, node=path)
+
+
+def _states(container: Concurrence) -> str:
+    names = [child.name for child in container.children]
+    return f"its states are {listed(names)}" if names else "it has no states"
+
+
+def _dead_renames(path: str, container: nodes.Iterator) -> Iterator[Finding]:
+    """The entries of an iterator's final map that rename what never comes."""
+    if any(is_open(child) for child in container.children):
+        return
+    endings = {name for child in container.children for name in outcome_names(child)}
+    for name, _ in container.final_map if endings else ():
+        loops = name in container.loop_outcomes
+        if name == container.exhausted_outcome or (name in endings and not loops):
+            continue
+        why = "on which it goes on" if loops else "with which its child never ends"
+        yield Finding(
+            span=container.span,
+            message=f"the final outcome map of `{container.name}` renames `{name}`, {why}",
+            help=f"its child ends with {listed(endings)}",
+            related=calls(container, container.span),
+            severity=Severity.WARNING if loops else None,
+            node=path,
+        )
+
+
+@rule("SM408", "empty-concurrence", Severity.ERROR)
+def empty_concurrence(machine: Machine) -> Iterator[Finding]:
+    """A concurrence has no states.
+
+    SMACH for ROS 2 waits for ever for the first child to end, SMACH for Noetic fails.
+
+    Wrong:
+        name: sm
+        template: Base
+        outcomes: [done]
+        states:
+          - BOTH:
+              template: Concurrence
+              outcomes: [done]
+              default_outcome: done
+              states: []
+              transitions: {done: done}
+
+    Right:
+        name: sm
+        template: Base
+        outcomes: [done]
+        states:
+          - BOTH:
+              template: Concurrence
+              outcomes: [done]
+              default_outcome: done
+              states:
+                - LEFT: {template: ScriptedState, outcomes: [ok]}
+                - RIGHT: {template: ScriptedState, outcomes: [ok]}
+              transitions: {done: done}
+    """
+    for path, container in containers(machine.root):
+        if isinstance(container, Concurrence) and not container.children:
+            yield Finding(
+                span=container.span,
+                message=f"the concurrence `{container.name}` has no states to start",
+                help="add states, or take it out",
+                related=calls(container, container.span),
+                node=path,
+            )

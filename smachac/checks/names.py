@@ -1,0 +1,321 @@
+"""Rules over names: what transitions and states are called, and whether it exists."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from typing import NamedTuple
+
+from smachac.checks.hints import calls, did_you_mean, other_place
+from smachac.checks.outline import (
+    Linear,
+    children_names,
+    is_open,
+    leads_somewhere,
+    linear,
+    places_of,
+    unknown_outcomes,
+)
+from smachac.diagnostics import Finding, Severity, rule
+from smachac.ir import nodes
+from smachac.ir.nodes import Concurrence, Container, Machine, Node, Transition
+from smachac.ir.walk import containers, outcome_names, walk
+from smachac.problems import listed
+
+
+class _Lost(NamedTuple):
+    """A transition to nowhere: where it stands, and the name it probably means."""
+
+    path: str
+    container: Linear
+    child: Node
+    step: Transition
+    meant: str | None
+
+
+@rule("SM101", "unknown-target", Severity.ERROR)
+def unknown_target(machine: Machine) -> Iterator[Finding]:
+    """A transition leads to what is neither a state beside it nor an outcome of its container.
+
+    SMACH notices when the container is run, and then runs none of its states: the robot stands
+    still in the middle of its task. Children of a concurrence have no transitions at all.
+
+    Wrong:
+        name: sm
+        template: Base
+        outcomes: [stacked]
+        states:
+          - PICK_BLOCK:
+              template: ScriptedState
+              outcomes: [done]
+              transitions: {done: PALCE_BLOCK}
+          - PLACE_BLOCK:
+              template: ScriptedState
+              outcomes: [done]
+              transitions: {done: stacked}
+
+    Right:
+        name: sm
+        template: Base
+        outcomes: [stacked]
+        states:
+          - PICK_BLOCK:
+              template: ScriptedState
+              outcomes: [done]
+              transitions: {done: PLACE_BLOCK}
+          - PLACE_BLOCK:
+              template: ScriptedState
+              outcomes: [done]
+              transitions: {done: stacked}
+    """
+    lost = [fault for path, container in linear(machine) for fault in _lost(path, container)]
+    paths: dict[str, str] = {}
+    for path, node in walk(machine.root) if lost else ():
+        paths.setdefault(node.name, path)
+    for fault in lost:
+        yield _nowhere(fault, paths.get(fault.step.target))
+    for path, container in containers(machine.root):
+        if isinstance(container, Concurrence | nodes.Iterator):
+            yield from _idle_transitions(path, container)
+
+
+def _lost(path: str, container: Linear) -> Iterator[_Lost]:
+    names = children_names(container)
+    exits = frozenset(outcome_names(container))
+    guess = places_of(container)
+    for child in container.children:
+        for step in child.transitions:
+            if not leads_somewhere(step, names, exits):
+                yield _Lost(path, container, child, step, guess(step.target))
+
+
+def _nowhere(fault: _Lost, elsewhere: str | None) -> Finding:
+    path, container, child, step, meant = fault
+    whole = f"`{step.target}` is neither a state nor an outcome of `{container.name}`"
+    if not step.target:
+        whole = f"`{step.outcome}` of `{child.name}` leads nowhere: its target is empty"
+    above = elsewhere.rpartition("/")[0] if elsewhere else ""
+    help = did_you_mean(meant)
+    if above:
+        help = f"the state is in `{above}`; a transition cannot cross the edge of a container"
+    return Finding(
+        span=step.target_span,
+        message=whole,
+        help=help or f"name a state or an outcome of `{container.name}`",
+        related=calls(child, step.target_span),
+        node=f"{path}/{child.name}",
+    )
+
+
+def _idle_transitions(path: str, container: Container) -> Iterator[Finding]:
+    why, cure = "the child of an iterator runs again or ends it", "loop_outcomes"
+    if isinstance(container, Concurrence):
+        why, cure = "children of a concurrence start together", "outcome_map"
+    for child in container.children:
+        for step in child.transitions:
+            if step.origin == "written":
+                yield Finding(
+                    span=step.span,
+                    message=f"the transition of `{step.outcome}` is never taken: {why}",
+                    help=f"drop it; what an outcome of `{child.name}` leads to stands in"
+                    f" `{cure}` of `{container.name}`",
+                    related=calls(child, step.span),
+                    severity=Severity.WARNING,
+                    node=f"{path}/{child.name}",
+                )
+
+
+@rule("SM102", "unknown-outcome", Severity.ERROR)
+def unknown_outcome(machine: Machine) -> Iterator[Finding]:
+    """A transition starts from an outcome that its state does not have.
+
+    It is never taken: the recovery that somebody wrote for the robot does not exist.
+
+    Wrong:
+        name: sm
+        template: Base
+        outcomes: [picked, lost]
+        states:
+          - PICK:
+              template: ScriptedState
+              outcomes: [done, slipped]
+              transitions: {done: picked, sliped: lost}
+
+    Right:
+        name: sm
+        template: Base
+        outcomes: [picked, lost]
+        states:
+          - PICK:
+              template: ScriptedState
+              outcomes: [done, slipped]
+              transitions: {done: picked, slipped: lost}
+    """
+    for path, container in containers(machine.root):
+        if isinstance(container, nodes.Iterator):
+            yield from _unknown_loops(path, container)
+        elif not isinstance(container, Concurrence):
+            for child in container.children:
+                yield from _unknown_steps(path, child)
+
+
+def _unknown_steps(path: str, child: Node) -> Iterator[Finding]:
+    for step, meant in unknown_outcomes(child):
+        yield Finding(
+            span=step.span,
+            message=f"`{child.name}` has no outcome `{step.outcome}`",
+            help=did_you_mean(meant) or _has(child),
+            related=calls(child, step.span),
+            node=f"{path}/{child.name}",
+        )
+
+
+def _has(child: Node) -> str:
+    names = outcome_names(child)
+    return f"its outcomes are {listed(names)}" if names else "it has no outcomes"
+
+
+def _unknown_loops(path: str, container: nodes.Iterator) -> Iterator[Finding]:
+    if any(is_open(child) for child in container.children):
+        return
+    known = {name for child in container.children for name in outcome_names(child)}
+    for name in container.loop_outcomes if known else ():
+        if name not in known:
+            yield Finding(
+                span=container.span,
+                message=f"`{container.name}` loops on `{name}`, which its child never ends with",
+                help=f"the outcomes of the child are {listed(known)}",
+                related=calls(container, container.span),
+                node=path,
+            )
+
+
+@rule("SM106", "duplicate-state", Severity.ERROR)
+def duplicate_state(machine: Machine) -> Iterator[Finding]:
+    """Two states of one container have the same name.
+
+    A transition to that name can mean only one of them; the other part of the task is lost.
+
+    Wrong:
+        name: sm
+        template: Base
+        outcomes: [done]
+        states:
+          - MOVE: {template: ScriptedState, outcomes: [there], transitions: {there: MOVE}}
+          - MOVE: {template: ScriptedState, outcomes: [back], transitions: {back: done}}
+
+    Right:
+        name: sm
+        template: Base
+        outcomes: [done]
+        states:
+          - MOVE: {template: ScriptedState, outcomes: [there], transitions: {there: MOVE_BACK}}
+          - MOVE_BACK: {template: ScriptedState, outcomes: [back], transitions: {back: done}}
+    """
+    for path, container in containers(machine.root):
+        first: dict[str, Node] = {}
+        for child in container.children:
+            known = first.setdefault(child.name, child)
+            if known is not child:
+                yield Finding(
+                    span=child.span,
+                    message=f"`{container.name}` already has a state `{child.name}`",
+                    help="give it another name",
+                    related=(
+                        *other_place(known.span, "the first"),
+                        *calls(child, child.span),
+                    ),
+                    node=f"{path}/{child.name}",
+                )
+
+
+@rule("SM107", "name-clash", Severity.ERROR)
+def name_clash(machine: Machine) -> Iterator[Finding]:
+    """A state is called like an outcome of its container, or has a name that paths cannot hold.
+
+    A transition to a name that is both goes to the state, so the machine goes on where it was to
+    end. A `/` in a name makes two states one in traces and messages.
+
+    Wrong:
+        name: sm
+        template: Base
+        outcomes: [done, stopped]
+        states:
+          - WORK: {template: ScriptedState, outcomes: [ok], transitions: {ok: done}}
+          - done: {template: ScriptedState, outcomes: [ok], transitions: {ok: stopped}}
+
+    Right:
+        name: sm
+        template: Base
+        outcomes: [done, stopped]
+        states:
+          - WORK: {template: ScriptedState, outcomes: [ok, no], transitions: {ok: done, no: PARK}}
+          - PARK: {template: ScriptedState, outcomes: [ok], transitions: {ok: stopped}}
+    """
+    for path, node in walk(machine.root):
+        if not node.name.isprintable() or "/" in node.name or not node.name:
+            yield Finding(
+                span=node.span,
+                message=f"{node.name!r} cannot be the name of a state",
+                help="a name has at least one character, none of them `/` or a control character",
+                related=calls(node, node.span),
+                node=path,
+            )
+    for path, container in linear(machine):
+        exits = {outcome.name: outcome for outcome in container.outcomes}
+        for child in container.children:
+            if child.name in exits:
+                yield Finding(
+                    span=child.span,
+                    message=f"`{child.name}` is both a state and an outcome of `{container.name}`",
+                    help="rename one of them: a transition to that name leads to the state",
+                    related=(
+                        *other_place(exits[child.name].span, "the outcome"),
+                        *calls(child, child.span),
+                    ),
+                    node=f"{path}/{child.name}",
+                )
+
+
+@rule("SM108", "shadowed-name", Severity.WARNING)
+def shadowed_name(machine: Machine) -> Iterator[Finding]:
+    """A state is called like the container it is in.
+
+    Pictures, traces and editors show the same name on two levels; people mend the wrong one.
+
+    Wrong:
+        name: sm
+        template: Base
+        outcomes: [done]
+        states:
+          - PICK:
+              template: StateMachine
+              outcomes: [picked]
+              states:
+                - PICK: {template: ScriptedState, outcomes: [ok], transitions: {ok: picked}}
+              transitions: {picked: done}
+
+    Right:
+        name: sm
+        template: Base
+        outcomes: [done]
+        states:
+          - PICK:
+              template: StateMachine
+              outcomes: [picked]
+              states:
+                - GRASP: {template: ScriptedState, outcomes: [ok], transitions: {ok: picked}}
+              transitions: {picked: done}
+    """
+    for path, container in containers(machine.root):
+        for child in container.children:
+            if child.name == container.name:
+                yield Finding(
+                    span=child.span,
+                    message=f"`{child.name}` is called like the container it is in",
+                    help="give one of them another name",
+                    related=(
+                        *other_place(container.span, "the container"),
+                        *calls(child, child.span),
+                    ),
+                    node=f"{path}/{child.name}",
+                )

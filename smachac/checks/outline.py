@@ -1,0 +1,152 @@
+"""Containers as far as their flow can be judged, so that one fault is reported once.
+
+A misspelt name is read as the name it is nearest to; what is not known of an open leaf is taken to
+be fine.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from collections.abc import Set as AbstractSet
+from dataclasses import replace
+from typing import TypeAlias
+
+from smachac.checks.hints import PREEMPTED, Guesser, guesser
+from smachac.ir import nodes
+from smachac.ir.graph import START, can_end, edges, reachable
+from smachac.ir.nodes import (
+    Concurrence,
+    Leaf,
+    Machine,
+    Node,
+    Outcome,
+    Sequence,
+    StateMachine,
+    Transition,
+)
+from smachac.ir.walk import containers, leads_to_child, outcome_names, walk
+from smachac.source import assert_never
+
+Linear: TypeAlias = "StateMachine | Sequence"
+"""A container whose states follow one another along transitions."""
+
+
+def linear(machine: Machine) -> Iterator[tuple[str, Linear]]:
+    """The containers with transitions, and their paths."""
+    for path, container in containers(machine.root):
+        if isinstance(container, StateMachine | Sequence):
+            yield path, container
+
+
+def is_open(node: Node) -> bool:
+    return isinstance(node, Leaf) and node.open
+
+
+def children_names(container: nodes.Container) -> frozenset[str]:
+    return frozenset(child.name for child in container.children)
+
+
+def places_of(container: nodes.Container) -> Guesser:
+    """Guesses what a transition inside a container was meant to lead to."""
+    return guesser([*(child.name for child in container.children), *outcome_names(container)])
+
+
+def leads_somewhere(transition: Transition, names: frozenset[str], exits: frozenset[str]) -> bool:
+    return leads_to_child(transition, names) or transition.target in exits
+
+
+def unknown_outcomes(child: Node) -> list[tuple[Transition, str | None]]:
+    """The transitions from outcomes that a state does not have, with the outcome meant."""
+    declared = frozenset(outcome_names(child))
+    if is_open(child) or all(step.outcome in declared for step in child.transitions):
+        return []
+    guess = guesser(outcome_names(child))
+    return [
+        (step, guess(step.outcome)) for step in child.transitions if step.outcome not in declared
+    ]
+
+
+def mended(container: Linear) -> Linear:
+    """A container with misspelt targets and outcomes put right, where a near name exists.
+
+    A state that lists no outcome at all has those of its transitions.
+    """
+    names = children_names(container)
+    exits = frozenset(outcome_names(container))
+    guess = places_of(container)
+
+    def target(step: Transition) -> Transition:
+        if leads_somewhere(step, names, exits):
+            return step
+        return replace(step, target=guess(step.target) or step.target)
+
+    def child(node: Node) -> Node:
+        wrong = {id(step): meant for step, meant in unknown_outcomes(node)}
+        lost = any(not leads_somewhere(step, names, exits) for step in node.transitions)
+        if not wrong and not lost:
+            return node
+        steps = [
+            replace(step, outcome=wrong.get(id(step)) or step.outcome) for step in node.transitions
+        ]
+        outcomes = node.outcomes or tuple(Outcome(name=s.outcome, span=s.span) for s in steps)
+        return replace(node, outcomes=outcomes, transitions=tuple(map(target, steps)))
+
+    children = tuple(map(child, container.children))
+    if all(new is old for new, old in zip(children, container.children, strict=True)):
+        return container
+    return replace(container, children=children)
+
+
+def outline(container: Linear, endless: AbstractSet[int]) -> Linear:
+    """A mended container in which open leaves can leave and endless states cannot.
+
+    An open leaf may have any outcome: one that its container has and it does not handle leaves.
+    """
+    exits = outcome_names(container)
+
+    def child(node: Node) -> Node:
+        if id(node) in endless:
+            return replace(node, transitions=(), outcomes=())
+        if not is_open(node):
+            return node
+        handled = {step.outcome for step in node.transitions}
+        unhandled = [name for name in exits[: len(handled) + 2] if name not in handled]
+        if not unhandled:
+            return node
+        way = next((name for name in unhandled if name != PREEMPTED), unhandled[0])
+        more = Transition(outcome=way, target=way, origin="implicit", span=node.span)
+        return replace(node, transitions=(*node.transitions, more))
+
+    # Endless states are known by identity, which mending would change.
+    outlined = replace(container, children=tuple(map(child, container.children)))
+    return mended(outlined)
+
+
+def endless_states(machine: Machine) -> frozenset[int]:
+    """The states, by `id`, that never end and are meant so, or have no outcome at all.
+
+    A container with a trap of its own is not among them: the trap is reported inside it.
+    """
+    found: set[int] = set()
+    for _, node in reversed(list(walk(machine.root))):
+        if _never_ends(node, found):
+            found.add(id(node))
+    return frozenset(found)
+
+
+def _never_ends(node: Node, inner: set[int]) -> bool:
+    match node:
+        case Leaf():
+            return not node.open and not node.outcomes and not node.transitions
+        case StateMachine(forever=True):
+            flow = outline(node, inner)
+            return node.initial in reachable(flow) - can_end(flow)
+        case StateMachine() | Sequence():
+            return False
+        case Concurrence():
+            lasting = [id(child) in inner for child in node.children]
+            return bool(lasting) and (all(lasting) if node.join == "any" else any(lasting))
+        case nodes.Iterator():
+            skips = any(edge.source == START and edge.kind == "exhausted" for edge in edges(node))
+            return not skips and any(id(child) in inner for child in node.children)
+    return assert_never(node)
