@@ -1,0 +1,37 @@
+"""The faults that phases before the rules find: in the text, its shape, its calls, templates."""
+
+from smachac.problems.calls import (
+    bad_sub_script,
+    recursive_include,
+    script_not_found,
+    template_error,
+    template_not_found,
+    unresolved_look_up,
+)
+from smachac.problems.text import (
+    duplicate_key,
+    missing_variable,
+    too_big,
+    unknown_variable,
+    unreadable_file,
+    wrong_shape,
+    yaml_syntax,
+)
+from smachac.problems.wording import listed
+
+__all__ = [
+    "bad_sub_script",
+    "duplicate_key",
+    "listed",
+    "missing_variable",
+    "recursive_include",
+    "script_not_found",
+    "template_error",
+    "template_not_found",
+    "too_big",
+    "unknown_variable",
+    "unreadable_file",
+    "unresolved_look_up",
+    "wrong_shape",
+    "yaml_syntax",
+]

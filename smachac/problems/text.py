@@ -1,0 +1,217 @@
+"""The faults of texts and shapes: what is no YAML, and what stands where it cannot."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable
+
+from smachac.diagnostics import Finding, Related, Severity, did_you_mean, problem
+from smachac.problems.wording import listed
+from smachac.source import Span, Word
+
+
+@problem("SM001", "yaml-syntax", Severity.ERROR)
+def yaml_syntax(span: Span, message: str, help: str | None = None) -> Finding:
+    """The text is not YAML.
+
+    Nothing can be said of a script that cannot be read, and a parser that guesses would move
+    a robot by a guess.
+
+    Wrong:
+        name: sm
+        template: Base
+        outcomes: [succeeded
+        states:
+          - PICK: {template: ScriptedState, outcomes: [done], transitions: {done: succeeded}}
+
+    Right:
+        name: sm
+        template: Base
+        outcomes: [succeeded]
+        states:
+          - PICK: {template: ScriptedState, outcomes: [done], transitions: {done: succeeded}}
+    """
+    return Finding(span=span, message=message, help=help)
+
+
+@problem("SM002", "duplicate-key", Severity.ERROR)
+def duplicate_key(key: Word, first: Span) -> Finding:
+    """One mapping holds the same key twice.
+
+    Most YAML readers keep the last entry and drop the first in silence: a recovery that stands
+    in the script is then never run.
+
+    Wrong:
+        name: sm
+        template: Base
+        outcomes: [picked, empty]
+        states:
+          - PICK:
+              template: ScriptedState
+              outcomes: [done, nothing]
+              transitions: {done: picked, nothing: LOOK}
+              transitions: {done: LOOK, nothing: empty}
+          - LOOK: {template: ScriptedState, outcomes: [y, n], transitions: {y: picked, n: empty}}
+
+    Right:
+        name: sm
+        template: Base
+        outcomes: [picked, empty]
+        states:
+          - PICK:
+              template: ScriptedState
+              outcomes: [done, nothing]
+              transitions: {done: picked, nothing: LOOK}
+          - LOOK: {template: ScriptedState, outcomes: [y, n], transitions: {y: picked, n: empty}}
+    """
+    return Finding(
+        span=key.span,
+        message=f"the key `{key.text}` stands here for the second time",
+        help="keep one of the two, or merge them",
+        related=(Related(span=first, message="first given here"),),
+    )
+
+
+@problem("SM003", "unknown-variable", Severity.ERROR)
+def unknown_variable(word: Word, owner: str, known: Iterable[str]) -> Finding:
+    """A variable is set that neither the language nor the state type has.
+
+    It would be ignored: the speed, the limit or the transition that was meant never reaches
+    the robot.
+
+    Wrong:
+        name: sm
+        template: Base
+        outcomes: [done]
+        states:
+          - PICK: {template: ScriptedState, outcomes: [done], transition: {done: done}}
+
+    Right:
+        name: sm
+        template: Base
+        outcomes: [done]
+        states:
+          - PICK: {template: ScriptedState, outcomes: [done], transitions: {done: done}}
+    """
+    names = sorted(known)
+    variables = f"its variables are {listed(names)}" if names else "it has no variables"
+    return Finding(
+        span=word.span,
+        message=f"`{word.text}` is not a variable of {owner}",
+        help=did_you_mean(word.text, names) or variables,
+    )
+
+
+@problem("SM004", "wrong-shape", Severity.ERROR)
+def wrong_shape(
+    span: Span, message: str, help: str | None = None, related: tuple[Related, ...] = ()
+) -> Finding:
+    """A value has another shape than the language asks for at this place.
+
+    A block that was left empty, or a list where a mapping is due, says nothing; read as if it
+    said something, the state would end where nobody sent it.
+
+    Wrong:
+        name: sm
+        template: Base
+        outcomes: [done]
+        states:
+          - PICK:
+              template: ScriptedState
+              outcomes: [done]
+              transitions:
+
+    Right:
+        name: sm
+        template: Base
+        outcomes: [done]
+        states:
+          - PICK:
+              template: ScriptedState
+              outcomes: [done]
+              transitions: {done: done}
+    """
+    return Finding(span=span, message=message, help=help, related=related)
+
+
+@problem("SM005", "missing-variable", Severity.ERROR)
+def missing_variable(span: Span, name: str, owner: str) -> Finding:
+    """A variable is missing that the language or the state type cannot do without.
+
+    Without it the state has no meaning, or a skill would start without the value it needs.
+
+    Wrong:
+        name: sm
+        template: Base
+        outcomes: [done]
+        states:
+          - PICK: {outcomes: [done], transitions: {done: done}}
+
+    Right:
+        name: sm
+        template: Base
+        outcomes: [done]
+        states:
+          - PICK: {template: ScriptedState, outcomes: [done], transitions: {done: done}}
+    """
+    return Finding(
+        span=span, message=f"{owner} lacks the variable `{name}`", help=f"add `{name}:` here"
+    )
+
+
+@problem("SM006", "too-big", Severity.ERROR)
+def too_big(span: Span, message: str, help: str | None = None) -> Finding:
+    """The text is larger, deeper, or grows further by its aliases than any real script.
+
+    A check must end on every text, also on one that somebody else sent.
+
+    Wrong:
+        name: sm
+        template: Base
+        outcomes: [done]
+        userdata:
+          a: &a [0, 0, 0, 0, 0, 0, 0, 0, 0, 0]
+          b: &b [*a, *a, *a, *a, *a, *a, *a, *a, *a, *a]
+          c: &c [*b, *b, *b, *b, *b, *b, *b, *b, *b, *b]
+          d: &d [*c, *c, *c, *c, *c, *c, *c, *c, *c, *c]
+          e: &e [*d, *d, *d, *d, *d, *d, *d, *d, *d, *d]
+          f: &f [*e, *e, *e, *e, *e, *e, *e, *e, *e, *e]
+          g: &g [*f, *f, *f, *f, *f, *f, *f, *f, *f, *f]
+          h: &h [*g, *g, *g, *g, *g, *g, *g, *g, *g, *g]
+        states:
+          - PICK: {template: ScriptedState, outcomes: [done], transitions: {done: done}}
+
+    Right:
+        name: sm
+        template: Base
+        outcomes: [done]
+        states:
+          - PICK: {template: ScriptedState, outcomes: [done], transitions: {done: done}}
+    """
+    return Finding(span=span, message=message, help=help)
+
+
+@problem("SM007", "unreadable-file", Severity.ERROR)
+def unreadable_file(span: Span, message: str, help: str | None = None) -> Finding:
+    """A file is missing, is a folder, is not text, or may not be read.
+
+    A robot must not start on half of its script, so nothing is compiled.
+
+    Wrong:
+        name: sm
+        template: Base
+        outcomes: [succeeded]
+        states:
+          - PICK: {template: ScriptedState, outcomes: [done], transitions: {done: succeeded}}
+        == smachac.toml ==
+        scripts: [no, toml]
+
+    Right:
+        name: sm
+        template: Base
+        outcomes: [succeeded]
+        states:
+          - PICK: {template: ScriptedState, outcomes: [done], transitions: {done: succeeded}}
+        == smachac.toml ==
+        scripts = ["sub_scripts"]
+    """
+    return Finding(span=span, message=message, help=help)
