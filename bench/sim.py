@@ -101,7 +101,7 @@ def run(task: Callable[[sim.World], dict[str, Pose]], seed: int, record: str | N
         goals, failures = task(world), []
         if record:
             x, y, _ = next(iter(goals.values()))[0]
-            world.load("goal", [[x, y, 0.0], [0, 0, 0, 1]])
+            world.load("goal", [[x, y, EDGE / 2], [0, 0, 0, 1]])
         for name, goal in goals.items():
             for step, succeeded in carry(world.arm(), name, goal):
                 world.caption = f"sm/{name.upper()}/{step.upper()}"
@@ -135,7 +135,8 @@ def report(name: str, runs: list[Run]) -> bool:
 
 def mean(runs: list[Run], field: str) -> float:
     """The mean of one figure."""
-    return statistics.mean(getattr(run, field) for run in runs)
+    figures: list[float] = [getattr(run, field) for run in runs]
+    return statistics.mean(figures)
 
 
 def main() -> int:

@@ -91,7 +91,7 @@ class Split:
             outcome = original(*args, **kwargs)
             return outcome
         except BaseException:
-            self._clock.expect_preempts(key)
+            self._expect_preempts()
             raise
         finally:
             # With an outcome the container's own verdict comes next, in this thread.
@@ -113,8 +113,14 @@ class Split:
         finally:
             if key is not None:
                 if verdict:
-                    self._clock.expect_preempts(key)
+                    self._expect_preempts()
                 self._leave(key)
+
+    def _expect_preempts(self) -> None:
+        for child in _different(self._container.get_children().values()):
+            # A container tells nobody twice.
+            if not (hasattr(child, "preempt_requested") and child.preempt_requested()):
+                self._clock.expect_preempts(self._keys.get(id(child), ()))
 
     def _leave(self, key: Key) -> None:
         self._active.end(key)

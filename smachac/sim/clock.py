@@ -7,7 +7,7 @@ when in simulated time, does not depend on how the threads are scheduled.
 
 import contextlib
 import threading
-from collections.abc import Callable, Generator, Iterator, Sequence
+from collections.abc import Callable, Generator, Iterable, Iterator, Sequence
 from typing import Any, TypeAlias, TypeVar
 
 T = TypeVar("T")
@@ -228,16 +228,17 @@ class Clock:
 
     # Preemption
 
-    def expect_preempts(self, key: Key) -> None:
-        """Stand still until each open sibling of `key` has been told to stop, by `preempted`.
+    def expect_preempts(self, keys: Iterable[Key]) -> None:
+        """Stand still until each of these branches has been told to stop, or has left.
 
         A container asks its children to stop from a thread of its own; without this, how far they
         get until then would be a matter of luck.
         """
         with self._changed:
-            fork = self._forks.get(key)
-            if fork is not None:
-                self._promised |= (fork.open - fork.told - {key}) & self._live
+            for key in keys:
+                fork = self._forks.get(key)
+                if fork is not None and key not in fork.told and key != self.current:
+                    self._promised.add(key)
 
     def preempted(self, key: Key) -> None:
         """The branch `key` has been told to stop."""

@@ -66,7 +66,7 @@ def _parts(limb: Limb, joints: dict[str, Any], links: dict[str, int]) -> Parts:
         tip=links[limb.tip],
         limits=tuple((each[8], each[9]) for each in found),
         speeds=tuple(each[11] for each in found),
-        efforts=tuple(efforts.get(name, joints[name][10]) for name in limb.joints),
+        efforts=tuple(float(efforts.get(name) or joints[name][10]) for name in limb.joints),
     )
 
 
