@@ -44,7 +44,7 @@ class Concurrence(Container):
         self._outcome_cb = outcome_cb
         self._child_termination_cb = child_termination_cb
         self._states: dict[str, State] = {}
-        self._remappings: dict[str, dict[str, str]] = {}
+        self._remappings: dict[str, Mapping[str, str]] = {}
         self._branches: Branches | None = None
         self._left_flagged = False
         self._check_policy()
@@ -62,7 +62,7 @@ class Concurrence(Container):
     # Construction
 
     @staticmethod
-    def add(label: str, state: S, remapping: dict[str, str] | None = None) -> S:
+    def add(label: str, state: S, remapping: Mapping[str, str] | None = None) -> S:
         """Add a child to the innermost open concurrence, in place of one of the same label."""
         concurrence = open_container(Concurrence)
         smach.logdebug(f"adding state '{label}'")

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import threading
 import traceback
-from collections.abc import Callable, Iterable, Iterator, Sequence
+from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from contextlib import contextmanager
 from types import TracebackType
 from typing import Any, ClassVar, TypeVar
@@ -175,7 +175,7 @@ class Container(State):
 
         Raises InvalidStateError if it runs already.
         """
-        if not self._running.acquire(blocking=False):
+        if not self._running.acquire(False):
             raise InvalidStateError(f"a {type(self).__name__} is executed while it runs")
 
     def copy_input_keys(self, parent_ud: Any) -> None:
@@ -194,7 +194,7 @@ class Container(State):
         if missing:
             smach.logwarn(f"output keys never written: {missing}")
 
-    def _view(self, state: State, remapping: dict[str, str]) -> Remapper:
+    def _view(self, state: State, remapping: Mapping[str, str]) -> Remapper:
         """What a child sees of the store; live, as far as the child is a State."""
         if isinstance(state, State):
             return Remapper(self.userdata, state._input_keys, state._output_keys, remapping)

@@ -36,7 +36,7 @@ class Sequence(StateMachine):
         label: str,
         state: S,
         transitions: Mapping[str, str | None] | None = None,
-        remapping: dict[str, str] | None = None,
+        remapping: Mapping[str, str] | None = None,
         constants: Mapping[str, Any] | None = None,
     ) -> S:
         """Add a state to the innermost open sequence, and return it.
@@ -54,8 +54,8 @@ class Sequence(StateMachine):
         """Let the connector of the state last added lead to `label`, if it leads nowhere yet."""
         if self._last is None:
             return
-        transitions = self._transitions[self._last]
-        if self._connector not in transitions:
+        targets = self._table.targets[self._last]
+        if self._connector not in targets:
             smach.logerr(f"'{self._last}' lacks the connector outcome '{self._connector}'")
-        if transitions.get(self._connector) is None:
-            transitions[self._connector] = label
+        if targets.get(self._connector) is None:
+            targets[self._connector] = label

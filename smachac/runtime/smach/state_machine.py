@@ -12,6 +12,7 @@ from .container import Container, open_container
 from .exceptions import InvalidStateError, InvalidTransitionError, InvalidUserCodeError
 from .log import quiet
 from .state import State
+from .transitions import Transitions
 from .user_data import UserData
 
 S = TypeVar("S", bound=State)
@@ -27,10 +28,10 @@ class _Step:
 
     __slots__ = ("constants", "label", "next", "state", "view")
 
-    def __init__(self, label: str, state: State | None = None, view: Any = None) -> None:
+    def __init__(self, label: str) -> None:
         self.label = label
-        self.state = state
-        self.view = view
+        self.state: State | None = None
+        self.view: Any = None
         self.constants: Mapping[str, Any] | None = None
         self.next: dict[Any, _Step] = {}
 
@@ -49,12 +50,7 @@ class StateMachine(Container):
         output_keys: list[str] | None = None,
     ) -> None:
         super().__init__(outcomes, input_keys, output_keys)
-        self._states: dict[str, State] = {}
-        self._transitions: dict[str, dict[str, str | None]] = {}
-        self._remappings: dict[str, dict[str, str]] = {}
-        self._constants: dict[str, Mapping[str, Any]] = {}
-        self._initial: str | None = None
-        self._pending: tuple[str, tuple[str, ...]] | None = None
+        self._table = Transitions()
         self._consistent = False
         self._steps: dict[str, _Step] = {}
         self._store = self.userdata
@@ -69,7 +65,7 @@ class StateMachine(Container):
         label: str,
         state: S,
         transitions: Mapping[str, str | None] | None = None,
-        remapping: dict[str, str] | None = None,
+        remapping: Mapping[str, str] | None = None,
         constants: Mapping[str, Any] | None = None,
     ) -> S:
         """Add a state to the innermost open machine, and return it.
@@ -93,7 +89,7 @@ class StateMachine(Container):
         state: S,
         connector_outcomes: Iterable[str],
         transitions: Mapping[str, str | None] | None = None,
-        remapping: dict[str, str] | None = None,
+        remapping: Mapping[str, str] | None = None,
         constants: Mapping[str, Any] | None = None,
     ) -> S:
         """Add a state as `add` does; its connector outcomes lead to the state added next.
@@ -102,12 +98,7 @@ class StateMachine(Container):
         """
         machine = open_container(StateMachine)
         machine._add(label, state, transitions, remapping, constants)
-        connectors = tuple(connector_outcomes)
-        registered = state.get_registered_outcomes()
-        for outcome in connectors:
-            if outcome not in registered:
-                raise InvalidStateError(f"connector '{outcome}' is no outcome of '{label}'")
-        machine._pending = (label, connectors)
+        machine._table.connect(label, connector_outcomes)
         return state
 
     def _add(
@@ -115,27 +106,11 @@ class StateMachine(Container):
         label: str,
         state: State,
         transitions: Mapping[str, str | None] | None,
-        remapping: dict[str, str] | None,
+        remapping: Mapping[str, str] | None,
         constants: Mapping[str, Any] | None,
     ) -> None:
         smach.logdebug(f"adding state '{label}'")
-        if self._initial is None:
-            self._initial = label
-        registered = state.get_registered_outcomes()
-        explicit = dict(transitions or {})
-        implicit = dict.fromkeys(o for o in registered if o not in explicit)
-        self.check_state_spec(label, state, explicit)
-        if label in self._states:
-            raise InvalidStateError(f"label '{label}' is taken")
-        self._states[label] = state
-        self._transitions[label] = {**explicit, **implicit}
-        self._remappings[label] = {} if remapping is None else remapping
-        if constants:
-            self._constants[label] = dict(constants)
-        if self._pending is not None:
-            source, connectors = self._pending
-            self._pending = None
-            self._transitions[source].update(dict.fromkeys(connectors, label))
+        self._table.add(label, state, transitions, remapping, constants)
         self._changed()
 
     def _changed(self) -> None:
@@ -143,17 +118,6 @@ class StateMachine(Container):
         self._consistent = False
         for step in self._steps.values():
             step.next.clear()
-
-    def check_state_spec(
-        self, label: str, state: State, transitions: Mapping[str, str | None]
-    ) -> None:
-        """Raise InvalidTransitionError if a transition is for an outcome that the state lacks."""
-        registered = state.get_registered_outcomes()
-        unknown = [outcome for outcome in transitions if outcome not in registered]
-        if unknown:
-            raise InvalidTransitionError(
-                f"state '{label}' has transitions for {unknown}; its outcomes: {registered}"
-            )
 
     def register_outcomes(self, new_outcomes: Iterable[str]) -> None:
         """Add outcomes."""
@@ -167,26 +131,14 @@ class StateMachine(Container):
         if len(initial_states) > 1:
             smach.logwarn(f"a state machine has one initial state; ignored: {initial_states[1:]}")
         if initial_states:
-            self._initial = initial_states[0]
+            self._table.initial = initial_states[0]
             self._changed()
         if userdata is not None:
             self.userdata.update(userdata)
 
     def check_consistency(self) -> None:
         """Raise InvalidTransitionError, with all faults, unless every target is known."""
-        faults = []
-        if self._initial is None:
-            faults.append("there is no initial state")
-        elif self._initial not in self._states:
-            faults.append(f"the initial state '{self._initial}' was not added")
-        for label, transitions in self._transitions.items():
-            for outcome, target in transitions.items():
-                if target and (target in self._states or target in self._outcomes):
-                    continue
-                if not target and outcome in self._outcomes:
-                    continue
-                place = f"'{label}':'{outcome}'-->'{target or outcome}'"
-                faults.append(f"{place} leads to no state or outcome")
+        faults = self._table.faults(self._outcomes)
         if faults:
             raise InvalidTransitionError("; ".join(faults))
 
@@ -194,11 +146,11 @@ class StateMachine(Container):
 
     def get_children(self) -> dict[str, State]:
         """The contained states by label."""
-        return self._states
+        return self._table.states
 
     def get_initial_states(self) -> list[str]:
         """The label that runs first."""
-        return [str(self._initial)]
+        return [str(self._table.initial)]
 
     def get_active_states(self) -> list[str]:
         """The label that runs now, or ran last before an error; ['None'] when there is none."""
@@ -206,11 +158,7 @@ class StateMachine(Container):
 
     def get_internal_edges(self) -> list[tuple[str, str, str | None]]:
         """(outcome, label, target) in the order of adding; target None: ends the machine."""
-        return [
-            (outcome, label, target)
-            for label, transitions in self._transitions.items()
-            for outcome, target in transitions.items()
-        ]
+        return self._table.edges()
 
     # Execution
 
@@ -242,21 +190,19 @@ class StateMachine(Container):
         if self._store is not self.userdata:
             self._store, self._steps = self.userdata, {}
         self._preempted = None
-        step = self._current = self._step(str(self._initial))
+        step = self._current = self._step(str(self._table.initial))
         self.copy_input_keys(parent_ud)
         if smach.loginfo is not quiet:
             keys = self.userdata.keys()
             smach.loginfo(f"state machine starting in '{step.label}' with userdata {keys}")
         if self._start_cbs:
             self.call_start_cbs()
-        end = self._walk(step)
-        if end is not None:
-            self._finish(end.label)
+        outcome = self._walk(step)
         self.copy_output_keys(parent_ud)
-        return None if end is None else end.label
+        return outcome
 
-    def _walk(self, step: _Step) -> _Step | None:
-        """Run child after child; the end reached, None after a shutdown."""
+    def _walk(self, step: _Step) -> str | None:
+        """Run child after child; the outcome reached, None after a shutdown."""
         while not smach.is_shutdown():
             state: Any = step.state
             self._active = state
@@ -278,47 +224,38 @@ class StateMachine(Container):
             try:
                 following = step.next[outcome]
             except (KeyError, TypeError):
-                following = self._follow(step, outcome)
+                following = step.next[outcome] = self._follow(step.label, outcome)
+            if following.state is None:
+                self._end(step.label, following.label)
+                return following.label
             if smach.loginfo is not quiet:
                 smach.loginfo(f"transition '{step.label}':'{outcome}'-->'{following.label}'")
-            if following.state is None:
-                return following
             step = self._current = following
             if self._transition_cbs:
                 self.call_transition_cbs()
         return None
 
     def _step(self, label: str) -> _Step:
-        """The place of a child, made at its first visit."""
+        """The place of a child, made at its first visit; an end if there is no such child."""
         step = self._steps.get(label)
-        if step is None:
-            state = self._states[label]
-            step = _Step(label, state, self._view(state, self._remappings[label]))
-            step.constants = self._constants.get(label)
+        if step is not None:
+            return step
+        step = _Step(label)
+        state = self._table.states.get(label)
+        if state is not None:
+            step.state = state
+            step.view = self._view(state, self._table.remappings[label])
+            step.constants = self._table.constants.get(label)
             self._steps[label] = step
         return step
 
-    def _follow(self, step: _Step, outcome: Any) -> _Step:
+    def _follow(self, label: str, outcome: Any) -> _Step:
         """Where an outcome not seen before leads. Raises InvalidTransitionError if nowhere."""
-        state, label = self._states[step.label], step.label
-        registered = state.get_registered_outcomes()
-        if outcome not in registered:
-            raise InvalidTransitionError(
-                f"state '{label}' returned '{outcome}'; its outcomes: {registered}"
-            )
-        transitions = self._transitions[label]
-        if outcome not in transitions:
-            raise InvalidTransitionError(
-                f"outcome '{outcome}' was registered after '{label}' was added: no transition"
-            )
-        target = transitions[outcome]
-        following = self._step(target) if target in self._states else _Step(target or outcome)
-        step.next[outcome] = following
-        return following
+        target = self._table.target(label, outcome)
+        return self._step(target) if target else _Step(outcome)
 
-    def _finish(self, outcome: str) -> None:
+    def _end(self, label: str, outcome: str) -> None:
         """Settle the preempt request and tell the callbacks."""
-        label = "" if self._current is None else self._current.label
         self._current = None
         if self._preempt_requested:
             with self._preempting:
