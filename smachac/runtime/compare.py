@@ -1,0 +1,87 @@
+"""Whether two runs did the same: traces compared up to what threads and clocks decide."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Mapping, Sequence
+from typing import Any
+
+Event = Mapping[str, Any]
+
+COMPARED = ("event", "path", "outcome", "to", "key", "value")
+"""What counts of an event. Messages of errors are worded by whoever ran the machine."""
+
+
+def compare(first: Iterable[Event], second: Iterable[Event]) -> str | None:
+    """The first difference between two traces, or None.
+
+    Times, places, numbers of events and the order between branches of a concurrence do not count.
+    """
+    one, other = list(first), list(second)
+    concurrences = _concurrences(one) | _concurrences(other)
+    ours, theirs = _in_order(one, concurrences), _in_order(other, concurrences)
+    for number, (mine, yours) in enumerate(zip(ours, theirs, strict=False), 1):
+        if _core(mine) != _core(yours):
+            return f"event {number}: {_words(mine)}, but then {_words(yours)}"
+    if len(ours) == len(theirs):
+        return None
+    number = min(len(ours), len(theirs))
+    longer, which = (ours, "first") if len(ours) > len(theirs) else (theirs, "second")
+    return f"event {number + 1}: only the {which} trace has {_words(longer[number])}"
+
+
+def _core(event: Event) -> dict[str, Any]:
+    return {name: event[name] for name in COMPARED if name in event}
+
+
+def _words(event: Event) -> str:
+    return "`" + " ".join(str(value) for value in _core(event).values()) + "`"
+
+
+def _concurrences(events: Sequence[Event]) -> set[str]:
+    """Containers whose children overlap, or end without a transition."""
+    found: set[str] = set()
+    running: dict[str, set[str]] = {}
+    left: set[str] = set()
+    for event in events:
+        path = event["path"]
+        parent = path.rpartition("/")[0]
+        if event["event"] == "enter":
+            if running.setdefault(parent, set()) or parent in left:
+                found.add(parent)
+            running[parent].add(path)
+        elif event["event"] == "exit":
+            running.setdefault(parent, set()).discard(path)
+            left.add(parent)
+        elif event["event"] == "transition":
+            left.discard(parent)
+    return found | left
+
+
+OPENING = {"start": "finish", "enter": "exit"}
+
+
+def _in_order(events: Sequence[Event], concurrences: set[str]) -> list[Event]:
+    """The events with those of a concurrence sorted by branch, each branch in its own order."""
+    ordered: list[Event] = []
+    at = 0
+    while at < len(events):
+        event = events[at]
+        ordered.append(event)
+        at += 1
+        path, closing = event["path"], OPENING.get(event["event"])
+        if closing is None or path not in concurrences:
+            continue
+        end = at
+        while end < len(events) and (events[end]["event"], events[end]["path"]) != (closing, path):
+            end += 1
+        branches: dict[str, list[Event]] = {}
+        for inner in events[at:end]:
+            below = inner["path"].removeprefix(f"{path}/")
+            if below == inner["path"]:
+                ordered.append(inner)
+            else:
+                branches.setdefault(below.partition("/")[0], []).append(inner)
+        for name in sorted(branches):
+            ordered.extend(_in_order(branches[name], concurrences))
+        at = end
+    return ordered

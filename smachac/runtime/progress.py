@@ -1,0 +1,77 @@
+"""What a machine does, told to people while it runs."""
+
+from __future__ import annotations
+
+import threading
+from collections.abc import Mapping
+from typing import Any, TextIO
+
+GOOD = frozenset({"succeeded", "success", "done", "ok", "true"})
+BAD = frozenset({"aborted", "failed", "failure", "error", "timeout"})
+
+_GREEN, _RED, _YELLOW, _DIM, _PLAIN = "\x1b[32m", "\x1b[31m", "\x1b[33m", "\x1b[2m", "\x1b[0m"
+
+OUTCOME_COLUMN = 40
+"""Where outcomes stand, counted from 0, unless a name reaches that far."""
+
+
+class Progress:
+    """Writes one line when a state ends: name, outcome, seconds; containers also when they start.
+
+    To be called with the events of a trace, in order. `colour` adds ANSI colours. What the stream
+    cannot encode is shown as `?`; a stream that is gone is written to no more.
+    """
+
+    def __init__(self, stream: TextIO, *, colour: bool = False) -> None:
+        self._stream: TextIO | None = stream
+        self._colour = colour
+        self._lock = threading.RLock()
+        self._entered: dict[str, float] = {}
+        self._shown: set[str] = set()
+
+    def __call__(self, event: Mapping[str, Any]) -> None:
+        with self._lock:
+            kind, path = event["event"], event["path"]
+            if kind in ("start", "enter"):
+                self._show_containers(path)
+                self._entered[path] = event["t"]
+                self._shown.discard(path)
+            elif kind in ("exit", "finish"):
+                self._ended(path, event["outcome"], event["t"])
+            elif kind == "error":
+                self._line(path, f"{self._paint(_RED, 'error')}: {event['message']}")
+            elif kind == "preempt" and "/" not in path:
+                self._line(path, self._paint(_YELLOW, "asked to stop"))
+
+    def _show_containers(self, path: str) -> None:
+        """The start lines of the containers around a state, once for each of their visits."""
+        parents = path.split("/")[:-1]
+        for depth in range(len(parents)):
+            container = "/".join(parents[: depth + 1])
+            if container not in self._shown:
+                self._shown.add(container)
+                self._write("  " * depth + parents[depth])
+
+    def _ended(self, path: str, outcome: str, t: float) -> None:
+        seconds = t - self._entered.get(path, t)
+        colour = _GREEN if outcome in GOOD else _RED if outcome in BAD else _YELLOW
+        shown = self._paint(colour, outcome) if outcome in GOOD | BAD | {"preempted"} else outcome
+        self._line(path, f"{shown}  {self._paint(_DIM, f'{seconds:.2f} s')}")
+
+    def _line(self, path: str, text: str) -> None:
+        depth = path.count("/")
+        name = "  " * depth + path.rpartition("/")[2]
+        self._write(f"{name:<{OUTCOME_COLUMN}}  {text}")
+
+    def _paint(self, colour: str, text: str) -> str:
+        return f"{colour}{text}{_PLAIN}" if self._colour else text
+
+    def _write(self, line: str) -> None:
+        if self._stream is None:
+            return
+        encoding = getattr(self._stream, "encoding", None) or "utf-8"
+        try:
+            self._stream.write(line.encode(encoding, "replace").decode(encoding) + "\n")
+            self._stream.flush()
+        except (OSError, ValueError):
+            self._stream = None
