@@ -21,7 +21,7 @@ install_packages() {
     "${install[@]}" </dev/null >/dev/null 2>&1 && return
     "${apt[@]}" update </dev/null >/dev/null && "${install[@]}" </dev/null >/dev/null && return
   fi
-  say "missing: $*. Run: sudo apt-get install -y $*"
+  say "missing: $*. Run: sudo apt-get update && sudo apt-get install -y $*"
   return 1
 }
 
@@ -84,9 +84,10 @@ compiler_parts() {
 sys.exit(not pathlib.Path(sysconfig.get_path("include"), "Python.h").exists())' || echo "python$version-dev"
 }
 
+# PyPI has PyBullet ready-made for these alone.
 prepare_pybullet() {
-  if pip show -qq pybullet 2>/dev/null || pip index versions --only-binary :all: pybullet &>/dev/null; then return; fi
-  say "no ready-made PyBullet for Python $version: compiling it, which takes about three minutes"
+  if [[ "$version $(uname -sm)" =~ ^3\.1[01]\ Linux\ x86_64$ ]] || pip show -qq pybullet 2>/dev/null; then return; fi
+  say "no ready-made PyBullet for Python $version here: compiling it, which takes about three minutes"
   say "(Python 3.11 and 3.10 need no compiling: PYTHON=python3.11 make ...)"
   local parts
   mapfile -t parts < <(compiler_parts)
@@ -111,12 +112,12 @@ set_up() {
   make_venv
   prepare_pybullet
   prepare_optional
-  local extras=sim
-  [[ $level == sim ]] || extras=sim,dev
-  say "installing smachac[$extras]: a minute or two"
-  if ! pip install -q -e ".[$extras,fast]" &>.venv/fast.log; then
-    say "note: without the fast YAML parser (see .venv/fast.log); the other one reads the same"
-    pip install -q -e ".[$extras]"
+  say "installing what is missing in .venv: a minute or two"
+  if [[ $level == sim ]]; then
+    pip install -q -e '.[sim]'
+  elif ! pip install -q -e '.[sim,dev,fast]' &>.venv/fast.log; then
+    say "note: going on without the fast YAML parser (.venv/fast.log says why); the other reads the same"
+    pip install -q -e '.[sim,dev]'
   fi
   key >.venv/ready-sim
   [[ $level == sim ]] || key >.venv/ready-dev
@@ -126,6 +127,7 @@ set_up() {
 level=${1:-}
 [[ $level == sim || $level == dev ]] || fail "usage: setup.sh sim|dev"
 is_ready && exit
+trap 'exit 130' INT
 exec 9<pyproject.toml
 if command -v flock >/dev/null && ! flock -n 9; then
   say "waiting for another set-up to end"
