@@ -57,6 +57,7 @@ def execute(
             from smachac import sim
 
             sim.configure(seed=seed, gui=gui, record=record)
+        _quieten(module.__dict__["smach"])
         build = module.__dict__["build"]
         built: list[Any] = []
 
@@ -73,6 +74,18 @@ def execute(
         return outcome
     finally:
         sys.path.remove(str(folder.resolve()))
+
+
+def _quieten(smach: Any) -> None:
+    """Progress is shown from the trace; of what SMACH logs, warnings and errors remain."""
+
+    def shown(message: str, *arguments: object) -> None:
+        print(message % arguments if arguments else message, file=sys.stderr)
+
+    def hidden(message: str, *arguments: object) -> None:
+        pass
+
+    smach.set_loggers(hidden, shown, hidden, shown)
 
 
 def main_function(machine: Machine) -> str:

@@ -13,7 +13,11 @@ from smachac.diagnostics import Report
 from smachac.source import Word
 from smachac.syntax import Entry, Map, Scalar, Seq, Tree, is_known_wrong
 
-_YAML_1_1_BOOLEANS = frozenset(["yes", "no", "on", "off", "true", "false"])
+_YAML_1_1_BOOLEANS = frozenset(
+    form
+    for word in ("yes", "no", "on", "off", "true", "false")
+    for form in (word, word.capitalize(), word.upper())
+)
 
 
 def kind_of(tree: Tree) -> str:
@@ -45,22 +49,24 @@ def as_name(tree: Tree, report: Report) -> Word | None:
     if not isinstance(tree, Scalar):
         wrong(tree, "a name", report)
         return None
-    if tree.plain and tree.span.text.lower() in _YAML_1_1_BOOLEANS:
+    value = tree.value
+    if isinstance(value, str) and not (tree.plain and value in _YAML_1_1_BOOLEANS):
+        return Word(value, tree.span)
+    if value is None:
+        wrong(tree, "a name", report)
+        return None
+    if isinstance(value, (str, bool)):
+        text = tree.span.text
         report.append(
             problems.wrong_shape(
                 tree.span,
-                f"`{tree.span.text}` is a boolean to many YAML parsers, not a name",
-                f"write it in quotes: '{tree.span.text}', or choose another name",
+                f"`{text}` is a boolean to many YAML parsers, not a name",
+                f"write it in quotes: '{text}', or choose another name",
             )
         )
-        return None if isinstance(tree.value, bool) else Word(str(tree.value), tree.span)
-    if isinstance(tree.value, str):
-        return Word(tree.value, tree.span)
-    if tree.value is None:
-        wrong(tree, "a name", report)
-        return None
+        return Word(text, tree.span)
     # A number is a fine name for a state or an outcome once it is text.
-    return Word(tree.span.text if tree.plain else str(tree.value), tree.span)
+    return Word(tree.span.text, tree.span)
 
 
 def as_names(tree: Tree, report: Report) -> tuple[Word, ...]:

@@ -134,9 +134,56 @@ def _put(files: dict[str, str], arguments: argparse.Namespace) -> int:
 
 
 def _run(arguments: argparse.Namespace) -> int:
-    from smachac.runs import run
+    """Ends with 0 when the machine ends with an outcome (the one of `--expect`, if given)."""
+    from smachac.runs import FailedError, perform, play, read_scenario_file, watching
+    from smachac.targets import load_target
 
-    return run(arguments, _load, _compile)
+    target = load_target("python")
+    assert target is not None
+    if arguments.mock is not None:
+        analysis, files = _load(arguments.script, arguments)[0], {}
+        _print_report(_shown(analysis.report), arguments, sys.stderr)
+    else:
+        analysis, made = _compile(arguments, target, {})
+        files = made or {}
+    machine = analysis.checked
+    if machine is None or not (files or arguments.mock):
+        return FINDINGS
+    scenario = None
+    if arguments.mock is not None:
+        report: Report = []
+        scenario = read_scenario_file(arguments.mock, machine, report)
+        _print_report(report, arguments, sys.stderr)
+        if scenario is None:
+            return FINDINGS
+    try:
+        with watching(arguments, _wants_colour(arguments, sys.stdout)) as (observe, errors):
+            try:
+                if scenario is not None:
+                    outcome = play(machine, scenario, arguments.seed, observe)
+                else:
+                    ((name, text),) = files.items()
+                    outcome = perform(name, text, machine, arguments, observe)
+            except FailedError as error:
+                sys.stdout.flush()
+                print(f"the run failed{_where(errors)}\n{error}", file=sys.stderr)
+                return FINDINGS
+    except OSError as error:
+        print(f"cannot write the trace: {error.strerror or error}", file=sys.stderr)
+        return FINDINGS
+    print(f"outcome: {outcome}")
+    if arguments.expect is not None and outcome != arguments.expect:
+        print(f"expected: {arguments.expect}", file=sys.stderr)
+        return FINDINGS
+    return OK
+
+
+def _where(errors: list[dict[str, Any]]) -> str:
+    """The state that failed first, and its line in the script."""
+    if not errors:
+        return ""
+    source = f" ({errors[0]['src']})" if "src" in errors[0] else ""
+    return f" in {errors[0]['path']}{source}"
 
 
 def _explain(arguments: argparse.Namespace) -> int:

@@ -1,0 +1,157 @@
+"""The command `run`: the generated program, here and now, or a machine played from a scenario."""
+
+from __future__ import annotations
+
+import gc
+import re
+import sys
+import traceback
+from argparse import Namespace
+from collections.abc import Callable, Iterator
+from contextlib import ExitStack, contextmanager
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+if TYPE_CHECKING:
+    from smachac.diagnostics import Report
+    from smachac.ir.nodes import Machine
+    from smachac.ir.scenario import Scenario
+    from smachac.source import Span
+    from smachac.syntax import Tree
+
+Event = dict[str, Any]
+
+
+class FailedError(Exception):
+    """A run ended without an outcome; the words say why."""
+
+
+def play(machine: Machine, scenario: Scenario, seed: int, observe: Callable[[Event], None]) -> str:
+    """Play a scenario on the interpreter; the outcome. Raises FailedError."""
+    from smachac.ir.behaviours import built_in
+    from smachac.ir.run import run
+    from smachac.ir.scenario import acted
+
+    result = run(machine, acted(scenario, machine, built_in(seed)), observe, seed=seed)
+    if result.error is not None:
+        span = result.error.span
+        raise FailedError(
+            f"{result.error}\n  --> {span}" if span.source.text else str(result.error)
+        )
+    assert result.outcome is not None
+    return result.outcome
+
+
+def perform(
+    name: str, text: str, machine: Machine, arguments: Namespace, observe: Callable[[Event], None]
+) -> str:
+    """Run the generated module; the outcome. Raises FailedError."""
+    from smachac.execute import execute
+
+    gc.enable()  # from here on it is the user's program that runs
+    try:
+        outcome = execute(
+            name,
+            text,
+            machine,
+            observe,
+            folder=arguments.script.parent,
+            seed=arguments.seed,
+            gui=arguments.gui,
+            record=arguments.record,
+            on_preempt=lambda: print(
+                "asked to stop: states clean up; Ctrl-C again ends at once", file=sys.stderr
+            ),
+        )
+    except Exception as error:
+        raise FailedError(_told(error, name)) from error
+    if outcome is None:
+        raise FailedError("the machine ended without an outcome")
+    return outcome
+
+
+def _told(error: BaseException, name: str) -> str:
+    """What went wrong first, and where in the generated program or in code of the user."""
+    first = error
+    while (cause := first.__cause__ or first.__context__) is not None:
+        first = cause
+    here = Path(__file__).parent
+    frames = traceback.extract_tb(first.__traceback__)
+    own = [frame for frame in frames if not Path(frame.filename).is_relative_to(here)]
+    words = str(first).strip().splitlines() or [""]
+    lines = [f"{type(first).__name__}: {words[0]}" if words[0] else type(first).__name__]
+    lines += [f"  in {frame.filename}:{frame.lineno}, {frame.name}: {frame.line}" for frame in own]
+    return "\n".join(lines)
+
+
+@contextmanager
+def watching(
+    arguments: Namespace, colour: bool
+) -> Iterator[tuple[Callable[[Event], None], list[Event]]]:
+    """An observer that writes the trace and shows progress; and the errors it hears of."""
+    from smachac.runtime.progress import Progress
+    from smachac.runtime.trace import TraceWriter
+
+    errors: list[Event] = []
+    sinks: list[Callable[[Event], None]] = []
+    with ExitStack() as stack:
+        if arguments.trace is not None:
+            arguments.trace.parent.mkdir(parents=True, exist_ok=True)
+            stream = stack.enter_context(arguments.trace.open("w", encoding="utf-8"))
+            sinks.append(TraceWriter(stream))
+        if not arguments.quiet:
+            sinks.append(Progress(sys.stdout, colour=colour))
+
+        def observe(event: Event) -> None:
+            if event["event"] == "error":
+                errors.append(event)
+            for sink in sinks:
+                sink(event)
+
+        yield observe, errors
+
+
+def read_scenario_file(path: Path, machine: Machine, report: Report) -> Scenario | None:
+    """The scenario of a file; None, with problems in the report, where it is not right."""
+    from smachac import problems
+    from smachac.files import read_source
+    from smachac.ir.scenario import read_scenario
+    from smachac.syntax import parse
+
+    source = read_source(path, report)
+    tree = parse(source, report) if source is not None else None
+    if tree is None:
+        return None
+    scenario, found = read_scenario(_plain(tree), machine)
+    for message in found:
+        report.append(problems.wrong_shape(_place(message, tree), message))
+    return None if report else scenario
+
+
+def _plain(tree: Tree) -> Any:
+    from smachac.syntax import Map, Seq
+
+    if isinstance(tree, Map):
+        return {entry.key.value: _plain(entry.value) for entry in tree.entries}
+    if isinstance(tree, Seq):
+        return [_plain(item) for item in tree.items]
+    return tree.value
+
+
+def _place(message: str, tree: Tree) -> Span:
+    """The place in a scenario that a message speaks of: a state by its path, one of its steps."""
+    from smachac.syntax import Map, Seq
+
+    states = tree.get("states") if isinstance(tree, Map) else None
+    found = re.match(r"`([^`]*)`|(.*), step (\d+):", message) or re.search(r"`([^`]*)`", message)
+    if states is None or found is None or not isinstance(states.value, Map):
+        return tree.span
+    path = found.group(1) or found.group(2) or ""
+    for entry in states.value.entries:
+        key = str(entry.key.value)
+        if key == path or path.endswith(f"/{key}") or f"`{key}`" in message:
+            step = found.group(3) if found.re.groups >= 3 else None
+            if step and isinstance(entry.value, Seq):
+                return entry.value.items[int(step) - 1].span
+            return entry.value.span if step else entry.key.span
+    return tree.span
