@@ -61,22 +61,26 @@ Drawn = dict[str, Piece]
 """The children of a container by name."""
 
 
-def entry_mark(container: Container, id: str) -> str:
-    """The mark at which a container begins: a bar that forks, a loop, or the usual dot."""
+def entry_mark(container: Container, id: str, *, sideways: bool) -> str:
+    """The mark at which a container begins: a bar that forks, a loop, or the usual dot.
+
+    `sideways`: the picture runs to a side, so bars stand upright.
+    """
     if isinstance(container, Concurrence):
-        return _bar(id, INK, "all at once", width="1.2")
+        return _bar(id, INK, "all at once", "1.2", sideways=sideways)
     if isinstance(container, nodes.Iterator):
         head = font(f"for each <B>{html(container.item_key)}</B>", colour=INK, size=11)
         label = spaced([head, font(html(items(container)), colour=FAINT, size=9)])
-        return f'"{id}"{attributes({"label": label, "color": LOOP_BORDER})}'
+        return f'"{id}"{attributes({"color": LOOP_BORDER}, label)}'
     dot = {"label": "", "tooltip": "start", "shape": "circle"}
     size = {"width": "0.14", "height": "0.14", "fixedsize": "true"}
     return f'"{id}"{attributes(dot | {"fillcolor": INK, "color": INK} | size)}'
 
 
-def _bar(id: str, colour: str, tooltip: str, width: str) -> str:
+def _bar(id: str, colour: str, tooltip: str, length: str, *, sideways: bool) -> str:
     look = {"label": "", "tooltip": tooltip, "style": "filled"}
-    size = {"width": width, "height": "0.06", "fixedsize": "true"}
+    width, height = ("0.06", length) if sideways else (length, "0.06")
+    size = {"width": width, "height": height, "fixedsize": "true"}
     return f'"{id}"{attributes(look | {"fillcolor": colour, "color": colour} | size)}'
 
 
@@ -198,14 +202,16 @@ def join_id(start: str, number: int) -> str:
     return f"{start}+{number}"
 
 
-def joins(container: Container, start: str) -> Iterator[str]:
+def joins(container: Container, start: str, *, sideways: bool) -> Iterator[str]:
     """The bars of a concurrence: one for each rule that does not have just one condition."""
     if not isinstance(container, Concurrence):
         return
     for number, rule in enumerate(container.rules):
         if len(rule.when) != 1:
             colour = TONES[tone(rule.outcome)][0]
-            yield _bar(join_id(start, number), colour, f"all: {rule.outcome}", width="0.8")
+            yield _bar(
+                join_id(start, number), colour, f"all: {rule.outcome}", "0.8", sideways=sideways
+            )
 
 
 def _loop(
@@ -240,9 +246,10 @@ def _arrow(bundle: list[Edge]) -> str:
     first = bundle[0]
     outcomes = [edge.outcome for edge in bundle if edge.outcome]
     look = {"color": TONES[_common([tone(edge.outcome) for edge in bundle])][0]}
+    label = ""
     if outcomes and not all(edge.tacit for edge in bundle):
         rows = [font(html(name), colour=TONES[tone(name)][0]) for name in outcomes]
-        look["label"] = lines(f" {row} " for row in rows)
+        label = lines(f" {row} " for row in rows)
     if outcomes:
         look["tooltip"] = ", ".join(outcomes)
     if all(edge.hidden for edge in bundle):
@@ -254,7 +261,7 @@ def _arrow(bundle: list[Edge]) -> str:
     frame = first.head.cluster
     if frame and not first.tail.startswith((f"{frame}/", f"{frame}=", f"{frame}#")):
         look["lhead"] = f"cluster_{frame}"
-    return f'"{first.tail}" -> "{first.head.id}"{attributes(look)}'
+    return f'"{first.tail}" -> "{first.head.id}"{attributes(look, label)}'
 
 
 def _common(tones: list[str]) -> str:

@@ -46,17 +46,18 @@ def tone(outcome: str) -> str:
     return _TONE.get(word) or _TONE.get(word.rsplit("_", 1)[-1]) or "neutral"
 
 
-def identifier(path: Iterable[str]) -> str:
-    """The name of a node for a path of names, of which no two give the same."""
-    return "/".join(re.sub(r"[^\w.-]", lambda odd: f"%{ord(odd[0]):X}.", name) for name in path)
+def identifier(name: str) -> str:
+    """A name without the characters that mean something in names of nodes; no two give the same."""
+    return re.sub(r"[^\w.-]", lambda odd: f"~{ord(odd[0]):X}.", name)
 
 
 def quoted(text: str) -> str:
-    """A DOT string that shows the text as it is."""
-    text = _ODD.sub("\ufffd", text)
-    for odd, plain in (("\\", "\\\\"), ('"', '\\"'), ("\n", "\\n"), ("&", "&amp;")):
-        text = text.replace(odd, plain)
-    return f'"{text}"'
+    """A DOT string that shows the text as it is.
+
+    For a backslash stands its double U+2216: Graphviz resolves escapes in tooltips twice.
+    """
+    text = _ODD.sub("\ufffd", text).replace("\\", "\u2216")
+    return '"' + text.replace('"', '\\"').replace("\n", "\\n") + '"'
 
 
 def html(text: str) -> str:
@@ -70,23 +71,19 @@ def font(text: str, *, colour: str, size: int | None = None) -> str:
     return f'<FONT COLOR="{colour}"{points}>{text}</FONT>'
 
 
-def attributes(values: Mapping[str, str]) -> str:
-    """An attribute list. Values that start with `<` are HTML labels, the others are quoted."""
-    if not values:
-        return ""
-    parts = (
-        f"{name}={value if value.startswith('<') else quoted(value)}"
-        for name, value in values.items()
-    )
+def attributes(values: Mapping[str, str], markup: str = "") -> str:
+    """An attribute list. `markup` is the label, as HTML."""
+    parts = [f"label=<{markup}>"] if markup else []
+    parts += (f"{name}={quoted(value)}" for name, value in values.items())
     return f" [{', '.join(parts)}]"
 
 
 def lines(texts: Iterable[str]) -> str:
-    """An HTML label of these lines of markup."""
-    return f"<{'<BR/>'.join(texts)}>"
+    """Markup of these lines."""
+    return "<BR/>".join(texts)
 
 
 def spaced(texts: Iterable[str]) -> str:
     """As `lines`, with room for underscores between them."""
     rows = "".join(f"<TR><TD>{text}</TD></TR>" for text in texts)
-    return f'<<TABLE BORDER="0" CELLBORDER="0" CELLPADDING="0" CELLSPACING="1">{rows}</TABLE>>'
+    return f'<TABLE BORDER="0" CELLBORDER="0" CELLPADDING="0" CELLSPACING="1">{rows}</TABLE>'
