@@ -2,6 +2,9 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
+from typing import TypeVar
+
 import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
@@ -14,6 +17,13 @@ from smachac.ir.walk import walk
 from smachac.runtime import smach
 from smachac.runtime.compare import compare
 
+T = TypeVar("T")
+
+OUTCOMES = ("a", "b")
+
+# A strategy that is made anew for each draw costs more than the draw.
+BELOW = [st.integers(0, most) for most in range(8)]
+
 
 @pytest.fixture(autouse=True)
 def _quiet(monkeypatch: pytest.MonkeyPatch) -> None:
@@ -21,81 +31,66 @@ def _quiet(monkeypatch: pytest.MonkeyPatch) -> None:
         monkeypatch.setattr(smach, name, smach.log.quiet)
 
 
-# Machines whose leaves follow steps and that go only forward, so that every run ends.
+class Maker:
+    """Draws machines that go only forward, so that every run ends.
 
-OUTCOMES = ["a", "b"]
-To = st.SearchStrategy[dict[str, str]]
+    Every node has the outcomes `a` and `b`; a leaf `x` writes the key `kx`.
+    """
 
+    def __init__(self, draw: st.DrawFn) -> None:
+        self.draw = draw
 
-@st.composite
-def forward_machines(draw: st.DrawFn, name: str = "sm", depth: int = 2) -> StateMachine:
-    size = draw(st.integers(1, 3))
-    names = [f"{name}{number}" for number in range(size)]
-    children = []
-    for number, child in enumerate(names):
-        targets = st.sampled_from([*names[number + 1 :], *OUTCOMES])
-        children.append(
-            draw(nodes(child, depth, st.fixed_dictionaries(dict.fromkeys(OUTCOMES, targets))))
+    def pick(self, options: Sequence[T]) -> T:
+        return options[self.draw(BELOW[len(options) - 1])]
+
+    def machine(self, name: str, depth: int, to: dict[str, str]) -> StateMachine:
+        names = [f"{name}{number}" for number in range(self.pick((1, 2, 3)))]
+        children = [
+            self.node(child, depth, {o: self.pick((*names[at:], *OUTCOMES)) for o in OUTCOMES})
+            for at, child in enumerate(names, 1)
+        ]
+        return machine(name, "a b", *children, to=to, outs=f"k{names[0]} k{names[-1]}")
+
+    def node(self, name: str, depth: int, to: dict[str, str]) -> Node:
+        kind = self.pick(("leaf", "machine", "each", "both")) if depth else "leaf"
+        if kind == "leaf":
+            return leaf(name, to, outcomes="a b", outs=f"k{name}")
+        if kind == "machine":
+            return self.machine(name, depth - 1, to)
+        return (self.each if kind == "each" else self.both)(name, depth, to)
+
+    def each(self, name: str, depth: int, to: dict[str, str]) -> Node:
+        return iterator(
+            name,
+            "a b",
+            self.node(f"{name}i", depth - 1, {}),
+            items=self.pick(([], [1], [1, 2], [1, 2, 3])),
+            exhausted="b",
+            loop=self.pick(("", "a", "a b")),
+            to=to,
         )
-    return machine(name, "a b", *children, outs=" ".join(f"k{child}" for child in names))
 
-
-def nodes(name: str, depth: int, to: To) -> st.SearchStrategy[Node]:
-    """Nodes with the outcomes `a` and `b`, and transitions as `to` draws them."""
-    kinds = ["leaf", "leaf"] if not depth else ["leaf", "machine", "both", "each"]
-    return st.sampled_from(kinds).flatmap(lambda kind: _node(kind, name, depth, to))
-
-
-@st.composite
-def _node(draw: st.DrawFn, kind: str, name: str, depth: int, to: To) -> Node:
-    if kind == "leaf":
-        return leaf(name, draw(to), outcomes="a b", outs=f"k{name}")
-    if kind == "machine":
-        inner = draw(forward_machines(name, depth - 1))
-        return machine(name, "a b", *inner.children, to=draw(to), outs=f"k{name}0")
-    if kind == "each":
-        child = draw(nodes(f"{name}i", depth - 1, st.just({})))
-        loop = draw(st.sampled_from(["", "a", "a b"]))
-        items = draw(st.lists(st.integers(), max_size=3))
-        return iterator(name, "a b", child, items=items, exhausted="b", loop=loop, to=draw(to))
-    count = draw(st.integers(1, 3))
-    children = [draw(nodes(f"{name}c{n}", depth - 1, st.just({}))) for n in range(count)]
-    rules = draw(
-        st.lists(
-            st.tuples(
-                st.sampled_from(OUTCOMES),
-                st.dictionaries(
-                    st.sampled_from([child.name for child in children]),
-                    st.sampled_from(OUTCOMES),
-                    min_size=1,
-                ),
-            ),
-            max_size=3,
+    def both(self, name: str, depth: int, to: dict[str, str]) -> Node:
+        names = [f"{name}c{number}" for number in range(self.pick((1, 2, 3)))]
+        rules = tuple(
+            (self.pick(OUTCOMES), {child: self.pick(OUTCOMES) for child in names[: at + 1]})
+            for at in range(self.pick((0, 1, 2)))
         )
-    )
-    return concurrence(
-        name,
-        "a b",
-        *children,
-        default=draw(st.sampled_from(OUTCOMES)),
-        rules=tuple(rules),
-        to=draw(to),
-    )
+        children = [self.node(child, depth - 1, {}) for child in names]
+        default = self.pick(OUTCOMES)
+        return concurrence(name, "a b", *children, default=default, rules=rules, to=to)
+
+    def steps(self, name: str) -> list[tuple[str, dict[str, object]]]:
+        return [(self.pick(OUTCOMES), {f"k{name}": at}) for at in range(self.pick((1, 2, 3)))]
 
 
 @st.composite
 def scripted_machines(draw: st.DrawFn) -> tuple[StateMachine, Steps]:
-    root = draw(forward_machines())
-    step = st.sampled_from(OUTCOMES)
-    steps = {
-        path: [
-            (outcome, {f"k{node.name}": at})
-            for at, outcome in enumerate(draw(st.lists(step, min_size=1, max_size=3)))
-        ]
-        for path, node in walk(root)
-        if isinstance(node, Leaf)
-    }
-    return root, steps
+    """A machine, and what each of its leaves does at each visit."""
+    maker = Maker(draw)
+    root = maker.machine("sm", 3, {})
+    leaves = [(path, node) for path, node in walk(root) if isinstance(node, Leaf)]
+    return root, {path: maker.steps(node.name) for path, node in leaves}
 
 
 @given(scripted_machines())
@@ -109,16 +104,18 @@ def test_built_machines_do_what_the_interpreter_does(case: tuple[StateMachine, S
     assert expected[-1]["outcome"] == outcome
 
 
-@given(scripted_machines(), st.integers(0, 5))
-@settings(max_examples=40)
+@given(scripted_machines(), BELOW[5])
+@settings(max_examples=60)
 def test_the_order_of_branches_does_not_change_what_is_done(
     case: tuple[StateMachine, Steps], seed: int
 ) -> None:
     root, steps = case
 
     def act(path: str, node: Leaf, visit: int, userdata: Userdata) -> str:
-        row = steps[path]
-        return row[min(visit, len(row)) - 1][0]
+        outcome, writes = steps[path][min(visit, len(steps[path])) - 1]
+        for key, value in writes.items():
+            userdata[key] = value
+        return outcome
 
     one, other = ran(root, act, seed=seed), ran(root, act, seed=seed + 1)
     assert compare(one[1], other[1]) is None
