@@ -1,0 +1,317 @@
+"""Portable expressions: the tree, reading it from Python text and printing it again.
+
+The subset is grammars/expression.lark. Values are computed by evaluate.py.
+"""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Iterable, Iterator
+from dataclasses import dataclass
+from functools import cache
+from typing import TYPE_CHECKING, Any, TypeAlias
+
+from smachac.grammars import load
+from smachac.source import assert_never
+
+if TYPE_CHECKING:
+    from lark import Lark
+
+LONGEST = 10_000
+"""Characters of the longest text that is read as an expression."""
+
+DEEPEST = 100
+"""Levels of the deepest tree, and of the deepest brackets, that are read."""
+
+
+# The nodes are matched by position, so they are not keyword-only.
+@dataclass(frozen=True, slots=True)
+class Constant:
+    """A literal. Numbers are not negative: `-1` is a `Unary`."""
+
+    value: bool | int | float | str | None
+
+
+@dataclass(frozen=True, slots=True)
+class Name:
+    name: str
+
+
+@dataclass(frozen=True, slots=True)
+class Attribute:
+    value: Expr
+    name: str
+
+
+@dataclass(frozen=True, slots=True)
+class Index:
+    value: Expr
+    index: Expr
+
+
+@dataclass(frozen=True, slots=True)
+class Call:
+    function: Expr
+    arguments: tuple[Expr, ...] = ()
+    keywords: tuple[tuple[str, Expr], ...] = ()
+
+
+@dataclass(frozen=True, slots=True)
+class Unary:
+    """`operator` is `+`, `-` or `not`."""
+
+    operator: str
+    operand: Expr
+
+
+@dataclass(frozen=True, slots=True)
+class Binary:
+    """`operator` is one of `+ - * / // % **`."""
+
+    operator: str
+    left: Expr
+    right: Expr
+
+
+@dataclass(frozen=True, slots=True)
+class Compare:
+    """`first op operand op operand ...` with `< <= > >= == !=`, `in` and `not in`."""
+
+    first: Expr
+    rest: tuple[tuple[str, Expr], ...]
+
+
+@dataclass(frozen=True, slots=True)
+class Boolean:
+    """Two or more operands; `operator` is `and` or `or`."""
+
+    operator: str
+    operands: tuple[Expr, ...]
+
+
+@dataclass(frozen=True, slots=True)
+class Conditional:
+    """`then if test else otherwise`."""
+
+    test: Expr
+    then: Expr
+    otherwise: Expr
+
+
+@dataclass(frozen=True, slots=True)
+class Lambda:
+    """A function of one parameter, or of none."""
+
+    parameter: str | None
+    body: Expr
+
+
+@dataclass(frozen=True, slots=True)
+class ListDisplay:
+    items: tuple[Expr, ...]
+
+
+@dataclass(frozen=True, slots=True)
+class TupleDisplay:
+    items: tuple[Expr, ...]
+
+
+@dataclass(frozen=True, slots=True)
+class DictDisplay:
+    entries: tuple[tuple[Expr, Expr], ...]
+
+
+Operation: TypeAlias = Unary | Binary | Compare | Boolean
+Display: TypeAlias = ListDisplay | TupleDisplay | DictDisplay
+Expr: TypeAlias = (
+    Constant | Name | Attribute | Index | Call | Conditional | Lambda | Display | Operation
+)
+
+
+def parts(expr: Expr) -> tuple[Expr, ...]:
+    """The expressions directly inside one, in the order of the text."""
+    match expr:
+        case Constant() | Name():
+            return ()
+        case Attribute(value, _):
+            return (value,)
+        case Index(value, index):
+            return (value, index)
+        case Call(function, arguments, keywords):
+            return (function, *arguments, *(value for _, value in keywords))
+        case Unary(_, operand):
+            return (operand,)
+        case Binary(_, left, right):
+            return (left, right)
+        case Compare(first, rest):
+            return (first, *(operand for _, operand in rest))
+        case Boolean(_, operands):
+            return operands
+        case Conditional(test, then, otherwise):
+            return (then, test, otherwise)
+        case Lambda(_, body):
+            return (body,)
+        case ListDisplay(items) | TupleDisplay(items):
+            return items
+        case DictDisplay(entries):
+            return tuple(part for entry in entries for part in entry)
+    return assert_never(expr)
+
+
+def walk_expression(expr: Expr) -> Iterator[Expr]:
+    """An expression and all inside it, in the order of the text."""
+    todo = [expr]
+    while todo:
+        current = todo.pop()
+        yield current
+        todo.extend(reversed(parts(current)))
+
+
+def dotted(expr: Expr) -> str | None:
+    """The text of a name with attributes, `math.pi`; None for anything else."""
+    words: list[str] = []
+    while isinstance(expr, Attribute):
+        words.append(expr.name)
+        expr = expr.value
+    if not isinstance(expr, Name):
+        return None
+    return ".".join((expr.name, *reversed(words)))
+
+
+# Last parts of dotted words that make them names of files.
+_FILE = re.compile(
+    r"bag|csv|dae|gif|gz|html|ini|jpe?g|json|mesh|mp4|pcd|pdf|pkl|ply|png|py|sdf|smir|srdf|stl"
+    r"|svg|txt|urdf|wav|xacro|xml|ya?ml|zip",
+    re.IGNORECASE,
+)
+_DOTTED = re.compile(r"[^\W\d]\w*(?:\.[^\W\d]\w*)+")
+_CALL = re.compile(r"(?<!\w)[^\W\d]\w*\(")
+
+
+def looks_like_expression(text: str) -> bool:
+    """Whether an unmarked string may be code: a dotted word that names no file, or a call last.
+
+    A cheap look before `parse_expression` decides.
+    """
+    text = text.strip()
+    if text.endswith(")"):
+        return _CALL.search(text) is not None
+    if _DOTTED.fullmatch(text) is None:
+        return False
+    return _FILE.fullmatch(text.rpartition(".")[2]) is None
+
+
+def parse_expression(text: str) -> Expr | None:
+    """The tree of a portable expression; None when the text is not one, too long or too deep."""
+    text = text.strip()
+    if len(text) > LONGEST or not _brackets_fit(text):
+        return None
+    from lark.exceptions import LarkError
+
+    try:
+        expr: Any = _parser().parse(text)
+    except (LarkError, ValueError, SyntaxError):
+        return None
+    return expr if _depth_fits(expr) else None
+
+
+_BRACKETS = re.compile(
+    r"'(?:[^'\\\n]|\\.)*'|\"(?:[^\"\\\n]|\\.)*\"|(?P<open>[(\[{])|(?P<close>[)\]}])|(?P<end>[\n\r])"
+)
+
+
+def _brackets_fit(text: str) -> bool:
+    """Whether brackets are not too deep, and lines end only inside them, as Python wants it."""
+    depth = 0
+    for found in _BRACKETS.finditer(text):
+        kind = found.lastgroup
+        depth += (kind == "open") - (kind == "close")
+        if depth > DEEPEST or (kind == "end" and depth <= 0):
+            return False
+    return True
+
+
+def _depth_fits(expr: Expr) -> bool:
+    level: Iterable[Expr] = (expr,)
+    for _ in range(DEEPEST):
+        level = [part for each in level for part in parts(each)]
+        if not level:
+            return True
+    return False
+
+
+@cache
+def _parser() -> Lark:
+    from smachac.ir.expression_builder import Builder
+
+    return load("expression", builder=Builder())
+
+
+# How tightly a form binds: a part that binds less tightly than its place wants needs brackets.
+_TEST, _OR, _AND, _NOT, _COMPARE, _SUM, _PRODUCT, _SIGNED, _POWER, _ITEM = range(10)
+_BINDING = {"+": _SUM, "-": _SUM, "*": _PRODUCT, "/": _PRODUCT, "//": _PRODUCT, "%": _PRODUCT}
+
+
+def print_expression(expr: Expr) -> str:
+    """Python text with as few brackets as keep the tree: `parse_expression` gives it back."""
+    return _print(expr)[0]
+
+
+def _at(binding: int, expr: Expr) -> str:
+    text, own = _print(expr)
+    return text if own >= binding else f"({text})"
+
+
+def _comma(items: Iterable[Expr]) -> str:
+    return ", ".join(_at(_TEST, item) for item in items)
+
+
+def _print(expr: Expr) -> tuple[str, int]:
+    match expr:
+        case Constant(value):
+            return "1e999" if value == float("inf") else repr(value), _ITEM
+        case Name(name):
+            return name, _ITEM
+        case Attribute(Constant(int() as value), name):
+            # `1.real` is no Python.
+            return f"({value!r}).{name}", _ITEM
+        case Attribute(value, name):
+            return f"{_at(_ITEM, value)}.{name}", _ITEM
+        case Index(value, index):
+            return f"{_at(_ITEM, value)}[{_at(_TEST, index)}]", _ITEM
+        case Call(function, arguments, keywords):
+            named = [f"{key}={_at(_TEST, value)}" for key, value in keywords]
+            given = ", ".join([*map(print_expression, arguments), *named])
+            return f"{_at(_ITEM, function)}({given})", _ITEM
+        case Lambda(parameter, body):
+            return f"lambda{f' {parameter}' if parameter else ''}: {_at(_TEST, body)}", _TEST
+        case Conditional(test, then, otherwise):
+            return f"{_at(_OR, then)} if {_at(_OR, test)} else {_at(_TEST, otherwise)}", _TEST
+        case ListDisplay(items):
+            return f"[{_comma(items)}]", _ITEM
+        case TupleDisplay(items):
+            return f"({_comma(items)}{',' if len(items) == 1 else ''})", _ITEM
+        case DictDisplay(entries):
+            pairs = (f"{_at(_TEST, key)}: {_at(_TEST, value)}" for key, value in entries)
+            return f"{{{', '.join(pairs)}}}", _ITEM
+    return _print_operation(expr)
+
+
+def _print_operation(expr: Operation) -> tuple[str, int]:
+    match expr:
+        case Unary("not", operand):
+            return f"not {_at(_NOT, operand)}", _NOT
+        case Unary(sign, operand):
+            return f"{sign}{_at(_SIGNED, operand)}", _SIGNED
+        case Binary("**", left, right):
+            return f"{_at(_ITEM, left)} ** {_at(_SIGNED, right)}", _POWER
+        case Binary(operator, left, right):
+            own = _BINDING[operator]
+            return f"{_at(own, left)} {operator} {_at(own + 1, right)}", own
+        case Compare(first, rest):
+            tail = "".join(f" {word} {_at(_SUM, operand)}" for word, operand in rest)
+            return _at(_SUM, first) + tail, _COMPARE
+        case Boolean(operator, operands):
+            own = _OR if operator == "or" else _AND
+            return f" {operator} ".join(_at(own + 1, each) for each in operands), own
+    return assert_never(expr)
