@@ -135,6 +135,8 @@ class _Resolver:
         children: tuple[State, ...] = ()
         if "states" in fields and owner != "state":
             children = self.children(fields["states"].value, place)
+            if owner == "Iterator":
+                self.check_iterated(children)
         return State(
             name=name, owner=owner, type=type_, fields=fields, states=children, via=place.via
         )
@@ -162,6 +164,19 @@ class _Resolver:
             if state is not None:
                 found.append(state)
         return tuple(found)
+
+    def check_iterated(self, children: tuple[State, ...]) -> None:
+        """SMACH's Iterator has one state, which sees its userdata as it is."""
+        for child in children[1:]:
+            message = "an Iterator holds one state; this is one more"
+            help = "put them into a StateMachine, and iterate over that"
+            self.report.append(problems.wrong_shape(child.name.span, message, help))
+        for child in children[:1]:
+            if "remapping" in child.fields:
+                span = child.fields["remapping"].key.span
+                message = "the state of an Iterator has no remapping: it sees the Iterator's keys"
+                help = "rename the keys, or put it into a StateMachine and remap there"
+                self.report.append(problems.wrong_shape(span, message, help))
 
     def item(self, tree: Tree, place: _Place) -> State | None:
         """The state of one item of a list of states, in either layout."""

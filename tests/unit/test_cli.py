@@ -1,0 +1,253 @@
+"""The command line as users meet it: words, files, exit codes."""
+
+from __future__ import annotations
+
+import json
+import os
+import signal
+import subprocess
+import sys
+from pathlib import Path
+
+import pytest
+
+from smachac import __version__
+from smachac.cli import main
+
+EXAMPLES = Path(__file__).parents[2] / "examples"
+GOOD = str(EXAMPLES / "01_sequence" / "main.yml")
+
+
+@pytest.fixture
+def broken(tmp_path: Path) -> Path:
+    path = tmp_path / "main.yml"
+    path.write_text(Path(GOOD).read_text().replace("GO_HOME,", "GO_HMOE,"))
+    return path
+
+
+def run(*arguments: str, **options: object) -> subprocess.CompletedProcess[str]:
+    """The command in a process of its own."""
+    return subprocess.run(
+        [sys.executable, "-m", "smachac.cli", *arguments],
+        capture_output=True,
+        text=True,
+        timeout=120,
+        check=False,
+        **options,  # type: ignore[call-overload]
+    )
+
+
+def test_version_and_help(capsys: pytest.CaptureFixture[str]) -> None:
+    for arguments in (["--version"], ["--help"], ["check", "--help"], ["run", "--help"]):
+        with pytest.raises(SystemExit) as ended:
+            main(arguments)
+        assert ended.value.code == 0
+    shown = capsys.readouterr().out
+    assert f"smachac {__version__}" in shown
+    assert "smachac check main.yml" in shown
+
+
+@pytest.mark.parametrize(
+    "arguments",
+    [
+        [],
+        ["chek"],
+        ["build", GOOD],
+        ["build", GOOD, "--target", "pyton"],
+        ["build", GOOD, "--target", "dot", "--option", "dept=2"],
+        ["build", GOOD, "--target", "dot", "--option", "depth"],
+        ["explain", "SM999"],
+        ["run", GOOD, "--seed", "x"],
+    ],
+)
+def test_wrong_usage_is_2(arguments: list[str], capsys: pytest.CaptureFixture[str]) -> None:
+    try:
+        code = main(arguments)
+    except SystemExit as ended:
+        code = ended.code  # type: ignore[assignment]
+    assert code == 2
+    assert capsys.readouterr().err
+
+
+def test_a_clean_script(capsys: pytest.CaptureFixture[str]) -> None:
+    assert main(["check", GOOD]) == 0
+    assert "no problems" in capsys.readouterr().out or "0 errors" in capsys.readouterr().out
+
+
+def test_a_typo_is_found(broken: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    assert main(["check", str(broken)]) == 1
+    shown = capsys.readouterr().out
+    assert "SM101" in shown
+    assert "did you mean `GO_HOME`?" in shown
+    assert f"{broken}:" in shown
+
+
+def test_json(broken: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    assert main(["check", "--format", "json", GOOD, str(broken)]) == 1
+    data = json.loads(capsys.readouterr().out)
+    assert {item["code"] for item in data["diagnostics"]} >= {"SM101"}
+
+
+def test_strict(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    path = tmp_path / "main.yml"
+    text = (
+        Path(GOOD)
+        .read_text()
+        .replace("outcomes: [succeeded, aborted]\n\n", "outcomes: [succeeded, aborted, never]\n\n")
+    )
+    path.write_text(text)
+    assert main(["check", str(path)]) == 0
+    assert main(["check", "--strict", str(path)]) == 1
+    assert "SM203" in capsys.readouterr().out
+
+
+@pytest.mark.parametrize("target", ["python", "dot", "ir", "json"])
+def test_build(target: str, tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    arguments = ["build", GOOD, "--target", target, "-o", str(tmp_path / "\u00f6 x")]
+    assert main(arguments) == 0
+    (written,) = list((tmp_path / "\u00f6 x").iterdir())
+    assert main([*arguments, "--check"]) == 0
+    assert main(arguments) == 0
+    written.write_text("mine")
+    assert main([*arguments, "--check"]) == 1
+    assert main(arguments) == 1
+    assert written.read_text() == "mine"
+    assert "--force" in capsys.readouterr().err
+    assert main([*arguments, "--force"]) == 0
+    assert written.read_text() != "mine"
+
+
+def test_build_writes_nothing_for_a_broken_script(broken: Path, tmp_path: Path) -> None:
+    assert main(["build", str(broken), "--target", "python", "-o", str(tmp_path / "out")]) == 1
+    assert not (tmp_path / "out").exists()
+
+
+def test_build_to_stdout(capsys: pytest.CaptureFixture[str]) -> None:
+    assert main(["build", GOOD, "--target", "python", "-o", "-"]) == 0
+    compile(capsys.readouterr().out, "x.py", "exec")
+
+
+def test_explain(capsys: pytest.CaptureFixture[str]) -> None:
+    assert main(["explain", "sm201"]) == 0
+    shown = capsys.readouterr().out
+    assert "SM201" in shown
+    assert "Wrong" in shown
+
+
+def test_targets(capsys: pytest.CaptureFixture[str]) -> None:
+    assert main(["targets"]) == 0
+    assert {line.split()[0] for line in capsys.readouterr().out.splitlines()} >= {
+        "python",
+        "dot",
+        "ir",
+        "json",
+    }
+
+
+def test_run_with_trace(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    trace = tmp_path / "deep" / "t.jsonl"
+    assert main(["run", GOOD, "--trace", str(trace)]) == 0
+    shown = capsys.readouterr().out
+    assert "CHECK_BATTERY" in shown
+    assert shown.rstrip().endswith("outcome: succeeded")
+    events = [json.loads(line) for line in trace.read_text().splitlines()]
+    assert [event["event"] for event in events][:2] == ["start", "enter"]
+    assert events[-1] == events[-1] | {"event": "finish", "outcome": "succeeded"}
+    assert main(["run", "-q", GOOD, "--expect", "aborted"]) == 1
+
+
+def test_run_a_scenario(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    scenario = tmp_path / "scenario.yml"
+    scenario.write_text("states:\n  CHECK_BATTERY: low\n")
+    script = str(EXAMPLES / "08_pick_and_place" / "main.yml")
+    assert main(["run", GOOD, "--mock", str(scenario), "--expect", "aborted"]) == 0
+    scenario.write_text("states:\n  LIFT: {outcome: aborted}\n")
+    assert main(["run", script, "--mock", str(scenario), "--expect", "aborted"]) == 0
+    assert "LET_GO" in capsys.readouterr().out
+    scenario.write_text("states:\n  LFIT: aborted\n  LIFT: [aborted, nothing]\n")
+    assert main(["run", script, "--mock", str(scenario)]) == 1
+    shown = capsys.readouterr().err
+    assert f"{scenario}:2:3" in shown
+    assert f"{scenario}:3:19" in shown
+
+
+def test_a_state_that_raises(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    path = tmp_path / "main.yml"
+    path.write_text(
+        "name: sm\ntemplate: Base\noutcomes: [succeeded]\nstates:\n"
+        "  - IN:\n      template: StateMachine\n      outcomes: [succeeded]\n      states:\n"
+        "        - DIVIDE:\n            template: CallbacksState\n"
+        "            callbacks: {x: 'lambda ud: 1 / 0'}\n            output_keys: [x]\n"
+    )
+    assert main(["run", str(path)]) == 1
+    shown = capsys.readouterr().err
+    assert "sm/IN/DIVIDE (main.yml:9)" in shown
+    assert "ZeroDivisionError" in shown
+    assert "1 / 0" in shown
+
+
+def test_a_missing_file_a_folder_and_a_full_stop(
+    tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    assert main(["check", str(tmp_path / "no.yml"), str(tmp_path)]) == 1
+    assert capsys.readouterr().out.count("SM007") == 2
+
+
+def test_output_that_cannot_be_written(capsys: pytest.CaptureFixture[str]) -> None:
+    assert main(["build", GOOD, "--target", "python", "-o", "/dev/null/x"]) == 1
+    assert "cannot write" in capsys.readouterr().err
+    assert main(["run", GOOD, "--trace", "/dev/full"]) in (0, 1)
+
+
+def test_a_closed_pipe_is_no_error() -> None:
+    read_end, write_end = os.pipe()
+    os.close(read_end)
+    with os.fdopen(write_end, "w") as closed:
+        ended = subprocess.run(
+            [sys.executable, "-m", "smachac.cli", "build", GOOD, "-t", "python", "-o", "-"],
+            stdout=closed,
+            stderr=subprocess.PIPE,
+            text=True,
+            timeout=120,
+            check=False,
+        )
+    assert ended.returncode == 0
+    assert ended.stderr == ""
+
+
+def test_ascii_terminals_get_escapes(tmp_path: Path) -> None:
+    path = tmp_path / "main.yml"
+    path.write_text("name: \u00fc\noutcomes: [a]\nstates:\n  - \u2713: {template: X}\n")
+    environment = {**os.environ, "PYTHONIOENCODING": "ascii", "PYTHONUTF8": "0", "LC_ALL": "C"}
+    ended = run("check", str(path), env=environment)
+    assert ended.returncode == 1
+    assert "\\u2713" in ended.stdout
+    assert "Traceback" not in ended.stderr
+
+
+def test_ctrl_c_preempts_the_machine(tmp_path: Path) -> None:
+    path = tmp_path / "main.yml"
+    path.write_text(
+        "name: sm\ntemplate: Base\noutcomes: [succeeded, preempted]\nstates:\n"
+        "  - WAIT: {template: SleepState, time: 60, transitions: {succeeded: succeeded,"
+        " preempted: TIDY_UP}}\n"
+        "  - TIDY_UP: {template: ScriptedState, outcomes: [done], transitions: {done: preempted}}\n"
+    )
+    trace = tmp_path / "t.fifo"
+    os.mkfifo(trace)
+    process = subprocess.Popen(
+        [sys.executable, "-m", "smachac.cli", "run", str(path), "--trace", str(trace)],
+        stdout=subprocess.PIPE,
+        stderr=subprocess.PIPE,
+        text=True,
+    )
+    with trace.open() as events:
+        while json.loads(events.readline())["event"] != "enter":
+            pass
+        process.send_signal(signal.SIGINT)
+        rest = events.read()
+    shown, told = process.communicate(timeout=60)
+    assert process.returncode == 0
+    assert "TIDY_UP" in rest
+    assert shown.rstrip().endswith("outcome: preempted")
+    assert "asked to stop" in told

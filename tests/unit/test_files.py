@@ -1,0 +1,117 @@
+"""The disk: search folders, project files, outputs that are whole or not there."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import pytest
+
+from smachac.diagnostics import Report
+from smachac.files import (
+    MARK,
+    changed_files,
+    disk_library,
+    find_project,
+    foreign_files,
+    read_source,
+    write_files,
+)
+
+
+def codes(report: Report) -> list[str]:
+    return [item.code.code for item in report]
+
+
+def test_what_cannot_be_read_is_told(tmp_path: Path) -> None:
+    report: Report = []
+    (tmp_path / "binary.yml").write_bytes(b"name: sm\n\xff\xfe\x00")
+    assert read_source(tmp_path / "missing.yml", report) is None
+    assert read_source(tmp_path, report) is None
+    assert read_source(tmp_path / "binary.yml", report) is None
+    assert codes(report) == ["SM007"] * 3
+    assert (report[2].span.line, report[2].span.column) == (2, 1)
+
+
+@pytest.mark.parametrize("encoding", ["utf-8", "utf-8-sig", "utf-16"])
+def test_encodings_of_yaml(tmp_path: Path, encoding: str) -> None:
+    (tmp_path / "a.yml").write_bytes("name: \u00fc\n".encode(encoding))
+    source = read_source(tmp_path / "a.yml", [])
+    assert source is not None
+    assert source.text == "name: \u00fc\n"
+
+
+def test_search_order_and_bounds(tmp_path: Path) -> None:
+    for name in ("main.yml", "own.yml", "lib/own.yml", "lib/shared.yaml", "outside.yml"):
+        path = tmp_path / "p" / name if name != "outside.yml" else tmp_path / name
+        path.parent.mkdir(parents=True, exist_ok=True)
+        path.write_text(name)
+    main = tmp_path / "p" / "main.yml"
+    library = disk_library(main, [], scripts=[tmp_path / "p" / "lib"])
+
+    def text(name: str, caller: str = str(main)) -> str | None:
+        source = library.script(name, caller)
+        return source.text if source else None
+
+    assert text("own") == "own.yml"
+    assert text("own", str(tmp_path / "p" / "lib" / "shared.yaml")) == "lib/own.yml"
+    assert text("shared") == "lib/shared.yaml"
+    assert text("lib/shared") == "lib/shared.yaml"
+    assert text("../outside") is None
+    assert text(str(tmp_path / "outside.yml")) is None
+    assert text("no\0name") is None
+    assert text("x" * 5000) is None
+    assert library.script("own", str(main)) is library.script("own.yml", str(main))
+    assert "shared" in library.script_names(str(main))
+
+
+def test_a_link_out_of_the_folder_is_not_followed(tmp_path: Path) -> None:
+    (tmp_path / "p").mkdir()
+    (tmp_path / "secret.yml").write_text("secret")
+    (tmp_path / "p" / "link.yml").symlink_to(tmp_path / "secret.yml")
+    library = disk_library(tmp_path / "p" / "main.yml", [])
+    assert library.script("link", str(tmp_path / "p" / "main.yml")) is None
+
+
+def test_the_nearest_project_file_counts(tmp_path: Path) -> None:
+    inner = tmp_path / "a" / "b"
+    inner.mkdir(parents=True)
+    (tmp_path / "smachac.toml").write_text('scripts = ["far"]')
+    (tmp_path / "a" / "pyproject.toml").write_text('[tool.smachac]\nscripts = ["near"]\n')
+    report: Report = []
+    assert find_project(inner / "main.yml", report).scripts == (tmp_path / "a" / "near",)
+    (tmp_path / "a" / "pyproject.toml").write_text("[tool.other]\n")
+    assert find_project(inner / "main.yml", report).scripts == (tmp_path / "far",)
+    (tmp_path / "a" / ".git").mkdir()
+    assert find_project(inner / "main.yml", report).scripts == ()
+    assert report == []
+
+
+@pytest.mark.parametrize("text", ["scripts = [no", "scripts = 'x'", "sripts = ['x']"])
+def test_a_bad_project_file_is_told(tmp_path: Path, text: str) -> None:
+    (tmp_path / "smachac.toml").write_text(text)
+    report: Report = []
+    find_project(tmp_path / "main.yml", report)
+    assert codes(report) == ["SM007"]
+
+
+def test_all_files_or_none(tmp_path: Path) -> None:
+    (tmp_path / "b.py").mkdir()
+    with pytest.raises(OSError):  # noqa: PT011 (the words are the system's)
+        write_files(tmp_path, {"a.py": "a", "b.py": "b"})
+    assert list((tmp_path / "b.py").iterdir()) == []
+    assert [path.name for path in tmp_path.iterdir()] == ["b.py"]
+
+
+def test_writing_is_exact(tmp_path: Path) -> None:
+    files = {"\u00fc b/a.py": "x\r\n\u2713\n"}
+    write_files(tmp_path, files)
+    assert (tmp_path / "\u00fc b" / "a.py").read_bytes() == files["\u00fc b/a.py"].encode()
+    assert changed_files(tmp_path, files) == []
+    assert changed_files(tmp_path, {"\u00fc b/a.py": "y"}) == [tmp_path / "\u00fc b" / "a.py"]
+
+
+def test_files_of_others_are_known(tmp_path: Path) -> None:
+    (tmp_path / "mine.py").write_text("print(1)")
+    (tmp_path / "ours.py").write_text(f"# {MARK} 0.1\n")
+    found = foreign_files(tmp_path, {"mine.py": "", "ours.py": "", "new.py": ""})
+    assert found == [tmp_path / "mine.py"]

@@ -1,0 +1,177 @@
+"""YAML to trees: places to the character, one result from both parsers, limits."""
+
+from __future__ import annotations
+
+import math
+
+import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+
+from smachac import syntax
+from smachac.diagnostics import Report
+from smachac.source import Source
+from smachac.syntax import Map, Scalar, Seq, Tree, parse
+
+
+def read(text: str, codes: list[str] | None = None) -> Tree | None:
+    report: Report = []
+    tree = parse(Source("x.yml", text), report)
+    assert [item.code.code for item in report] == (codes or [])
+    return tree
+
+
+def plain(tree: Tree | None) -> object:
+    """Values alone, duplicates kept."""
+    match tree:
+        case Map():
+            return [(entry.key.value, plain(entry.value)) for entry in tree.entries]
+        case Seq():
+            return [plain(item) for item in tree.items]
+        case Scalar():
+            return tree.value
+    return None
+
+
+def places(tree: Tree) -> list[tuple[int, int]]:
+    found = [(tree.span.start, tree.span.end)]
+    if isinstance(tree, Map):
+        for entry in tree.entries:
+            found += [*places(entry.key), *places(entry.value)]
+    elif isinstance(tree, Seq):
+        for item in tree.items:
+            found += places(item)
+    return found
+
+
+@pytest.mark.parametrize(
+    ("text", "value"),
+    [
+        ("yes", "yes"),
+        ("on", "on"),
+        ("true", True),
+        ("010", 10),
+        ("0o17", 15),
+        ("0x1F", 31),
+        ("1_000", "1_000"),
+        ("1.50", 1.5),
+        (".5e3", 500.0),
+        ("-.inf", -math.inf),
+        ("~", None),
+        ("'~'", "~"),
+        ("1.2.3", "1.2.3"),
+        ("12:30", "12:30"),
+        ("!!str 12", "12"),
+        ("9" * 400, "9" * 400),
+    ],
+)
+def test_scalars_follow_the_core_schema(text: str, value: object) -> None:
+    tree = read(text)
+    assert isinstance(tree, Scalar)
+    assert tree.value == value
+    assert type(tree.value) is type(value)
+
+
+def test_every_part_knows_its_place() -> None:
+    text = "\u00e4: 'x'\r\nb:\r\n  - \U0001f600\r\n  - {c: d}\r\ne:\r\nf: |\r\n  z\r\n"
+    tree = read(text)
+    assert isinstance(tree, Map)
+    found = {text[start:end] for start, end in places(tree)}
+    assert {"\u00e4", "'x'", "b", "\U0001f600", "{c: d}", "c", "d", "e", "", "f"} <= found
+    assert tree.entries[1].value.span.text == "- \U0001f600\r\n  - {c: d}"
+
+
+def test_duplicate_keys_stay_and_are_told() -> None:
+    assert plain(read("a: 1\na: 2\n", ["SM002"])) == [("a", 1), ("a", 2)]
+    assert plain(read("1: a\n'1': b\n")) == [(1, "a"), ("1", "b")]
+
+
+def test_aliases_and_merges() -> None:
+    text = "base: &b {x: 1, y: 2}\nuse: {<<: *b, y: 3}\nlist: {<<: [*b, {z: 4}]}\n"
+    assert plain(read(text)) == [
+        ("base", [("x", 1), ("y", 2)]),
+        ("use", [("y", 3), ("x", 1)]),
+        ("list", [("x", 1), ("y", 2), ("z", 4)]),
+    ]
+
+
+@pytest.mark.parametrize(
+    ("text", "codes"),
+    [
+        ("a: [1", ["SM001"]),
+        ("\ta: 1", ["SM001"]),
+        ("a: *nowhere", ["SM001"]),
+        ("a: &a [*a]", ["SM001"]),
+        ("a: \x00", ["SM001"]),
+        ("a: 1\n---\nb: 2", ["SM004"]),
+        ("? [a]\n: 1", ["SM004"]),
+        ("a: !thing 1", ["SM004"]),
+        ("<<: 3", ["SM004"]),
+        ("[" * (syntax.MAX_DEPTH + 1) + "]" * (syntax.MAX_DEPTH + 1), ["SM006"]),
+        (" " * syntax.MAX_CHARACTERS, ["SM006"]),
+    ],
+    ids=lambda value: repr(value)[:20],
+)
+def test_bad_text_is_a_problem_with_a_place(text: str, codes: list[str]) -> None:
+    report: Report = []
+    parse(Source("x.yml", text), report)
+    assert [item.code.code for item in report] == codes
+    assert all(0 <= item.span.start <= item.span.end <= len(text) for item in report)
+
+
+def test_an_alias_bomb_is_defused() -> None:
+    lines = ["a0: &a0 [x, x, x, x, x, x, x, x, x]"]
+    lines += [f"a{n}: &a{n} [{', '.join([f'*a{n - 1}'] * 9)}]" for n in range(1, 30)]
+    assert read("\n".join(lines), ["SM006"]) is None
+
+
+def same_result(text: str, monkeypatch: pytest.MonkeyPatch) -> None:
+    fast: Report = []
+    slow: Report = []
+    quick = parse(Source("x.yml", text), fast)
+    with monkeypatch.context() as patch:
+        patch.setattr(syntax, "_c_events", lambda text: iter(()))
+        thorough = parse(Source("x.yml", text), slow)
+    assert (quick is None) == (thorough is None)
+    if quick is not None and thorough is not None:
+        assert repr(plain(quick)) == repr(plain(thorough))
+        assert places(quick) == places(thorough)
+    assert [(d.code.code, d.finding.message, d.span[1:]) for d in fast] == [
+        (d.code.code, d.finding.message, d.span[1:]) for d in slow
+    ]
+
+
+def test_the_c_parser_is_there() -> None:
+    pytest.importorskip("ruamel.yaml.cyaml", reason="the extra `fast` is not installed")
+
+
+WORDS = st.sampled_from(["a", "b", "on", "1", "1.5", "~", "'q'", '"d"', "\u00fc", "\U0001f600", ""])
+YAML = st.recursive(
+    WORDS,
+    lambda inner: st.one_of(
+        st.lists(inner, max_size=3).map(lambda items: "[" + ", ".join(filter(None, items)) + "]"),
+        st.lists(st.tuples(st.sampled_from("abc"), inner), max_size=3).map(
+            lambda pairs: "{" + ", ".join(f"{key}: {value}" for key, value in pairs) + "}"
+        ),
+    ),
+    max_leaves=8,
+)
+DOCUMENTS = st.lists(
+    st.tuples(st.sampled_from(["a: ", "- ", "b:\n  - ", "# c\n", "&x ", "*x", "\t", "  "]), YAML),
+    max_size=6,
+).map(lambda lines: "\n".join(start + rest for start, rest in lines))
+
+
+@given(DOCUMENTS)
+def test_both_parsers_give_one_tree(text: str) -> None:
+    pytest.importorskip("ruamel.yaml.cyaml", reason="the extra `fast` is not installed")
+    with pytest.MonkeyPatch.context() as patch:
+        same_result(text, patch)
+
+
+@given(st.text(max_size=60))
+def test_no_text_makes_it_fail(text: str) -> None:
+    report: Report = []
+    tree = parse(Source("x.yml", text), report)
+    assert all(0 <= item.span.start <= item.span.end <= len(text) for item in report)
+    assert tree is None or tree.span.end <= len(text)
