@@ -3,16 +3,34 @@
 import smachac.runtime.smach as by_path
 from smachac.runtime import smach
 
-CLASSES = (
-    "State CBState UserData Remapper Container StateMachine Sequence Concurrence Iterator "
-    "InvalidTransitionError InvalidStateError InvalidConstructionError InvalidUserCodeError "
-    "CBInterface"
-).split()
-FUNCTIONS = (
-    "set_loggers loginfo logwarn logerr logdebug is_shutdown set_shutdown_check "
-    "has_smach_interface cb_interface"
-).split()
-MODULES = "state container user_data util log exceptions".split()
+CLASSES = [
+    "State",
+    "CBState",
+    "UserData",
+    "Remapper",
+    "Container",
+    "StateMachine",
+    "Sequence",
+    "Concurrence",
+    "Iterator",
+    "InvalidTransitionError",
+    "InvalidStateError",
+    "InvalidConstructionError",
+    "InvalidUserCodeError",
+    "CBInterface",
+]
+FUNCTIONS = [
+    "set_loggers",
+    "loginfo",
+    "logwarn",
+    "logerr",
+    "logdebug",
+    "is_shutdown",
+    "set_shutdown_check",
+    "has_smach_interface",
+    "cb_interface",
+]
+MODULES = ["state", "container", "user_data", "util", "log", "exceptions"]
 
 
 def test_both_import_forms_give_the_same_package() -> None:

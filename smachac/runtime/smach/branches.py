@@ -50,10 +50,12 @@ class Branches:
         """Let the children run."""
         self._gate.set()
 
-    def abort(self) -> None:
-        """End the threads that were not released yet."""
-        self._aborted = True
+    def abort(self) -> bool:
+        """End the threads if they still wait; whether the children had been released before."""
+        released = self._gate.is_set()
+        self._aborted = not released
         self._gate.set()
+        return released
 
     def join(self) -> None:
         """Wait for the threads to be gone."""

@@ -156,8 +156,9 @@ class Concurrence(Container):
             while branches.wait():
                 self._preempt(branches)
         except BaseException:
-            branches.abort()
-            self._preempt(branches)
+            if branches.abort():
+                self._left_flagged = True
+                self._preempt(branches)
             raise
         finally:
             branches.join()

@@ -127,7 +127,8 @@ class Remapper:
                 pass
         raise self._refusal(key)
 
-    __getattr__ = __getitem__
+    def __getattr__(self, key: str) -> Any:
+        return self[key]
 
     def __setitem__(self, key: str, value: Any) -> None:
         _, outputs, remapping, data = self._view
