@@ -26,6 +26,7 @@ from smachac.ir.expressions import (
     TupleDisplay,
     Unary,
 )
+from smachac.ir.types import Type
 
 T = TypeVar("T")
 
@@ -132,3 +133,23 @@ def computations(depth: int = 3) -> st.SearchStrategy[Expr]:
     literals = st.builds(Constant, numbers | st.text(alphabet="ab1", max_size=3) | st.booleans())
     names = st.builds(Name, st.sampled_from(NAMES_OF_VALUES))
     return trees(literals | names, COMPUTING_FORMS, depth)
+
+
+WORDS = st.sampled_from(["bool", "int", "Pose", "any", "list", "geometry_msgs/Pose", "a.b-c", "of"])
+UNITS = st.sampled_from(["rad", "m", "rad/s", "kg*m^2"])
+CHOICES = st.one_of(WORDS, st.text(max_size=4), st.integers(-9, 99), st.just("one_of"))
+
+
+def types() -> st.SearchStrategy[Type]:
+    """Every type that the notation can name."""
+    quantities = st.builds(lambda unit: Type("float", (unit,)), UNITS)
+    choices = st.lists(CHOICES, min_size=1, max_size=3)
+    leaves = st.builds(Type, WORDS) | quantities | choices.map(lambda all: Type("one_of", (*all,)))
+    wrappers = st.sampled_from(["list", "dict", "optional", "array"])
+
+    def wrap(item: Type, names: list[str]) -> Type:
+        for name in names:
+            item = Type(name, (item, len(names)) if name == "array" else (item,))
+        return item
+
+    return st.builds(wrap, leaves, st.lists(wrappers, max_size=3))

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from importlib.resources import files
 from typing import TYPE_CHECKING, Any, Literal
 
 if TYPE_CHECKING:
@@ -19,9 +18,10 @@ def load(
     """
     from lark import Lark
 
-    text = files(__name__).joinpath(f"{name}.lark").read_text("utf-8")
-    return Lark(
-        text,
+    return Lark.open_from_package(
+        __name__,
+        f"{name}.lark",
+        ("",),
         parser="lalr",
         lexer=lexer,
         transformer=builder,

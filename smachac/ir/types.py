@@ -5,7 +5,24 @@ The notation is grammars/type.lark; `str(type)` prints it and `parse_type` reads
 
 from __future__ import annotations
 
+import json
+import re
 from dataclasses import dataclass
+from functools import cache
+from typing import TYPE_CHECKING, Any
+
+from smachac.grammars import load
+
+if TYPE_CHECKING:
+    from lark import Lark
+
+LONGEST = 1000
+"""Characters of the longest text that is read as a type."""
+
+DEEPEST = 50
+"""Applications (`list[...]`, `?`, `of`) that one text may hold."""
+
+_WORD = re.compile(r"[^\W\d]\w*(?:[./-]\w+)*")
 
 
 @dataclass(frozen=True, slots=True)
@@ -32,10 +49,98 @@ class Type:
             case "optional", (item,):
                 return f"{item}?"
             case "one_of", choices:
-                return f"one_of[{', '.join(map(str, choices))}]"
+                return f"one_of[{', '.join(map(_choice, choices))}]"
             case name, (unit,):
                 return f"{name}<{unit}>"
         return self.name
 
 
 ANY = Type("any")
+
+
+def _choice(choice: Type | int | str) -> str:
+    if isinstance(choice, str) and _WORD.fullmatch(choice) is None:
+        return json.dumps(choice, ensure_ascii=False)
+    return str(choice)
+
+
+def parse_type(text: str) -> Type | None:
+    """The type a text names; None when it is not one, too long or too deep.
+
+    The spellings of old meta blocks are read too: `list of str`, `dict of str`, and
+    `[function, str]`, which is `any`.
+    """
+    text = text.strip()
+    if _WORD.fullmatch(text):
+        return Type(text) if text != "one_of" else None
+    depth = text.count("[") + text.count("?") + text.count(" of ")
+    if len(text) > LONGEST or depth > DEEPEST:
+        return None
+    from lark.exceptions import LarkError
+
+    try:
+        found: Any = _parser().parse(text)
+        return _complete(found)
+    except (LarkError, ValueError):
+        return None
+
+
+def _complete(type_: Type) -> Type:
+    if type_ == Type("one_of"):
+        raise ValueError("one of what?")
+    return type_
+
+
+@cache
+def _parser() -> Lark:
+    return load("type", builder=_Builder(), lexer="contextual")
+
+
+class _Builder:
+    """What each rule of the grammar makes of its parts. Raises ValueError where they do not fit."""
+
+    def word(self, found: list[Any]) -> Type:
+        return Type(str(found[0]))
+
+    def quantity(self, found: list[Any]) -> Type:
+        word, unit = map(str, found)
+        if word not in ("float", "int"):
+            raise ValueError("only numbers have units")
+        return Type(word, (unit,))
+
+    def of(self, found: list[Any]) -> Type:
+        word, of, item = found
+        if of != "of" or word not in ("list", "dict"):
+            raise ValueError("neither `list of` nor `dict of`")
+        return Type(str(word), (_complete(item),))
+
+    def applied(self, found: list[Any]) -> Type:
+        match found:
+            case [Type("list", ()), Type() as item]:
+                return Type("list", (_complete(item),))
+            case [Type("dict", ()), Type("str", ()), Type() as item]:
+                return Type("dict", (_complete(item),))
+            case [Type("one_of", ()), *choices]:
+                return Type("one_of", tuple(map(self.choice, choices)))
+            case [Type() as item, int(size)] if size >= 0:
+                return Type("array", (_complete(item), size))
+        raise ValueError("nothing takes these in brackets")
+
+    def choice(self, found: Type | int | str) -> int | str:
+        if not isinstance(found, Type):
+            return found
+        if found.args:
+            raise ValueError("a choice is a word or a whole number")
+        return found.name
+
+    def optional(self, found: list[Any]) -> Type:
+        return Type("optional", (_complete(found[0]),))
+
+    def either(self, found: list[Any]) -> Type:
+        return ANY
+
+    def integer(self, found: list[Any]) -> int:
+        return int(found[0])
+
+    def string(self, found: list[Any]) -> str:
+        return str(json.loads(found[0]))
