@@ -1,0 +1,289 @@
+"""A recorded SMACH machine as state graph and behaviour, and what the interpreter does with it."""
+
+from __future__ import annotations
+
+import copy
+from collections.abc import Iterator as Iter
+from typing import Any, cast
+
+from smachac.ir.nodes import (
+    Concurrence,
+    Condition,
+    Data,
+    Iterator,
+    Key,
+    Leaf,
+    Machine,
+    Node,
+    Outcome,
+    OutcomeRule,
+    Preset,
+    Remap,
+    Sequence,
+    StateMachine,
+    Struct,
+    Transition,
+    Value,
+)
+from smachac.ir.result import Event, Result
+from smachac.ir.run import Interpreter
+from smachac.ir.userdata import Userdata
+from smachac.ir.walk import outcome_names
+from smachac.source import NOWHERE
+
+Json = Any
+
+
+def machine_of(case: Json) -> Machine:
+    """The graph of a case. The root has no name, so that paths are those of the case.
+
+    The interpreter does not mind a root that is another container.
+    """
+    return Machine(root=cast(StateMachine, _node(case["machine"], {"label": ""}, {})))
+
+
+def _data(value: Json) -> Data:
+    if isinstance(value, list):
+        return tuple(_data(item) for item in value)
+    if isinstance(value, dict):
+        return Struct(entries=tuple((key, _data(item)) for key, item in value.items()))
+    return cast(Data, value)
+
+
+def _value(value: Json) -> Value:
+    return Value(data=_data(value), span=NOWHERE)
+
+
+def _node(node: Json, spec: Json, targets: dict[str, str | None]) -> Node:
+    """A node; `spec` is its entry in the container, `targets` where its outcomes lead."""
+    both = node.get("io", [])
+    common: dict[str, Any] = {
+        "name": spec["label"],
+        "span": NOWHERE,
+        "outcomes": tuple(Outcome(name=name, span=NOWHERE) for name in node["outcomes"]),
+        "inputs": tuple(Key(name=key, span=NOWHERE) for key in [*node.get("in", []), *both]),
+        "outputs": tuple(Key(name=key, span=NOWHERE) for key in [*node.get("out", []), *both]),
+        "remaps": tuple(
+            Remap(key=key, to=to, span=NOWHERE) for key, to in spec.get("remapping", {}).items()
+        ),
+        "transitions": tuple(
+            Transition(
+                outcome=outcome,
+                target=target or outcome,
+                origin="written" if target else "implicit",
+                span=NOWHERE,
+            )
+            for outcome, target in targets.items()
+        ),
+    }
+    if node["type"] == "leaf":
+        return Leaf(type="Vector", **common)
+    held = {**node.get("preset", {}), **node.get("initial_ud", {})}
+    common["userdata"] = tuple(
+        Preset(key=key, value=_value(value), span=NOWHERE) for key, value in held.items()
+    )
+    match node["type"]:
+        case "state_machine" | "sequence":
+            return _machine(node, common)
+        case "concurrence":
+            return _concurrence(node, common)
+    return _iterator(node, common)
+
+
+def _machine(node: Json, common: dict[str, Any]) -> Node:
+    states = node["states"]
+    children = tuple(
+        _node(spec["node"], spec, targets)
+        for spec, targets in zip(states, _targets(node), strict=True)
+    )
+    initial = [*node.get("initial", []), *(spec["label"] for spec in states), ""][0]
+    if node["type"] == "state_machine":
+        return StateMachine(type="StateMachine", children=children, initial=initial, **common)
+    return Sequence(
+        type="Sequence",
+        children=children,
+        initial=initial,
+        connector_outcome=node["connector"],
+        **common,
+    )
+
+
+def _targets(node: Json) -> list[dict[str, str | None]]:
+    """Where the outcomes of each state of a machine lead, connectors included (A1, A2, Q1-Q5)."""
+    states = node["states"]
+    targets: list[dict[str, str | None]] = [
+        {**dict.fromkeys(spec["node"]["outcomes"]), **spec.get("transitions", {})}
+        for spec in states
+    ]
+    last: int | None = None
+    for at, spec in enumerate(states):
+        label = spec["label"]
+        if at and "auto" in states[at - 1]:
+            targets[at - 1].update(dict.fromkeys(states[at - 1]["auto"], label))
+        if node["type"] == "sequence" and "auto" not in spec:
+            if last is not None and targets[last].get(node["connector"]) is None:
+                targets[last][node["connector"]] = label
+            last = at
+    return targets
+
+
+def _concurrence(node: Json, common: dict[str, Any]) -> Node:
+    specs = {spec["label"]: spec for spec in node["children"]}
+    return Concurrence(
+        type="Concurrence",
+        children=tuple(_node(spec["node"], spec, {}) for spec in specs.values()),
+        default_outcome=node["default"],
+        join="any" if any(rule["ret"] for rule in node.get("term_cb", [])) else "all",
+        rules=tuple(_rules(node)),
+        **common,
+    )
+
+
+def _rules(node: Json) -> Iter[OutcomeRule]:
+    """The rules of the map, then what an outcome callback overrides them by.
+
+    A callback's word counts more than any rule, so its conditions are repeated.
+    """
+    given = [(outcome, when, 1) for outcome, when in node.get("map", [])]
+    for rule in node.get("outcome_cb", []):
+        if isinstance(rule["ret"], str):
+            given.append((rule["ret"], rule["when"], len(node["children"]) + 1))
+    for outcome, when, times in given:
+        conditions = tuple(
+            Condition(child=label, outcome=ended, span=NOWHERE) for label, ended in when.items()
+        )
+        yield OutcomeRule(outcome=outcome, when=conditions * times, span=NOWHERE)
+
+
+def _iterator(node: Json, common: dict[str, Any]) -> Node:
+    exhausted = node.get("exhausted", "exhausted")
+    if exhausted not in node["outcomes"]:
+        common["outcomes"] += (Outcome(name=exhausted, span=NOWHERE),)
+    specs = [node["child"]] if "child" in node else []
+    children = tuple(_node(spec["node"], spec, {}) for spec in specs)
+    loop = tuple(node.get("loop", []))
+    if node.get("break"):
+        loop = tuple(name for name in outcome_names(children[0]) if name not in node["break"])
+    keyed = isinstance(node["it"], dict)
+    return Iterator(
+        type="Iterator",
+        children=children,
+        items=None if keyed else _value(node["it"]),
+        items_key=node["it"]["key"] if keyed else "",
+        item_key=node.get("it_label", "it_data"),
+        exhausted_outcome=exhausted,
+        loop_outcomes=loop,
+        final_map=tuple(node.get("final", {}).items()),
+        **common,
+    )
+
+
+def leaves_of(case: Json) -> dict[str, Json]:
+    """The descriptions of the leaves by path."""
+    return {path: node for path, node in nodes_of(case) if node["type"] == "leaf"}
+
+
+def nodes_of(case: Json) -> Iter[tuple[str, Json]]:
+    """The descriptions of all nodes with their paths; that of the root is empty."""
+    stack = [("", case["machine"])]
+    while stack:
+        path, node = stack.pop()
+        yield path, node
+        specs = [*node.get("states", []), *node.get("children", [])]
+        specs += [node["child"]] if "child" in node else []
+        stack.extend((f"{path}/{spec['label']}", spec["node"]) for spec in reversed(specs))
+
+
+class ToldError(Exception):
+    """What a leaf of a case raises because it is told to."""
+
+
+class Replay:
+    """A case on the interpreter: its leaves follow their scripts and note what they do."""
+
+    def __init__(self, case: Json) -> None:
+        self.case = case
+        self.leaves = leaves_of(case)
+        self.events: list[Event] = []
+        self.interpreter = Interpreter(
+            machine_of(case),
+            self.behave,
+            self.observe,
+            userdata=copy.deepcopy(case.get("userdata", {})),
+            max_steps=case.get("budget", 400),
+        )
+        if case.get("preempt_before"):
+            self.interpreter.preemption.request("")
+
+    def run(self, parent: dict[str, object] | None) -> tuple[Result, list[Event]]:
+        """One more run and its events."""
+        self.events = []
+        return self.interpreter.execute(parent), self.events
+
+    def observe(self, event: Event) -> None:
+        self.events.append(event)
+
+    def note(self, event: str, path: str, *rest: Json) -> None:
+        self.events.append({"event": event, "path": path, "rest": list(rest)})
+
+    def behave(self, path: str, leaf: Leaf, visit: int, userdata: Userdata) -> str:
+        node = self.leaves[path]
+        keys = [] if node.get("blind") else [*node.get("in", []), *node.get("io", [])]
+        inputs = {key: copy.deepcopy(userdata[key]) for key in sorted(keys) if key in userdata}
+        asked = bool(self.case.get("preempt")) and userdata.preempted
+        self.note("+", path, *([inputs, "P"] if asked else [inputs] if inputs else []))
+        step = node["steps"][min(visit, len(node["steps"])) - 1]
+        try:
+            outcome = self._perform(step, userdata)
+        except Exception:
+            self.note("!", path)
+            raise
+        self.note("-", path, outcome)
+        return cast(str, outcome)
+
+    def _perform(self, step: Json, userdata: Userdata) -> Any:
+        for operation in step.get("do", []):
+            self._do(operation, userdata)
+        if "raise" in step:
+            raise ToldError(step["raise"])
+        if "pre" in step and userdata.preempted:
+            userdata.service_preempt()
+            return step["pre"]
+        result = step["ret"]
+        if isinstance(result, dict):
+            left, right = (_worth(one, userdata) for one in result["lt"])
+            return result["then"] if left < right else result["else"]
+        return result
+
+    def _do(self, operation: Json, userdata: Userdata) -> None:
+        match operation:
+            case ["set", key, expression, *_]:
+                userdata[key] = _worth(expression, userdata)
+            case ["read", key]:
+                userdata[key]
+            case ["push", key, expression]:
+                cast(Any, userdata[key]).append(_worth(expression, userdata))
+            case ["preempt", path]:
+                self.interpreter.preemption.request(path.removesuffix("/"))
+            case ["service"]:
+                userdata.service_preempt()
+            case _:
+                raise AssertionError(f"unknown operation {operation}")
+
+
+def _worth(expression: Json, userdata: Userdata) -> Any:
+    """What an expression of a script is worth; anything but an object is a constant."""
+    match expression:
+        case {"k": key}:
+            return userdata[key]
+        case {"get": [key, default]}:
+            return userdata[key] if key in userdata else copy.deepcopy(default)
+        case {"has": key}:
+            return key in userdata
+        case {"keys": _}:
+            return userdata.keys()
+        case {"add": [left, right]}:
+            return _worth(left, userdata) + _worth(right, userdata)
+        case {"append": [items, item]}:
+            return [*_worth(items, userdata), _worth(item, userdata)]
+    return copy.deepcopy(expression)
