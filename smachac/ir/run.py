@@ -174,13 +174,13 @@ class Interpreter:
         if self._leaves in self._preempt_at:
             self.preemption.request(self._root.name)
         yield self.clock
-        asked = path in self.preemption.asked
+        asked = self.preemption.asked
 
         def written(key: str, value: object) -> None:
             if self._observe is not None:
                 self.emit("write", path, key=key, value=trace_value(value))
 
-        view = Userdata(leaf, around, written, loose=loose, preempted=asked)
+        view = Userdata(leaf, path, around, asked, written, loose=loose)
         try:
             outcome = self._behaviour(path, leaf, visit, view)
         except UserdataError as error:
@@ -189,10 +189,8 @@ class Interpreter:
             self.fail("behaviour", path, str(error), leaf.span)
         except Exception as error:
             self.fail("behaviour", path, f"{type(error).__name__}: {error}", leaf.span)
-        if asked and not view.preempted:
-            self.preemption.asked.discard(path)
         if view.slept and (yield from self._sleep(leaf, path, view.slept)):
-            self.preemption.asked.discard(path)
+            asked.discard(path)
             return PREEMPTED
         return outcome
 

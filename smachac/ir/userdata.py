@@ -133,27 +133,28 @@ class Userdata:
 
     An undeclared or absent key cannot be read (UserdataError); writing an undeclared one does
     nothing (R4). `loose` leaves see every key: those of an open type, and the child of an
-    iterator (I7). `preempted` says whether a request to stop has reached the leaf;
-    `service_preempt` answers it.
+    iterator (I7). `asked` holds the paths of states that are asked to stop.
     """
 
-    __slots__ = ("_around", "_names", "_reads", "_writes", "_written", "preempted", "slept")
+    __slots__ = ("_around", "_asked", "_names", "_path", "_reads", "_writes", "_written", "slept")
 
     def __init__(
         self,
         leaf: Leaf,
+        path: str,
         around: dict[str, object],
+        asked: set[str],
         written: Callable[[str, object], None],
         *,
         loose: bool = False,
-        preempted: bool = False,
     ) -> None:
+        self._path = path
         self._around = around
+        self._asked = asked
         self._names = remapping(leaf)
         self._reads = None if loose else {key.name for key in leaf.inputs}
         self._writes = None if loose else {key.name for key in leaf.outputs}
         self._written = written
-        self.preempted = preempted
         self.slept = 0.0
 
     def __getitem__(self, key: str) -> object:
@@ -182,9 +183,14 @@ class Userdata:
         inner = {to: key for key, to in self._names.items()}
         return sorted(inner.get(key, key) for key in self._around)
 
+    @property
+    def preempted(self) -> bool:
+        """Whether a request to stop has reached the leaf and waits for an answer."""
+        return self._path in self._asked
+
     def service_preempt(self) -> None:
         """Answer the request to stop: it counts as served."""
-        self.preempted = False
+        self._asked.discard(self._path)
 
     def sleep(self, seconds: float) -> None:
         """Let virtual time pass between what the leaf does and its end."""
