@@ -6,6 +6,7 @@ import linecache
 import random
 import signal
 import sys
+import threading
 from collections.abc import Callable, Iterator, Mapping
 from contextlib import contextmanager
 from pathlib import Path
@@ -104,6 +105,10 @@ def _preempting(built: list[Any], on_preempt: Callable[[], None]) -> Iterator[No
         signal.signal(signal.SIGINT, signal.default_int_handler)
         if not built:
             raise KeyboardInterrupt
+        # Not from here: the signal may have come in the middle of a write to the trace.
+        threading.Thread(target=request, daemon=True).start()
+
+    def request() -> None:
         on_preempt()
         built[-1].request_preempt()
 

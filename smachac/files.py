@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import contextlib
+import errno
 import os
 import tempfile
 from collections.abc import Mapping, Sequence
@@ -229,6 +230,9 @@ def write_files(folder: Path, files: Mapping[str, str]) -> list[Path]:
             with os.fdopen(handle, "w", encoding="utf-8", newline="") as stream:
                 stream.write(text)
             Path(temporary).chmod(0o644)
+        for _, path in written:
+            if path.is_dir():
+                raise IsADirectoryError(errno.EISDIR, os.strerror(errno.EISDIR), str(path))
         for temporary, path in written:
             Path(temporary).replace(path)
     except BaseException:

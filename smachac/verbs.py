@@ -71,7 +71,7 @@ def _check(arguments: argparse.Namespace) -> int:
 
 
 def _build(arguments: argparse.Namespace) -> int:
-    from smachac.targets import load_target, target_names
+    from smachac.targets import OptionError, load_target, target_names
 
     target = load_target(arguments.target)
     if target is None:
@@ -85,7 +85,10 @@ def _build(arguments: argparse.Namespace) -> int:
             message = f"target `{target.name}` has no option `{name}`"
             return _usage(message, name, list(target.options))
         options[name] = value
-    _, files = _compile(arguments, target, options)
+    try:
+        _, files = _compile(arguments, target, options)
+    except OptionError as error:
+        return _usage(f"--option {error}")
     return FINDINGS if files is None else _put(files, arguments)
 
 

@@ -6,12 +6,15 @@ A target is one folder with a `TARGET` value, registered under the entry-point g
 
 from __future__ import annotations
 
+import re
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass, field
 from importlib.metadata import entry_points
+from keyword import iskeyword
 
+from smachac import __version__
 from smachac.diagnostics import Report
-from smachac.ir.nodes import Checked
+from smachac.ir.nodes import Checked, Machine
 from smachac.states import Library
 
 GROUP = "smachac.targets"
@@ -32,6 +35,10 @@ class Context:
     options: Mapping[str, str] = field(default_factory=dict)
 
 
+class OptionError(ValueError):
+    """An option has a value that makes no sense."""
+
+
 Emit = Callable[[Checked, Context, Report], Files]
 
 
@@ -40,13 +47,24 @@ class Target:
     """A target: its name, a line about it, and the function that prints.
 
     `options` names the options it knows, each with a line of help. An emitter reports only what
-    is wrong in templates of the user; then it returns no files.
+    is wrong in templates of the user; then it returns no files. It raises OptionError.
     """
 
     name: str
     description: str
     emit: Emit
     options: Mapping[str, str] = field(default_factory=dict)
+
+
+def made_by(machine: Machine) -> str:
+    """The line by which files of ours are known: who made them, from what."""
+    return f"Made by smachac {__version__} from {machine.source} (sha256 {machine.digest[:16]})."
+
+
+def stem(machine: Machine) -> str:
+    """The machine's name as a file name without suffix; also a name that Python can import."""
+    word = re.sub(r"\W+", "_", machine.root.name).strip("_") or "machine"
+    return f"_{word}" if word[0].isdigit() or iskeyword(word) else word
 
 
 def target_names() -> list[str]:

@@ -2,10 +2,9 @@
 
 from __future__ import annotations
 
-from smachac import __version__
 from smachac.diagnostics import Report
 from smachac.ir.nodes import Checked
-from smachac.targets import Context, Files, Target
+from smachac.targets import Context, Files, OptionError, Target, made_by, stem
 from smachac.targets.dot.picture import picture
 
 DIRECTIONS = ("TB", "LR", "BT", "RL")
@@ -14,18 +13,16 @@ DIRECTIONS = ("TB", "LR", "BT", "RL")
 def emit(machine: Checked, context: Context, report: Report) -> Files:
     """One DOT file, named after the machine.
 
-    Raises `ValueError` for an option whose value makes no sense.
+    Raises OptionError for an option whose value makes no sense.
     """
     depth = context.options.get("depth")
     if depth is not None and not (depth.isdecimal() and int(depth) > 0):
-        raise ValueError(f"depth={depth}: a number of levels from 1 is due")
+        raise OptionError(f"depth={depth}: a number of levels from 1 is due")
     rankdir = context.options.get("rankdir", "TB")
     if rankdir not in DIRECTIONS:
-        raise ValueError(f"rankdir={rankdir}: one of {', '.join(DIRECTIONS)} is due")
-    made_by = f"// Made by smachac {__version__} from {machine.source} "
-    made_by += f"(sha256 {machine.digest[:16]})."
+        raise OptionError(f"rankdir={rankdir}: one of {', '.join(DIRECTIONS)} is due")
     lines = picture(machine, depth=int(depth) if depth else None, rankdir=rankdir)
-    return {f"{machine.root.name}.dot": "\n".join([made_by, *lines, ""])}
+    return {f"{stem(machine)}.dot": "\n".join([f"// {made_by(machine)}", *lines, ""])}
 
 
 TARGET = Target(

@@ -9,15 +9,15 @@ from __future__ import annotations
 
 from smachac.diagnostics import Report
 from smachac.ir.nodes import Checked
-from smachac.targets import Context, Files, Target
+from smachac.targets import Context, Files, Target, stem
 from smachac.targets.blocks import BlockError
-from smachac.targets.python.module import module_name, module_text
+from smachac.targets.python.module import module_text
 
 
 def emit(machine: Checked, context: Context, report: Report) -> Files:
     """The module of a machine: `<name>.py`."""
     try:
-        return {f"{module_name(machine)}.py": module_text(machine, context)}
+        return {f"{stem(machine)}.py": module_text(machine, context)}
     except BlockError as error:
         report.append(error.diagnostic)
         return {}

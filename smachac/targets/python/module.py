@@ -6,13 +6,12 @@ import hashlib
 import re
 from collections.abc import Callable
 from dataclasses import dataclass, field
-from keyword import iskeyword
 from textwrap import indent
 
-from smachac import __version__, problems
+from smachac import problems
 from smachac.ir.nodes import Container, Leaf, Machine
 from smachac.states import StateType, find_state_type
-from smachac.targets import Context
+from smachac.targets import Context, made_by
 from smachac.targets.blocks import BlockError, Blocks
 from smachac.targets.python import body
 from smachac.targets.python.layout import call, literal, names
@@ -57,12 +56,6 @@ class _Gathered:
     functions: list[str] = field(default_factory=list)
 
 
-def module_name(machine: Machine) -> str:
-    """The name of the generated module: the machine's, as far as Python can import it."""
-    word = re.sub(r"\W+", "_", machine.root.name).strip("_") or "machine"
-    return f"_{word}" if word[0].isdigit() or iskeyword(word) else word
-
-
 def module_text(machine: Machine, context: Context) -> str:
     """The text of the module. Raises BlockError when a template is at fault."""
     gathered = _Gathered(Blocks(context.library.template), context)
@@ -76,8 +69,7 @@ def module_text(machine: Machine, context: Context) -> str:
         "name": machine.root.name,
         "sm_name": root,
         "title": _title(machine),
-        "made_by": f"# Made by smachac {__version__} from {machine.source} "
-        f"(sha256 {machine.digest[:16]}).",
+        "made_by": f"# {made_by(machine)}",
         "body": indent(lines, "    "),
         "functions": "\n\n\n".join(gathered.functions),
         "defined_headers": gathered.defined_headers,

@@ -1,0 +1,17 @@
+"""The state graph as text, complete and readable."""
+
+from __future__ import annotations
+
+from smachac.diagnostics import Report
+from smachac.ir.nodes import Checked
+from smachac.targets import Context, Files, Target, made_by, stem
+
+
+def emit(machine: Checked, context: Context, report: Report) -> Files:
+    """One text in the notation of grammars/ir.lark, named after the machine."""
+    from smachac.ir.text import print_machine
+
+    return {f"{stem(machine)}.smir": f"# {made_by(machine)}\n{print_machine(machine)}"}
+
+
+TARGET = Target(name="ir", description="the state graph as text", emit=emit)

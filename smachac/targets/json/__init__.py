@@ -1,0 +1,88 @@
+"""The state graph for other programs, as grammars/machine.schema.json describes it."""
+
+from __future__ import annotations
+
+import json
+import math
+from collections.abc import Iterator
+from dataclasses import fields, is_dataclass
+from typing import Any
+
+from smachac.diagnostics import Report
+from smachac.ir.nodes import Checked, Expression, Machine, Node, Struct, Value
+from smachac.ir.types import Type
+from smachac.ir.walk import walk
+from smachac.source import NOWHERE, Span
+from smachac.targets import Context, Files, Target, made_by, stem
+
+VERSION = 1
+"""Of the schema; it grows when a program that reads machines could break."""
+
+
+def emit(machine: Checked, context: Context, report: Report) -> Files:
+    """One JSON file, named after the machine. It is ASCII, and equal machines give equal bytes."""
+    return {f"{stem(machine)}.json": json.dumps(to_json(machine), indent=2) + "\n"}
+
+
+def to_json(machine: Machine) -> dict[str, Any]:
+    """A machine as JSON data: its states in a flat list, parents before children.
+
+    Flat, so that no depth of nesting is too much for a reader.
+    """
+    return {
+        "made_by": made_by(machine),
+        "version": VERSION,
+        "source": machine.source,
+        "digest": machine.digest,
+        "base": machine.base,
+        "variables": _plain(machine.variables),
+        "states": [_node(path, node) for path, node in walk(machine.root)],
+    }
+
+
+def _node(path: str, node: Node) -> dict[str, Any]:
+    return {"kind": type(node).__name__, "path": path, **dict(_entries(node))}
+
+
+def _entries(value: Any) -> Iterator[tuple[str, Any]]:
+    """The fields of a value of the IR; spans are places, children are names."""
+    for field in fields(value):
+        content = getattr(value, field.name)
+        if isinstance(content, Span):
+            yield field.name.replace("span", "place"), _place(content)
+        elif field.name == "children":
+            yield field.name, [child.name for child in content]
+        else:
+            yield field.name, _plain(content)
+
+
+def _plain(value: Any) -> Any:
+    """JSON for anything that the IR is made of, nodes excepted."""
+    match value:
+        case Span():
+            return _place(value)
+        case Type():
+            return str(value)
+        case Expression():
+            return {"expression": value.text}
+        case Struct():
+            return {"struct": [[key, _plain(entry)] for key, entry in value.entries]}
+        case Value():
+            return _plain(value.data)
+        case float() if not math.isfinite(value):
+            return {"float": str(value)}
+        case tuple():
+            return [_plain(item) for item in value]
+    return dict(_entries(value)) if is_dataclass(value) else value
+
+
+def _place(span: Span) -> str | None:
+    """`file:line:column` without the file's folder, which differs from machine to machine."""
+    if span.source is NOWHERE.source:
+        return None
+    line, column = span.source.position(span.start)
+    file = span.source.name.replace("\\", "/").rsplit("/", 1)[-1]
+    return f"{file}:{line}:{column}"
+
+
+TARGET = Target(name="json", description="the state graph as JSON, for other programs", emit=emit)
