@@ -273,11 +273,15 @@ class _Watch:
 class _Written:
     """A leaf's userdata that tells of writes; all else goes through."""
 
+    __iter__ = None  # as SMACH's userdata, this cannot be gone through
+
     def __init__(self, userdata: Any, written: Callable[[str, object], None]) -> None:
         object.__setattr__(self, "_userdata", userdata)
         object.__setattr__(self, "_written", written)
 
     def __getattr__(self, name: str) -> Any:
+        if name == "_userdata":  # of a copy that is being made
+            raise AttributeError(name)
         return getattr(self._userdata, name)
 
     def __getitem__(self, key: str) -> Any:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import copy
 import io
 import json
 from typing import Any
@@ -258,6 +259,18 @@ def test_writes_by_attribute_and_update_are_told() -> None:
     result, events = acting(root, "A", act)
     assert result == "x"
     assert short(events)[2:4] == ["write sm/A a 1", "write sm/A b 3"]
+
+
+def test_watched_userdata_is_as_good_as_the_userdata() -> None:
+    def act(ud: Any) -> str:
+        with pytest.raises(TypeError):
+            list(ud)
+        assert dict(ud) == {"a": [1]}
+        assert copy.copy(ud).a is ud.a
+        return "x"
+
+    root = machine("sm", "x", leaf("A", {"x": "x"}, ins="a"), held={"a": [1]})
+    assert acting(root, "A", act)[0] == "x"
 
 
 def test_an_observer_that_fails_does_not_stop_the_machine(
