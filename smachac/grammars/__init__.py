@@ -26,6 +26,5 @@ def load(
         lexer=lexer,
         transformer=builder,
         propagate_positions=builder is None,
-        maybe_placeholders=False,
         cache=False,
     )

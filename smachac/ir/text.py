@@ -1,0 +1,244 @@
+"""A machine as text (.smir): stable, complete and readable; grammars/ir.lark is the notation.
+
+Every field is carried but the spans and `via`; what a default says is left out.
+"""
+
+from __future__ import annotations
+
+import json
+import re
+from collections.abc import Iterable, Iterator
+from functools import lru_cache
+
+from smachac.ir import nodes
+from smachac.ir.nodes import (
+    Concurrence,
+    Data,
+    Expression,
+    Key,
+    Leaf,
+    Machine,
+    Node,
+    OutcomeRule,
+    Preset,
+    Struct,
+    Transition,
+    Variable,
+)
+from smachac.ir.read import IrSyntaxError, parse_machine
+from smachac.ir.types import ANY, Type
+from smachac.source import assert_never
+
+__all__ = ["IrSyntaxError", "parse_machine", "print_machine"]
+
+HEADER = "# A state graph of smachac, format 1: one statement a line, as in grammars/ir.lark."
+
+_NAME = re.compile(r"[^\W\d]\w*")
+_PLAIN_TYPE = re.compile(r'[^\s"={}#][^\n"={}#]*')
+_PLAIN_CODE = re.compile(r"[^`\n\r\ud800-\udfff]*")
+_SURROGATE = re.compile(r"[\ud800-\udfff]")
+_encode = json.JSONEncoder(ensure_ascii=False).encode
+
+MOST_BITS = 10_000
+"""Whole numbers of more binary digits are printed in hexadecimal; Python limits decimal ones."""
+
+
+def print_machine(machine: Machine) -> str:
+    """The text of a machine, for people and for `parse_machine`, ending in a line feed.
+
+    Iterative over the nodes, so that deep nesting costs nothing.
+    """
+    lines = [HEADER, *_preamble(machine)]
+    todo: list[tuple[Node | None, int]] = [(machine.root, 0)]
+    while todo:
+        node, depth = todo.pop()
+        margin = "  " * depth
+        if node is None:
+            lines.append(f"{margin}}}")
+            continue
+        head = f"{_kind(node)} {_name(node.name)}: {_name(node.type)} {{"
+        body = list(_statements(node))
+        children = () if isinstance(node, Leaf) else node.children
+        lines.append("")
+        if not body and not children:
+            lines.append(f"{margin}{head}}}")
+            continue
+        lines.append(margin + head)
+        lines.extend(f"{margin}  {statement}" for statement in body)
+        todo.append((None, depth))
+        todo.extend((child, depth + 1) for child in reversed(children))
+    return "\n".join(lines) + "\n"
+
+
+def _preamble(machine: Machine) -> Iterator[str]:
+    if machine.source:
+        yield f"script {_quote(machine.source)}"
+    if machine.digest:
+        yield f"digest {_quote(machine.digest)}"
+    if machine.base != "Base":
+        yield f"base {_name(machine.base)}"
+    yield from map(_variable, machine.variables)
+
+
+def _kind(node: Node) -> str:
+    match node:
+        case Leaf():
+            return "state"
+        case nodes.StateMachine():
+            return "machine"
+        case nodes.Sequence():
+            return "sequence"
+        case Concurrence():
+            return "concurrence"
+        case nodes.Iterator():
+            return "iterator"
+    return assert_never(node)
+
+
+def _statements(node: Node) -> Iterator[str]:
+    """The statements of one node, without its children, in the order they are printed in."""
+    if node.doc:
+        yield f"doc {_quote(node.doc)}"
+    yield from _outcomes(node.outcomes)
+    for key in node.inputs:
+        yield f"input {_key(key)}"
+    for key in node.outputs:
+        yield f"output {_key(key)}"
+    if node.claims:
+        yield f"claims {_names(node.claims)}"
+    match node:
+        case Leaf():
+            yield from _leaf(node)
+        case nodes.StateMachine():
+            yield from map(_preset, node.userdata)
+            yield from _optional("initial", node.initial)
+            yield from ("forever",) * node.forever
+        case nodes.Sequence():
+            yield from map(_preset, node.userdata)
+            yield from _optional("connector", node.connector_outcome)
+            yield from _optional("initial", node.initial)
+        case Concurrence():
+            yield from map(_preset, node.userdata)
+            yield from _concurrence(node)
+        case nodes.Iterator():
+            yield from map(_preset, node.userdata)
+            yield from _iterator(node)
+        case _:
+            assert_never(node)
+    for remap in node.remaps:
+        yield f"remap {_name(remap.key)} -> {_name(remap.to)}"
+    yield from map(_transition, node.transitions)
+
+
+def _outcomes(outcomes: tuple[nodes.Outcome, ...]) -> Iterator[str]:
+    """All in one line, or a line each where one has a doc."""
+    if not any(outcome.doc for outcome in outcomes):
+        names = _names(outcome.name for outcome in outcomes)
+        yield from _line("outcomes", names)
+        return
+    for outcome in outcomes:
+        yield f"outcomes {_name(outcome.name)}{_doc(outcome.doc)}"
+
+
+def _leaf(leaf: Leaf) -> Iterator[str]:
+    yield from ("open",) * leaf.open
+    yield from ("blocking",) * leaf.blocking
+    yield from map(_variable, leaf.variables)
+
+
+def _concurrence(node: Concurrence) -> Iterator[str]:
+    yield from _optional("default", node.default_outcome)
+    if node.join != "all":
+        yield f"join {node.join}"
+    yield from map(_rule, node.rules)
+
+
+def _iterator(node: nodes.Iterator) -> Iterator[str]:
+    if node.items is not None:
+        yield f"items {_data(node.items.data)}"
+    if node.items_key:
+        yield f"items from {_name(node.items_key)}"
+    if node.item_key != "it_data":
+        yield f"item {_name(node.item_key)}"
+    if node.exhausted_outcome != "exhausted":
+        yield f"exhausted {_name(node.exhausted_outcome)}"
+    yield from _line("loop", _names(node.loop_outcomes))
+    for first, last in node.final_map:
+        yield f"final {_name(first)} -> {_name(last)}"
+
+
+def _line(word: str, rest: str) -> Iterator[str]:
+    if rest:
+        yield f"{word} {rest}"
+
+
+def _optional(word: str, name: str) -> Iterator[str]:
+    yield from _line(word, _name(name) if name else "")
+
+
+def _key(key: Key) -> str:
+    return f"{_name(key.name)}{_type(key.type)}{_doc(key.doc)}"
+
+
+def _preset(preset: Preset) -> str:
+    return f"userdata {_name(preset.key)}{_type(preset.type)} = {_data(preset.value.data)}"
+
+
+def _variable(variable: Variable) -> str:
+    return f"variable {_name(variable.name)} = {_data(variable.value.data)}"
+
+
+def _transition(step: Transition) -> str:
+    origin = "" if step.origin == "written" else f" ({step.origin})"
+    return f"on {_name(step.outcome)} -> {_name(step.target)}{origin}"
+
+
+def _rule(rule: OutcomeRule) -> str:
+    conditions = ", ".join(f"{_name(each.child)} = {_name(each.outcome)}" for each in rule.when)
+    return f"rule {_name(rule.outcome)}{' when ' if conditions else ''}{conditions}"
+
+
+def _type(type_: Type) -> str:
+    if type_ == ANY:
+        return ""
+    text = str(type_)
+    return f": {text if _PLAIN_TYPE.fullmatch(text) else _quote(text)}"
+
+
+def _doc(doc: str) -> str:
+    return f" {_quote(doc)}" if doc else ""
+
+
+def _names(names: Iterable[str]) -> str:
+    return ", ".join(map(_name, names))
+
+
+@lru_cache(maxsize=10_000)
+def _name(name: str) -> str:
+    return name if _NAME.fullmatch(name) else _quote(name)
+
+
+def _quote(text: str) -> str:
+    return json.dumps(text) if _SURROGATE.search(text) else _encode(text)
+
+
+def _data(data: Data) -> str:
+    match data:
+        case float():
+            return repr(data)
+        case str():
+            return _quote(data)
+        case None:
+            return "null"
+        case bool():
+            return "true" if data else "false"
+        case int():
+            return hex(data) if data.bit_length() > MOST_BITS else repr(data)
+        case Expression(text=text):
+            return f"`{text}`" if _PLAIN_CODE.fullmatch(text) else f"code {_quote(text)}"
+        case Struct(entries=entries):
+            pairs = (f"{_name(name)}: {_data(item)}" for name, item in entries)
+            return f"{{{', '.join(pairs)}}}"
+        case tuple():
+            return f"[{', '.join(map(_data, data))}]"
+    return assert_never(data)
