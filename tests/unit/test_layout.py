@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import ast
+import functools
 import re
 from collections.abc import Iterator
 from pathlib import Path
@@ -49,6 +50,9 @@ def modules() -> list[Path]:
     return [path for path in sorted((ROOT / "smachac").rglob("*.py")) if "." not in path.stem]
 
 
+parsed = functools.cache(ast.parse)
+
+
 def name(path: Path) -> str:
     return path.relative_to(ROOT).as_posix()
 
@@ -61,7 +65,7 @@ def functions(tree: ast.AST) -> Iterator[ast.FunctionDef | ast.AsyncFunctionDef]
 
 def disk_faults(text: str) -> Iterator[str]:
     """Each use of files or streams, as `line: what`. Data of the package itself may be read."""
-    for node in ast.walk(ast.parse(text)):
+    for node in ast.walk(parsed(text)):
         match node:
             case ast.Call(func=ast.Name(id=called)) if called in DISK_NAMES:
                 yield f"{node.lineno}: {called}"
@@ -89,7 +93,7 @@ def opens_a_file(call: ast.Call, owner: ast.expr) -> bool:
 
 def silent_tests(text: str) -> list[str]:
     """The tests that cannot fail: no `assert`, nothing of pytest's, no function that has one."""
-    bodies = list(functions(ast.parse(text)))
+    bodies = list(functions(parsed(text)))
     able = {"raises", "warns", "fail", "importorskip"}
     able |= {body.name for body in bodies if any_node(body, ast.Assert)}
     return [
@@ -136,7 +140,7 @@ def test_modules_and_functions_stay_small() -> None:
         text = path.read_text("utf-8")
         if (lines := text.count("\n")) > LONGEST_FILE:
             faults.append(f"{name(path)}: {lines} lines")
-        for function in functions(ast.parse(text)):
+        for function in functions(parsed(text)):
             lines = (function.end_lineno or function.lineno) - function.lineno + 1
             if lines > LONGEST_FUNCTION:
                 faults.append(f"{name(path)}:{function.lineno}: {function.name}, {lines} lines")
@@ -145,7 +149,7 @@ def test_modules_and_functions_stay_small() -> None:
 
 def test_public_modules_say_what_they_are() -> None:
     public = [p for p in modules() if p.stem == "__init__" or not p.stem.startswith("_")]
-    trees = {name(path): ast.parse(path.read_text("utf-8")) for path in public}
+    trees = {name(path): parsed(path.read_text("utf-8")) for path in public}
     assert [path for path, tree in trees.items() if not ast.get_docstring(tree)] == []
 
 
