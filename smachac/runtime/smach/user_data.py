@@ -96,14 +96,14 @@ class Remapper:
     __iter__: ClassVar[None] = None
     _view: View
 
-    def __new__(cls, ud: Any, input_keys: Iterable[str] = (), *_: Any, **__: Any) -> Remapper:
+    def __new__(cls, ud: Any, input_keys: Collection[str] = (), *_: Any, **__: Any) -> Remapper:
         return object.__new__(_with_properties(frozenset(input_keys)))
 
     def __init__(
         self,
         ud: Any,
-        input_keys: Iterable[str] = (),
-        output_keys: Iterable[str] = (),
+        input_keys: Collection[str] = (),
+        output_keys: Collection[str] = (),
         remapping: Mapping[str, str] | None = None,
     ) -> None:
         view: View = (
