@@ -78,6 +78,7 @@ class Clock:
         self._waiting: dict[Key, _Job] = {}
         self._forks: dict[Key, _Fork] = {}
         self._promised: set[Key] = set()
+        self._starting: set[Key] = set()
         self._stepping = False
         self._guests = 0
         self._beats = 0
@@ -126,21 +127,26 @@ class Clock:
             if not self._stepping and self._ready():
                 self._stepping = True
                 return True
-            beat = self._beats
-            woken = self._changed.wait(self._patience)
-            if not woken and beat == self._beats and not self._stepping:
-                self._lose_patience()
+            self._wait()
             return False
 
     def _ready(self) -> bool:
         return not self._promised and self._live <= self._waiting.keys()
 
-    def _lose_patience(self) -> None:
-        absent = sorted(self._live - self._waiting.keys())
-        self._live.difference_update(absent)
+    def _absent(self) -> list[Key]:
+        return sorted(self._live - self._waiting.keys())
+
+    def _wait(self) -> None:
+        """Wait for a change; when there is none for too long, leave behind whom all wait for."""
+        beat = self._beats
+        woken = self._changed.wait(self._patience)
+        if woken or beat != self._beats or self._stepping:
+            return
+        lost = [key for key in self._absent() if key not in self._starting]
+        self._live.difference_update(lost)
         self._promised.clear()
         self._changed.notify_all()
-        for key in absent:
+        for key in lost:
             self._left_behind(key)
 
     def _drive(self, mine: _Job) -> None:
@@ -149,18 +155,27 @@ class Clock:
                 jobs = self._crew()
                 if not jobs:
                     return
-                for job in jobs:
-                    if not job.advanced:
-                        job.advance()
-                if self._dismiss():
-                    continue
-                self._step()
-                for job in jobs:
-                    job.advanced = False
+                if self._advance(jobs):
+                    self._step()
+                    for job in jobs:
+                        job.advanced = False
         finally:
             with self._changed:
                 self._stepping = False
                 self._changed.notify_all()
+
+    def _advance(self, jobs: list[_Job]) -> bool:
+        """Take every skill to its next yield; false as soon as one ends instead.
+
+        Then its thread goes first: what it does next comes before the branches after it.
+        """
+        for job in jobs:
+            if not job.advanced:
+                job.advance()
+                if job.done:
+                    self._dismiss()
+                    return False
+        return True
 
     def _crew(self) -> list[_Job]:
         """The skills that run, in the order of their branches; none while somebody is missing."""
@@ -170,15 +185,12 @@ class Clock:
                 return []
             return [job for _, job in sorted(self._waiting.items(), key=lambda item: item[0])]
 
-    def _dismiss(self) -> bool:
-        """Let the threads of ended skills go on; true if there were any."""
+    def _dismiss(self) -> None:
+        """Let the threads of ended skills go on."""
         with self._changed:
-            ended = [key for key, job in self._waiting.items() if job.done]
-            for key in ended:
+            for key in [key for key, job in self._waiting.items() if job.done]:
                 del self._waiting[key]
-            if ended:
-                self._changed.notify_all()
-            return bool(ended)
+            self._changed.notify_all()
 
     # Branches
 
@@ -208,8 +220,19 @@ class Clock:
                 self.leave(key)
 
     def enter(self, key: Key) -> None:
-        """This thread is the branch `key` from now on."""
+        """This thread is the branch `key` from now on.
+
+        It goes on when the branches before it wait in a skill or have left: so branches also begin
+        one after the other, and what they share they touch in a fixed order.
+        """
         self._mine.key = key
+        with self._changed:
+            self._starting.add(key)
+            try:
+                while any(each < key for each in self._absent()):
+                    self._wait()
+            finally:
+                self._starting.discard(key)
 
     def leave(self, key: Key) -> None:
         """The branch `key` has ended; after the last of a fork the one before lives on."""

@@ -28,6 +28,7 @@ _FILLED = 0.88
 _BELOW = 0.12
 _VIEW = (0.80, -0.55, 0.42)
 _BAR = 0.09
+_LONGEST = 80
 _ASPECT = 4 / 3 / (1 - _BAR)
 _SKY = ((206, 219, 232), (240, 245, 249))
 _PAPER, _INK, _FAINT = (250, 251, 252), (38, 44, 54), (120, 128, 140)
@@ -190,8 +191,11 @@ def caption(image: Any, text: str, clock: float) -> Any:
     middle, margin = height + bar / 2, bar / 3
     now = f"{clock:.1f} s"
     room = width - 3 * margin - pen.textlength(now, font=font)
+    whole_text, text = text, text[-_LONGEST:]
     while pen.textlength(text, font=font) > room:
-        text = "\u2026" + text.lstrip("\u2026")[1:]
+        text = text[1:]
+    if text != whole_text:
+        text = "\u2026" + text[1:]
     pen.text((margin, middle), text, fill=_INK, font=font, anchor="lm")
     pen.text((width - margin, middle), now, fill=_FAINT, font=font, anchor="rm")
     return whole

@@ -24,7 +24,7 @@ def as_pose(value: Any) -> Pose:
         position, rotation = value if len(value) == 2 else (value, IDENTITY[1])
         p = [float(each) for each in position]
         q = [float(each) for each in rotation]
-    except TypeError:
+    except (TypeError, ValueError):
         raise ValueError(f"not a pose [[x, y, z], [qx, qy, qz, qw]]: {value!r}") from None
     if len(p) != 3 or len(q) != 4 or not all(map(math.isfinite, p + q)):
         raise ValueError(f"not a pose [[x, y, z], [qx, qy, qz, qw]]: {value!r}")

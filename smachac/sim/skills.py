@@ -88,6 +88,8 @@ def _follow(
 
     A joint that lags more than 0.05 rad for 0.1 s, twelve times the usual, will not arrive.
     """
+    if speed <= 0.0:
+        raise ValueError(f"the speed has to be above 0, not {speed}")
     corners = [arm.joints, *waypoints]
     steps = max(1, round(_duration(arm, corners, speed) / TIME_STEP))
     lost = 0

@@ -1,0 +1,114 @@
+"""Faults: each strikes when it is to, is named, and is found by the skill that can find it."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from typing import Any
+
+import pytest
+
+from smachac import sim
+from smachac.sim import faults
+from smachac.sim.faults import Fault, Misfortune
+
+pytest.importorskip("pybullet")
+
+TABLE = [[0.6, 0.0, 0.0], [0.0, 0.0, 0.0, 1.0]]
+BLOCK = [[0.5, 0.1, 0.025], [0.0, 0.0, 0.0, 1.0]]
+HOVER = [[0.0, 0.0, 0.15], [0.0, 0.0, 0.0, 1.0]]
+
+
+def pick(world: sim.World) -> list[str]:
+    """Pick up a block, naming the steps as states: those steps that did not succeed."""
+    arm = world.arm()
+    pose = arm.grasp_pose(BLOCK)
+    steps: dict[str, Callable[[], sim.Result]] = {
+        "OPEN": lambda: arm.grip("open"),
+        "MOVE": lambda: arm.move_to_joints(arm.solve_ik(pose, HOVER) or []),
+        "DOWN": lambda: arm.move_along(pose),
+        "CLOSE": lambda: arm.grip("close"),
+        "UP": lambda: arm.move_along(pose, HOVER),
+        "CHECK": lambda: arm.check_grasp("block"),
+    }
+    failed = []
+    for name, step in steps.items():
+        world.enter([f"sm/PICK/{name}"])
+        if step().outcome != "succeeded":
+            failed.append(name)
+    return failed
+
+
+@pytest.mark.parametrize(
+    ("fault", "found"),
+    [
+        ({"kind": "remove_body", "target": "block", "state": "MOVE"}, ["CLOSE", "CHECK"]),
+        (
+            {"kind": "move_body", "target": "block", "value": [0, 0.3, 0], "state": "PICK/DOWN"},
+            ["CLOSE", "CHECK"],
+        ),
+        ({"kind": "gripper_dead", "state": "sm/PICK/CLOSE"}, ["CLOSE", "CHECK"]),
+        ({"kind": "grip_force", "value": 0.0, "state": "UP"}, ["CHECK"]),
+    ],
+)
+def test_what_goes_wrong_is_found(fault: dict[str, Any], found: list[str]) -> None:
+    with sim.World(seed=0, faults=[fault]) as world:
+        world.load("table", TABLE, frame="world")
+        world.load("block", BLOCK)
+        assert pick(world) == found
+        struck = [event for event in world.events if event.name == "fault"]
+        assert [event.text.split()[0] for event in struck] == [fault["kind"]]
+        assert struck[0].time > 0.0
+
+
+def test_a_locked_joint_is_found_on_the_way() -> None:
+    fault = Fault(kind="lock_joint", target="panda_joint1", at=0.2)
+    with sim.World(seed=0, faults=[fault]) as world:
+        arm = world.arm()
+        result = arm.move_to_joints(arm.solve_ik([[0.4, 0.4, 0.1], [1, 0, 0, 0]]) or [])
+        assert result == sim.Result("aborted", "panda_joint1 does not follow")
+        assert world.events[0] == sim.Event(48 / 240, "fault", "lock_joint panda_joint1")
+        assert world.time < 1.5
+
+
+def test_a_fault_on_what_is_not_there_is_said_and_changes_nothing() -> None:
+    wrong = [
+        {"kind": "remove_body", "target": "spoon", "at": 0.1},
+        {"kind": "lock_joint", "target": "elbow", "at": 0.1},
+    ]
+    with sim.World(seed=0, faults=wrong) as world:
+        assert world.sleep(0.2).outcome == "succeeded"
+        texts = [event.text for event in world.events]
+        assert texts[0] == "remove_body did not happen: no body `spoon`; known: none"
+        assert texts[1].startswith("lock_joint did not happen: no joint `elbow`; known: `panda_j")
+
+
+def test_configured_faults_come_to_every_world() -> None:
+    sim.configure(faults=[Fault(kind="gripper_dead", at=0.0)])
+    try:
+        with sim.World() as world:
+            world.arm().grip("close")
+            assert world.events[0].text == "gripper_dead"
+    finally:
+        sim.configure()
+
+
+def test_a_probability_is_drawn_from_the_seed() -> None:
+    fault = Fault(kind="gripper_dead", at=0.0, probability=0.3)
+    drawn = [len(Misfortune([fault], seed)._left) for seed in range(300)]
+    assert drawn == [len(Misfortune([fault], seed)._left) for seed in range(300)]
+    assert 60 < sum(drawn) < 120
+    assert len(Misfortune([fault], 0)._left) == len(Misfortune([fault, fault], 0)._left[:1])
+
+
+@pytest.mark.parametrize(
+    ("fault", "reason"),
+    [
+        ({"kind": "meteor", "at": 1.0}, "no fault kind `meteor`; known: move_body"),
+        ({"kind": "gripper_dead"}, "needs either `at` or `state`"),
+        ({"kind": "gripper_dead", "at": 1.0, "state": "X"}, "needs either `at` or `state`"),
+        ({"kind": "gripper_dead", "when": 1.0}, "not a fault"),
+    ],
+)
+def test_what_is_no_fault_is_refused(fault: dict[str, Any], reason: str) -> None:
+    with pytest.raises(ValueError, match=reason):
+        faults.read([fault])
