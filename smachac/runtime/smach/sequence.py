@@ -59,3 +59,4 @@ class Sequence(StateMachine):
             smach.logerr(f"'{self._last}' lacks the connector outcome '{self._connector}'")
         if targets.get(self._connector) is None:
             targets[self._connector] = label
+            self._changed()
