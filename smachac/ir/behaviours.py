@@ -18,7 +18,7 @@ def built_in(seed: int = 0) -> Behaviour:
     """The behaviour of every leaf by its state type.
 
     A leaf that a request to stop has reached ends as `preempted` where it declares that. `seed`
-    settles what leaves draw that have no seed of their own.
+    settles what leaves draw that have no seed of their own; 0 is what generated programs take.
     """
     behaviours = {**_BEHAVIOURS, "RandomOutcomeState": _draws(seed)}
 
@@ -110,7 +110,7 @@ def _draws(seed: int) -> Behaviour:
     def draw(path: str, leaf: Leaf, visit: int, userdata: Userdata) -> str:
         if path not in sources:
             own = variable(leaf, "seed")
-            sources[path] = random.Random(own if isinstance(own, int) else f"{seed}:{path}")
+            sources[path] = random.Random(own if isinstance(own, int) else seed)
         return sources[path].choice(outcome_names(leaf) or (default_outcome(leaf),))
 
     return draw

@@ -40,13 +40,7 @@ def acted(scenario: Scenario, machine: Machine, otherwise: Behaviour) -> Behavio
 
     Raises ValueError for a path that names no leaf, or several.
     """
-    leaves = _leaves(machine)
-    by_path: dict[str, tuple[Step, ...]] = {}
-    for name, steps in scenario.steps.items():
-        path = _found(name, leaves)
-        if path is None:
-            raise ValueError(_not_found(name, machine, leaves))
-        by_path[path] = steps
+    by_path = _by_path(scenario, machine)
 
     def behave(path: str, leaf: Leaf, visit: int, userdata: Userdata) -> str:
         steps = by_path.get(path)
@@ -58,6 +52,36 @@ def acted(scenario: Scenario, machine: Machine, otherwise: Behaviour) -> Behavio
         return step.outcome if step.outcome is not None else default_outcome(leaf)
 
     return stopping_when_asked(behave)
+
+
+def plain_steps(
+    scenario: Scenario, machine: Machine
+) -> dict[str, list[tuple[str, dict[str, object]]]]:
+    """A scenario as rows of (outcome, keys to write) by full path, for programs that are run.
+
+    Raises ValueError for a path that names no leaf, or several.
+    """
+    nodes = dict(walk(machine.root))
+    rows: dict[str, list[tuple[str, dict[str, object]]]] = {}
+    for path, steps in _by_path(scenario, machine).items():
+        leaf = nodes[path]
+        assert isinstance(leaf, Leaf)
+        usual = default_outcome(leaf)
+        rows[path] = [
+            (usual if step.outcome is None else step.outcome, dict(step.writes)) for step in steps
+        ]
+    return rows
+
+
+def _by_path(scenario: Scenario, machine: Machine) -> dict[str, tuple[Step, ...]]:
+    leaves = _leaves(machine)
+    by_path: dict[str, tuple[Step, ...]] = {}
+    for name, steps in scenario.steps.items():
+        path = _found(name, leaves)
+        if path is None:
+            raise ValueError(_not_found(name, machine, leaves))
+        by_path[path] = steps
+    return by_path
 
 
 def read_scenario(data: object, machine: Machine) -> tuple[Scenario, list[str]]:

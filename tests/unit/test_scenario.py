@@ -9,7 +9,7 @@ from ir_machines import iterator, leaf, machine, ran, short
 
 from smachac.ir.behaviours import built_in
 from smachac.ir.nodes import Machine
-from smachac.ir.scenario import Scenario, Step, acted, read_scenario
+from smachac.ir.scenario import Scenario, Step, acted, plain_steps, read_scenario
 
 
 def picking() -> Machine:
@@ -134,6 +134,16 @@ def test_a_step_without_outcome_ends_as_usual() -> None:
     scenario = Scenario(steps={"sm/PICK/GRASP": (Step(writes=(("width", 1),)),)})
     result, _ = ran(given.root, acted(scenario, given, built_in()), max_steps=4)
     assert result.scopes["sm/PICK"] == {"width": 1}
+
+
+def test_a_scenario_as_plain_rows() -> None:
+    scenario = Scenario(
+        steps={"PICK/GRASP": (Step(writes=(("width", 5),)), Step(outcome="aborted")), "CHECK": ()}
+    )
+    assert plain_steps(scenario, picking()) == {
+        "sm/PICK/GRASP": [("succeeded", {"width": 5}), ("aborted", {})],
+        "sm/CHECK": [],
+    }
 
 
 def test_a_scenario_for_no_leaf_is_refused() -> None:
