@@ -165,6 +165,7 @@ class _Located:
         start = starts[min(line, len(starts)) - 1]
         span = Span(source, start, start + len(source.line(line)))
         words = getattr(error, "message", None) or str(error) or type(error).__name__
+        words = words.split(". ")[0].rstrip(".")  # Jinja explains at length
         if isinstance(error, RecursionError):
             words = "the template extends or includes itself"
         if type(error).__name__ == "TemplateNotFound":

@@ -16,7 +16,7 @@ from smachac.source import NOWHERE, Span
 from smachac.targets import Context, Files, Target, made_by, stem
 
 VERSION = 1
-"""Of the schema; it grows when a program that reads machines could break."""
+"""Of the schema; it grows with every change."""
 
 
 def emit(machine: Checked, context: Context, report: Report) -> Files:

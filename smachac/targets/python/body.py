@@ -120,8 +120,9 @@ def userdata(node: Container, variable: str, depth: int) -> list[str]:
 
 def initial(node: Container, variable: str) -> list[str]:
     """The line that sets another initial state than the first, if there is one."""
-    linear = isinstance(node, (StateMachine, Sequence)) and node.children
-    if not linear or node.initial == node.children[0].name:
+    if not isinstance(node, (StateMachine, Sequence)) or not node.children:
+        return []
+    if node.initial == node.children[0].name:
         return []
     return [f"{variable}.set_initial_state({flat(names([node.initial]))})"]
 

@@ -14,6 +14,7 @@ from smachac.states import StateType, find_state_type
 from smachac.targets import Context, made_by
 from smachac.targets.blocks import BlockError, Blocks
 from smachac.targets.python import body
+from smachac.targets.python.expressions import standard_imports
 from smachac.targets.python.layout import call, literal, names
 from smachac.targets.python.smacha import plain, state_variables
 
@@ -62,7 +63,7 @@ def module_text(machine: Machine, context: Context) -> str:
     root = gathered.fresh(machine.root.name, True)
     lines = _container(machine.root, None, root, 1, machine.root.name, gathered)
     buffers = {name: "\n\n\n".join(texts) for name, texts in gathered.buffers.items()}
-    buffers["imports"] = _imports(gathered.buffers["imports"])
+    buffers["imports"] = _imports([*gathered.buffers["imports"], *standard_imports(machine)])
     variables = {
         **{variable.name: plain(variable.value.data) for variable in machine.variables},
         **buffers,

@@ -1,0 +1,66 @@
+# Made by smachac 0.1.0 from main.yml (sha256 4c3ccd6f4eda27d8).
+"""The state machine `get_ready`."""
+
+try:
+    import smach
+except ImportError:  # no ROS on this machine: the same names without it
+    from smachac.runtime import smach
+
+
+class ScriptedState(smach.State):
+    """Ends as it is told: visit n does step n, the last step is repeated."""
+
+    def __init__(self, outcomes, steps=(), input_keys=(), output_keys=()):
+        super().__init__(
+            outcomes=outcomes,
+            input_keys=list(input_keys),
+            output_keys=list(output_keys),
+        )
+        self.steps = list(steps) or [{"outcome": outcomes[0]}]
+        self.visits = 0
+
+    def execute(self, userdata):
+        step = self.steps[min(self.visits, len(self.steps) - 1)]
+        self.visits += 1
+        for key, value in step.get("set", {}).items():
+            userdata[key] = value
+        return step["outcome"]
+
+
+def build():
+    """Build the state machine `get_ready`."""
+    # main.yml:2
+    get_ready = smach.StateMachine(outcomes=["succeeded", "aborted"])
+    with get_ready:
+        # main.yml:7
+        smach.StateMachine.add(
+            "CHECK_BATTERY",
+            ScriptedState(outcomes=["full", "low"]),
+            transitions={"full": "RELEASE_BRAKES", "low": "aborted"},
+        )
+
+        # main.yml:12
+        smach.StateMachine.add(
+            "RELEASE_BRAKES",
+            ScriptedState(outcomes=["succeeded", "aborted"]),
+            transitions={"succeeded": "GO_HOME", "aborted": "aborted"},
+        )
+
+        # main.yml:17
+        smach.StateMachine.add(
+            "GO_HOME",
+            ScriptedState(outcomes=["succeeded", "aborted"]),
+            transitions={"succeeded": "succeeded", "aborted": "aborted"},
+        )
+    return get_ready
+
+
+def main():
+    """Run the state machine once and return its outcome."""
+    return build().execute()
+
+
+if __name__ == "__main__":
+    outcome = main()
+    print(f"outcome: {outcome}")
+    raise SystemExit(outcome is None)

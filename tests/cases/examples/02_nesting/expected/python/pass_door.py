@@ -1,0 +1,96 @@
+# Made by smachac 0.1.0 from main.yml (sha256 05e3a17974dfb005).
+"""The state machine `pass_door`."""
+
+try:
+    import smach
+except ImportError:  # no ROS on this machine: the same names without it
+    from smachac.runtime import smach
+
+
+class ScriptedState(smach.State):
+    """Ends as it is told: visit n does step n, the last step is repeated."""
+
+    def __init__(self, outcomes, steps=(), input_keys=(), output_keys=()):
+        super().__init__(
+            outcomes=outcomes,
+            input_keys=list(input_keys),
+            output_keys=list(output_keys),
+        )
+        self.steps = list(steps) or [{"outcome": outcomes[0]}]
+        self.visits = 0
+
+    def execute(self, userdata):
+        step = self.steps[min(self.visits, len(self.steps) - 1)]
+        self.visits += 1
+        for key, value in step.get("set", {}).items():
+            userdata[key] = value
+        return step["outcome"]
+
+
+def build():
+    """Build the state machine `pass_door`."""
+    # main.yml:2
+    pass_door = smach.StateMachine(outcomes=["succeeded", "aborted"])
+    with pass_door:
+        # main.yml:7
+        smach.StateMachine.add(
+            "DRIVE_TO_DOOR",
+            ScriptedState(outcomes=["there", "lost"]),
+            transitions={"there": "OPEN_DOOR", "lost": "aborted"},
+        )
+
+        # main.yml:12
+        sm_open_door = smach.StateMachine(outcomes=["open", "stuck"])
+        with sm_open_door:
+            # main.yml:17
+            smach.StateMachine.add(
+                "GRASP_HANDLE",
+                ScriptedState(outcomes=["held", "missed"]),
+                transitions={"held": "TURN_HANDLE", "missed": "stuck"},
+            )
+
+            # main.yml:21
+            smach.StateMachine.add(
+                "TURN_HANDLE",
+                ScriptedState(outcomes=["turned", "blocked"]),
+                transitions={"turned": "PULL", "blocked": "stuck"},
+            )
+
+            # main.yml:25
+            smach.StateMachine.add(
+                "PULL",
+                ScriptedState(outcomes=["open", "stuck"]),
+                transitions={"open": "open", "stuck": "stuck"},
+            )
+
+        smach.StateMachine.add(
+            "OPEN_DOOR",
+            sm_open_door,
+            transitions={"open": "DRIVE_THROUGH", "stuck": "CALL_FOR_HELP"},
+        )
+
+        # main.yml:30
+        smach.StateMachine.add(
+            "DRIVE_THROUGH",
+            ScriptedState(outcomes=["succeeded", "aborted"]),
+            transitions={"succeeded": "succeeded", "aborted": "aborted"},
+        )
+
+        # main.yml:35
+        smach.StateMachine.add(
+            "CALL_FOR_HELP",
+            ScriptedState(outcomes=["called"]),
+            transitions={"called": "aborted"},
+        )
+    return pass_door
+
+
+def main():
+    """Run the state machine once and return its outcome."""
+    return build().execute()
+
+
+if __name__ == "__main__":
+    outcome = main()
+    print(f"outcome: {outcome}")
+    raise SystemExit(outcome is None)

@@ -1,0 +1,97 @@
+# Made by smachac 0.1.0 from main.yml (sha256 599aef45d8faa625).
+"""The state machine `prepare`."""
+
+import threading
+
+try:
+    import smach
+except ImportError:  # no ROS on this machine: the same names without it
+    from smachac.runtime import smach
+
+
+class ScriptedState(smach.State):
+    """Ends as it is told: visit n does step n, the last step is repeated."""
+
+    def __init__(self, outcomes, steps=(), input_keys=(), output_keys=()):
+        super().__init__(
+            outcomes=outcomes,
+            input_keys=list(input_keys),
+            output_keys=list(output_keys),
+        )
+        self.steps = list(steps) or [{"outcome": outcomes[0]}]
+        self.visits = 0
+
+    def execute(self, userdata):
+        step = self.steps[min(self.visits, len(self.steps) - 1)]
+        self.visits += 1
+        for key, value in step.get("set", {}).items():
+            userdata[key] = value
+        return step["outcome"]
+
+
+class SleepState(smach.State):
+    """Waits for `time` seconds; a preempt request ends the wait."""
+
+    def __init__(self, time):
+        super().__init__(outcomes=["succeeded", "preempted"])
+        self.time = time
+        self.woken = threading.Event()
+
+    def request_preempt(self):
+        super().request_preempt()
+        self.woken.set()
+
+    def execute(self, userdata):
+        self.woken.wait(self.time)
+        self.woken.clear()
+        if self.preempt_requested():
+            self.service_preempt()
+            return "preempted"
+        return "succeeded"
+
+
+def build():
+    """Build the state machine `prepare`."""
+    # main.yml:2
+    prepare = smach.StateMachine(outcomes=["succeeded", "aborted"])
+    with prepare:
+        # main.yml:7
+        sm_find_and_warm_up = smach.Concurrence(
+            outcomes=["ready", "not_ready"],
+            default_outcome="not_ready",
+            outcome_map={"ready": {"FIND_PART": "found", "WARM_UP": "succeeded"}},
+        )
+        with sm_find_and_warm_up:
+            # main.yml:15
+            smach.Concurrence.add(
+                "FIND_PART",
+                ScriptedState(outcomes=["found", "nothing"]),
+            )
+
+            # main.yml:18
+            smach.Concurrence.add("WARM_UP", SleepState(time=0.05))
+
+        smach.StateMachine.add(
+            "FIND_AND_WARM_UP",
+            sm_find_and_warm_up,
+            transitions={"ready": "PICK", "not_ready": "aborted"},
+        )
+
+        # main.yml:22
+        smach.StateMachine.add(
+            "PICK",
+            ScriptedState(outcomes=["succeeded", "aborted"]),
+            transitions={"succeeded": "succeeded", "aborted": "aborted"},
+        )
+    return prepare
+
+
+def main():
+    """Run the state machine once and return its outcome."""
+    return build().execute()
+
+
+if __name__ == "__main__":
+    outcome = main()
+    print(f"outcome: {outcome}")
+    raise SystemExit(outcome is None)

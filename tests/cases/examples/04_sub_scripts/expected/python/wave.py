@@ -1,0 +1,108 @@
+# Made by smachac 0.1.0 from main.yml (sha256 d4b5d1deaa440d73).
+"""The state machine `wave`."""
+
+try:
+    import smach
+except ImportError:  # no ROS on this machine: the same names without it
+    from smachac.runtime import smach
+
+
+class PrintUserdataState(smach.State):
+    """Prints its input keys, one a line."""
+
+    def __init__(self, input_keys):
+        super().__init__(outcomes=["succeeded"], input_keys=input_keys)
+        self.printed_keys = sorted(input_keys)
+
+    def execute(self, userdata):
+        for key in self.printed_keys:
+            print(f"{key}: {userdata[key]}")
+        return "succeeded"
+
+
+class ScriptedState(smach.State):
+    """Ends as it is told: visit n does step n, the last step is repeated."""
+
+    def __init__(self, outcomes, steps=(), input_keys=(), output_keys=()):
+        super().__init__(
+            outcomes=outcomes,
+            input_keys=list(input_keys),
+            output_keys=list(output_keys),
+        )
+        self.steps = list(steps) or [{"outcome": outcomes[0]}]
+        self.visits = 0
+
+    def execute(self, userdata):
+        step = self.steps[min(self.visits, len(self.steps) - 1)]
+        self.visits += 1
+        for key, value in step.get("set", {}).items():
+            userdata[key] = value
+        return step["outcome"]
+
+
+def build():
+    """Build the state machine `wave`."""
+    # main.yml:2
+    wave = smach.StateMachine(outcomes=["succeeded", "aborted"])
+    with wave:
+        # main.yml:9
+        sm_wave_left = smach.StateMachine(outcomes=["succeeded", "aborted"])
+        sm_wave_left.userdata.topic = "/left/joint_command"
+        sm_wave_left.userdata.times = 2
+        with sm_wave_left:
+            # wave.yml:10
+            smach.StateMachine.add(
+                "TELL",
+                PrintUserdataState(input_keys=["topic", "times"]),
+                transitions={"succeeded": "MOVE"},
+            )
+
+            # wave.yml:14
+            smach.StateMachine.add(
+                "MOVE",
+                ScriptedState(outcomes=["succeeded", "aborted"]),
+                transitions={"succeeded": "succeeded", "aborted": "aborted"},
+            )
+
+        smach.StateMachine.add(
+            "WAVE_LEFT",
+            sm_wave_left,
+            transitions={"succeeded": "WAVE_RIGHT", "aborted": "aborted"},
+        )
+
+        # main.yml:14
+        sm_wave_right = smach.StateMachine(outcomes=["succeeded", "aborted"])
+        sm_wave_right.userdata.topic = "/right/joint_command"
+        sm_wave_right.userdata.times = 3
+        with sm_wave_right:
+            # wave.yml:10
+            smach.StateMachine.add(
+                "TELL",
+                PrintUserdataState(input_keys=["topic", "times"]),
+                transitions={"succeeded": "MOVE"},
+            )
+
+            # wave.yml:14
+            smach.StateMachine.add(
+                "MOVE",
+                ScriptedState(outcomes=["succeeded", "aborted"]),
+                transitions={"succeeded": "succeeded", "aborted": "aborted"},
+            )
+
+        smach.StateMachine.add(
+            "WAVE_RIGHT",
+            sm_wave_right,
+            transitions={"succeeded": "succeeded", "aborted": "aborted"},
+        )
+    return wave
+
+
+def main():
+    """Run the state machine once and return its outcome."""
+    return build().execute()
+
+
+if __name__ == "__main__":
+    outcome = main()
+    print(f"outcome: {outcome}")
+    raise SystemExit(outcome is None)

@@ -1,0 +1,118 @@
+# Made by smachac 0.1.0 from main.yml (sha256 39e4d17307bc8414).
+"""The state machine `measure`."""
+
+try:
+    import smach
+except ImportError:  # no ROS on this machine: the same names without it
+    from smachac.runtime import smach
+
+
+class ScriptedState(smach.State):
+    """Ends as it is told: visit n does step n, the last step is repeated."""
+
+    def __init__(self, outcomes, steps=(), input_keys=(), output_keys=()):
+        super().__init__(
+            outcomes=outcomes,
+            input_keys=list(input_keys),
+            output_keys=list(output_keys),
+        )
+        self.steps = list(steps) or [{"outcome": outcomes[0]}]
+        self.visits = 0
+
+    def execute(self, userdata):
+        step = self.steps[min(self.visits, len(self.steps) - 1)]
+        self.visits += 1
+        for key, value in step.get("set", {}).items():
+            userdata[key] = value
+        return step["outcome"]
+
+
+class ConditionalOutcomeState(smach.State):
+    """Ends with the first of its outcomes whose condition holds, else the default."""
+
+    def __init__(self, outcomes, callbacks, default_outcome, input_keys=()):
+        super().__init__(outcomes=outcomes, input_keys=list(input_keys))
+        self.conditions = [(name, callbacks[name]) for name in outcomes if name in callbacks]
+        self.default_outcome = default_outcome
+
+    def execute(self, userdata):
+        for outcome, holds in self.conditions:
+            if holds(userdata):
+                return outcome
+        return self.default_outcome
+
+
+class PrintUserdataState(smach.State):
+    """Prints its input keys, one a line."""
+
+    def __init__(self, input_keys):
+        super().__init__(outcomes=["succeeded"], input_keys=input_keys)
+        self.printed_keys = sorted(input_keys)
+
+    def execute(self, userdata):
+        for key in self.printed_keys:
+            print(f"{key}: {userdata[key]}")
+        return "succeeded"
+
+
+def build():
+    """Build the state machine `measure`."""
+    # main.yml:2
+    measure = smach.StateMachine(outcomes=["succeeded"])
+    measure.userdata.limit = 0.08
+    with measure:
+        # main.yml:9
+        smach.StateMachine.add(
+            "MEASURE_WIDTH",
+            ScriptedState(
+                outcomes=["measured"],
+                steps=[{"outcome": "measured", "set": {"width": 0.05}}],
+                output_keys=["width"],
+            ),
+            transitions={"measured": "JUDGE"},
+            remapping={"width": "part_width"},
+        )
+
+        # main.yml:17
+        sm_judge = smach.StateMachine(
+            outcomes=["fits", "too_wide"],
+            input_keys=["width", "limit"],
+        )
+        with sm_judge:
+            # main.yml:24
+            smach.StateMachine.add(
+                "COMPARE",
+                ConditionalOutcomeState(
+                    outcomes=["fits", "too_wide"],
+                    callbacks={"fits": lambda ud: ud.width <= ud.limit},
+                    default_outcome="too_wide",
+                    input_keys=["width", "limit"],
+                ),
+                transitions={"fits": "fits", "too_wide": "too_wide"},
+            )
+
+        smach.StateMachine.add(
+            "JUDGE",
+            sm_judge,
+            transitions={"fits": "TELL", "too_wide": "TELL"},
+            remapping={"width": "part_width"},
+        )
+
+        # main.yml:32
+        smach.StateMachine.add(
+            "TELL",
+            PrintUserdataState(input_keys=["part_width", "limit"]),
+            transitions={"succeeded": "succeeded"},
+        )
+    return measure
+
+
+def main():
+    """Run the state machine once and return its outcome."""
+    return build().execute()
+
+
+if __name__ == "__main__":
+    outcome = main()
+    print(f"outcome: {outcome}")
+    raise SystemExit(outcome is None)

@@ -1,0 +1,115 @@
+# Made by smachac 0.1.0 from main.yml (sha256 f5631cd15a9f3c17).
+"""The state machine `three_tries`."""
+
+try:
+    import smach
+except ImportError:  # no ROS on this machine: the same names without it
+    from smachac.runtime import smach
+
+
+class ScriptedState(smach.State):
+    """Ends as it is told: visit n does step n, the last step is repeated."""
+
+    def __init__(self, outcomes, steps=(), input_keys=(), output_keys=()):
+        super().__init__(
+            outcomes=outcomes,
+            input_keys=list(input_keys),
+            output_keys=list(output_keys),
+        )
+        self.steps = list(steps) or [{"outcome": outcomes[0]}]
+        self.visits = 0
+
+    def execute(self, userdata):
+        step = self.steps[min(self.visits, len(self.steps) - 1)]
+        self.visits += 1
+        for key, value in step.get("set", {}).items():
+            userdata[key] = value
+        return step["outcome"]
+
+
+class CallbacksState(smach.State):
+    """Calls functions of the userdata, keeps what each returns under its own name."""
+
+    def __init__(self, callbacks, input_keys=(), output_keys=()):
+        super().__init__(
+            outcomes=["succeeded"],
+            input_keys=list(input_keys),
+            output_keys=list(output_keys),
+        )
+        self.callbacks = callbacks
+
+    def execute(self, userdata):
+        for key in sorted(self.callbacks):
+            userdata[key] = self.callbacks[key](userdata)
+        return "succeeded"
+
+
+class ConditionalOutcomeState(smach.State):
+    """Ends with the first of its outcomes whose condition holds, else the default."""
+
+    def __init__(self, outcomes, callbacks, default_outcome, input_keys=()):
+        super().__init__(outcomes=outcomes, input_keys=list(input_keys))
+        self.conditions = [(name, callbacks[name]) for name in outcomes if name in callbacks]
+        self.default_outcome = default_outcome
+
+    def execute(self, userdata):
+        for outcome, holds in self.conditions:
+            if holds(userdata):
+                return outcome
+        return self.default_outcome
+
+
+def build():
+    """Build the state machine `three_tries`."""
+    # main.yml:2
+    three_tries = smach.StateMachine(outcomes=["succeeded", "aborted"])
+    three_tries.userdata.tries = 0
+    with three_tries:
+        # main.yml:8
+        smach.StateMachine.add(
+            "TRY",
+            ScriptedState(
+                outcomes=["succeeded", "aborted"],
+                steps=[
+                    {"outcome": "aborted"},
+                    {"outcome": "aborted"},
+                    {"outcome": "succeeded"},
+                ],
+            ),
+            transitions={"succeeded": "succeeded", "aborted": "COUNT"},
+        )
+
+        # main.yml:14
+        smach.StateMachine.add(
+            "COUNT",
+            CallbacksState(
+                callbacks={"tries": lambda ud: ud.tries + 1},
+                input_keys=["tries"],
+                output_keys=["tries"],
+            ),
+            transitions={"succeeded": "DECIDE"},
+        )
+
+        # main.yml:21
+        smach.StateMachine.add(
+            "DECIDE",
+            ConditionalOutcomeState(
+                outcomes=["again", "enough"],
+                callbacks={"again": lambda ud: ud.tries < 3},
+                default_outcome="enough",
+                input_keys=["tries"],
+            ),
+            transitions={"again": "TRY", "enough": "aborted"},
+        )
+    return three_tries
+
+
+def main():
+    """Run the state machine once and return its outcome."""
+    return build().execute()
+
+
+if __name__ == "__main__":
+    outcome = main()
+    print(f"outcome: {outcome}")
+    raise SystemExit(outcome is None)

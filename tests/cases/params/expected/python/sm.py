@@ -1,0 +1,63 @@
+# Made by smachac 0.1.0 from main.yml (sha256 cbcdbe3c8287df28).
+"""The state machine `sm`."""
+
+try:
+    import smach
+except ImportError:  # no ROS on this machine: the same names without it
+    from smachac.runtime import smach
+
+
+class ScriptedState(smach.State):
+    """Ends as it is told: visit n does step n, the last step is repeated."""
+
+    def __init__(self, outcomes, steps=(), input_keys=(), output_keys=()):
+        super().__init__(
+            outcomes=outcomes,
+            input_keys=list(input_keys),
+            output_keys=list(output_keys),
+        )
+        self.steps = list(steps) or [{"outcome": outcomes[0]}]
+        self.visits = 0
+
+    def execute(self, userdata):
+        step = self.steps[min(self.visits, len(self.steps) - 1)]
+        self.visits += 1
+        for key, value in step.get("set", {}).items():
+            userdata[key] = value
+        return step["outcome"]
+
+
+def build():
+    """Build the state machine `sm`."""
+    # main.yml:2
+    sm = smach.StateMachine(outcomes=["succeeded"])
+    sm.userdata.topic = "/left/joint"
+    sm.userdata.nested = {"a": {"b": "left", "c": "12"}}
+    sm.userdata.whole = {"a": [1, 2]}
+    sm.userdata.data = [["x"], [1, 2]]
+    with sm:
+        # main.yml:12
+        sm_outer = smach.StateMachine(outcomes=["fine"])
+        sm_outer.userdata.arm = "right"
+        sm_outer.userdata.name = "right_arm"
+        with sm_outer:
+            # main.yml:18
+            smach.StateMachine.add(
+                "INNER",
+                ScriptedState(outcomes=["done"]),
+                transitions={"done": "fine"},
+            )
+
+        smach.StateMachine.add("OUTER", sm_outer, transitions={"fine": "succeeded"})
+    return sm
+
+
+def main():
+    """Run the state machine once and return its outcome."""
+    return build().execute()
+
+
+if __name__ == "__main__":
+    outcome = main()
+    print(f"outcome: {outcome}")
+    raise SystemExit(outcome is None)

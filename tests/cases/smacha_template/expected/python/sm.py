@@ -1,0 +1,46 @@
+# Made by smachac 0.1.0 from main.yml (sha256 0dd05b96da246a18).
+"""The state machine `sm`."""
+
+import sys
+
+try:
+    import smach
+except ImportError:  # no ROS on this machine: the same names without it
+    from smachac.runtime import smach
+
+
+class Greet(smach.State):
+    def __init__(self, greeting):
+        smach.State.__init__(self, outcomes=['succeeded', 'aborted'], input_keys=['who'])
+        self.greeting = greeting
+
+    def execute(self, userdata):
+        sys.stdout.write(self.greeting + ' ' + userdata.who + '\n')
+        return 'succeeded'
+
+
+def build():
+    """Build the state machine `sm`."""
+    # main.yml:2
+    sm = smach.StateMachine(outcomes=["succeeded", "aborted"])
+    sm.userdata.who = "world"
+    with sm:
+        # main.yml:6
+        smach.StateMachine.add('GREET', Greet('HELLO'),
+                               transitions={'succeeded': 'AGAIN', 'aborted': 'aborted'})
+
+        # main.yml:11
+        smach.StateMachine.add('AGAIN', Greet('AGAIN_YOU'),
+                               transitions={'succeeded': 'succeeded', 'aborted': 'aborted'})
+    return sm
+
+
+def main():
+    """Run the state machine once and return its outcome."""
+    return build().execute()
+
+
+if __name__ == "__main__":
+    outcome = main()
+    print(f"outcome: {outcome}")
+    raise SystemExit(outcome is None)

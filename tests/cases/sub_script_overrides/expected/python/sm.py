@@ -1,0 +1,103 @@
+# Made by smachac 0.1.0 from main.yml (sha256 75a72e037e51c72b).
+"""The state machine `sm`."""
+
+try:
+    import smach
+except ImportError:  # no ROS on this machine: the same names without it
+    from smachac.runtime import smach
+
+
+class ScriptedState(smach.State):
+    """Ends as it is told: visit n does step n, the last step is repeated."""
+
+    def __init__(self, outcomes, steps=(), input_keys=(), output_keys=()):
+        super().__init__(
+            outcomes=outcomes,
+            input_keys=list(input_keys),
+            output_keys=list(output_keys),
+        )
+        self.steps = list(steps) or [{"outcome": outcomes[0]}]
+        self.visits = 0
+
+    def execute(self, userdata):
+        step = self.steps[min(self.visits, len(self.steps) - 1)]
+        self.visits += 1
+        for key, value in step.get("set", {}).items():
+            userdata[key] = value
+        return step["outcome"]
+
+
+def build():
+    """Build the state machine `sm`."""
+    # main.yml:2
+    sm = smach.StateMachine(outcomes=["succeeded", "aborted"])
+    with sm:
+        # main.yml:7
+        sm_plain = smach.StateMachine(outcomes=["done", "aborted"])
+        sm_plain.userdata.a = 1
+        sm_plain.userdata.b = 2
+        sm_plain.userdata.tool = "nobody_gripper"
+        with sm_plain:
+            # sub.yml:7
+            smach.StateMachine.add(
+                "A",
+                ScriptedState(outcomes=["done", "aborted", "extra"]),
+                transitions={"extra": "done", "done": "done", "aborted": "aborted"},
+            )
+
+        smach.StateMachine.add(
+            "PLAIN",
+            sm_plain,
+            transitions={"done": "OTHER", "aborted": "aborted"},
+        )
+
+        # main.yml:10
+        sm_other = smach.StateMachine(outcomes=["done", "aborted", "extra"])
+        sm_other.userdata.a = 1
+        sm_other.userdata.b = 20
+        sm_other.userdata.tool = "right_gripper"
+        sm_other.userdata.c = 30
+        with sm_other:
+            # sub.yml:7
+            smach.StateMachine.add(
+                "A",
+                ScriptedState(outcomes=["done", "aborted", "extra"]),
+                transitions={"extra": "done", "done": "done", "aborted": "aborted"},
+            )
+
+        smach.StateMachine.add(
+            "OTHER",
+            sm_other,
+            transitions={"done": "THROUGH", "aborted": "aborted", "extra": "aborted"},
+        )
+
+        # main.yml:16
+        sm_through = smach.StateMachine(outcomes=["done", "aborted"])
+        sm_through.userdata.a = 1
+        sm_through.userdata.b = 2
+        sm_through.userdata.tool = "through_gripper"
+        with sm_through:
+            # sub.yml:7
+            smach.StateMachine.add(
+                "A",
+                ScriptedState(outcomes=["done", "aborted", "extra"]),
+                transitions={"extra": "done", "done": "done", "aborted": "aborted"},
+            )
+
+        smach.StateMachine.add(
+            "THROUGH",
+            sm_through,
+            transitions={"done": "succeeded", "aborted": "aborted"},
+        )
+    return sm
+
+
+def main():
+    """Run the state machine once and return its outcome."""
+    return build().execute()
+
+
+if __name__ == "__main__":
+    outcome = main()
+    print(f"outcome: {outcome}")
+    raise SystemExit(outcome is None)

@@ -1,0 +1,75 @@
+# Made by smachac 0.1.0 from main.yml (sha256 df8f3a58297c48af).
+"""The state machine `sm`."""
+
+import math
+
+try:
+    import smach
+except ImportError:  # no ROS on this machine: the same names without it
+    from smachac.runtime import smach
+
+
+class ScriptedState(smach.State):
+    """Ends as it is told: visit n does step n, the last step is repeated."""
+
+    def __init__(self, outcomes, steps=(), input_keys=(), output_keys=()):
+        super().__init__(
+            outcomes=outcomes,
+            input_keys=list(input_keys),
+            output_keys=list(output_keys),
+        )
+        self.steps = list(steps) or [{"outcome": outcomes[0]}]
+        self.visits = 0
+
+    def execute(self, userdata):
+        step = self.steps[min(self.visits, len(self.steps) - 1)]
+        self.visits += 1
+        for key, value in step.get("set", {}).items():
+            userdata[key] = value
+        return step["outcome"]
+
+
+def build():
+    """Build the state machine `sm`."""
+    # main.yml:2
+    sm = smach.StateMachine(outcomes=["succeeded"])
+    sm.userdata.text = "hello"
+    sm.userdata.quoted = "block.urdf"
+    sm.userdata.file = "block.urdf"
+    sm.userdata.apostrophe = "it's"
+    sm.userdata.both = 'it\'s "x"'
+    sm.userdata.number = 1.5
+    sm.userdata.octal = 15
+    sm.userdata.like_number = "1.5"
+    sm.userdata.yes_is_text = "yes"
+    sm.userdata.nothing = None
+    sm.userdata.blank = None
+    sm.userdata.truth = True
+    sm.userdata.infinite = float("-inf")
+    sm.userdata.dotted = math.pi
+    sm.userdata.called = Pose(position=Point(x=1.0, y=0.0, z=0.0))
+    sm.userdata.marked = len([1, 2])
+    sm.userdata.folded = "two lines\n"
+    sm.userdata["update"] = "a key named like a method"
+    sm.userdata["not a name"] = 1
+    sm.userdata.typed = [1, 2, 3]
+    sm.userdata.ünïcode = "✓"
+    with sm:
+        # main.yml:30
+        smach.StateMachine.add(
+            "A",
+            ScriptedState(outcomes=["done"]),
+            transitions={"done": "succeeded"},
+        )
+    return sm
+
+
+def main():
+    """Run the state machine once and return its outcome."""
+    return build().execute()
+
+
+if __name__ == "__main__":
+    outcome = main()
+    print(f"outcome: {outcome}")
+    raise SystemExit(outcome is None)
