@@ -79,6 +79,9 @@ class Engine:
 
     def __init__(self, *, gui: bool = False) -> None:
         module = pybullet()
+        # Without a display PyBullet does not fail, it ends the process.
+        if gui and sys.platform == "linux" and not os.environ.get("DISPLAY"):
+            raise SimUnavailable("no display for the window (DISPLAY is not set); run without gui")
         with quiet():
             self.client: int = module.connect(module.GUI if gui else module.DIRECT)
         if self.client < 0:

@@ -41,7 +41,7 @@ _LIGHT = {
     "lightSpecularCoeff": 0.05,
 }
 _COLOURS = 64
-_LIT = (1.05, 0.85, 0.65, 0.5)
+_LIT = (1.05, 0.85, 0.7)
 
 
 class Writer(Protocol):
@@ -237,7 +237,7 @@ class Gif:
 def _palette(image: Any) -> Any:
     """The colours of a film: those of the first frame and, since bodies are small in it or come
     later, the paints of all models, lit more and less."""
-    paints = [paint for model in MODELS.values() for paint in model.colours]
+    paints = list(dict.fromkeys(paint for model in MODELS.values() for paint in model.colours))
     swatch = _pillow().new("RGB", (image.width, image.height + len(paints) * len(_LIT)))
     swatch.paste(image, (0, 0))
     for row, (paint, lit) in enumerate((each, lit) for each in paints for lit in _LIT):

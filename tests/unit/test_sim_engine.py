@@ -50,6 +50,13 @@ def test_no_film_without_pillow(monkeypatch: pytest.MonkeyPatch) -> None:
         film._pillow()
 
 
+def test_no_window_without_a_display(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(sys, "platform", "linux")
+    monkeypatch.delenv("DISPLAY", raising=False)
+    with pytest.raises(sim.SimUnavailable, match="DISPLAY is not set"):
+        sim.World(gui=True)
+
+
 def test_a_client_is_freed_once() -> None:
     client = engine.Engine()
     assert client.getNumBodies() == 0
