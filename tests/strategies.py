@@ -1,139 +1,44 @@
-"""Hypothesis strategies for what the compiler works on: expressions, types, machines."""
+"""Hypothesis strategies for types of userdata and for machines: any at all, and valid ones.
+
+Nothing is shrunk cleverly here: a machine is drawn in one pass from the outside to the inside,
+which keeps drawing cheap.
+"""
 
 from __future__ import annotations
 
-import keyword
-import unicodedata
-from collections.abc import Callable, Sequence
-from typing import TypeAlias, TypeVar
+import dataclasses
+from collections.abc import Callable
+from typing import Any, Literal, TypeVar
 
 from hypothesis import strategies as st
 
-from smachac.ir.expressions import (
-    Attribute,
-    Binary,
-    Boolean,
-    Call,
-    Compare,
-    Conditional,
-    Constant,
-    DictDisplay,
-    Expr,
-    Index,
-    Lambda,
-    ListDisplay,
-    Name,
-    TupleDisplay,
-    Unary,
+from smachac.ir.nodes import (
+    Concurrence,
+    Condition,
+    Data,
+    Expression,
+    Iterator,
+    Key,
+    Leaf,
+    Machine,
+    Node,
+    Origin,
+    Outcome,
+    OutcomeRule,
+    Preset,
+    Remap,
+    Sequence,
+    StateMachine,
+    Struct,
+    Transition,
+    Value,
+    Variable,
 )
-from smachac.ir.types import Type
+from smachac.ir.types import ANY, Type
+from smachac.ir.walk import outcome_names
+from smachac.source import NOWHERE
 
 T = TypeVar("T")
-
-
-def _is_python_name(text: str) -> bool:
-    plain = unicodedata.normalize("NFKC", text) == text
-    return plain and text.isidentifier() and not keyword.iskeyword(text)
-
-
-# A strategy that is made anew for each draw costs more than the draw.
-PYTHON_NAMES = st.sampled_from(
-    ["ud", "x", "y", "größe", "_hidden", "match", "andy", "lambda_"]
-) | st.from_regex(r"[^\W\d]\w{0,4}", fullmatch=True).filter(_is_python_name)
-OPTIONAL_NAMES = st.none() | PYTHON_NAMES
-KEYWORDS = st.lists(PYTHON_NAMES, max_size=2, unique=True)
-SIGN = st.sampled_from(["+", "-", "not"])
-OPERATOR = st.sampled_from(["+", "-", "*", "/", "//", "%", "**"])
-COMPARISON = st.sampled_from(["<", "<=", ">", ">=", "==", "!=", "in", "not in"])
-JUNCTION = st.sampled_from(["and", "or"])
-
-
-def constants() -> st.SearchStrategy[Expr]:
-    """Literals of every kind; numbers are not negative, as in the text."""
-    numbers = st.integers(min_value=0) | st.floats(min_value=0.0, allow_nan=False).map(abs)
-    return st.builds(Constant, st.none() | st.booleans() | st.text(max_size=6) | numbers)
-
-
-Make: TypeAlias = Callable[[st.DrawFn, Callable[[], Expr]], Expr]
-
-FORMS: Sequence[Make] = (
-    lambda draw, part: Unary(draw(SIGN), part()),
-    lambda draw, part: Binary(draw(OPERATOR), part(), part()),
-    lambda draw, part: Compare(part(), _several(draw, 1, 2, lambda: (draw(COMPARISON), part()))),
-    lambda draw, part: Boolean(draw(JUNCTION), _several(draw, 2, 3, part)),
-    lambda draw, part: Conditional(part(), part(), part()),
-    lambda draw, part: ListDisplay(_several(draw, 0, 3, part)),
-    lambda draw, part: TupleDisplay(_several(draw, 0, 3, part)),
-    lambda draw, part: DictDisplay(_several(draw, 0, 2, lambda: (part(), part()))),
-    lambda draw, part: Index(part(), part()),
-)
-"""The forms that have a value for some parts."""
-
-OTHER_FORMS: Sequence[Make] = (
-    lambda draw, part: Attribute(part(), draw(PYTHON_NAMES)),
-    lambda draw, part: Call(part(), _several(draw, 0, 2, part), _keywords(draw, part)),
-    lambda draw, part: Lambda(draw(OPTIONAL_NAMES), part()),
-)
-
-
-def _several(draw: st.DrawFn, least: int, most: int, make: Callable[[], T]) -> tuple[T, ...]:
-    return tuple(make() for _ in range(draw(st.integers(least, most))))
-
-
-def _keywords(draw: st.DrawFn, part: Callable[[], Expr]) -> tuple[tuple[str, Expr], ...]:
-    names = draw(KEYWORDS)
-    return tuple((name, part()) for name in names)
-
-
-@st.composite
-def trees(
-    draw: st.DrawFn, leaves: st.SearchStrategy[Expr], forms: Sequence[Make], depth: int
-) -> Expr:
-    """Expressions of the given forms, at most `depth` levels over the leaves."""
-
-    def grow(left: int) -> Expr:
-        form = draw(st.integers(0, len(forms)))
-        if left == 0 or form == 0:
-            return draw(leaves)
-        return forms[form - 1](draw, lambda: grow(left - 1))
-
-    return grow(depth)
-
-
-def expressions(depth: int = 3) -> st.SearchStrategy[Expr]:
-    """Any tree of the portable subset, whether or not it has a value."""
-    leaves = constants() | st.builds(Name, PYTHON_NAMES)
-    return trees(leaves, (*FORMS, *OTHER_FORMS), depth)
-
-
-NAMES_OF_VALUES = ("x", "y", "z")
-NUMERIC = ("abs", "sum", "round", "int", "float", "range")
-FUNCTION_NAMES = (*NUMERIC, "bool", "dict", "len", "list", "max", "min", "sorted", "str", "tuple")
-FUNCTION_NAME = st.sampled_from(FUNCTION_NAMES)
-VALUES = st.one_of(
-    st.integers(-9, 9),
-    st.sampled_from([0.0, -0.0, 0.5, -2.5, 1e300, float("inf")]),
-    st.text(alphabet="ab1", max_size=3),
-    st.lists(st.integers(-3, 3), max_size=3),
-)
-"""What the names of `computations` may stand for."""
-
-COMPUTING_FORMS: Sequence[Make] = (
-    *FORMS,
-    lambda draw, part: Call(Name(draw(FUNCTION_NAME)), _several(draw, 0, 2, part)),
-    lambda draw, part: Call(
-        Name("sorted"), (part(),), (("key", Lambda("x", part())), ("reverse", Constant(True)))
-    ),
-)
-
-
-def computations(depth: int = 3) -> st.SearchStrategy[Expr]:
-    """Expressions over `x`, `y` and `z` whose value Python can be asked for."""
-    numbers = st.integers(0, 9) | st.sampled_from([0.0, 0.5, 2.5, 1e300])
-    literals = st.builds(Constant, numbers | st.text(alphabet="ab1", max_size=3) | st.booleans())
-    names = st.builds(Name, st.sampled_from(NAMES_OF_VALUES))
-    return trees(literals | names, COMPUTING_FORMS, depth)
-
 
 WORDS = st.sampled_from(["bool", "int", "Pose", "any", "list", "geometry_msgs/Pose", "a.b-c", "of"])
 UNITS = st.sampled_from(["rad", "m", "rad/s", "kg*m^2"])
@@ -153,3 +58,331 @@ def types() -> st.SearchStrategy[Type]:
         return item
 
     return st.builds(wrap, leaves, st.lists(wrappers, max_size=3))
+
+
+# Strategies made once: one that is made anew for each draw costs more than the draw.
+NAMES = st.sampled_from(["A", "B", "done", "on", "größe", "a b", "", "1", '"', "it's #"]) | st.text(
+    max_size=4
+)
+DOCS = st.sampled_from(["", "", "Opens the gripper.", 'two\nlines "x" \\ # é']) | st.text(
+    max_size=6
+)
+CODE = st.sampled_from(["lambda ud: ud.n + 1", "`", "", " x\n", "f('#\"')"]) | st.text(max_size=5)
+NUMBERS = st.integers() | st.floats(allow_nan=False)
+SCALARS = st.none() | st.booleans() | NUMBERS | st.text(max_size=5)
+TYPES = types() | st.just(ANY)
+ORIGINS: st.SearchStrategy[Origin] = st.sampled_from(["written", "implicit", "connector"])
+BOOLEANS = st.booleans()
+COUNTS = st.integers(0, 2)
+JOINS: st.SearchStrategy[Literal["all", "any"]] = st.sampled_from(["all", "any"])
+
+
+class _Drawing:
+    """What draws the parts of any well-formed machine. Every field of every kind is reached."""
+
+    def __init__(self, draw: st.DrawFn) -> None:
+        self.draw = draw
+
+    def name(self) -> str:
+        return self.draw(NAMES)
+
+    def some(self, make: Callable[[], T]) -> tuple[T, ...]:
+        return tuple(make() for _ in range(self.draw(COUNTS)))
+
+    def data(self, depth: int = 2) -> Data:
+        kind = self.draw(st.integers(0, 4)) if depth else 0
+        if kind == 1:
+            return self.some(lambda: self.data(depth - 1))
+        if kind == 2:
+            return Struct(entries=self.some(lambda: (self.name(), self.data(depth - 1))))
+        if kind == 3:
+            return Expression(text=self.draw(CODE), span=NOWHERE)
+        return self.draw(SCALARS)
+
+    def value(self) -> Value:
+        return Value(data=self.data(), span=NOWHERE)
+
+    def key(self) -> Key:
+        return Key(name=self.name(), type=self.draw(TYPES), doc=self.draw(DOCS), span=NOWHERE)
+
+    def preset(self) -> Preset:
+        return Preset(key=self.name(), value=self.value(), type=self.draw(TYPES), span=NOWHERE)
+
+    def variable(self) -> Variable:
+        return Variable(name=self.name(), value=self.value(), span=NOWHERE)
+
+    def outcome(self) -> Outcome:
+        return Outcome(name=self.name(), doc=self.draw(DOCS), span=NOWHERE)
+
+    def transition(self) -> Transition:
+        return Transition(
+            outcome=self.name(), target=self.name(), origin=self.draw(ORIGINS), span=NOWHERE
+        )
+
+    def remap(self) -> Remap:
+        return Remap(key=self.name(), to=self.name(), span=NOWHERE)
+
+    def condition(self) -> Condition:
+        return Condition(child=self.name(), outcome=self.name(), span=NOWHERE)
+
+    def rule(self) -> OutcomeRule:
+        return OutcomeRule(outcome=self.name(), when=self.some(self.condition), span=NOWHERE)
+
+    def common(self) -> dict[str, Any]:
+        return {
+            "name": self.name(),
+            "type": self.name(),
+            "doc": self.draw(DOCS),
+            "outcomes": self.some(self.outcome),
+            "inputs": self.some(self.key),
+            "outputs": self.some(self.key),
+            "transitions": self.some(self.transition),
+            "remaps": self.some(self.remap),
+            "claims": self.some(self.name),
+            "span": NOWHERE,
+        }
+
+    def node(self, depth: int) -> Node:
+        kinds = (self.leaf, self.state_machine, self.sequence, self.concurrence, self.iterator)
+        return kinds[self.draw(st.integers(0, 4)) if depth else 0](depth)
+
+    def inside(self, depth: int) -> dict[str, Any]:
+        return {
+            **self.common(),
+            "children": self.some(lambda: self.node(depth - 1)) if depth else (),
+            "userdata": self.some(self.preset),
+        }
+
+    def leaf(self, depth: int) -> Leaf:
+        return Leaf(
+            **self.common(),
+            variables=self.some(self.variable),
+            open=self.draw(BOOLEANS),
+            blocking=self.draw(BOOLEANS),
+        )
+
+    def state_machine(self, depth: int) -> StateMachine:
+        forever = self.draw(BOOLEANS)
+        return StateMachine(**self.inside(depth), initial=self.name(), forever=forever)
+
+    def sequence(self, depth: int) -> Sequence:
+        connector = self.name()
+        return Sequence(**self.inside(depth), connector_outcome=connector, initial=self.name())
+
+    def concurrence(self, depth: int) -> Concurrence:
+        return Concurrence(
+            **self.inside(depth),
+            default_outcome=self.name(),
+            rules=self.some(self.rule),
+            join=self.draw(JOINS),
+        )
+
+    def iterator(self, depth: int) -> Iterator:
+        return Iterator(
+            **self.inside(depth),
+            items=self.value() if self.draw(BOOLEANS) else None,
+            items_key=self.name(),
+            item_key=self.name(),
+            exhausted_outcome=self.name(),
+            loop_outcomes=self.some(self.name),
+            final_map=self.some(lambda: (self.name(), self.name())),
+        )
+
+
+@st.composite
+def machines(draw: st.DrawFn) -> Machine:
+    """Any well-formed machine, most of them nonsense: names clash, targets dangle."""
+    drawing = _Drawing(draw)
+    return Machine(
+        root=drawing.state_machine(2),
+        base=drawing.name(),
+        variables=drawing.some(drawing.variable),
+        source=drawing.name(),
+        digest=drawing.name(),
+    )
+
+
+EXITS = st.lists(st.sampled_from(["done", "failed", "lost"]), min_size=1, max_size=3, unique=True)
+FEW = st.integers(1, 3)
+SHORT_ITEMS = st.lists(st.integers(0, 9), max_size=3).map(tuple)
+STORED = "count"
+"""The userdata key that state machines and sequences hold; leaves call it so or `value`."""
+
+
+def _outcomes(names: list[str]) -> tuple[Outcome, ...]:
+    return tuple(Outcome(name=name, span=NOWHERE) for name in names)
+
+
+def _keys(*names: str) -> tuple[Key, ...]:
+    return tuple(Key(name=name, span=NOWHERE) for name in names)
+
+
+class _Building:
+    """What draws the parts of a machine without a fault.
+
+    A chain of first outcomes leads from every initial state through all its siblings to the first
+    outcome of the container, and every leaf ends with its first outcome sooner or later; so every
+    state can be reached and every run ends.
+    """
+
+    def __init__(self, draw: st.DrawFn) -> None:
+        self.draw = draw
+        self.made = 0
+
+    def fresh(self) -> str:
+        self.made += 1
+        return f"S{self.made}"
+
+    def exits(self, first: str | None = None) -> list[str]:
+        """Names of outcomes, `first` in front where it is given."""
+        drawn = self.draw(EXITS)
+        return drawn if first is None else [first, *(name for name in drawn if name != first)]
+
+    def children(self, depth: int, first: str | None = None, *, stored: bool) -> list[Node]:
+        count = self.draw(FEW)
+        return [self.node(depth - 1, self.exits(first), stored=stored) for _ in range(count)]
+
+    def node(self, depth: int, exits: list[str], *, stored: bool) -> Node:
+        """A node that no transition leaves yet. `stored`: its container holds the key `count`."""
+        kind = self.draw(st.integers(0, 5)) if depth else 0
+        if kind == 2:
+            return self.state_machine(depth, exits, stored=stored)
+        if kind == 3:
+            return self.sequence(depth, exits, stored=stored)
+        if kind == 4:
+            return self.concurrence(depth, exits)
+        if kind == 5:
+            return self.iterator(depth, exits)
+        return self.leaf(exits, stored=stored)
+
+    def leaf(self, exits: list[str], *, stored: bool) -> Leaf:
+        reads, writes = (stored and self.draw(BOOLEANS) for _ in range(2))
+        key = "value" if self.draw(BOOLEANS) else STORED
+        steps = [self.step(name, key if writes else None) for name in self.visits(exits)]
+        remap = Remap(key=key, to=STORED, span=NOWHERE)
+        return Leaf(
+            name=self.fresh(),
+            type="ScriptedState",
+            outcomes=_outcomes(exits),
+            inputs=_keys(key) if reads else (),
+            outputs=_keys(key) if writes else (),
+            remaps=(remap,) if (reads or writes) and key != STORED else (),
+            variables=(
+                Variable(name="steps", value=Value(data=tuple(steps), span=NOWHERE), span=NOWHERE),
+            ),
+            span=NOWHERE,
+        )
+
+    def visits(self, exits: list[str]) -> list[str]:
+        """The outcome of each visit; the last one, which is repeated, is the first of `exits`."""
+        return [*self.draw(st.lists(st.sampled_from(exits), max_size=2)), exits[0]]
+
+    def step(self, outcome: str, key: str | None) -> Struct:
+        told: tuple[tuple[str, Data], ...] = (("outcome", outcome),)
+        if key is not None and self.draw(BOOLEANS):
+            told = (*told, ("set", Struct(entries=((key, self.draw(st.integers(0, 9))),))))
+        return Struct(entries=told)
+
+    def holding(self, children: list[Node], exits: list[str], *, stored: bool) -> dict[str, Any]:
+        """The fields of a container that holds `count`, handing it in and out where it may."""
+        passed = stored and self.draw(BOOLEANS)
+        return {
+            "name": self.fresh(),
+            "outcomes": _outcomes(exits),
+            "children": tuple(children),
+            "initial": children[0].name,
+            "inputs": _keys(STORED) if passed else (),
+            "outputs": _keys(STORED) if passed else (),
+            "userdata": (Preset(key=STORED, value=Value(data=0, span=NOWHERE), span=NOWHERE),),
+            "span": NOWHERE,
+        }
+
+    def linked(self, children: list[Node], exits: list[str], origin: Origin) -> list[Node]:
+        """The children with their transitions. `origin` is that of the links of the chain."""
+        names = [child.name for child in children]
+        anywhere = st.sampled_from([*names, *exits])
+        found = []
+        for child, following in zip(children, [*names[1:], exits[0]], strict=True):
+            first, *others = outcome_names(child)
+            chain = origin if following in names else self.origin(first, following)
+            steps = [_transition(first, following, chain)]
+            for outcome in others:
+                target = self.draw(anywhere)
+                steps.append(_transition(outcome, target, self.origin(outcome, target)))
+            found.append(dataclasses.replace(child, transitions=tuple(steps)))
+        return found
+
+    def origin(self, outcome: str, target: str) -> Origin:
+        return "implicit" if outcome == target and self.draw(BOOLEANS) else "written"
+
+    def state_machine(self, depth: int, exits: list[str], *, stored: bool) -> StateMachine:
+        children = self.linked(self.children(depth, stored=True), exits, "written")
+        held = self.holding(children, exits, stored=stored)
+        return StateMachine(type="StateMachine", **held)
+
+    def sequence(self, depth: int, exits: list[str], *, stored: bool) -> Sequence:
+        linked = self.linked(self.children(depth, exits[0], stored=True), exits, "connector")
+        held = self.holding(linked, exits, stored=stored)
+        return Sequence(type="Sequence", connector_outcome=exits[0], **held)
+
+    def concurrence(self, depth: int, exits: list[str]) -> Concurrence:
+        """No two rules hold at once: they differ in the outcome of the first child."""
+        children = self.children(depth, stored=False)
+        deciding, *others = children
+        rules = []
+        for number, outcome in enumerate(outcome_names(deciding)):
+            if not self.draw(BOOLEANS):
+                continue
+            when = [Condition(child=deciding.name, outcome=outcome, span=NOWHERE)]
+            for child in others:
+                if self.draw(BOOLEANS):
+                    ended = self.draw(st.sampled_from(outcome_names(child)))
+                    when.append(Condition(child=child.name, outcome=ended, span=NOWHERE))
+            result = self.draw(st.sampled_from(exits)) if number else exits[0]
+            rules.append(OutcomeRule(outcome=result, when=tuple(when), span=NOWHERE))
+        return Concurrence(
+            name=self.fresh(),
+            type="Concurrence",
+            outcomes=_outcomes(exits),
+            children=tuple(children),
+            default_outcome=exits[0],
+            rules=tuple(rules),
+            span=NOWHERE,
+        )
+
+    def iterator(self, depth: int, exits: list[str]) -> Iterator:
+        child = self.node(depth - 1, self.exits(), stored=False)
+        loops, final = [], [("exhausted", exits[0])]
+        for number, outcome in enumerate(outcome_names(child)):
+            target = self.draw(st.sampled_from(exits)) if number else exits[0]
+            if self.draw(BOOLEANS):
+                loops.append(outcome)
+            elif target != outcome:
+                final.append((outcome, target))
+        return Iterator(
+            name=self.fresh(),
+            type="Iterator",
+            outcomes=_outcomes(exits),
+            children=(child,),
+            items=Value(data=self.draw(SHORT_ITEMS), span=NOWHERE),
+            item_key="item",
+            loop_outcomes=tuple(loops),
+            final_map=tuple(final),
+            span=NOWHERE,
+        )
+
+
+def _transition(outcome: str, target: str, origin: Origin) -> Transition:
+    return Transition(outcome=outcome, target=target, origin=origin, span=NOWHERE)
+
+
+@st.composite
+def valid_machines(draw: st.DrawFn, depth: int = 3) -> Machine:
+    """Machines that no rule finds an error in, with leaves of the type ScriptedState.
+
+    Every kind of container, loops, implicit exits, userdata written and read, passed into nested
+    machines and out of them. Every run ends, and ends the same: concurrences wait for all.
+    """
+    building = _Building(draw)
+    root = building.state_machine(depth, building.exits(), stored=False)
+    return Machine(root=dataclasses.replace(root, name="sm"), source="main.yml")

@@ -105,6 +105,8 @@ def _fitting(error: UnexpectedInput) -> set[str]:
 
 def _shown(terminal: str) -> str:
     """A terminal of the grammar as users know it."""
+    if terminal == "$END":
+        return "the end"
     pattern = _parser().get_terminal(terminal).pattern
     return f"`{pattern.value}`" if pattern.type == "str" else f"a {terminal.lower()}"
 

@@ -6,9 +6,9 @@ from collections.abc import Callable
 from types import SimpleNamespace
 
 import pytest
+from expression_strategies import FUNCTION_NAMES, NAMES_OF_VALUES, VALUES, computations
 from hypothesis import assume, given, settings
 from hypothesis import strategies as st
-from strategies import FUNCTION_NAMES, NAMES_OF_VALUES, VALUES, computations
 
 from smachac.ir.evaluate import FUNCTIONS, EvaluationError, evaluate
 from smachac.ir.expressions import Expr, parse_expression, print_expression

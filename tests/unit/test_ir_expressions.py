@@ -5,9 +5,9 @@ import re
 import warnings
 
 import pytest
+from expression_strategies import expressions
 from hypothesis import given, settings
 from hypothesis import strategies as st
-from strategies import expressions
 
 from smachac.ir.expressions import (
     Attribute,

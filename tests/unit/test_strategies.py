@@ -1,0 +1,52 @@
+"""What the strategies promise to the tests that stand on them."""
+
+from __future__ import annotations
+
+from hypothesis import given, settings
+from strategies import valid_machines
+
+from smachac.checks import check_machine
+from smachac.diagnostics import Severity
+from smachac.ir.behaviours import built_in
+from smachac.ir.graph import can_end, reachable
+from smachac.ir.nodes import Concurrence, Iterator, Leaf, Machine, Node, Sequence, StateMachine
+from smachac.ir.run import run
+from smachac.ir.walk import containers, outcome_names, walk
+
+
+@given(valid_machines())
+@settings(max_examples=60)
+def test_no_rule_finds_an_error_in_a_valid_machine(machine: Machine) -> None:
+    errors = [item for item in check_machine(machine) if item.severity is Severity.ERROR]
+    assert errors == []
+
+
+@given(valid_machines())
+@settings(max_examples=60)
+def test_every_state_of_a_valid_machine_is_reachable_and_can_end(machine: Machine) -> None:
+    for _, container in containers(machine.root):
+        names = {child.name for child in container.children}
+        assert names == reachable(container) == can_end(container)
+
+
+@given(valid_machines())
+@settings(max_examples=60)
+def test_every_run_of_a_valid_machine_ends(machine: Machine) -> None:
+    assert run(machine, built_in()).outcome in outcome_names(machine.root)
+
+
+def test_valid_machines_have_all_there_is() -> None:
+    nodes: list[Node] = []
+
+    @given(valid_machines())
+    @settings(max_examples=60)
+    def collect(machine: Machine) -> None:
+        nodes.extend(node for _, node in walk(machine.root))
+
+    collect()
+    assert {type(node) for node in nodes} == {Leaf, StateMachine, Sequence, Concurrence, Iterator}
+    origins = {step.origin for node in nodes for step in node.transitions}
+    assert origins == {"written", "implicit", "connector"}
+    assert any(node.remaps for node in nodes)
+    assert any(node.outputs for node in nodes if not isinstance(node, Leaf))
+    assert any(node.rules for node in nodes if isinstance(node, Concurrence))
