@@ -1,0 +1,59 @@
+"""A report for programs, as grammars/report.schema.json describes it."""
+
+from __future__ import annotations
+
+import json
+from typing import Any
+
+from smachac.diagnostics import Diagnostic, Report, Severity
+from smachac.source import NOWHERE, Span
+
+VERSION = 1
+"""Of the schema; it grows with every change."""
+
+
+def render_json(report: Report) -> str:
+    """The findings in the order of the report. Equal reports give equal texts, in ASCII."""
+    counts = {
+        severity.value: sum(item.severity is severity for item in report) for severity in Severity
+    }
+    whole = {"version": VERSION, "diagnostics": list(map(_diagnostic, report)), "counts": counts}
+    return json.dumps(whole, indent=2, sort_keys=True) + "\n"
+
+
+def _diagnostic(item: Diagnostic) -> dict[str, Any]:
+    finding = item.finding
+    return {
+        "code": item.code.code,
+        "name": item.code.name,
+        "severity": item.severity.value,
+        "message": finding.message,
+        "help": finding.help,
+        "place": place(finding.span),
+        "related": [
+            {"place": place(related.span), "message": related.message}
+            for related in finding.related
+        ],
+        "path": list(finding.path),
+        "node": finding.node,
+    }
+
+
+def place(span: Span) -> dict[str, Any] | None:
+    """Where a span is: lines and columns from 1, offsets from 0, in characters; the end excluded.
+
+    None for what no text holds.
+    """
+    if span.source is NOWHERE.source:
+        return None
+    line, column = span.source.position(span.start)
+    end_line, end_column = span.source.position(span.end)
+    return {
+        "file": span.source.name,
+        "line": line,
+        "column": column,
+        "end_line": end_line,
+        "end_column": end_column,
+        "offset": span.start,
+        "end_offset": span.end,
+    }
