@@ -4,11 +4,11 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 
-from smachac.checks.hints import Guesser, calls, did_you_mean, guesser
+from smachac.checks.hints import calls, did_you_mean, guesser
 from smachac.checks.outline import is_open
 from smachac.diagnostics import Finding, Severity, rule
 from smachac.ir import nodes
-from smachac.ir.nodes import Concurrence, Condition, Machine, Node
+from smachac.ir.nodes import Concurrence, Machine, Node
 from smachac.ir.walk import containers, outcome_names
 from smachac.problems import listed
 
@@ -64,6 +64,7 @@ def dead_rule(machine: Machine) -> Iterator[Finding]:
 def _dead_rules(path: str, container: Concurrence) -> Iterator[Finding]:
     children = {child.name: child for child in container.children}
     guess = guesser(children)
+    states = f"its states are {listed(children)}" if children else "it has no states"
     for entry in container.rules:
         if not entry.when:
             yield Finding(
@@ -74,33 +75,25 @@ def _dead_rules(path: str, container: Concurrence) -> Iterator[Finding]:
                 node=path,
             )
         for condition in entry.when:
-            yield from _dead_condition(path, container, condition, children, guess)
+            child = children.get(condition.child)
+            if child is None:
+                message = f"`{condition.child}` is no state of `{container.name}`"
+                help = did_you_mean(guess(condition.child)) or states
+            elif is_open(child) or condition.outcome in outcome_names(child):
+                continue
+            else:
+                message = f"`{child.name}` has no outcome `{condition.outcome}`"
+                help = _other_outcome(child, condition.outcome)
+            related = calls(container, condition.span)
+            yield Finding(
+                span=condition.span, message=message, help=help, related=related, node=path
+            )
 
 
-def _dead_condition(
-    path: str,
-    container: Concurrence,
-    condition: Condition,
-    children: dict[str, Node],
-    guess: Guesser,
-) -> Iterator[Finding]:
-    child = children.get(condition.child)
-    related = calls(container, condition.span)
-    if child is None:
-        help = did_you_mean(guess(condition.child)) or _states(container)
-        message = f"`{condition.child}` is no state of `{container.name}`"
-        yield Finding(span=condition.span, message=message, help=help, related=related, node=path)
-    elif not is_open(child) and condition.outcome not in (names := outcome_names(child)):
-        meant = guesser(names)(condition.outcome)
-        known = f"its outcomes are {listed(names)}" if names else "it has no outcomes"
-        message = f"`{child.name}` has no outcome `{condition.outcome}`"
-        help = did_you_mean(meant) or known
-        yield Finding(span=condition.span, message=message, help=help, related=related, node=path)
-
-
-def _states(container: Concurrence) -> str:
-    names = [child.name for child in container.children]
-    return f"its states are {listed(names)}" if names else "it has no states"
+def _other_outcome(child: Node, outcome: str) -> str:
+    names = outcome_names(child)
+    known = f"its outcomes are {listed(names)}" if names else "it has no outcomes"
+    return did_you_mean(guesser(names)(outcome)) or known
 
 
 def _dead_renames(path: str, container: nodes.Iterator) -> Iterator[Finding]:

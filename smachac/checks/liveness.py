@@ -37,7 +37,7 @@ def trap(machine: Machine) -> Iterator[Finding]:
         template: Base
         outcomes: [done]
         states:
-          - PICK: {template: ScriptedState, outcomes: [ok, no], transitions: {ok: done, no: LOOK}}
+          - PICK: {template: ScriptedState, outcomes: [ok, far], transitions: {ok: done, far: LOOK}}
           - LOOK: {template: ScriptedState, outcomes: [seen], transitions: {seen: APPROACH}}
           - APPROACH: {template: ScriptedState, outcomes: [near], transitions: {near: LOOK}}
 
@@ -46,7 +46,7 @@ def trap(machine: Machine) -> Iterator[Finding]:
         template: Base
         outcomes: [done]
         states:
-          - PICK: {template: ScriptedState, outcomes: [ok, no], transitions: {ok: done, no: LOOK}}
+          - PICK: {template: ScriptedState, outcomes: [ok, far], transitions: {ok: done, far: LOOK}}
           - LOOK: {template: ScriptedState, outcomes: [seen], transitions: {seen: APPROACH}}
           - APPROACH: {template: ScriptedState, outcomes: [near], transitions: {near: PICK}}
     """
@@ -135,7 +135,10 @@ def unbounded_loop(machine: Machine) -> Iterator[Finding]:
               template: ScriptedState
               outcomes: [done, failed]
               transitions: {done: picked, failed: COUNT}
-          - COUNT: {template: ScriptedState, outcomes: [go, no], transitions: {go: OPEN, no: lost}}
+          - COUNT:
+              template: ScriptedState
+              outcomes: [again, enough]
+              transitions: {again: OPEN, enough: lost}
           - OPEN: {template: ScriptedState, outcomes: [done], transitions: {done: PICK}}
     """
     endless = endless_states(machine)
@@ -240,7 +243,8 @@ def _closing_step(child: Node | None, inside: frozenset[str]) -> Transition | No
 def _retries(path: str, container: Linear, loop: _Loop, step: Transition, steps: Steps) -> Finding:
     child = loop.child
     region = [child.name, *(name for name in loop.region if name != child.name)]
-    kept = {**steps, child.name: [(step.outcome, step.target)]}
+    kept = {name: steps[name] for name in region}
+    kept[child.name] = [(step.outcome, step.target)]
     return Finding(
         span=step.span,
         message=f"nothing bounds the tries of `{child.name}`: while it ends with"

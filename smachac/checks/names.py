@@ -159,11 +159,13 @@ def unknown_outcome(machine: Machine) -> Iterator[Finding]:
 
 
 def _unknown_steps(path: str, child: Node) -> Iterator[Finding]:
-    for step, meant in unknown_outcomes(child):
+    unknown = unknown_outcomes(child)
+    known = _has(child) if unknown else ""
+    for step, meant in unknown:
         yield Finding(
             span=step.span,
             message=f"`{child.name}` has no outcome `{step.outcome}`",
-            help=did_you_mean(meant) or _has(child),
+            help=did_you_mean(meant) or known,
             related=calls(child, step.span),
             node=f"{path}/{child.name}",
         )
@@ -248,7 +250,7 @@ def name_clash(machine: Machine) -> Iterator[Finding]:
         template: Base
         outcomes: [done, stopped]
         states:
-          - WORK: {template: ScriptedState, outcomes: [ok, no], transitions: {ok: done, no: PARK}}
+          - WORK: {template: ScriptedState, outcomes: [ok, bad], transitions: {ok: done, bad: PARK}}
           - PARK: {template: ScriptedState, outcomes: [ok], transitions: {ok: stopped}}
     """
     for path, node in walk(machine.root):

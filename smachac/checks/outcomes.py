@@ -63,7 +63,7 @@ def _undeclared_results(path: str, container: Concurrence) -> Iterator[Finding]:
     results = [("its outcome map", entry.outcome, entry.span) for entry in container.rules]
     if container.default_outcome:
         results.append(("`default_outcome`", container.default_outcome, container.default_span))
-    declared = outcome_names(container)
+    declared = frozenset(outcome_names(container))
     guess = places_of(container)
     for source, name, span in results:
         if name not in declared:

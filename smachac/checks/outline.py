@@ -57,13 +57,12 @@ def leads_somewhere(transition: Transition, names: frozenset[str], exits: frozen
 
 def unknown_outcomes(child: Node) -> list[tuple[Transition, str | None]]:
     """The transitions from outcomes that a state does not have, with the outcome meant."""
-    declared = frozenset(outcome_names(child))
-    if is_open(child) or all(step.outcome in declared for step in child.transitions):
+    declared = {outcome.name for outcome in child.outcomes}
+    unknown = [step for step in child.transitions if step.outcome not in declared]
+    if not unknown or is_open(child):
         return []
     guess = guesser(outcome_names(child))
-    return [
-        (step, guess(step.outcome)) for step in child.transitions if step.outcome not in declared
-    ]
+    return [(step, guess(step.outcome)) for step in unknown]
 
 
 def mended(container: Linear) -> Linear:
@@ -81,10 +80,11 @@ def mended(container: Linear) -> Linear:
         return replace(step, target=guess(step.target) or step.target)
 
     def child(node: Node) -> Node:
-        wrong = {id(step): meant for step, meant in unknown_outcomes(node)}
-        lost = any(not leads_somewhere(step, names, exits) for step in node.transitions)
-        if not wrong and not lost:
+        unknown = unknown_outcomes(node)
+        lost = [step for step in node.transitions if not leads_somewhere(step, names, exits)]
+        if not unknown and not lost:
             return node
+        wrong = {id(step): meant for step, meant in unknown}
         steps = [
             replace(step, outcome=wrong.get(id(step)) or step.outcome) for step in node.transitions
         ]

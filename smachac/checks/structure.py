@@ -242,8 +242,8 @@ def _unknown_initial(path: str, container: Linear) -> Iterator[Finding]:
     guess = guesser(names)(container.initial)
     yield Finding(
         span=container.initial_span,
-        message=f"`{container.initial}`, with which `{container.name}` is to start, is no state"
-        " of it",
+        message=f"`{container.name}` is to start with `{container.initial}`, which is none of its"
+        " states",
         help=did_you_mean(guess) or f"its states are {listed(names)}",
         related=calls(container, container.initial_span),
         node=path,

@@ -8,7 +8,7 @@ from smachac.checks.outline import Linear, children_names
 from smachac.ir.graph import can_end, reachable
 from smachac.ir.walk import leads_to_child
 
-MOST_STEPS = 100
+MOST_STEPS = 50
 """A witness path keeps so many of its last states."""
 
 Steps = dict[str, list[tuple[str, str]]]

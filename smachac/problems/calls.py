@@ -10,7 +10,8 @@ from smachac.source import Span, Word
 
 
 def _searched(word: Word, searched: Sequence[str], known: Iterable[str]) -> str:
-    folders = ", ".join(f"`{folder}`" for folder in searched)
+    # Not every place is a folder of the user: "the built-in ones" is none to be quoted.
+    folders = ", ".join(at if at.startswith("the ") else f"`{at}`" for at in searched)
     where = f"searched in {folders}" if folders else "there was no folder to search in"
     guess = did_you_mean(word.text, sorted(known))
     return f"{where}; {guess}" if guess else where
@@ -156,7 +157,7 @@ def bad_sub_script(span: Span, message: str, call: Span | None = None) -> Findin
     return Finding(
         span=span,
         message=message,
-        help="a sub-script is a list with one state: `- NAME: {template: StateMachine, ...}`",
+        help="put states that belong together into one: `- NAME: {template: StateMachine, ...}`",
         related=(Related(span=call, message="called here"),) if call else (),
     )
 

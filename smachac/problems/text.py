@@ -50,7 +50,10 @@ def duplicate_key(key: Word, first: Span) -> Finding:
               outcomes: [done, nothing]
               transitions: {done: picked, nothing: LOOK}
               transitions: {done: LOOK, nothing: empty}
-          - LOOK: {template: ScriptedState, outcomes: [y, n], transitions: {y: picked, n: empty}}
+          - LOOK:
+              template: ScriptedState
+              outcomes: [seen, nothing]
+              transitions: {seen: picked, nothing: empty}
 
     Right:
         name: sm
@@ -61,7 +64,10 @@ def duplicate_key(key: Word, first: Span) -> Finding:
               template: ScriptedState
               outcomes: [done, nothing]
               transitions: {done: picked, nothing: LOOK}
-          - LOOK: {template: ScriptedState, outcomes: [y, n], transitions: {y: picked, n: empty}}
+          - LOOK:
+              template: ScriptedState
+              outcomes: [seen, nothing]
+              transitions: {seen: picked, nothing: empty}
     """
     return Finding(
         span=key.span,

@@ -6,7 +6,7 @@ import inspect
 import re
 from collections.abc import Iterator, Mapping
 from dataclasses import dataclass, field
-from textwrap import dedent, indent
+from textwrap import dedent, fill, indent
 
 # Filing all codes is what these imports do.
 from smachac import checks, problems
@@ -16,6 +16,9 @@ __all__ = ["GROUPS", "Explanation", "checks", "explanation", "problems", "render
 __all__ += ["render_rules"]
 
 MAIN = "main.yml"
+
+WIDTH = 88
+"""Columns of prose on a terminal."""
 
 GROUPS: Mapping[str, str] = {
     "SM0": "Text and shape",
@@ -64,13 +67,16 @@ def _files(block: str) -> dict[str, str]:
 
 
 def render_code(code: Code) -> str:
-    """What `smachac explain` prints of a code."""
+    """What `smachac explain` prints of a code, without a line feed at the end."""
     parts = explanation(code)
-    lines = [f"{code.code} {code.name} ({code.severity.value})", parts.summary, parts.reason]
+    prose = [parts.summary, *parts.reason.split("\n\n")]
+    lines = [f"{code.code} {code.name} ({code.severity.value})"]
+    lines += [fill(text, WIDTH, break_on_hyphens=False) for text in prose]
     for title, files in (("Wrong", parts.wrong), ("Right", parts.right)):
         for name, text in files.items():
-            lines.append(f"{title}, {name}:\n\n{indent(text, '    ').rstrip()}")
-    return "\n\n".join(filter(None, lines)) + "\n"
+            head = f"{title}, {name}:" if len(files) > 1 else f"{title}:"
+            lines.append(f"{head}\n\n{indent(text, '    ').rstrip()}")
+    return "\n\n".join(lines)
 
 
 def render_rules() -> str:
@@ -85,7 +91,7 @@ Generated from the docstrings of the rules: `make docs` writes this file, a test
 An error stops a build, a warning does so under `--strict`, an info never does. Some findings
 are milder or graver than their code: the text says when. Each example marked as wrong gives
 exactly its code, and each one marked as right gives nothing above an info; the tests run them all.
-Behind `# ---` begins another file."""
+A line `# --- name` begins another file."""
 
 
 def _groups() -> Iterator[tuple[str, list[Code]]]:

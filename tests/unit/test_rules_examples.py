@@ -1,0 +1,66 @@
+"""The examples of problems and rules: Wrong gives exactly its code, Right nothing."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from pathlib import Path
+
+import pytest
+
+from smachac.diagnostics import CODES, Code, Diagnostic, Report, Severity
+from smachac.driver import analyse, build
+from smachac.files import disk_library, read_source
+from smachac.report.explain import MAIN, explanation
+from smachac.targets import load_target
+
+EVERY = [pytest.param(CODES[name], id=name) for name in sorted(CODES)]
+
+
+def judged(files: Mapping[str, str], folder: Path) -> Report:
+    """What check and then build for Python say of a script with the files around it."""
+    for name, text in files.items():
+        path = folder / name
+        path.parent.mkdir(parents=True, exist_ok=True)
+        path.write_text(text, "utf-8")
+    main = folder / MAIN
+    report: Report = []
+    library = disk_library(main, report)
+    source = read_source(main, report)
+    assert source is not None
+    analysis = analyse(source, library, report)
+    target = load_target("python")
+    assert target is not None
+    found = analysis.report
+    if analysis.checked is not None:
+        build(analysis.checked, target, library, found)
+    return found
+
+
+def above_info(report: Report) -> list[Diagnostic]:
+    return [item for item in report if item.severity is not Severity.INFO]
+
+
+def shown(report: Report) -> list[str]:
+    return [f"{item.span}: {item.code.code} {item.finding.message}" for item in report]
+
+
+@pytest.mark.parametrize("code", EVERY)
+def test_wrong_gives_exactly_its_code(code: Code, tmp_path: Path) -> None:
+    report = above_info(judged(explanation(code).wrong, tmp_path))
+    assert {item.code.code for item in report} == {code.code}, shown(report)
+
+
+@pytest.mark.parametrize("code", EVERY)
+def test_right_gives_nothing_above_an_info(code: Code, tmp_path: Path) -> None:
+    report = above_info(judged(explanation(code).right, tmp_path))
+    assert shown(report) == []
+
+
+@pytest.mark.parametrize("code", EVERY)
+def test_docstrings_have_all_parts(code: Code) -> None:
+    parts = explanation(code)
+    assert parts.summary.endswith(".")
+    assert parts.reason
+    assert parts.wrong
+    assert parts.right
+    assert parts.wrong != parts.right
