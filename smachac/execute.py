@@ -7,7 +7,7 @@ import random
 import signal
 import sys
 import threading
-from collections.abc import Callable, Iterator, Mapping
+from collections.abc import Callable, Iterator
 from contextlib import contextmanager
 from pathlib import Path
 from types import FrameType, ModuleType
@@ -16,7 +16,7 @@ from typing import Any
 from smachac.ir.nodes import Machine
 from smachac.ir.walk import walk
 
-Event = Mapping[str, Any]
+Event = dict[str, Any]
 
 
 def places(machine: Machine) -> dict[str, str]:

@@ -3,8 +3,7 @@
 from __future__ import annotations
 
 import pytest
-
-from tests.arm import PICK_AND_PLACE, STACKING, run
+from arm import PICK_AND_PLACE, STACKING, run
 
 LIMIT = 0.002
 """The largest placing error, in metres."""

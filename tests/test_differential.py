@@ -10,6 +10,7 @@ from typing import Any
 import pytest
 from hypothesis import HealthCheck, given, settings
 from hypothesis import strategies as st
+from strategies import valid_machines
 
 from smachac.driver import build, check, load
 from smachac.files import disk_library, read_source
@@ -20,7 +21,6 @@ from smachac.runtime import smach, trace
 from smachac.runtime.compare import compare
 from smachac.states import Library
 from smachac.targets.python import TARGET
-from tests.strategies import valid_machines
 
 ROOT = Path(__file__).parents[1]
 LIBRARY = disk_library(ROOT / "main.yml", [])

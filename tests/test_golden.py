@@ -8,6 +8,7 @@ from pathlib import Path
 
 import pytest
 
+from smachac.diagnostics import Report
 from smachac.driver import analyse, build
 from smachac.files import disk_library, read_source
 from smachac.report.text import render_text
@@ -28,7 +29,7 @@ def expected_folder(case: Path) -> Path:
 
 def outputs() -> dict[str, str]:
     """Everything smachac says of `main.yml` in the current folder, by file name."""
-    report = []
+    report: Report = []
     source = read_source(Path("main.yml"), report)
     assert source is not None
     library = disk_library(Path("main.yml"), report)
@@ -38,7 +39,7 @@ def outputs() -> dict[str, str]:
     for name in target_names() if analysis.checked is not None else []:
         target = load_target(name)
         assert target is not None
-        problems = []
+        problems: Report = []
         assert analysis.checked is not None
         made = build(analysis.checked, target, library, problems)
         found = [*found, *problems]

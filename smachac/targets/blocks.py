@@ -109,8 +109,8 @@ class Blocks:
         context.blocks = {}
         for template in reversed(chain):
             if _HAS_TOP_LEVEL.search(self._text(template)):
-                stubs = {name: [_nothing] for name in template.blocks}
-                context.blocks, kept = stubs, context.blocks
+                kept = context.blocks
+                context.blocks = {name: [_nothing] for name in template.blocks}
                 for _ in template.root_render_func(context):
                     pass
                 context.blocks = kept
@@ -131,7 +131,7 @@ class Blocks:
 _HAS_TOP_LEVEL = re.compile(r"\{%-?\s*(?:set|import|from|do)\b")
 
 
-def _nothing(context: Any) -> Iterator[str]:
+def _nothing(context: JinjaContext) -> Iterator[str]:
     return iter(())
 
 

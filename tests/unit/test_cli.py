@@ -27,7 +27,7 @@ def broken(tmp_path: Path) -> Path:
 
 def run(*arguments: str, **options: object) -> subprocess.CompletedProcess[str]:
     """The command in a process of its own."""
-    return subprocess.run(
+    ended: subprocess.CompletedProcess[str] = subprocess.run(
         [sys.executable, "-m", "smachac.cli", *arguments],
         capture_output=True,
         text=True,
@@ -35,6 +35,7 @@ def run(*arguments: str, **options: object) -> subprocess.CompletedProcess[str]:
         check=False,
         **options,  # type: ignore[call-overload]
     )
+    return ended
 
 
 def test_version_and_help(capsys: pytest.CaptureFixture[str]) -> None:

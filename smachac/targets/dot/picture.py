@@ -25,7 +25,6 @@ from smachac.targets.dot.style import (
     font,
     html,
     identifier,
-    lines,
     quoted,
     spaced,
     tone,
@@ -135,7 +134,7 @@ def _exit(container: Container, outcome: nodes.Outcome, id: str, *, final: bool)
     line, fill = TONES[tone(outcome.name)]
     label = html(outcome.name)
     if isinstance(container, Concurrence) and outcome.name == container.default_outcome:
-        label = lines([label, font("otherwise", colour=FAINT, size=8)])
+        label = spaced([label, font("otherwise", colour=FAINT, size=8)])
     look = {"shape": "ellipse", "fillcolor": fill, "color": line, "fontcolor": line}
     if final:
         look |= {"peripheries": "2", "fontsize": "11"}

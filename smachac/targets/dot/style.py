@@ -43,7 +43,11 @@ _ODD = re.compile("[\x00-\x08\x0b\x0c\x0e-\x1f\ud800-\udfff\ufffe\uffff]")
 def tone(outcome: str) -> str:
     """What the name of an outcome promises: a key of `TONES`."""
     word = outcome.casefold()
-    return _TONE.get(word) or _TONE.get(word.rsplit("_", 1)[-1]) or "neutral"
+    before, _, last = word.rpartition("_")
+    found = _TONE.get(word) or _TONE.get(last) or "neutral"
+    if "not" in before.split("_") or "no" in before.split("_"):
+        return {"success": "failure", "failure": "success"}.get(found, found)
+    return found
 
 
 def identifier(name: str) -> str:

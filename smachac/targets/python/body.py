@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import re
 from collections.abc import Callable, Iterator
+from dataclasses import replace
 from keyword import iskeyword
 
 from smachac.ir.nodes import (
@@ -13,6 +14,7 @@ from smachac.ir.nodes import (
     Node,
     Sequence,
     StateMachine,
+    Transition,
 )
 from smachac.ir.nodes import (
     Iterator as IteratorNode,
@@ -139,7 +141,7 @@ def add(node: Node, parent: Container, made: Doc, depth: int) -> str:
     if not isinstance(parent, Concurrence):
         edges = [
             (edge.outcome, string(edge.target))
-            for edge in node.transitions
+            for edge in (*node.transitions, *_never_taken(node))
             if edge.origin != "connector"
         ]
         if edges:
@@ -148,6 +150,19 @@ def add(node: Node, parent: Container, made: Doc, depth: int) -> str:
         pairs = ((remap.key, string(remap.to)) for remap in node.remaps)
         arguments.append(("remapping=", mapping(pairs)))
     return laid_out(call(f"smach.{kind(parent)}.add", arguments), width(depth))
+
+
+def _never_taken(node: Node) -> Iterator[Transition]:
+    """SMACH's Iterator registers its exhausted outcome even where the final map renames it, and
+    its container insists on a transition for it (smach-semantics I1, M3)."""
+    if not isinstance(node, IteratorNode):
+        return
+    renamed = dict(node.final_map).get(node.exhausted_outcome)
+    if any(outcome.name == node.exhausted_outcome for outcome in node.outcomes):
+        return
+    for edge in node.transitions:
+        if edge.outcome == renamed:
+            yield replace(edge, outcome=node.exhausted_outcome, origin="written")
 
 
 def place(node: Node) -> str:

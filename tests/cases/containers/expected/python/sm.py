@@ -1,4 +1,4 @@
-# Made by smachac 0.1.0 from main.yml (sha256 f8b06649ec8f29e2).
+# Made by smachac 0.1.0 from main.yml (sha256 35b3e424b6eae106).
 """The state machine `sm`."""
 
 try:
@@ -88,13 +88,12 @@ def build():
             outcomes=["both", "one", "none"],
             default_outcome="none",
             outcome_map={"one": {"A": "done"}, "both": {"A": "done", "B": "done"}},
-            child_termination_cb=lambda outcomes: True,
         )
         with sm_both:
-            # main.yml:37
+            # main.yml:36
             smach.Concurrence.add("A", ScriptedState(outcomes=["done", "failed"]))
 
-            # main.yml:38
+            # main.yml:37
             smach.Concurrence.add("B", ScriptedState(outcomes=["done", "failed"]))
 
         smach.StateMachine.add(

@@ -1,0 +1,88 @@
+# Made by smachac 0.1.0 from main.yml (sha256 44e17fb39b6fd463).
+"""The state machine `sm`."""
+
+import threading
+
+try:
+    import smach
+except ImportError:  # no ROS on this machine: the same names without it
+    from smachac.runtime import smach
+
+
+class ScriptedState(smach.State):
+    """Ends as it is told: visit n does step n, the last step is repeated."""
+
+    def __init__(self, outcomes, steps=(), input_keys=(), output_keys=()):
+        super().__init__(
+            outcomes=outcomes,
+            input_keys=list(input_keys),
+            output_keys=list(output_keys),
+        )
+        self.steps = list(steps) or [{"outcome": outcomes[0]}]
+        self.visits = 0
+
+    def execute(self, userdata):
+        step = self.steps[min(self.visits, len(self.steps) - 1)]
+        self.visits += 1
+        for key, value in step.get("set", {}).items():
+            userdata[key] = value
+        return step["outcome"]
+
+
+class SleepState(smach.State):
+    """Waits for `time` seconds; a preempt request ends the wait."""
+
+    def __init__(self, time):
+        super().__init__(outcomes=["succeeded", "preempted"])
+        self.time = time
+        self.woken = threading.Event()
+
+    def request_preempt(self):
+        super().request_preempt()
+        self.woken.set()
+
+    def execute(self, userdata):
+        self.woken.wait(self.time)
+        self.woken.clear()
+        if self.preempt_requested():
+            self.service_preempt()
+            return "preempted"
+        return "succeeded"
+
+
+def build():
+    """Build the state machine `sm`."""
+    # main.yml:2
+    sm = smach.StateMachine(outcomes=["succeeded", "aborted"])
+    with sm:
+        # main.yml:6
+        sm_race = smach.Concurrence(
+            outcomes=["succeeded", "aborted"],
+            default_outcome="aborted",
+            outcome_map={"succeeded": {"WORK": "done"}},
+            child_termination_cb=lambda outcomes: True,
+        )
+        with sm_race:
+            # main.yml:14
+            smach.Concurrence.add("WORK", ScriptedState(outcomes=["done"]))
+
+            # main.yml:15
+            smach.Concurrence.add("WATCH", SleepState(time=60))
+
+        smach.StateMachine.add(
+            "RACE",
+            sm_race,
+            transitions={"succeeded": "succeeded", "aborted": "aborted"},
+        )
+    return sm
+
+
+def main():
+    """Run the state machine once and return its outcome."""
+    return build().execute()
+
+
+if __name__ == "__main__":
+    outcome = main()
+    print(f"outcome: {outcome}")
+    raise SystemExit(outcome is None)
