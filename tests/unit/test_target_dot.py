@@ -12,6 +12,7 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
+from smachac import __version__
 from smachac.ir import nodes
 from smachac.ir.nodes import (
     Checked,
@@ -29,7 +30,7 @@ from smachac.ir.nodes import (
 )
 from smachac.source import NOWHERE
 from smachac.states import Library
-from smachac.targets import Context
+from smachac.targets import Context, stem
 from smachac.targets.dot import TARGET
 from smachac.targets.dot.style import TONES, identifier, tone
 
@@ -68,8 +69,8 @@ def machine_of(name: str, ends: tuple[str, ...], *children: Node, **to: str) -> 
 def drawn(root: StateMachine, **options: str) -> str:
     machine = Checked(Machine(root=root, source="main.yml", digest="0123456789abcdef" * 4))
     files = TARGET.emit(machine, Context(library=NO_FILES, options=options), [])
-    assert list(files) == [f"{root.name}.dot"]
-    return files[f"{root.name}.dot"]
+    assert list(files) == [f"{stem(machine)}.dot"]
+    return files[f"{stem(machine)}.dot"]
 
 
 NO_FILES = Library(
@@ -111,7 +112,7 @@ FLAT = machine_of(
 def test_a_flat_machine() -> None:
     lines = drawn(FLAT).splitlines()
     assert lines[:2] == [
-        "// Made by smachac 0.1.0 from main.yml (sha256 0123456789abcdef).",
+        f"// Made by smachac {__version__} from main.yml (sha256 0123456789abcdef).",
         'digraph "sm" {',
     ]
     assert lines[-1] == "}"
@@ -257,6 +258,8 @@ def test_options_that_make_no_sense(options: dict[str, str]) -> None:
         ("succeeded", "success"),
         ("Aborted", "failure"),
         ("grasp_failed", "failure"),
+        ("not_done", "failure"),
+        ("no_error", "success"),
         ("timeout", "warning"),
         ("preempted", "warning"),
         ("blocked", "neutral"),
