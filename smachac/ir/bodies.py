@@ -75,12 +75,11 @@ class Routes:
 
 
 def _routes(node: StateMachine | Sequence) -> Routes:
-    children = {child.name: child for child in reversed(node.children)}
+    children = {child.name: child for child in node.children}
     names = frozenset(children)
     targets = {
         name: {
-            edge.outcome: (edge.target, leads_to_child(edge, names))
-            for edge in reversed(child.transitions)
+            edge.outcome: (edge.target, leads_to_child(edge, names)) for edge in child.transitions
         }
         for name, child in children.items()
     }

@@ -105,6 +105,16 @@ def test_p2_join_any_preempts_what_still_runs(seed: int) -> None:
     assert [event["t"] for event in events][3:6] == [0.0, 1.0, 1.0]
 
 
+def test_n13_the_rest_is_preempted_once() -> None:
+    sleeps = [
+        leaf(name, outcomes="succeeded", type="SleepState", time=seconds)
+        for seconds, name in enumerate("ABC", 1)
+    ]
+    result, events = ran(both(join="any", children=sleeps), built_in())
+    assert preempted(events) == ["sm/C/B", "sm/C/C"]
+    assert result.time == 3.0
+
+
 def test_a_sleep_that_cannot_be_preempted_lasts() -> None:
     slow = leaf("B", outcomes="succeeded", type="SleepState", time=5.0)
     quick = leaf("A", outcomes="succeeded", type="SleepState", time=1)
