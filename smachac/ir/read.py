@@ -49,6 +49,9 @@ FIELDS: Mapping[type[object], frozenset[str]] = {
 }
 """The fields of what statements may describe."""
 
+LONGEST_DECIMAL = 4300
+"""Characters of the longest decimal whole number, the limit that Python itself has."""
+
 
 class IrSyntaxError(Exception):
     """A text that is no machine: what is wrong and where, line and column counted from 1."""
@@ -116,7 +119,6 @@ class _Reader:
 
     def __init__(self, source: Source):
         self.source = source
-        self.types: dict[str, Type] = {}
 
     def machine(self, tree: Any) -> Machine:
         *statements, root = tree.children
@@ -179,13 +181,10 @@ class _Reader:
     def type(self, token: Any) -> Type:
         if token is None:
             return ANY
-        text = _text(token).rstrip()
-        if text not in self.types:
-            found = parse_type(text)
-            if found is None:
-                raise IrSyntaxError(f"`{text}` is no type", self.span(token))
-            self.types[text] = found
-        return self.types[text]
+        found = parse_type(_text(token).rstrip())
+        if found is None:
+            raise IrSyntaxError(f"`{_text(token).rstrip()}` is no type", self.span(token))
+        return found
 
     def names(self, tree: Any) -> Iterator[str]:
         return map(_text, tree.children)
@@ -261,10 +260,11 @@ class _Reader:
         raise AssertionError(f"the grammar knows a kind of data that the reader does not: {item!r}")
 
     def integer(self, token: Any) -> int:
-        try:
-            return int(token, 16 if "x" in token else 10)
-        except ValueError:
-            raise IrSyntaxError("a decimal number has too many digits", self.span(token)) from None
+        if "x" in token:
+            return int(token, 16)
+        if len(token) > LONGEST_DECIMAL:
+            raise IrSyntaxError("a decimal number has too many digits", self.span(token))
+        return int(token)
 
 
 def _is_node(tree: Any) -> bool:

@@ -8,7 +8,7 @@ from __future__ import annotations
 import json
 import re
 from dataclasses import dataclass
-from functools import cache
+from functools import cache, lru_cache
 from typing import TYPE_CHECKING, Any
 
 from smachac.grammars import load
@@ -64,6 +64,7 @@ def _choice(choice: Type | int | str) -> str:
     return str(choice)
 
 
+@lru_cache(maxsize=1000)
 def parse_type(text: str) -> Type | None:
     """The type a text names; None when it is not one, too long or too deep.
 

@@ -246,6 +246,13 @@ def test_defaults_are_left_out() -> None:
     assert text.splitlines()[1:] == ["", "machine sm: M {}"]
 
 
+def test_what_is_empty_is_not_the_default() -> None:
+    each = Iterator(name="", type="", item_key="", exhausted_outcome="", span=NOWHERE)
+    root = StateMachine(name="", type="", children=(each,), span=NOWHERE)
+    machine = Machine(root=root, base="")
+    assert parse_machine(print_machine(machine)) == machine
+
+
 def test_deep_nesting_prints_and_reads() -> None:
     root = StateMachine(name="sm", type="M", span=NOWHERE)
     for _ in range(1500):
