@@ -138,8 +138,7 @@ def _possible_outcomes(container: Container) -> frozenset[str] | None:
         case Concurrence():
             results = {entry.outcome for entry in container.rules}
             results.add(container.default_outcome)
-            # SMACH for Noetic ends a preempted concurrence so, whatever its rules say (N, P10).
-            return _if_declared(container, results | {PREEMPTED})
+            return _if_declared(container, results)
         case nodes.Iterator():
             return _iterator_outcomes(container)
     return assert_never(container)
@@ -147,8 +146,7 @@ def _possible_outcomes(container: Container) -> frozenset[str] | None:
 
 def _if_declared(container: Container, results: set[str]) -> frozenset[str] | None:
     """Results, unless one is undeclared: then it may stand for the outcome that is missed."""
-    declared = {*outcome_names(container), PREEMPTED}
-    return frozenset(results) if results <= declared else None
+    return frozenset(results) if results.issubset(outcome_names(container)) else None
 
 
 def _linear_outcomes(container: Linear) -> frozenset[str] | None:
@@ -182,8 +180,13 @@ def _iterator_outcomes(container: nodes.Iterator) -> frozenset[str] | None:
 
 def _impossible(path: str, container: Container, outcome: Outcome) -> Finding:
     help = f"lead a transition to it, or take it out of the outcomes of `{container.name}`"
+    severity = None
     if isinstance(container, Concurrence):
         help = f"give it a rule, or take it out of the outcomes of `{container.name}`"
+        if outcome.name == PREEMPTED:
+            # So it does in SMACH for Noetic, whatever the rules say (smach-semantics P10).
+            help = "keep it where SMACH for Noetic runs the machine: there a preempt request does"
+            severity = Severity.INFO
     if isinstance(container, nodes.Iterator):
         child = container.children[0].name
         help = f"it ends with the first item: no outcome of `{child}` is in `loop_outcomes`"
@@ -194,6 +197,7 @@ def _impossible(path: str, container: Container, outcome: Outcome) -> Finding:
         message=f"nothing can end `{container.name}` with `{outcome.name}`",
         help=help,
         related=calls(container, outcome.span),
+        severity=severity,
         node=path,
     )
 

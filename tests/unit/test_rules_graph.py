@@ -9,6 +9,7 @@ import pytest
 from ir_machines import concurrence, iterator, leaf, machine, sequence
 from rule_findings import blocking, found, looping, one, report
 
+from smachac.diagnostics import Severity
 from smachac.ir.nodes import Node, StateMachine
 
 
@@ -186,6 +187,7 @@ def test_a_default_and_a_preemption_are_possible() -> None:
 
     assert found(both("ok no")) == []
     assert found(both("ok no preempted")) == []
+    assert one(both("ok no preempted"), "SM203").severity is Severity.INFO
     assert found(both("ok no lost")) == ["SM203 sm/BOTH"]
 
 
