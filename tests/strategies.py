@@ -346,7 +346,8 @@ class _Building:
             outcomes=_outcomes(exits),
             children=tuple(children),
             default_outcome=exits[0],
-            rules=tuple(rules),
+            # A script, and SMACH, have one rule for an outcome.
+            rules=tuple({rule.outcome: rule for rule in rules}.values()),
             span=NOWHERE,
         )
 
