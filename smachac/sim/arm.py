@@ -93,7 +93,7 @@ class Arm:
         body, pressed = self.world.robot_body, {}
         for name, other in self.world.bodies.items():
             each = [
-                sum(point[9] for point in self.engine.getContactPoints(body, other, finger, -1))
+                sum(point[9] for point in self.engine.getContactPoints(body, other, finger))
                 for finger in self.fingers
             ]
             if each and min(each) > 0.0:

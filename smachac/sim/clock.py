@@ -18,6 +18,7 @@ Key: TypeAlias = tuple[int, ...]
 advance in the order of the keys."""
 
 _GUEST = 1 << 30
+_SLICES = 10
 
 
 class _Job:
@@ -96,7 +97,9 @@ class Clock:
                     self._drive(job)
         finally:
             self._take_back(key)
-            skill.close()
+            # Another thread may be in it just now, when this one was interrupted.
+            with contextlib.suppress(ValueError):
+                skill.close()
         if job.error is not None:
             raise job.error
         value: T = job.value
@@ -139,9 +142,11 @@ class Clock:
     def _wait(self) -> None:
         """Wait for a change; when there is none for too long, leave behind whom all wait for."""
         beat = self._beats
-        woken = self._changed.wait(self._patience)
-        if woken or beat != self._beats or self._stepping:
-            return
+        # In slices: a process that was stopped meanwhile has not waited, it only looks so.
+        for _ in range(_SLICES):
+            woken = self._changed.wait(self._patience / _SLICES)
+            if woken or beat != self._beats or self._stepping:
+                return
         lost = [key for key in self._absent() if key not in self._starting]
         self._live.difference_update(lost)
         self._promised.clear()

@@ -57,19 +57,28 @@ def pybullet() -> Any:
             import numpy  # noqa: F401
             import pybullet
     except ImportError as error:
-        raise SimUnavailable(
-            f"the simulation needs PyBullet and numpy ({error}); pip install 'smachac[sim]'"
-        ) from error
+        raise _missing(error) from error
     return pybullet
 
 
+def _missing(error: ImportError) -> SimUnavailable:
+    return SimUnavailable(
+        f"the simulation needs PyBullet and numpy ({error}); pip install 'smachac[sim]'"
+    )
+
+
 def data_file(path: str | Path) -> Path | None:
-    """The file `path` on disk, else in PyBullet's own data; None when in neither."""
+    """The file `path` on disk, else in PyBullet's own data; None when in neither.
+
+    Raises SimUnavailable when that data is not installed.
+    """
     here = Path(path).expanduser()
     if here.is_file():
         return here
-    with quiet():
+    try:
         import pybullet_data
+    except ImportError as error:
+        raise _missing(error) from error
     there = Path(pybullet_data.getDataPath()) / path
     return there if there.is_file() else None
 

@@ -231,7 +231,7 @@ def test_a_real_world_gives_the_same_hash_under_threads() -> None:
             return self.world.arm().grip("open", self.preempt_requested).outcome
 
     def run() -> tuple[str, float, str]:
-        with sim.World(seed=0) as world:
+        with sim.World(seed=0, patience=60.0) as world:
             machine = both(("MOVE", Moves(world)), ("CLOSE", Closes(world)), any_ends=True)
             world.attach(machine)
             world.attach(machine)

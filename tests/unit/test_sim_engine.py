@@ -33,7 +33,7 @@ def test_a_world_writes_nothing(capfd: pytest.CaptureFixture[str]) -> None:
     assert (written.out, written.err) == ("", "")
 
 
-@pytest.mark.parametrize("missing", ["pybullet", "numpy"])
+@pytest.mark.parametrize("missing", ["pybullet", "numpy", "pybullet_data"])
 def test_a_missing_package_is_named_with_its_cure(
     missing: str, monkeypatch: pytest.MonkeyPatch
 ) -> None:

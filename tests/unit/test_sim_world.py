@@ -97,7 +97,7 @@ def test_the_same_seed_gives_the_same_world_to_the_last_bit() -> None:
 
 def test_threads_do_not_change_what_happens() -> None:
     def end() -> tuple[str, float, list[float]]:
-        with sim.World(seed=0) as world:
+        with sim.World(seed=0, patience=60.0) as world:
             arm = world.arm()
             seen: list[float] = []
 
