@@ -8,10 +8,12 @@ from functools import cache
 from pathlib import Path
 from typing import Any
 
+from quiet import quiet
+
 from smachac import sim
 from smachac.driver import analyse, build
 from smachac.files import disk_library, read_source
-from smachac.runtime import smach, trace
+from smachac.runtime import trace
 from smachac.targets.python import TARGET
 
 EXAMPLES = Path(__file__).parents[1] / "examples"
@@ -50,10 +52,6 @@ def program(example: str, replaced: tuple[tuple[str, str], ...] = ()) -> Callabl
     return made
 
 
-def silent(message: str, *arguments: object) -> None:
-    pass
-
-
 def run(
     example: str,
     goals: Mapping[str, str],
@@ -63,13 +61,12 @@ def run(
     replaced: tuple[tuple[str, str], ...] = (),
 ) -> Run:
     """Run an example; `goals` are the blocks to be judged and the keys of where they belong."""
-    smach.set_loggers(silent, silent, silent, silent)
     events: list[dict[str, Any]] = []
 
     def observe(event: dict[str, Any]) -> None:
         events.append({key: value for key, value in event.items() if key != "t"})
 
-    with sim.World(seed=seed, faults=faults) as world:
+    with quiet(), sim.World(seed=seed, faults=faults) as world:
         machine = program(example, replaced)()
         trace.attach(machine, "sm", observe)
         world.attach(machine, "sm")

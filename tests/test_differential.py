@@ -10,6 +10,7 @@ from typing import Any
 import pytest
 from hypothesis import HealthCheck, given, settings
 from hypothesis import strategies as st
+from quiet import quiet
 from strategies import valid_machines
 
 from smachac.driver import build, check, load
@@ -17,7 +18,7 @@ from smachac.files import disk_library, read_source
 from smachac.ir.behaviours import built_in
 from smachac.ir.nodes import Checked, Machine
 from smachac.ir.run import run
-from smachac.runtime import smach, trace
+from smachac.runtime import trace
 from smachac.runtime.compare import compare
 from smachac.states import Library
 from smachac.targets.python import TARGET
@@ -28,13 +29,6 @@ LIBRARY = disk_library(ROOT / "main.yml", [])
 Event = dict[str, Any]
 
 
-def silent(message: str, *arguments: object) -> None:
-    pass
-
-
-smach.set_loggers(silent, silent, silent, silent)
-
-
 def of_generated(machine: Machine, library: Library = LIBRARY) -> list[Event]:
     """The trace of the generated program."""
     report: list[Any] = []
@@ -42,11 +36,12 @@ def of_generated(machine: Machine, library: Library = LIBRARY) -> list[Event]:
     assert report == []
     module: dict[str, Any] = {"__name__": "generated"}
     exec(compile(text, name, "exec"), module)
-    root = module["build"]()
     events: list[Event] = []
-    trace.attach(root, machine.root.name, events.append)
-    with contextlib.redirect_stdout(io.StringIO()), contextlib.suppress(Exception):
-        root.execute()
+    with quiet(), contextlib.redirect_stdout(io.StringIO()):
+        root = module["build"]()
+        trace.attach(root, machine.root.name, events.append)
+        with contextlib.suppress(Exception):
+            root.execute()
     return events
 
 

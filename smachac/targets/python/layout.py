@@ -2,11 +2,18 @@
 
 from __future__ import annotations
 
+import ast
+import io
 import math
+import tokenize
 from collections.abc import Iterable
 from dataclasses import dataclass
+from typing import TYPE_CHECKING
 
 from smachac.ir.nodes import Data, Expression, Struct
+
+if TYPE_CHECKING:
+    from smachac.ir.expressions import Expr
 
 WIDTH = 88
 """The line length of Black and of Ruff's formatter."""
@@ -70,11 +77,47 @@ def string(text: str) -> str:
     return f'"{literal[1:-1]}"'
 
 
+def expression(text: str) -> Doc:
+    """Code of the script: laid out where it is portable, else as it was written."""
+    from smachac.ir.expressions import parse_expression
+
+    tree = parse_expression(text)
+    return " ".join(text.split("\n")) if tree is None else _expression(tree)
+
+
+def _expression(tree: Expr) -> Doc:
+    """Lists break into lines where they are too long; so do those that a lambda returns."""
+    from smachac.ir.expressions import Lambda, ListDisplay, print_expression
+
+    match tree:
+        case ListDisplay(items):
+            return Group("[", tuple(("", _expression(item)) for item in items), "]")
+        case Lambda(parameter, body):
+            head = f"lambda {parameter}: " if parameter else "lambda: "
+            inner = _expression(body)
+            if isinstance(inner, str):
+                return head + inner
+            return Group(head + inner.opening, inner.items, inner.closing)
+    return _double_quoted(print_expression(tree))
+
+
+def _double_quoted(code: str) -> str:
+    """Code with its string literals in double quotes."""
+    if "'" not in code:
+        return code
+    parts, end = [], 0
+    for token in tokenize.generate_tokens(io.StringIO(code).readline):
+        if token.type == tokenize.STRING:
+            parts += [code[end : token.start[1]], string(ast.literal_eval(token.string))]
+            end = token.end[1]
+    return "".join([*parts, code[end:]])
+
+
 def literal(data: Data) -> Doc:
-    """A value; expressions stand as they were written."""
+    """A value of the script."""
     match data:
         case Expression(text=text):
-            return " ".join(text.split("\n"))
+            return expression(text)
         case Struct(entries=entries):
             return mapping((key, literal(value)) for key, value in entries)
         case tuple():

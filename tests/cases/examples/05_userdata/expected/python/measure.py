@@ -32,7 +32,9 @@ class ConditionalOutcomeState(smach.State):
 
     def __init__(self, outcomes, callbacks, default_outcome, input_keys=()):
         super().__init__(outcomes=outcomes, input_keys=list(input_keys))
-        self.conditions = [(name, callbacks[name]) for name in outcomes if name in callbacks]
+        self.conditions = [
+            (name, callbacks[name]) for name in outcomes if name in callbacks
+        ]
         self.default_outcome = default_outcome
 
     def execute(self, userdata):

@@ -245,7 +245,14 @@ def build():
             "PLAN_STACK",
             CallbacksState(
                 callbacks={
-                    "top_pose": lambda ud: [[ud.goal_pose[0][0], ud.goal_pose[0][1], ud.goal_pose[0][2] + 0.05], ud.goal_pose[1]],
+                    "top_pose": lambda ud: [
+                        [
+                            ud.goal_pose[0][0],
+                            ud.goal_pose[0][1],
+                            ud.goal_pose[0][2] + 0.05,
+                        ],
+                        ud.goal_pose[1],
+                    ],
                 },
                 input_keys=["goal_pose"],
                 output_keys=["top_pose"],
