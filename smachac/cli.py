@@ -6,11 +6,13 @@ import argparse
 import gc
 import os
 import sys
-from collections.abc import Sequence
-from pathlib import Path
-from typing import Any
 
 from smachac import __version__
+
+TYPE_CHECKING = False  # typing and pathlib cost more than all the rest of `smachac --help`
+if TYPE_CHECKING:
+    from collections.abc import Sequence
+    from pathlib import Path
 
 BUG, INTERRUPTED = 70, 130
 """Exit codes beside those of verbs.py: our fault; Ctrl-C."""
@@ -27,63 +29,109 @@ exit codes: 0 clean, 1 findings, 2 wrong usage, 70 a bug in smachac
 """
 
 
-def _parser() -> argparse.ArgumentParser:
+def _path(text: str) -> Path:
+    from pathlib import Path
+
+    return Path(text)
+
+
+def _formatter(prog: str) -> argparse.HelpFormatter:
+    """Argparse's own, told the width: by itself it imports a quarter of its time to ask for it."""
+    try:
+        columns = int(os.environ.get("COLUMNS", "")) or 80
+    except ValueError:
+        try:
+            columns = os.get_terminal_size().columns or 80
+        except (OSError, ValueError):
+            columns = 80
+    return argparse.RawDescriptionHelpFormatter(prog, width=max(columns - 2, 40))
+
+
+def _parser(given: Sequence[str]) -> argparse.ArgumentParser:
+    """The parser for these words: only the command among them gets its arguments."""
     parser = argparse.ArgumentParser(
         prog="smachac",
         description="Compiles robot task state machines from YAML, and checks them.",
         epilog=EPILOG,
-        formatter_class=argparse.RawDescriptionHelpFormatter,
+        formatter_class=_formatter,
     )
     parser.add_argument("--version", action="version", version=f"smachac {__version__}")
     verbs = parser.add_subparsers(dest="verb", metavar="COMMAND", required=True)
-
-    check = _verb(verbs, "check", "judge scripts by every rule")
-    check.add_argument("script", nargs="+", type=Path, help="a script (.yml, .yaml)")
-    _search_folders(check)
-    check.add_argument("--format", choices=["text", "json"], default="text")
-    check.add_argument("--strict", action="store_true", help="warnings fail as errors do")
-    _colour(check)
-
-    build = _verb(verbs, "build", "print a script for a target")
-    build.add_argument("script", type=Path, help="a script (.yml, .yaml)")
-    build.add_argument("--target", "-t", required=True, help="see `smachac targets`")
-    build.add_argument("-o", "--output", type=Path, default=Path(), metavar="DIR",
-                       help="where to write (default: here; `-` prints)")  # fmt: skip
-    build.add_argument("--option", action="append", default=[], metavar="NAME=VALUE",
-                       help="an option of the target")  # fmt: skip
-    build.add_argument("--check", action="store_true",
-                       help="write nothing; fail if the files are not up to date")  # fmt: skip
-    build.add_argument("--force", action="store_true",
-                       help="overwrite files that smachac did not write")  # fmt: skip
-    _search_folders(build)
-    _colour(build)
-
-    run = _verb(verbs, "run", "run a script: on the simulated arm, or with mock states")
-    run.add_argument("script", type=Path, help="a script (.yml, .yaml)")
-    run.add_argument("--gui", action="store_true", help="show the simulation in a window")
-    run.add_argument("--record", type=Path, metavar="FILE", help="film it: .gif or .mp4")
-    run.add_argument("--trace", type=Path, metavar="FILE", help="write every event, a JSON a line")
-    run.add_argument("--seed", type=int, default=0, help="of everything random (default 0)")
-    run.add_argument("--mock", type=Path, metavar="FILE", help="play a scenario instead")
-    run.add_argument("--expect", metavar="OUTCOME", help="fail unless it ends with this outcome")
-    run.add_argument("--quiet", "-q", action="store_true", help="no progress, only the outcome")
-    _search_folders(run)
-    _colour(run)
-
-    explain = _verb(verbs, "explain", "what a code means, with examples")
-    explain.add_argument("code", help="such as SM201")
-
-    _verb(verbs, "targets", "list what can be built")
+    for name, (text, add_arguments) in COMMANDS.items():
+        about = f"{text[0].upper()}{text[1:]}."
+        verb = verbs.add_parser(name, help=text, description=about, formatter_class=_formatter)
+        if name in given:
+            add_arguments(verb)
     return parser
 
 
-def _verb(verbs: Any, name: str, text: str) -> Any:
-    return verbs.add_parser(name, help=text, description=f"{text[0].upper()}{text[1:]}.")
+def _check(verb: argparse.ArgumentParser) -> None:
+    verb.add_argument("script", nargs="+", type=_path, help="a script (.yml, .yaml)")
+    _search_folders(verb)
+    verb.add_argument("--format", choices=["text", "json"], default="text")
+    verb.add_argument("--strict", action="store_true", help="warnings fail as errors do")
+    _colour(verb)
+
+
+def _build(verb: argparse.ArgumentParser) -> None:
+    verb.add_argument("script", type=_path, help="a script (.yml, .yaml)")
+    verb.add_argument("--target", "-t", required=True, help="see `smachac targets`")
+    verb.add_argument(
+        "-o",
+        "--output",
+        type=_path,
+        default=".",
+        metavar="DIR",
+        help="where to write (default: here; `-` prints)",
+    )
+    verb.add_argument(
+        "--option", action="append", default=[], metavar="NAME=VALUE", help="of the target"
+    )
+    verb.add_argument(
+        "--check", action="store_true", help="write nothing; fail if a file is not up to date"
+    )
+    verb.add_argument(
+        "--force", action="store_true", help="overwrite files that smachac did not write"
+    )
+    _search_folders(verb)
+    _colour(verb)
+
+
+def _run(verb: argparse.ArgumentParser) -> None:
+    verb.add_argument("script", type=_path, help="a script (.yml, .yaml)")
+    verb.add_argument("--gui", action="store_true", help="show the simulation in a window")
+    verb.add_argument("--record", type=_path, metavar="FILE", help="film it: .gif or .mp4")
+    verb.add_argument("--trace", type=_path, metavar="FILE", help="write every event, JSON lines")
+    verb.add_argument("--seed", type=int, default=0, help="of everything random (default 0)")
+    verb.add_argument("--mock", type=_path, metavar="FILE", help="play a scenario instead")
+    verb.add_argument("--expect", metavar="OUTCOME", help="fail unless it ends with this outcome")
+    verb.add_argument("--quiet", "-q", action="store_true", help="no progress, only the outcome")
+    _search_folders(verb)
+    _colour(verb)
+
+
+def _explain(verb: argparse.ArgumentParser) -> None:
+    verb.add_argument("code", nargs="?", help="such as SM201")
+    verb.add_argument("--all", action="store_true", help="every code, as Markdown")
+
+
+def _targets(verb: argparse.ArgumentParser) -> None:
+    """It has no arguments."""
+
+
+COMMANDS = {
+    "check": ("judge scripts by every rule", _check),
+    "build": ("print a script for a target", _build),
+    "run": ("run a script: on the simulated arm, or with mock states", _run),
+    "explain": ("what a code means, with examples", _explain),
+    "targets": ("list what can be built", _targets),
+}
+"""Command to what it does and what adds its arguments; verbs.py holds what it does."""
 
 
 def _search_folders(parser: argparse.ArgumentParser) -> None:
     for name, what in (("scripts", "sub-scripts"), ("templates", "templates and interfaces")):
-        parser.add_argument(f"--{name}", type=Path, action="append", default=[], metavar="DIR",
+        parser.add_argument(f"--{name}", type=_path, action="append", default=[], metavar="DIR",
                             help=f"another folder with {what} (repeatable)")  # fmt: skip
 
 
@@ -93,7 +141,8 @@ def _colour(parser: argparse.ArgumentParser) -> None:
 
 def main(arguments: Sequence[str] | None = None) -> int:
     """Run the command line; the exit code. An exception that gets here is a bug of ours."""
-    given = _parser().parse_args(arguments)
+    words = sys.argv[1:] if arguments is None else arguments
+    given = _parser(words).parse_args(words)
     from smachac import verbs
 
     _never_fail_to_print()

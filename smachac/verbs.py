@@ -192,9 +192,14 @@ def _where(errors: list[dict[str, Any]]) -> str:
 def _explain(arguments: argparse.Namespace) -> int:
     import smachac.checks
     from smachac.diagnostics import CODES
-    from smachac.report.explain import render_code
+    from smachac.report.explain import render_code, render_rules
 
     assert smachac.checks is not None  # imported for the rules it files
+    if arguments.all:
+        sys.stdout.write(render_rules())
+        return OK
+    if arguments.code is None:
+        return _usage("name a code, such as SM201, or --all")
     code = CODES.get(arguments.code.upper())
     if code is None:
         return _usage(f"there is no code `{arguments.code}`", arguments.code.upper(), list(CODES))
