@@ -9,6 +9,8 @@ from collections.abc import Callable
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
+from smachac import analyse_file
+
 if TYPE_CHECKING:
     from smachac.diagnostics import Report
     from smachac.driver import Analysis
@@ -26,16 +28,7 @@ def _wants_colour(arguments: argparse.Namespace, stream: Any) -> bool:
 
 
 def _load(path: Path, arguments: argparse.Namespace) -> tuple[Analysis, Library | None]:
-    """A script read and judged by every rule."""
-    from smachac.driver import Analysis, analyse
-    from smachac.files import disk_library, read_source
-
-    found: Report = []
-    source = read_source(path, found)
-    if source is None:
-        return Analysis(report=found), None
-    library = disk_library(path, found, scripts=arguments.scripts, templates=arguments.templates)
-    return analyse(source, library, found), library
+    return analyse_file(path, arguments.scripts, arguments.templates)
 
 
 def _shown(report: Report) -> Report:
