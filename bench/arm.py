@@ -6,6 +6,8 @@ succeed, judged by looking at the world, and how far from their goals the blocks
 
 from __future__ import annotations
 
+import contextlib
+import io
 import sys
 import time
 from concurrent.futures import ProcessPoolExecutor
@@ -19,7 +21,8 @@ LIMIT = 0.002
 
 
 def one(job: tuple[str, dict[str, str], int]) -> Run:
-    return run(*job)
+    with contextlib.redirect_stdout(io.StringIO()):
+        return run(*job)
 
 
 def main() -> None:
