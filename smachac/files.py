@@ -33,7 +33,8 @@ def read_source(path: Path, report: Report) -> Source | None:
         return Source(str(path), _decoded(path.read_bytes()))
     except OSError as error:
         span = Span(Source(str(path), ""), 0, 0)
-        report.append(problems.unreadable_file(span, (error.strerror or str(error)).lower()))
+        words = (error.strerror or str(error)).lower()
+        report.append(problems.unreadable_file(span, f"this file cannot be read: {words}"))
     except UnicodeDecodeError as error:
         text = error.object[: error.start].decode("utf-8", "replace")
         span = Span(Source(str(path), text), len(text), len(text))

@@ -64,20 +64,22 @@ def perform(
             ),
         )
     except Exception as error:
-        raise FailedError(_told(error, name)) from error
+        raise FailedError(_told(error, name, arguments.script.parent)) from error
     if outcome is None:
         raise FailedError("the machine ended without an outcome")
     return outcome
 
 
-def _told(error: BaseException, name: str) -> str:
+def _told(error: BaseException, name: str, folder: Path) -> str:
     """What went wrong first, and where in the generated program or in code of the user."""
     first = error
     while (cause := first.__cause__ or first.__context__) is not None:
         first = cause
-    here = Path(__file__).parent
-    frames = traceback.extract_tb(first.__traceback__)
-    own = [frame for frame in frames if not Path(frame.filename).is_relative_to(here)]
+    own = [
+        frame
+        for frame in traceback.extract_tb(first.__traceback__)
+        if frame.filename == name or Path(frame.filename).is_relative_to(folder.resolve())
+    ]
     words = str(first).strip().splitlines() or [""]
     lines = [f"{type(first).__name__}: {words[0]}" if words[0] else type(first).__name__]
     lines += [f"  in {frame.filename}:{frame.lineno}, {frame.name}: {frame.line}" for frame in own]

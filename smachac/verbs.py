@@ -145,6 +145,9 @@ def _run(arguments: argparse.Namespace) -> int:
     machine = analysis.checked
     if machine is None or not (files or arguments.mock):
         return FINDINGS
+    wrong = _wrong_film(arguments, "".join(files.values()))
+    if wrong:
+        return _usage(wrong)
     scenario = None
     if arguments.mock is not None:
         report: Report = []
@@ -172,6 +175,17 @@ def _run(arguments: argparse.Namespace) -> int:
         print(f"expected: {arguments.expect}", file=sys.stderr)
         return FINDINGS
     return OK
+
+
+def _wrong_film(arguments: argparse.Namespace, text: str) -> str:
+    """What is wrong with `--record` and `--gui`, if anything."""
+    if arguments.record is None and not arguments.gui:
+        return ""
+    if "from smachac import sim" not in text:
+        return "--record and --gui need a program for the simulated arm; this run has no arm"
+    if arguments.record is not None and arguments.record.suffix.lower() not in (".gif", ".mp4"):
+        return f"--record makes .gif and .mp4, not `{arguments.record}`"
+    return ""
 
 
 def _where(errors: list[dict[str, Any]]) -> str:

@@ -9,7 +9,6 @@ from __future__ import annotations
 import re
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass, field
-from importlib.metadata import entry_points
 from keyword import iskeyword
 
 from smachac import __version__
@@ -69,11 +68,15 @@ def stem(machine: Machine) -> str:
 
 def target_names() -> list[str]:
     """The names of all installed targets."""
+    from importlib.metadata import entry_points
+
     return sorted({entry.name for entry in entry_points(group=GROUP)})
 
 
 def load_target(name: str) -> Target | None:
     """The target of that name, imported now, or None."""
+    from importlib.metadata import entry_points
+
     for entry in entry_points(group=GROUP, name=name):
         target: Target = entry.load()
         return target

@@ -59,6 +59,8 @@ def test_version_and_help(capsys: pytest.CaptureFixture[str]) -> None:
         ["build", GOOD, "--target", "dot", "--option", "depth"],
         ["explain", "SM999"],
         ["run", GOOD, "--seed", "x"],
+        ["run", GOOD, "--record", "x.gif"],
+        ["run", str(EXAMPLES / "08_pick_and_place" / "main.yml"), "--record", "x.avi"],
     ],
 )
 def test_wrong_usage_is_2(arguments: list[str], capsys: pytest.CaptureFixture[str]) -> None:
@@ -200,6 +202,22 @@ def test_output_that_cannot_be_written(capsys: pytest.CaptureFixture[str]) -> No
     assert main(["run", GOOD, "--trace", "/dev/full"]) in (0, 1)
 
 
+def test_check_loads_only_what_it_needs() -> None:
+    heavy = ("lark", "jinja2", "numpy", "pybullet", "PIL", "importlib.metadata")
+    code = (
+        "import sys; from smachac.cli import main; main(sys.argv[1:]);"
+        f"print([name for name in {heavy} if name in sys.modules])"
+    )
+    ended = subprocess.run(
+        [sys.executable, "-c", code, "check", GOOD],
+        capture_output=True,
+        text=True,
+        timeout=120,
+        check=True,
+    )
+    assert ended.stdout == "no findings\n[]\n"
+
+
 def test_a_closed_pipe_is_no_error() -> None:
     read_end, write_end = os.pipe()
     os.close(read_end)
@@ -219,7 +237,7 @@ def test_a_closed_pipe_is_no_error() -> None:
 def test_ascii_terminals_get_escapes(tmp_path: Path) -> None:
     path = tmp_path / "main.yml"
     path.write_text("name: \u00fc\noutcomes: [a]\nstates:\n  - \u2713: {template: X}\n")
-    environment = {**os.environ, "PYTHONIOENCODING": "ascii", "PYTHONUTF8": "0", "LC_ALL": "C"}
+    environment = {**os.environ, "PYTHONIOENCODING": "ascii"}
     ended = run("check", str(path), env=environment)
     assert ended.returncode == 1
     assert "\\u2713" in ended.stdout
