@@ -213,7 +213,7 @@ def _node(state: State) -> Node:
 def _linked(children: tuple[Node, ...], connector: str) -> tuple[Node, ...]:
     """The states of a sequence, each linked to the next by the connector (smach-semantics Q2)."""
     linked = []
-    for child, after in zip(children, (*children[1:], None), strict=True):
+    for child, after in zip(children, (*children[1:], None), strict=False):
         has = any(outcome.name == connector for outcome in child.outcomes)
         own = any(transition.outcome == connector for transition in child.transitions)
         if after is not None and has and not own:

@@ -2,11 +2,11 @@
 
 from __future__ import annotations
 
-from smachac.checks import concurrence, liveness, names, structure
+from smachac.checks import concurrence, expressions, liveness, names, structure
 from smachac.diagnostics import Report, run_rules
 from smachac.ir.nodes import Machine
 
-__all__ = ["check_machine", "concurrence", "liveness", "names", "structure"]
+__all__ = ["check_machine", "concurrence", "expressions", "liveness", "names", "structure"]
 
 
 def check_machine(machine: Machine) -> Report:

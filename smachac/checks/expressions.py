@@ -1,0 +1,106 @@
+"""Rules over the code in a script."""
+
+from __future__ import annotations
+
+import ast
+import warnings
+from collections.abc import Iterator
+
+from smachac.diagnostics import Finding, Severity, rule
+from smachac.ir import nodes
+from smachac.ir.nodes import Data, Expression, Leaf, Machine, Node, Struct
+from smachac.ir.walk import walk
+
+
+@rule("SM016", "bad-expression", Severity.ERROR)
+def bad_expression(machine: Machine) -> Iterator[Finding]:
+    """Code of the script is no expression, or something else stands where code is due.
+
+    The generated program would not even start, or would fail at the first visit of the state,
+    with the robot in the middle of its task.
+
+    Wrong:
+        name: sm
+        template: Base
+        outcomes: [succeeded]
+        userdata: {n: 0}
+        states:
+          - COUNT:
+              template: CallbacksState
+              input_keys: [n]
+              output_keys: [n]
+              callbacks: {n: 'lambda ud: ud.n +'}
+              transitions: {succeeded: succeeded}
+
+    Right:
+        name: sm
+        template: Base
+        outcomes: [succeeded]
+        userdata: {n: 0}
+        states:
+          - COUNT:
+              template: CallbacksState
+              input_keys: [n]
+              output_keys: [n]
+              callbacks: {n: 'lambda ud: ud.n + 1'}
+              transitions: {succeeded: succeeded}
+    """
+    for path, node in walk(machine.root):
+        for expression in _expressions(node):
+            fault = _fault(expression.text)
+            if fault:
+                yield Finding(
+                    span=expression.span,
+                    message=f"`{expression.text}` is no expression: {fault}",
+                    help="write a value, or a function such as `lambda ud: ud.n + 1`",
+                    node=path,
+                )
+        if isinstance(node, Leaf):
+            yield from _missing_code(node, path)
+
+
+def _expressions(node: Node) -> Iterator[Expression]:
+    for held in node.variables if isinstance(node, Leaf) else node.userdata:
+        yield from _in(held.value.data)
+    if isinstance(node, nodes.Iterator) and node.items is not None:
+        yield from _in(node.items.data)
+
+
+def _in(data: Data) -> Iterator[Expression]:
+    match data:
+        case Expression():
+            yield data
+        case Struct(entries=entries):
+            for _, value in entries:
+                yield from _in(value)
+        case tuple():
+            for value in data:
+                yield from _in(value)
+
+
+def _fault(text: str) -> str:
+    """What Python says against an expression; nothing when it is one."""
+    try:
+        with warnings.catch_warnings():
+            warnings.simplefilter("ignore", SyntaxWarning)
+            ast.parse(text, mode="eval")
+    except SyntaxError as error:
+        return (error.msg or "invalid syntax").lower()
+    except (ValueError, RecursionError, MemoryError):
+        return "it is too deep, or holds a character that code may not have"
+    return ""
+
+
+def _missing_code(leaf: Leaf, path: str) -> Iterator[Finding]:
+    """Entries of `callbacks` that are no code: a number, a list, nothing."""
+    for variable in leaf.variables:
+        if variable.name != "callbacks" or not isinstance(variable.value.data, Struct):
+            continue
+        for key, value in variable.value.data.entries:
+            if not isinstance(value, Expression):
+                yield Finding(
+                    span=variable.value.span,
+                    message=f"the callback `{key}` of `{leaf.name}` is no function",
+                    help=f"write it as `{key}: 'lambda ud: ud.n + 1'`, or name a function",
+                    node=path,
+                )
