@@ -7,9 +7,8 @@ import warnings
 from collections.abc import Iterator
 
 from smachac.diagnostics import Finding, Severity, rule
-from smachac.ir import nodes
-from smachac.ir.nodes import Data, Expression, Leaf, Machine, Node, Struct
-from smachac.ir.walk import walk
+from smachac.ir.nodes import Expression, Leaf, Machine, Struct
+from smachac.ir.walk import expressions, walk
 
 
 @rule("SM016", "bad-expression", Severity.ERROR)
@@ -46,7 +45,7 @@ def bad_expression(machine: Machine) -> Iterator[Finding]:
               transitions: {succeeded: succeeded}
     """
     for path, node in walk(machine.root):
-        for expression in _expressions(node):
+        for expression in expressions(node):
             fault = _fault(expression.text)
             if fault:
                 yield Finding(
@@ -57,25 +56,6 @@ def bad_expression(machine: Machine) -> Iterator[Finding]:
                 )
         if isinstance(node, Leaf):
             yield from _missing_code(node, path)
-
-
-def _expressions(node: Node) -> Iterator[Expression]:
-    for held in node.variables if isinstance(node, Leaf) else node.userdata:
-        yield from _in(held.value.data)
-    if isinstance(node, nodes.Iterator) and node.items is not None:
-        yield from _in(node.items.data)
-
-
-def _in(data: Data) -> Iterator[Expression]:
-    match data:
-        case Expression():
-            yield data
-        case Struct(entries=entries):
-            for _, value in entries:
-                yield from _in(value)
-        case tuple():
-            for value in data:
-                yield from _in(value)
 
 
 def _fault(text: str) -> str:

@@ -4,7 +4,16 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 
-from smachac.ir.nodes import Container, Leaf, Node, Transition
+from smachac.ir.nodes import (
+    Container,
+    Data,
+    Expression,
+    Leaf,
+    Node,
+    Struct,
+    Transition,
+)
+from smachac.ir.nodes import Iterator as IteratorNode
 
 
 def walk(node: Node, path: str = "") -> Iterator[tuple[str, Node]]:
@@ -34,3 +43,23 @@ def outcome_names(node: Node) -> tuple[str, ...]:
 def leads_to_child(transition: Transition, children: frozenset[str]) -> bool:
     """Whether a transition goes to a sibling, not out of the container (see Transition)."""
     return transition.origin != "implicit" and transition.target in children
+
+
+def expressions(node: Node) -> Iterator[Expression]:
+    """The code in the values of one node, in the order of the script."""
+    for held in node.variables if isinstance(node, Leaf) else node.userdata:
+        yield from _expressions(held.value.data)
+    if isinstance(node, IteratorNode) and node.items is not None:
+        yield from _expressions(node.items.data)
+
+
+def _expressions(data: Data) -> Iterator[Expression]:
+    match data:
+        case Expression():
+            yield data
+        case Struct(entries=entries):
+            for _, value in entries:
+                yield from _expressions(value)
+        case tuple():
+            for value in data:
+                yield from _expressions(value)

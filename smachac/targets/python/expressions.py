@@ -4,38 +4,20 @@ from __future__ import annotations
 
 import ast
 import sys
-from collections.abc import Iterator
 
-from smachac.ir.nodes import Data, Expression, Leaf, Machine, Struct
-from smachac.ir.walk import walk
+from smachac.ir.nodes import Machine
+from smachac.ir.walk import expressions, walk
 
 
 def standard_imports(machine: Machine) -> list[str]:
     """Imports of the modules of the standard library that expressions name: `math.pi`."""
-    found = {name for text in _expressions(machine) for name in _modules(text)}
+    found = {
+        name
+        for _, node in walk(machine.root)
+        for expression in expressions(node)
+        for name in _modules(expression.text)
+    }
     return [f"import {name}" for name in sorted(found)]
-
-
-def _expressions(machine: Machine) -> Iterator[str]:
-    for _, node in walk(machine.root):
-        held = node.variables if isinstance(node, Leaf) else node.userdata
-        for one in held:
-            yield from _in(one.value.data)
-        items = getattr(node, "items", None)
-        if items is not None:
-            yield from _in(items.data)
-
-
-def _in(data: Data) -> Iterator[str]:
-    match data:
-        case Expression(text=text):
-            yield text
-        case Struct(entries=entries):
-            for _, value in entries:
-                yield from _in(value)
-        case tuple():
-            for value in data:
-                yield from _in(value)
 
 
 def _modules(text: str) -> set[str]:
