@@ -102,7 +102,7 @@ def _run(verb: argparse.ArgumentParser) -> None:
     verb.add_argument("--gui", action="store_true", help="show the simulation in a window")
     verb.add_argument("--record", type=_path, metavar="FILE", help="film it: .gif or .mp4")
     verb.add_argument("--trace", type=_path, metavar="FILE", help="write every event, JSON lines")
-    verb.add_argument("--seed", type=int, default=0, help="of everything random (default 0)")
+    verb.add_argument("--seed", type=int, default=0, help="of the simulated world (default 0)")
     verb.add_argument("--mock", type=_path, metavar="FILE", help="play a scenario instead")
     verb.add_argument("--expect", metavar="OUTCOME", help="fail unless it ends with this outcome")
     verb.add_argument("--quiet", "-q", action="store_true", help="no progress, only the outcome")

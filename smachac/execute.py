@@ -58,7 +58,6 @@ def execute(
             from smachac import sim
 
             sim.configure(seed=seed, gui=gui, record=record)
-        _quieten(module.__dict__["smach"])
         build = module.__dict__["build"]
         built: list[Any] = []
 
@@ -70,14 +69,15 @@ def execute(
             return root
 
         module.__dict__["build"] = watched_build
-        with _preempting(built, on_preempt):
+        with _quiet(module.__dict__["smach"]), _preempting(built, on_preempt):
             outcome: str | None = module.__dict__[main_function(machine)]()
         return outcome
     finally:
         sys.path.remove(str(folder.resolve()))
 
 
-def _quieten(smach: Any) -> None:
+@contextmanager
+def _quiet(smach: Any) -> Iterator[None]:
     """Progress is shown from the trace; of what SMACH logs, warnings and errors remain."""
 
     def shown(message: str, *arguments: object) -> None:
@@ -86,7 +86,12 @@ def _quieten(smach: Any) -> None:
     def hidden(message: str, *arguments: object) -> None:
         pass
 
+    before = smach.loginfo, smach.logwarn, smach.logdebug, smach.logerr
     smach.set_loggers(hidden, shown, hidden, shown)
+    try:
+        yield
+    finally:
+        smach.set_loggers(*before)
 
 
 def main_function(machine: Machine) -> str:

@@ -32,6 +32,7 @@ from smachac.ir.types import ANY, parse_type
 from smachac.script import Script, State
 from smachac.source import Word
 from smachac.syntax import Map, Scalar, Tree
+from smachac.typed import is_long_form
 from smachac.values import as_value
 
 _NOT_VARIABLES = frozenset(schema.names_for("state")) | {"script"}
@@ -109,7 +110,7 @@ def _presets(state: State) -> Iterable[Preset]:
     tree = _tree(state, "userdata")
     for entry in shapes.as_map(tree, []) if tree is not None else ():
         value, type_ = entry.value, ANY
-        if isinstance(value, Map) and _is_long_form(value):
+        if isinstance(value, Map) and is_long_form(value):
             inner = {item.key.value: item.value for item in value.entries}
             named = inner.get("type")
             if isinstance(named, Scalar) and isinstance(named.value, str):
@@ -118,11 +119,6 @@ def _presets(state: State) -> Iterable[Preset]:
         yield Preset(
             key=str(entry.key.value), value=as_value(value), type=type_, span=entry.key.span
         )
-
-
-def _is_long_form(tree: Map) -> bool:
-    keys = {entry.key.value for entry in tree.entries}
-    return "value" in keys and keys <= {"type", "value", "doc"}
 
 
 def _interface(state: State) -> dict[str, Any]:

@@ -14,6 +14,7 @@ from smachac.lookups import Scope, child_scope, fill_in
 from smachac.source import Source, Span, Word
 from smachac.states import Library, StateType, find_state_type
 from smachac.syntax import Entry, Map, Scalar, Seq, Tree, parse
+from smachac.typed import Aliases, read_aliases, typed
 
 MAX_STATES = 1_000_000
 """The most states a script may have once its sub-scripts are called."""
@@ -92,6 +93,7 @@ class _Resolver:
         self.library = library
         self.report = report
         self.main = ""
+        self.aliases: Aliases = {}
         self.sources: dict[int, Source] = {}
         self.types: dict[str, StateType | None] = {}
         self.sub_scripts: dict[tuple[str, str], tuple[Source, Tree | None] | None] = {}
@@ -101,6 +103,8 @@ class _Resolver:
         self.sources[id(source)] = source
         self.main = source.name
         fields = self.expand(tree.entries)
+        if "types" in fields:
+            self.aliases = read_aliases(fields["types"].value, self.report)
         name = shapes.as_name(fields["name"].value, []) if "name" in fields else None
         start = tree.entries[0].key.span if tree.entries else tree.span
         base = self.state(name or Word("sm", start), fields, _Place(source), "base")
@@ -145,6 +149,8 @@ class _Resolver:
         value = entry.value
         if isinstance(value, Scalar):
             return entry
+        entry = typed(key, entry, self.aliases, self.report)
+        value = entry.value
         row = schema.VARIABLES.get(key)
         names = row is not None and row.shape in ("names", "keys")
         new = fill_in(value, scope, self.report, names=names)

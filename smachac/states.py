@@ -17,6 +17,7 @@ from smachac.ir.nodes import Key, Outcome
 from smachac.ir.types import ANY, Type
 from smachac.source import Source, Span, Word
 from smachac.syntax import Entry, Map, Scalar, Seq, Tree, parse
+from smachac.typed import not_a_type
 
 Kind = Literal["base", "container", "state"]
 
@@ -188,13 +189,7 @@ def _type(tree: Tree | None, report: Report) -> Type:
         return ANY
     found = parse_type(tree.value)
     if found is None:
-        report.append(
-            problems.wrong_shape(
-                tree.span,
-                f"`{tree.value}` is not a type",
-                "types read like float, float<rad>[7], list[Pose], one_of[open, close]",
-            )
-        )
+        report.append(not_a_type(tree))
     return found or ANY
 
 

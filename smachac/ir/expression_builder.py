@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import ast
 import keyword
+import re
 import unicodedata
 from typing import Any
 
@@ -36,6 +37,11 @@ def word_of(token: str) -> str:
     if unicodedata.normalize("NFKC", token) != token:
         raise ValueError(f"Python reads {token} as another name")
     return str(token)
+
+
+_ESCAPE = re.compile(r"\\([0-7]{1,3}|.)", re.DOTALL)
+_GOOD_ESCAPE = re.compile(r"[0-3]?[0-7]{1,2}|[\\'\"abfnrtvxuUN\n]")
+"""Escapes in a string literal; Python warns of others, and says it will refuse them."""
 
 
 class Builder:
@@ -116,6 +122,9 @@ class Builder:
         return Constant(float(found[0]))
 
     def string(self, found: list[Any]) -> Expr:
+        for escape in _ESCAPE.findall(found[0]):
+            if not _GOOD_ESCAPE.fullmatch(escape):
+                raise ValueError("an escape that newer Pythons refuse")
         return Constant(ast.literal_eval(found[0]))
 
     def none(self, found: list[Any]) -> Expr:

@@ -13,7 +13,7 @@ LAYERS = (
     ("source",),
     ("diagnostics", "problems", "grammars"),
     ("syntax", "ir", "shapes"),
-    ("states", "script", "schema", "lookups"),
+    ("states", "script", "schema", "lookups", "typed"),
     ("lower", "values", "checks", "targets"),
     ("driver", "report", "refactor", "files", "execute"),
     ("__init__", "runs"),
@@ -29,6 +29,8 @@ WITHIN = {
     ("script", "states"),
     ("script", "schema"),
     ("script", "lookups"),
+    ("script", "typed"),
+    ("states", "typed"),
     ("lower", "values"),
 }
 """The imports, as (who, whom), that are allowed inside one row."""

@@ -1,0 +1,83 @@
+"""The types a script names: `types:` aliases filled in, mistakes told."""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Mapping
+
+from smachac import problems, shapes
+from smachac.diagnostics import Diagnostic, Report, did_you_mean
+from smachac.ir.types import parse_type
+from smachac.syntax import Entry, Map, Scalar, Tree, is_known_wrong
+
+Aliases = Mapping[str, str]
+"""Name to the type it stands for, itself without aliases."""
+
+_WORD = re.compile(r"[A-Za-z_]\w*")
+
+
+def read_aliases(tree: Tree, report: Report) -> Aliases:
+    """The `types:` of a script; an alias may use those above it."""
+    found: dict[str, str] = {}
+    for key, value in shapes.as_pairs(tree, report):
+        text = _filled(value.text, found)
+        if parse_type(text) is None:
+            report.append(not_a_type(Scalar(value.text, True, value.span)))
+        else:
+            found[key.text] = text
+    return found
+
+
+def not_a_type(tree: Scalar) -> Diagnostic:
+    """The problem of a type that cannot be read."""
+    help = did_you_mean(str(tree.value), ["float", "bool", "int", "str", "any", "Pose", "Point"])
+    help = help or "types read like float, float<rad>[7], list[Pose], one_of[open, close]"
+    return problems.wrong_shape(tree.span, f"`{tree.value}` is not a type", help)
+
+
+def typed(key: str, entry: Entry, aliases: Aliases, report: Report) -> Entry:
+    """A variable of a state with the types in it spelt out; other variables as they are."""
+    value = entry.value
+    if not isinstance(value, Map) or key not in ("input_keys", "output_keys", "userdata"):
+        return entry
+    items = tuple(
+        Entry(
+            item.key,
+            _long_form(item.value, aliases, report)
+            if key == "userdata"
+            else _type(item.value, aliases, report),
+        )
+        for item in value.entries
+    )
+    return Entry(entry.key, Map(items, value.span))
+
+
+def is_long_form(tree: Tree) -> bool:
+    """Whether userdata is written `{type: T, value: V}`."""
+    if not isinstance(tree, Map):
+        return False
+    keys = {entry.key.value for entry in tree.entries}
+    return "value" in keys and keys <= {"type", "value", "doc"}
+
+
+def _long_form(tree: Tree, aliases: Aliases, report: Report) -> Tree:
+    if not isinstance(tree, Map) or not is_long_form(tree):
+        return tree
+    items = tuple(
+        Entry(item.key, _type(item.value, aliases, report)) if item.key.value == "type" else item
+        for item in tree.entries
+    )
+    return Map(items, tree.span)
+
+
+def _type(tree: Tree, aliases: Aliases, report: Report) -> Tree:
+    if not isinstance(tree, Scalar) or not isinstance(tree.value, str) or is_known_wrong(tree):
+        return tree
+    text = _filled(tree.value, aliases)
+    if parse_type(text) is None:
+        report.append(not_a_type(tree))
+    return Scalar(text, tree.plain, tree.span)
+
+
+def _filled(text: str, aliases: Aliases) -> str:
+    return _WORD.sub(lambda found: aliases.get(found.group(), found.group()), text)
