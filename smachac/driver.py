@@ -2,7 +2,9 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+import sys
+from collections.abc import Iterator, Mapping
+from contextlib import contextmanager
 from dataclasses import dataclass
 
 from smachac.checks import check_machine
@@ -14,6 +16,19 @@ from smachac.source import Source
 from smachac.states import Library
 from smachac.syntax import parse
 from smachac.targets import Context, Files, Target
+
+FRAMES = 8_000
+"""Python's limit of recursion while we work: enough for the deepest script that is accepted."""
+
+
+@contextmanager
+def _deep() -> Iterator[None]:
+    before = sys.getrecursionlimit()
+    sys.setrecursionlimit(max(before, FRAMES))
+    try:
+        yield
+    finally:
+        sys.setrecursionlimit(before)
 
 
 def load(source: Source, library: Library, report: Report) -> Machine | None:
@@ -41,8 +56,9 @@ class Analysis:
 
 def analyse(source: Source, library: Library, report: Report) -> Analysis:
     """Read a script and judge it by every rule; findings already in `report` count as well."""
-    machine = load(source, library, report)
-    checked = check(machine, report) if machine is not None else None
+    with _deep():
+        machine = load(source, library, report)
+        checked = check(machine, report) if machine is not None else None
     return Analysis(machine=machine, checked=checked, report=in_order(report))
 
 
@@ -55,7 +71,8 @@ def build(
 ) -> Files:
     """The files a target prints; none if a template is at fault (SM605)."""
     context = Context(library=library, options=options or {})
-    files = target.emit(machine, context, report)
+    with _deep():
+        files = target.emit(machine, context, report)
     return {} if has_errors(report) else files
 
 

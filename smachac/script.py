@@ -17,7 +17,9 @@ from smachac.syntax import Entry, Map, Scalar, Seq, Tree, parse
 from smachac.typed import Aliases, read_aliases, typed
 
 MAX_STATES = 1_000_000
-"""The most states a script may have once its sub-scripts are called."""
+MAX_NESTED = 150
+"""The most states a script may have once its sub-scripts are called, and the most containers
+inside one another."""
 
 Fields = Mapping[str, Entry]
 """Variables by long name; the entry's key is where the name stands."""
@@ -54,6 +56,7 @@ class _Place:
     source: Source
     scope: Scope = field(default_factory=dict)
     calls: tuple[tuple[str, Span], ...] = ()
+    depth: int = 0
 
     @property
     def via(self) -> tuple[Span, ...]:
@@ -127,7 +130,7 @@ class _Resolver:
         """A state from its variables; `role` is "base" for the script itself."""
         params = own.get("params")
         scope = child_scope(place.scope, params.value if params else None, self.report)
-        place = replace(place, scope=scope)
+        place = replace(place, scope=scope, depth=place.depth + 1)
         fields = {
             key: entry if key in ("params", "states") else self.filled(key, entry, scope)
             for key, entry in own.items()
@@ -159,6 +162,11 @@ class _Resolver:
     def children(self, tree: Tree, place: _Place) -> tuple[State, ...]:
         if not isinstance(tree, Seq):
             shapes.wrong(tree, "a list of states", self.report, "write each as `- NAME: {...}`")
+            return ()
+        if place.depth > MAX_NESTED:
+            span = Span(tree.span.source, tree.span.start, tree.span.start + 1)
+            message = f"more than {MAX_NESTED} containers stand inside one another here"
+            self.report.append(problems.too_big(span, message))
             return ()
         found = []
         for item in tree.items:
@@ -227,7 +235,7 @@ class _Resolver:
                 return _unknown(name, own, place)
             source, inner = found
             call = Span(place.source, entry.key.span.start, entry.value.span.end)
-            place = _Place(source, place.scope, (*place.calls, (source.name, call)))
+            place = _Place(source, place.scope, (*place.calls, (source.name, call)), place.depth)
             own = _overridden(inner, own)
         return self.state(name, own, place)
 
