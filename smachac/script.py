@@ -152,12 +152,11 @@ class _Resolver:
         value = entry.value
         if isinstance(value, Scalar):
             return entry
-        entry = typed(key, entry, self.aliases, self.report)
-        value = entry.value
         row = schema.VARIABLES.get(key)
         names = row is not None and row.shape in ("names", "keys")
         new = fill_in(value, scope, self.report, names=names)
-        return entry if new is value else Entry(entry.key, new)
+        filled = entry if new is value else Entry(entry.key, new)
+        return typed(key, filled, self.aliases, self.report)
 
     def children(self, tree: Tree, place: _Place) -> tuple[State, ...]:
         if not isinstance(tree, Seq):

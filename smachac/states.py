@@ -16,7 +16,7 @@ from smachac.diagnostics import Report
 from smachac.ir.nodes import Key, Outcome
 from smachac.ir.types import ANY, Type
 from smachac.source import Source, Span, Word
-from smachac.syntax import Entry, Map, Scalar, Seq, Tree, parse
+from smachac.syntax import Map, Scalar, Tree, parse
 from smachac.typed import not_a_type
 
 Kind = Literal["base", "container", "state"]
@@ -173,9 +173,14 @@ def _declared(tree: Tree | None) -> list[tuple[str, Tree]]:
     return [(str(entry.key.value), entry.value) for entry in tree.entries if entry.key.value != "*"]
 
 
-def _doc(tree: Tree) -> str:
-    entry: Entry | None = tree.get("doc") if isinstance(tree, Map) else None
+def _text(tree: Tree, name: str) -> str:
+    """The text under a name of a mapping, or nothing."""
+    entry = tree.get(name) if isinstance(tree, Map) else None
     return str(entry.value.value) if entry and isinstance(entry.value, Scalar) else ""
+
+
+def _doc(tree: Tree) -> str:
+    return _text(tree, "doc")
 
 
 def _type(tree: Tree | None, report: Report) -> Type:
@@ -219,41 +224,28 @@ def _read_meta(name: str, template: Source, file: str) -> StateType:
     if not isinstance(tree, Map):
         return StateType(name=name, open=True, code={"python": file})
 
-    def listed(part: str) -> list[tuple[str, Tree, bool]]:
+    def listed(part: str) -> list[tuple[str, Tree]]:
         entry = tree.get(part)
-        return list(_meta_items(entry.value, False)) if entry else []
+        return _meta_items(entry.value) if entry else []
 
-    kind_entry = tree.get("type")
-    kind = (
-        str(kind_entry.value.value) if kind_entry and isinstance(kind_entry.value, Scalar) else ""
-    )
+    kind = _text(tree, "type")
     return StateType(
         name=name,
         kind="base" if kind == "Base" else "container" if kind == "Container" else "state",
-        doc=_meta_doc(tree),
-        variables={
-            key: VariableType(name=key, required=False) for key, _, _ in listed("variables")
-        },
-        input_keys=tuple(Key(name=key, span=value.span) for key, value, _ in listed("input_keys")),
-        output_keys=tuple(
-            Key(name=key, span=value.span) for key, value, _ in listed("output_keys")
-        ),
-        outcomes=tuple(Outcome(name=key, span=value.span) for key, value, _ in listed("outcomes")),
+        doc=_text(tree, "description"),
+        variables={key: VariableType(name=key, required=False) for key, _ in listed("variables")},
+        input_keys=tuple(Key(name=key, span=value.span) for key, value in listed("input_keys")),
+        output_keys=tuple(Key(name=key, span=value.span) for key, value in listed("output_keys")),
+        outcomes=tuple(Outcome(name=key, span=value.span) for key, value in listed("outcomes")),
         given=frozenset(["variables", "input_keys", "output_keys", "outcomes"]),
         code={"python": file},
     )
 
 
-def _meta_doc(tree: Map) -> str:
-    entry = tree.get("description")
-    return str(entry.value.value) if entry and isinstance(entry.value, Scalar) else ""
-
-
-def _meta_items(tree: Tree, optional: bool) -> list[tuple[str, Tree, bool]]:
-    """Names in a meta list: `- x: {...}` or `- x`; a nested list holds optional ones."""
+def _meta_items(tree: Tree) -> list[tuple[str, Tree]]:
+    """Names in a meta list: `- x: {...}` or `- x`; optional ones stand in a nested list."""
     if isinstance(tree, Scalar):
-        return [(str(tree.value), tree, optional)] if tree.value is not None else []
+        return [(str(tree.value), tree)] if tree.value is not None else []
     if isinstance(tree, Map):
-        return [(str(entry.key.value), entry.value, optional) for entry in tree.entries]
-    assert isinstance(tree, Seq)
-    return [found for item in tree.items for found in _meta_items(item, isinstance(item, Seq))]
+        return [(str(entry.key.value), entry.value) for entry in tree.entries]
+    return [found for item in tree.items for found in _meta_items(item)]

@@ -6,7 +6,7 @@ The subset is grammars/expression.lark. Values are computed by evaluate.py.
 from __future__ import annotations
 
 import re
-from collections.abc import Iterable, Iterator
+from collections.abc import Iterable
 from dataclasses import dataclass
 from functools import cache
 from typing import TYPE_CHECKING, Any, TypeAlias
@@ -156,15 +156,6 @@ def parts(expr: Expr) -> tuple[Expr, ...]:
         case DictDisplay(entries):
             return tuple(part for entry in entries for part in entry)
     return assert_never(expr)
-
-
-def walk_expression(expr: Expr) -> Iterator[Expr]:
-    """An expression and all inside it, in the order of the text."""
-    todo = [expr]
-    while todo:
-        current = todo.pop()
-        yield current
-        todo.extend(reversed(parts(current)))
 
 
 def dotted(expr: Expr) -> str | None:

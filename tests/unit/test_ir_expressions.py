@@ -24,7 +24,6 @@ from smachac.ir.expressions import (
     looks_like_expression,
     parse_expression,
     print_expression,
-    walk_expression,
 )
 
 X, Y = Name("x"), Name("y")
@@ -154,12 +153,6 @@ def test_other_brackets_go() -> None:
     tree = parse_expression("((x) + (y * (2))) if (not (x < y)) else ([(x)])")
     assert tree is not None
     assert print_expression(tree) == "x + y * 2 if not x < y else [x]"
-
-
-def test_walking_goes_in_the_order_of_the_text() -> None:
-    tree = parse_expression("a if b else c(d, e=f)")
-    assert tree is not None
-    assert [each.name for each in walk_expression(tree) if isinstance(each, Name)] == list("abcdf")
 
 
 def test_dotted_is_the_text_of_names_alone() -> None:

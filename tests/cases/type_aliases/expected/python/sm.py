@@ -1,4 +1,4 @@
-# Made by smachac 0.1.0 from main.yml (sha256 e7ec4a203209e64a).
+# Made by smachac 0.1.0 from main.yml (sha256 72bced4d2696d3a8).
 """The state machine `sm`."""
 
 try:
@@ -33,13 +33,13 @@ def build():
     sm = smach.StateMachine(outcomes=["succeeded"])
     sm.userdata.home = [0, 0, 0, 0, 0, 0, 0]
     with sm:
-        # main.yml:9
+        # main.yml:10
         smach.StateMachine.add(
             "A",
             ScriptedState(
                 outcomes=["done"],
                 input_keys=["home", "path"],
-                output_keys=["angle"],
+                output_keys=["angle", "other"],
             ),
             transitions={"done": "succeeded"},
         )
