@@ -11,7 +11,7 @@ from dataclasses import dataclass
 from pathlib import Path
 
 from smachac import problems
-from smachac.diagnostics import Report
+from smachac.diagnostics import Report, did_you_mean
 from smachac.source import Source, Span
 from smachac.states import Library
 
@@ -34,7 +34,8 @@ def read_source(path: Path, report: Report) -> Source | None:
     except OSError as error:
         span = Span(Source(str(path), ""), 0, 0)
         words = (error.strerror or str(error)).lower()
-        report.append(problems.unreadable_file(span, f"this file cannot be read: {words}"))
+        near = did_you_mean(path.name, _names_beside(path))
+        report.append(problems.unreadable_file(span, f"this file cannot be read: {words}", near))
     except UnicodeDecodeError as error:
         text = error.object[: error.start].decode("utf-8", "replace")
         span = Span(Source(str(path), text), len(text), len(text))
@@ -43,6 +44,13 @@ def read_source(path: Path, report: Report) -> Source | None:
             problems.unreadable_file(span, f"byte 0x{byte:02x} is not UTF-8: is it a text file?")
         )
     return None
+
+
+def _names_beside(path: Path) -> list[str]:
+    """The names of files in the folder of a path; none where there is no such folder."""
+    with contextlib.suppress(OSError):
+        return sorted(other.name for other in path.parent.iterdir() if other.is_file())
+    return []
 
 
 def _decoded(data: bytes) -> str:

@@ -243,4 +243,8 @@ def template_error(span: Span, message: str, help: str | None = None) -> Finding
                 return 'done'
         {% endblock %}
     """
-    return Finding(span=span, message=message, help=help)
+    return Finding(
+        span=span,
+        message=message,
+        help=help or "look at this line of the template, and at the block it stands in",
+    )

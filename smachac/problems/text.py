@@ -30,7 +30,11 @@ def yaml_syntax(span: Span, message: str, help: str | None = None) -> Finding:
         states:
           - PICK: {template: ScriptedState, outcomes: [done], transitions: {done: succeeded}}
     """
-    return Finding(span=span, message=message, help=help)
+    return Finding(
+        span=span,
+        message=message,
+        help=help or "look at the brackets, quotes and indentation just before this place",
+    )
 
 
 @problem("SM002", "duplicate-key", Severity.ERROR)
@@ -220,4 +224,8 @@ def unreadable_file(span: Span, message: str, help: str | None = None) -> Findin
         == smachac.toml ==
         scripts = ["sub_scripts"]
     """
-    return Finding(span=span, message=message, help=help)
+    return Finding(
+        span=span,
+        message=message,
+        help=help or "check the path, and that it is a text file in UTF-8",
+    )

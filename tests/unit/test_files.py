@@ -29,6 +29,9 @@ def test_what_cannot_be_read_is_told(tmp_path: Path) -> None:
     assert read_source(tmp_path, report) is None
     assert read_source(tmp_path / "binary.yml", report) is None
     assert codes(report) == ["SM007"] * 3
+    assert all(item.finding.help for item in report)
+    assert read_source(tmp_path / "binray.yml", report) is None
+    assert report.pop().finding.help == "did you mean `binary.yml`?"
     assert (report[2].span.line, report[2].span.column) == (2, 1)
 
 
