@@ -35,6 +35,16 @@ def _path(text: str) -> Path:
     return Path(text)
 
 
+def _names(text: str) -> list[str]:
+    return [name.strip() for name in text.split(",") if name.strip()]
+
+
+def _count(text: str) -> int:
+    if not text.isdecimal() or int(text) < 1:
+        raise argparse.ArgumentTypeError(f"wants a number from 1, not `{text}`")
+    return int(text)
+
+
 def _formatter(prog: str) -> argparse.HelpFormatter:
     """Argparse's own, told the width: by itself it imports a quarter of its time to ask for it."""
     try:
@@ -104,6 +114,10 @@ def _run(verb: argparse.ArgumentParser) -> None:
     verb.add_argument("--trace", type=_path, metavar="FILE", help="write every event, JSON lines")
     verb.add_argument("--seed", type=int, default=0, help="of the simulated world (default 0)")
     verb.add_argument("--mock", type=_path, metavar="FILE", help="play a scenario instead")
+    verb.add_argument("--schedule", type=_names, metavar="A,B,...",
+                      help="with --mock: whose turn it is among concurrent branches")  # fmt: skip
+    verb.add_argument("--orders", type=_count, metavar="N",
+                      help="with --mock: try N orders of the branches, fail on a race")  # fmt: skip
     verb.add_argument("--expect", metavar="OUTCOME", help="fail unless it ends with this outcome")
     verb.add_argument("--quiet", "-q", action="store_true", help="no progress, only the outcome")
     _search_folders(verb)

@@ -15,6 +15,7 @@ from typing import TYPE_CHECKING, Any
 if TYPE_CHECKING:
     from smachac.diagnostics import Report
     from smachac.ir.nodes import Machine
+    from smachac.ir.result import Result
     from smachac.ir.scenario import Scenario
     from smachac.source import Span
     from smachac.syntax import Tree
@@ -26,13 +27,24 @@ class FailedError(Exception):
     """A run ended without an outcome; the words say why."""
 
 
-def play(machine: Machine, scenario: Scenario, seed: int, observe: Callable[[Event], None]) -> str:
+def play(
+    machine: Machine,
+    scenario: Scenario,
+    seed: int,
+    schedule: list[str] | None,
+    observe: Callable[[Event], None],
+) -> str:
     """Play a scenario on the interpreter; the outcome. Raises FailedError."""
     from smachac.ir.behaviours import built_in
     from smachac.ir.run import run
     from smachac.ir.scenario import acted
+    from smachac.ir.schedule import ScheduleError
 
-    result = run(machine, acted(scenario, machine, built_in(seed)), observe, seed=seed)
+    behaviour = acted(scenario, machine, built_in(seed))
+    try:
+        result = run(machine, behaviour, observe, seed=seed, schedule=schedule)
+    except ScheduleError as error:
+        raise FailedError(f"--schedule: {error}") from None
     if result.error is not None:
         span = result.error.span
         raise FailedError(
@@ -40,6 +52,46 @@ def play(machine: Machine, scenario: Scenario, seed: int, observe: Callable[[Eve
         )
     assert result.outcome is not None
     return result.outcome
+
+
+def play_orders(machine: Machine, scenario: Scenario, seed: int, most: int) -> tuple[str, bool]:
+    """Play a scenario with the branches of concurrences in every order, at most so many.
+
+    What came of them, in words, and whether all came to the same end.
+    """
+    from itertools import islice
+
+    from smachac.ir.behaviours import built_in
+    from smachac.ir.explore import explore
+    from smachac.ir.scenario import acted
+    from smachac.ir.userdata import trace_value
+
+    ends: dict[str, list[Result]] = {}
+    orders = explore(machine, lambda: acted(scenario, machine, built_in(seed)))
+    for result in islice(orders, most):
+        end = f"error: {result.error}" if result.error else f"outcome: {result.outcome}"
+        held = (f"{key}={trace_value(result.userdata[key])!r}" for key in sorted(result.userdata))
+        ends.setdefault(" ".join([end, *held]), []).append(result)
+    tried = sum(map(len, ends.values()))
+    more = next(orders, None) is not None
+    which = "there are more" if more else "all there are" if tried > 1 else "the only one"
+    lines = [f"{tried} order{'s' * (tried > 1)} of branches tried, {which}:"]
+    for end, results in ends.items():
+        turns = ",".join(_short_turns(results[0]))
+        lines.append(
+            f"{len(results):>6}  {end}" + (f"\n        --schedule {turns}" if turns else "")
+        )
+    if len(ends) > 1:
+        lines.append("a race: how it ends depends on which branch comes first")
+    return "\n".join(lines), len(ends) == 1
+
+
+def _short_turns(result: Result) -> Iterator[str]:
+    """The turns of a run as `--schedule` takes them: names where these are enough."""
+    for choice in result.choices:
+        name = choice.taken.rpartition("/")[2]
+        alike = [path for path in choice.ready if path.endswith(f"/{name}")]
+        yield name if len(alike) == 1 else choice.taken
 
 
 def perform(

@@ -131,9 +131,11 @@ def _put(files: dict[str, str], arguments: argparse.Namespace) -> int:
 
 def _run(arguments: argparse.Namespace) -> int:
     """Ends with 0 when the machine ends with an outcome (the one of `--expect`, if given)."""
-    from smachac.runs import FailedError, perform, play, read_scenario_file, watching
+    from smachac.runs import FailedError, perform, play, play_orders, read_scenario_file, watching
     from smachac.targets import load_target
 
+    if arguments.mock is None and (arguments.schedule or arguments.orders):
+        return _usage("--schedule and --orders are for --mock: a program's threads run as they do")
     target = load_target("python")
     assert target is not None
     if arguments.mock is not None:
@@ -155,11 +157,15 @@ def _run(arguments: argparse.Namespace) -> int:
         _print_report(report, arguments, sys.stderr)
         if scenario is None:
             return FINDINGS
+        if arguments.orders is not None:
+            text, agree = play_orders(machine, scenario, arguments.seed, arguments.orders)
+            print(text)
+            return OK if agree else FINDINGS
     try:
         with watching(arguments, _wants_colour(arguments, sys.stdout)) as (observe, errors):
             try:
                 if scenario is not None:
-                    outcome = play(machine, scenario, arguments.seed, observe)
+                    outcome = play(machine, scenario, arguments.seed, arguments.schedule, observe)
                 else:
                     ((name, text),) = files.items()
                     outcome = perform(name, text, machine, arguments, observe)

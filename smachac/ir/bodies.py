@@ -149,9 +149,7 @@ def _advance(branch: _Branch) -> str | Failure | None:
 def _choose(run: Interpreter, live: Mapping[str, _Branch]) -> str | None:
     """Whose turn it is among the branches that can go on now."""
     ready = [path for path, branch in live.items() if branch.ready_at <= run.clock]
-    if len(ready) > 1:
-        return ready[run.random.randrange(len(ready))]
-    return ready[0] if ready else None
+    return run.schedule.choose(ready) if len(ready) > 1 else next(iter(ready), None)
 
 
 def _outcome_of(node: Concurrence, ended: Mapping[str, str | Failure]) -> str:

@@ -50,11 +50,20 @@ class Failure:
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
+class Choice:
+    """A moment at which several branches of a concurrence, by path, could go on, and which did."""
+
+    taken: str
+    ready: tuple[str, ...]
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
 class Result:
     """How a run ended: an outcome or an error, with all userdata as it was left.
 
     `scopes` holds the userdata of every container by its path, `userdata` that of the outermost.
-    `steps` counts states entered; `time` is virtual, in seconds.
+    `steps` counts states entered; `time` is virtual, in seconds. `choices` are the turns that were
+    taken where several could have been.
     """
 
     outcome: str | None
@@ -63,6 +72,7 @@ class Result:
     scopes: Mapping[str, dict[str, object]] = field(default_factory=dict)
     steps: int = 0
     time: float = 0.0
+    choices: tuple[Choice, ...] = ()
 
 
 class RunError(Exception):

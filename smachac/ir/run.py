@@ -2,14 +2,13 @@
 
 The rules are those of SMACH where the graph can express them (M*, V*, R*, P*, N*, I*: ids of the
 rules); its hangs, stale flags and lost requests are not copied. Branches of a concurrence take
-turns, one leaf at a time, in an order that the seed settles; time is virtual. Every state is a
-generator that yields the time at which it can go on.
+turns, one leaf at a time, in an order that a seed or a schedule settles (schedule.py); time is
+virtual. Every state is a generator that yields the time at which it can go on.
 """
 
 from __future__ import annotations
 
-import random
-from collections.abc import Callable, Collection, Generator, Mapping
+from collections.abc import Callable, Collection, Generator, Mapping, Sequence
 from pathlib import PurePath
 from typing import NoReturn
 
@@ -17,6 +16,7 @@ from smachac.ir.bodies import Routes, Run, body
 from smachac.ir.nodes import Leaf, Machine, Node
 from smachac.ir.preemption import Preemption
 from smachac.ir.result import PREEMPTED, Behaviour, Event, Failure, Fault, Result, RunError
+from smachac.ir.schedule import Schedule
 from smachac.ir.userdata import (
     BehaviourError,
     Userdata,
@@ -38,12 +38,16 @@ def run(
     observe: Callable[[Event], None] | None = None,
     *,
     seed: int = 0,
+    schedule: Sequence[str] | None = None,
     max_steps: int = MOST_STEPS,
     userdata: Mapping[str, object] | None = None,
     preempt_at: Collection[int] = (),
 ) -> Result:
     """Run a machine once, from its start to an outcome or an error.
 
+    Where several branches of concurrences can go on, `schedule` names the one whose turn it is, as
+    the `choices` of a result do; what it leaves open goes to the first branch, and without a
+    schedule `seed` settles it. Raises ScheduleError for a turn of a branch that cannot go on.
     `userdata` is put into the outermost container over its presets. `preempt_at`: a request to
     stop reaches the machine while it is in its n-th leaf; 0 is before the start. It is an error
     to enter more than `max_steps` states.
@@ -53,6 +57,7 @@ def run(
         behaviour,
         observe,
         seed=seed,
+        schedule=schedule,
         max_steps=max_steps,
         userdata=userdata,
         preempt_at=preempt_at,
@@ -73,6 +78,7 @@ class Interpreter:
         observe: Callable[[Event], None] | None = None,
         *,
         seed: int = 0,
+        schedule: Sequence[str] | None = None,
         max_steps: int = MOST_STEPS,
         userdata: Mapping[str, object] | None = None,
         preempt_at: Collection[int] = (),
@@ -82,7 +88,7 @@ class Interpreter:
         self._observe = observe
         self._max_steps = max_steps
         self._preempt_at = frozenset(preempt_at)
-        self.random = random.Random(seed)
+        self.schedule = Schedule(seed, schedule)
         self.preemption = Preemption(lambda path: self.emit("preempt", path))
         self.clock = 0.0
         self._steps = self._leaves = self._events = 0
@@ -104,6 +110,7 @@ class Interpreter:
         self.preemption.running.clear()
         self.preemption.wake.clear()
         self._steps = self._leaves = 0
+        self.schedule.choices = []
         self.emit("start", path)
         if 0 in self._preempt_at:
             self.preemption.request(path)
@@ -130,6 +137,7 @@ class Interpreter:
             scopes=scopes,
             steps=self._steps,
             time=self.clock,
+            choices=tuple(self.schedule.choices),
         )
 
     def emit(self, event: str, path: str, **more: object) -> None:

@@ -166,7 +166,7 @@ def test_every_test_can_fail() -> None:
 
 def test_no_file_names_a_path_of_a_machine() -> None:
     folders = ("smachac", "tests", "docs", "examples", "bench", "scripts", ".ci")
-    paths = [path for path in ROOT.iterdir() if path.is_file()]
+    paths = [path for path in ROOT.iterdir() if path.is_file() and path.name != ".git"]
     paths += [path for folder in folders for path in (ROOT / folder).rglob("*")]
     found = []
     for path in paths:
