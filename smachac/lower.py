@@ -84,7 +84,9 @@ def _word(state: State, name: str, default: str = "") -> Word:
 def _variable(state: State, name: str) -> Variable:
     entry = state.fields[name]
     value = as_value(entry.value, code=name == "callbacks")
-    return Variable(name=name, value=value, span=entry.key.span)
+    known = state.type.variables.get(name)
+    type_ = known.type if known is not None else ANY
+    return Variable(name=name, type=type_, value=value, span=entry.key.span)
 
 
 def _keys(state: State, name: str, known: tuple[Key, ...]) -> tuple[Key, ...]:

@@ -17,7 +17,7 @@ from smachac.ir.nodes import Key, Outcome
 from smachac.ir.types import ANY, Type
 from smachac.source import Source, Span, Word
 from smachac.syntax import Map, Scalar, Tree, parse
-from smachac.typed import not_a_type
+from smachac.typed import read_type
 
 Kind = Literal["base", "container", "state"]
 
@@ -185,17 +185,12 @@ def _doc(tree: Tree) -> str:
 
 def _type(tree: Tree | None, report: Report) -> Type:
     """The type an interface names: `{type: T}` or `T` alone. One it cannot read is `any`."""
-    from smachac.ir.types import parse_type
-
     if isinstance(tree, Map):
         entry = tree.get("type")
         tree = entry.value if entry else None
     if not isinstance(tree, Scalar) or not isinstance(tree.value, str):
         return ANY
-    found = parse_type(tree.value)
-    if found is None:
-        report.append(not_a_type(tree))
-    return found or ANY
+    return read_type(tree.value, Word(tree.value, tree.span), report) or ANY
 
 
 def _variable(name: str, tree: Tree, report: Report) -> VariableType:

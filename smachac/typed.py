@@ -6,8 +6,9 @@ import re
 from collections.abc import Mapping
 
 from smachac import problems, shapes
-from smachac.diagnostics import Diagnostic, Report, did_you_mean
-from smachac.ir.types import parse_type
+from smachac.diagnostics import Report
+from smachac.ir.types import WORDS, Type, parse_type, unknown_words
+from smachac.source import Word
 from smachac.syntax import Entry, Map, Scalar, Tree, is_known_wrong
 
 Aliases = Mapping[str, str]
@@ -21,18 +22,21 @@ def read_aliases(tree: Tree, report: Report) -> Aliases:
     found: dict[str, str] = {}
     for key, value in shapes.as_pairs(tree, report):
         text = _filled(value.text, found)
-        if parse_type(text) is None:
-            report.append(not_a_type(Scalar(value.text, True, value.span)))
-        else:
+        if read_type(text, value, report) is not None:
             found[key.text] = text
     return found
 
 
-def not_a_type(tree: Scalar) -> Diagnostic:
-    """The problem of a type that cannot be read."""
-    help = did_you_mean(str(tree.value), ["float", "bool", "int", "str", "any", "Pose", "Point"])
-    help = help or "types read like float, float<rad>[7], list[Pose], one_of[open, close]"
-    return problems.wrong_shape(tree.span, f"`{tree.value}` is not a type", help)
+def read_type(text: str, place: Word, report: Report) -> Type | None:
+    """The type that a text names, told where it names none (SM017). `place` is as written."""
+    type_ = parse_type(text)
+    if type_ is None:
+        report.append(problems.bad_type(place, WORDS))
+        return None
+    unknown = unknown_words(type_)
+    if unknown:
+        report.append(problems.bad_type(place, WORDS, unknown[0]))
+    return type_
 
 
 def typed(key: str, entry: Entry, aliases: Aliases, report: Report) -> Entry:
@@ -74,8 +78,7 @@ def _type(tree: Tree, aliases: Aliases, report: Report) -> Tree:
     if not isinstance(tree, Scalar) or not isinstance(tree.value, str) or is_known_wrong(tree):
         return tree
     text = _filled(tree.value, aliases)
-    if parse_type(text) is None:
-        report.append(not_a_type(tree))
+    read_type(text, Word(tree.value, tree.span), report)
     return Scalar(text, tree.plain, tree.span)
 
 

@@ -109,7 +109,8 @@ class _Drawing:
         return Preset(key=self.name(), value=self.value(), type=self.draw(TYPES), span=NOWHERE)
 
     def variable(self) -> Variable:
-        return Variable(name=self.name(), value=self.value(), span=NOWHERE)
+        type_ = self.draw(TYPES)
+        return Variable(name=self.name(), type=type_, value=self.value(), span=NOWHERE)
 
     def outcome(self) -> Outcome:
         return Outcome(name=self.name(), doc=self.draw(DOCS), span=NOWHERE)

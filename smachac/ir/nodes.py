@@ -43,10 +43,11 @@ class Value:
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Variable:
-    """A variable of a leaf's state type, as the script sets it."""
+    """A variable of a state type, as the script sets it, with the type that the interface says."""
 
     name: str
     value: Value
+    type: Type = ANY
     span: Span = field(compare=False, repr=False)
 
 

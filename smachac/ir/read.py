@@ -204,8 +204,10 @@ class _Reader:
         yield Remap(key=_text(key), to=_text(to), span=self.span(key))
 
     def variable(self, tree: Any) -> Iterator[Variable]:
-        name, data = tree.children
-        yield Variable(name=_text(name), value=self.value(data), span=self.span(name))
+        name, type_, data = tree.children
+        yield Variable(
+            name=_text(name), type=self.type(type_), value=self.value(data), span=self.span(name)
+        )
 
     def preset(self, tree: Any) -> Iterator[Preset]:
         key, type_, data = tree.children

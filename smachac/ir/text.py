@@ -185,7 +185,7 @@ def _preset(preset: Preset) -> str:
 
 
 def _variable(variable: Variable) -> str:
-    return f"variable {_name(variable.name)} = {_data(variable.value.data)}"
+    return f"variable {_name(variable.name)}{_type(variable.type)} = {_data(variable.value.data)}"
 
 
 def _transition(step: Transition) -> str:

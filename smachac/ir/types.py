@@ -22,6 +22,12 @@ LONGEST = 1000
 DEEPEST = 50
 """Applications (`list[...]`, `?`, `of`) that one text may hold."""
 
+SCALARS = ("bool", "int", "float", "str", "any", "none")
+STRUCTS = ("Point", "Quaternion", "Pose", "PoseStamped", "Transform", "JointState")
+WORDS = (*SCALARS, *STRUCTS, "list", "dict")
+"""The types that one word names. A word with a `/` or `.` in it names a type of ROS or of some
+program: nothing but its name is known."""
+
 _WORD = re.compile(r"[^\W\d]\w*(?:[./-]\w+)*")
 
 
@@ -90,6 +96,15 @@ def _complete(type_: Type) -> Type:
     if type_ == Type("one_of"):
         raise ValueError("one of what?")
     return type_
+
+
+def unknown_words(type_: Type) -> tuple[str, ...]:
+    """The words in a type that name no type; they are `any` to whoever asks what fits."""
+    inner = [arg for arg in type_.args if isinstance(arg, Type)]
+    found = tuple(word for arg in inner for word in unknown_words(arg))
+    if type_.args or type_.name in WORDS or re.search("[./]", type_.name):
+        return found
+    return (type_.name, *found)
 
 
 @cache

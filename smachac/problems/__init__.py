@@ -9,6 +9,7 @@ from smachac.problems.calls import (
     unresolved_look_up,
 )
 from smachac.problems.text import (
+    bad_type,
     duplicate_key,
     missing_variable,
     too_big,
@@ -21,6 +22,7 @@ from smachac.problems.wording import listed
 
 __all__ = [
     "bad_sub_script",
+    "bad_type",
     "duplicate_key",
     "listed",
     "missing_variable",

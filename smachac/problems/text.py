@@ -168,6 +168,78 @@ def missing_variable(span: Span, name: str, owner: str) -> Finding:
     )
 
 
+OTHER_NAMES = {
+    "array": "list",
+    "bytes": "str",
+    "char": "str",
+    "callable": "any",
+    "dictionary": "dict",
+    "double": "float",
+    "enum": "one_of[a, b]",
+    "function": "any",
+    "map": "dict",
+    "nothing": "none",
+    "null": "none",
+    "number": "float",
+    "object": "any",
+    "real": "float",
+    "string": "str",
+    "text": "str",
+    "tuple": "list",
+}
+"""What other languages call these types."""
+
+
+@problem("SM017", "bad-type", Severity.ERROR)
+def bad_type(place: Word, known: Iterable[str], unknown: str = "") -> Finding:
+    """A type cannot be read, or a word in it names no type.
+
+    What nobody can read checks nothing, and a wrong value travels on to the robot. A word that
+    only names no known type is a warning: it counts as `any`.
+
+    Wrong:
+        name: sm
+        template: Base
+        outcomes: [done]
+        userdata: {width: {type: "float<m", value: 0.05}}
+        states:
+          - PICK:
+              template: ScriptedState
+              input_keys: [width]
+              outcomes: [done]
+              transitions: {done: done}
+
+    Right:
+        name: sm
+        template: Base
+        outcomes: [done]
+        userdata: {width: {type: "float<m>", value: 0.05}}
+        states:
+          - PICK:
+              template: ScriptedState
+              input_keys: [width]
+              outcomes: [done]
+              transitions: {done: done}
+    """
+    word = unknown or place.text
+    meant = OTHER_NAMES.get(word.casefold())
+    help = f"write `{meant}`" if meant else None
+    if word.isidentifier():
+        help = help or did_you_mean(word, known)
+    if unknown:
+        return Finding(
+            span=place.span,
+            message=f"`{unknown}` names no type: nothing is checked of it",
+            help=help or "give it under `types:`; a type of ROS is `pkg/Name`, with its package",
+            severity=Severity.WARNING,
+        )
+    return Finding(
+        span=place.span,
+        message=f"`{place.text}` is not a type",
+        help=help or "types read like float, float<rad>[7], list[Pose], one_of[open, close]",
+    )
+
+
 @problem("SM006", "too-big", Severity.ERROR)
 def too_big(span: Span, message: str, help: str | None = None) -> Finding:
     """The text is larger, deeper, or grows further by its aliases than any real script.

@@ -8,7 +8,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 from strategies import types
 
-from smachac.ir.types import ANY, Type, parse_type
+from smachac.ir.types import ANY, Type, parse_type, unknown_words
 
 JOINTS = Type("array", (Type("float", ("rad",)), 7))
 
@@ -58,6 +58,24 @@ def test_reading_what_is_printed_gives_the_same_type(type_: Type) -> None:
 def test_any_text_is_a_type_that_prints_or_none(text: str) -> None:
     type_ = parse_type(text)
     assert type_ is None or parse_type(str(type_)) == type_
+
+
+@pytest.mark.parametrize(
+    ("text", "words"),
+    [
+        ("list[Pose?]", ()),
+        ("one_of[open, close]", ()),
+        ("dict[str, geometry_msgs/Pose]", ()),
+        ("numpy.ndarray", ()),
+        ("dict", ()),
+        ("flaot", ("flaot",)),
+        ("dict of list of string", ("string",)),
+    ],
+)
+def test_words_that_name_no_type_are_found(text: str, words: tuple[str, ...]) -> None:
+    type_ = parse_type(text)
+    assert type_ is not None
+    assert unknown_words(type_) == words
 
 
 def test_plain_words_need_no_parser() -> None:

@@ -104,6 +104,7 @@ def test_a_leaf_in_full() -> None:
                         ["a", True],
                     ]
                 },
+                "type": "any",
                 "place": "main.yml:2:5",
             }
         ],
