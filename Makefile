@@ -43,6 +43,7 @@ docs: ## Rewrite docs/rules.md from the docstrings of the rules
 
 bench: ## Run the benchmarks; never part of the tests
 	@scripts/setup.sh dev
+	@$(RUN) pip install -q -e '.[bench]' || echo "going on without the packages to compare with"
 	@for bench in bench/*.py; do echo "$$bench"; .venv/bin/python "$$bench" $(ARGS) || exit; done
 
 build: ## Make the source archive and the wheel in dist/
