@@ -166,6 +166,7 @@ def _leaf(state: State) -> Leaf:
         variables=tuple(
             _variable(state, name) for name in state.fields if name not in _NOT_VARIABLES
         ),
+        writes=type_.writes,
         open=type_.open,
         blocking=type_.blocking,
     )

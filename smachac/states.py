@@ -12,7 +12,7 @@ from dataclasses import dataclass, field
 from typing import Literal
 
 from smachac import problems, shapes
-from smachac.diagnostics import Report
+from smachac.diagnostics import Report, did_you_mean
 from smachac.ir.nodes import Key, Outcome
 from smachac.ir.types import ANY, Type
 from smachac.source import Source, Span, Word
@@ -66,6 +66,7 @@ class StateType:
     input_keys: tuple[Key, ...] = ()
     output_keys: tuple[Key, ...] = ()
     outcomes: tuple[Outcome, ...] = ()
+    writes: tuple[tuple[str, tuple[str, ...]], ...] = ()
     given: frozenset[str] = frozenset()
     claims: tuple[str, ...] = ()
     blocking: bool = False
@@ -133,6 +134,7 @@ def _read_interface(name: str, source: Source, report: Report) -> StateType:
             Outcome(name=key, doc=_doc(value), span=value.span)
             for key, value in _declared(fields.get("outcomes"))
         ),
+        writes=_writes(fields, report),
         given=frozenset(
             part
             for part in ("variables", "input_keys", "output_keys", "outcomes")
@@ -207,6 +209,29 @@ def _keys(tree: Tree | None, report: Report) -> tuple[Key, ...]:
         Key(name=key, type=_type(value, report), doc=_doc(value), span=value.span)
         for key, value in _declared(tree)
     )
+
+
+def _writes(fields: Mapping[str, Tree], report: Report) -> tuple[tuple[str, tuple[str, ...]], ...]:
+    """The outputs by the outcome they come with; what the interface does not declare is told."""
+    found = []
+    for entry in shapes.as_map(fields["writes"], []) if "writes" in fields else ():
+        outcome = Word(str(entry.key.value), entry.key.span)
+        keys = shapes.as_names(entry.value, report)
+        _declares(fields, "outcomes", "outcome", outcome, report)
+        for word in keys:
+            _declares(fields, "output_keys", "output key", word, report)
+        if keys:
+            found.append((outcome.text, tuple(word.text for word in keys)))
+    return tuple(found)
+
+
+def _declares(fields: Mapping[str, Tree], part: str, what: str, word: Word, report: Report) -> None:
+    tree = fields.get(part)
+    names = [name for name, _ in _declared(tree)]
+    if word.text in names or (isinstance(tree, Map) and tree.get("*") is not None):
+        return
+    message = f"`{word.text}` is no {what} of the interface"
+    report.append(problems.wrong_shape(word.span, message, did_you_mean(word.text, names)))
 
 
 def _read_meta(name: str, template: Source, file: str) -> StateType:

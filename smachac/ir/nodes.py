@@ -153,10 +153,13 @@ class Leaf(_State):
     """One skill of a state type.
 
     `open`: the state type has no interface, so nothing is known of its keys and outcomes.
-    `blocking`: it waits for the outside world (the interface says so).
+    `blocking`: it waits for the outside world (the interface says so). `writes` are pairs of an
+    outcome and the outputs it comes with: an output named there is written on those outcomes
+    only, any other on all but `preempted`.
     """
 
     variables: tuple[Variable, ...] = ()
+    writes: tuple[tuple[str, tuple[str, ...]], ...] = ()
     open: bool = False
     blocking: bool = False
 

@@ -224,6 +224,10 @@ class _Reader:
         child, outcome = tree.children
         return Condition(child=_text(child), outcome=_text(outcome), span=self.span(child))
 
+    def written(self, tree: Any) -> Iterator[tuple[str, tuple[str, ...]]]:
+        outcome, *keys = map(_text, tree.children)
+        yield outcome, tuple(keys)
+
     def final(self, tree: Any) -> Iterator[tuple[str, str]]:
         first, last = tree.children
         yield _text(first), _text(last)
@@ -290,6 +294,7 @@ SEVERAL: Mapping[str, Callable[[_Reader, Any], Iterator[Any]]] = {
     "transitions": _Reader.transition,
     "remaps": _Reader.remap,
     "variables": _Reader.variable,
+    "writes": _Reader.written,
     "userdata": _Reader.preset,
     "rules": _Reader.rule,
     "loop_outcomes": _Reader.names,

@@ -143,6 +143,8 @@ def _outcomes(outcomes: tuple[nodes.Outcome, ...]) -> Iterator[str]:
 def _leaf(leaf: Leaf) -> Iterator[str]:
     yield from ("open",) * leaf.open
     yield from ("blocking",) * leaf.blocking
+    for outcome, keys in leaf.writes:
+        yield f"writes {_name(outcome)}: {_names(keys)}"
     yield from map(_variable, leaf.variables)
 
 

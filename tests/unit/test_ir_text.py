@@ -69,6 +69,7 @@ machine sm: StateMachine {
     output error: float<m>
     claims arm
     blocking
+    writes aborted: error, "a b"
     variable speed = 1.5
     variable callbacks = {done: `lambda ud: ud.n + 1`, "a b": [null, true, -3]}
     remap positions -> joints

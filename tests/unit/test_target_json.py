@@ -47,6 +47,7 @@ def machine() -> Machine:
     leaf = Leaf(
         name="GO",
         type="Move",
+        writes=(("done", ("joints",)),),
         outcomes=(Outcome(name="done", span=NOWHERE),),
         inputs=(Key(name="q", type=Type("array", (Type("float", ("rad",)), 7)), span=NOWHERE),),
         transitions=(Transition(outcome="done", target="done", origin="implicit", span=NOWHERE),),
@@ -108,6 +109,7 @@ def test_a_leaf_in_full() -> None:
                 "place": "main.yml:2:5",
             }
         ],
+        "writes": [["done", ["joints"]]],
         "open": False,
         "blocking": False,
     }
