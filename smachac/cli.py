@@ -17,6 +17,8 @@ if TYPE_CHECKING:
 BUG, INTERRUPTED = 70, 130
 """Exit codes beside those of verbs.py: our fault; Ctrl-C."""
 
+FORMATS = ("text", "json", "sarif", "github", "junit")
+
 EPILOG = """\
 examples:
   smachac check main.yml                     what is wrong with a script
@@ -78,7 +80,7 @@ def _parser(given: Sequence[str]) -> argparse.ArgumentParser:
 def _check(verb: argparse.ArgumentParser) -> None:
     verb.add_argument("script", nargs="+", type=_path, help="a script (.yml, .yaml)")
     _search_folders(verb)
-    verb.add_argument("--format", choices=["text", "json"], default="text")
+    verb.add_argument("--format", choices=FORMATS, default="text", help="of the report")
     verb.add_argument("--strict", action="store_true", help="warnings fail as errors do")
     _colour(verb)
 

@@ -8,9 +8,11 @@ a test.
 from __future__ import annotations
 
 import difflib
+import hashlib
 from collections.abc import Callable, Iterable, Iterator
 from dataclasses import dataclass, field
 from enum import Enum
+from pathlib import PurePath
 from typing import Any, ParamSpec
 
 from smachac.source import Span
@@ -45,11 +47,20 @@ class Related:
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
+class Edit:
+    """A stretch of a source, and the text that is to stand there instead."""
+
+    span: Span
+    text: str
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
 class Finding:
     """One fault at one place: what is wrong, where, the other places, what to do.
 
     `path` is a witness: names of states in the order in which they are entered.
     `severity` overrides that of the code. `node` is the path of the state it is about.
+    `edits` mend the fault, all of them together; none where the cure is not certain.
     """
 
     span: Span
@@ -59,15 +70,21 @@ class Finding:
     path: tuple[str, ...] = ()
     severity: Severity | None = None
     node: str | None = None
+    edits: tuple[Edit, ...] = ()
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Diagnostic:
-    """A finding with its code: what reports print."""
+    """A finding with its code: what reports print.
+
+    `steps` has one entry for each of the finding's `path`: where that step stands in a text, if
+    it is known.
+    """
 
     code: Code
     severity: Severity
     finding: Finding = field()
+    steps: tuple[Span | None, ...] = ()
 
     @property
     def span(self) -> Span:
@@ -150,6 +167,17 @@ def in_order(report: Iterable[Diagnostic]) -> Report:
             item.finding.message,
         ),
     )
+
+
+def fingerprint(item: Diagnostic) -> str:
+    """What stays of a finding when the lines around it move: 16 hexadecimal digits.
+
+    Taken over its code, its message and its state; without one over the name of its file.
+    """
+    node = item.finding.node
+    place = PurePath(item.span.source.name).name if node is None else node
+    text = "\0".join((item.code.code, place, item.finding.message))
+    return hashlib.sha256(text.encode("utf-8", "surrogatepass")).hexdigest()[:16]
 
 
 def has_errors(report: Iterable[Diagnostic]) -> bool:

@@ -5,14 +5,15 @@ from __future__ import annotations
 import sys
 from collections.abc import Iterator, Mapping
 from contextlib import contextmanager
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 from smachac.checks import check_machine
-from smachac.diagnostics import Report, has_errors, in_order
+from smachac.diagnostics import Finding, Report, has_errors, in_order
 from smachac.ir.nodes import Checked, Machine
+from smachac.ir.walk import walk
 from smachac.lower import lower
 from smachac.script import resolve
-from smachac.source import Source
+from smachac.source import Source, Span
 from smachac.states import Library
 from smachac.syntax import parse
 from smachac.targets import Context, Files, Target
@@ -59,7 +60,33 @@ def analyse(source: Source, library: Library, report: Report) -> Analysis:
     with _deep():
         machine = load(source, library, report)
         checked = check(machine, report) if machine is not None else None
-    return Analysis(machine=machine, checked=checked, report=in_order(report))
+        found = in_order(report)
+        if machine is not None:
+            found = with_places(found, machine)
+    return Analysis(machine=machine, checked=checked, report=found)
+
+
+def with_places(report: Report, machine: Machine) -> Report:
+    """A report in which the steps of witness paths know where their states stand."""
+    if not any(item.finding.path for item in report):
+        return report
+    places: dict[str, Span] = {}
+    for path, node in walk(machine.root):
+        places.setdefault(path, node.span)
+
+    def steps(finding: Finding) -> tuple[Span | None, ...]:
+        """Steps are named by path, or by name beside the state or inside it."""
+        node = finding.node or machine.root.name
+        around = ("", f"{node.rpartition('/')[0]}/", f"{node}/")
+        found = []
+        for name in finding.path:
+            known = (f"{prefix}{name}" for prefix in around)
+            found.append(next((places[path] for path in known if path in places), None))
+        return tuple(found)
+
+    return [
+        replace(item, steps=steps(item.finding)) if item.finding.path else item for item in report
+    ]
 
 
 def build(

@@ -47,20 +47,48 @@ def _print_report(report: Report, arguments: argparse.Namespace, stream: Any) ->
 
 def _check(arguments: argparse.Namespace) -> int:
     from smachac.diagnostics import Severity
+
+    reports = {
+        str(path): _load(path, arguments)[0].report for path in dict.fromkeys(arguments.script)
+    }
+    grave = {Severity.ERROR, Severity.WARNING} if arguments.strict else {Severity.ERROR}
+    failing = {
+        name: [item for item in report if item.severity in grave]
+        for name, report in reports.items()
+    }
+    _put_reports(reports, failing, arguments)
+    return FINDINGS if any(failing.values()) else OK
+
+
+def _put_reports(
+    reports: dict[str, Report], failing: dict[str, Report], arguments: argparse.Namespace
+) -> None:
+    """Print what was found about each script, in the form that is asked for."""
     from smachac.report.text import summary
 
-    report: Report = []
-    for path in dict.fromkeys(arguments.script):
-        report += _load(path, arguments)[0].report
-    if arguments.format == "json":
-        from smachac.report.json import render_json
+    report = [item for found in reports.values() for item in found]
+    match arguments.format:
+        case "json":
+            from smachac.report.json import render_json
 
-        sys.stdout.write(render_json(report))
-    else:
-        _print_report(_shown(report), arguments, sys.stdout)
-        print(summary(report))
-    failing = {Severity.ERROR, Severity.WARNING} if arguments.strict else {Severity.ERROR}
-    return FINDINGS if any(item.severity in failing for item in report) else OK
+            sys.stdout.write(render_json(report))
+        case "sarif":
+            from smachac.report.sarif import render_sarif
+
+            sys.stdout.write(render_sarif(report))
+        case "junit":
+            from smachac.report.junit import render_junit
+
+            shown = {name: _shown(found) for name, found in reports.items()}
+            sys.stdout.write(render_junit(shown, failing))
+        case "github":
+            from smachac.report.github import render_github
+
+            sys.stdout.write(render_github(_shown(report)))
+            print(summary(report))
+        case _:
+            _print_report(_shown(report), arguments, sys.stdout)
+            print(summary(report))
 
 
 def _build(arguments: argparse.Namespace) -> int:

@@ -13,7 +13,7 @@ from smachac import checks, problems
 from smachac.diagnostics import CODES, Code
 
 __all__ = ["GROUPS", "Explanation", "checks", "explanation", "problems", "render_code"]
-__all__ += ["render_rules"]
+__all__ += ["render_rules", "render_section"]
 
 MAIN = "main.yml"
 
@@ -119,13 +119,13 @@ def _contents() -> str:
 def _sections() -> Iterator[str]:
     for title, codes in _groups():
         yield f"## {title}"
-        yield from map(_section, codes)
+        yield from (f"### {code.code} {code.name}\n\n{render_section(code)}" for code in codes)
 
 
-def _section(code: Code) -> str:
+def render_section(code: Code) -> str:
+    """What a code says of itself as Markdown, without its heading."""
     parts = explanation(code)
-    lines = [f"### {code.code} {code.name}", f"*{code.severity.value}*: {parts.summary}"]
-    lines.append(parts.reason)
+    lines = [f"*{code.severity.value}*: {parts.summary}", parts.reason]
     for title, files in (("Wrong:", parts.wrong), ("Right:", parts.right)):
         if files:
             lines += [title, _fenced(files)]

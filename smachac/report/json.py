@@ -8,7 +8,7 @@ from typing import Any
 from smachac.diagnostics import Diagnostic, Report, Severity
 from smachac.source import NOWHERE, Span
 
-VERSION = 1
+VERSION = 2
 """Of the schema; it grows with every change."""
 
 
@@ -36,6 +36,7 @@ def _diagnostic(item: Diagnostic) -> dict[str, Any]:
         ],
         "path": list(finding.path),
         "node": finding.node,
+        "edits": [{"place": place(edit.span), "text": edit.text} for edit in finding.edits],
     }
 
 

@@ -9,7 +9,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 from schemas import faults, load_schema
 
-from smachac.diagnostics import Code, Diagnostic, Finding, Related, Severity
+from smachac.diagnostics import Code, Diagnostic, Edit, Finding, Related, Severity
 from smachac.report.json import render_json
 from smachac.source import NOWHERE, Source, Span
 
@@ -46,6 +46,7 @@ def test_a_report_in_full() -> None:
           "diagnostics": [
             {
               "code": "SM101",
+              "edits": [],
               "help": "did you mean `A`?",
               "message": "`B` is nothing",
               "name": "unknown-target",
@@ -81,7 +82,7 @@ def test_a_report_in_full() -> None:
               "severity": "error"
             }
           ],
-          "version": 1
+          "version": 2
         }
         """)
 
@@ -93,6 +94,16 @@ def test_what_is_not_there_is_null() -> None:
     assert data["counts"] == {"error": 0, "info": 0, "warning": 1}
 
 
+def test_edits_have_a_place_and_a_text() -> None:
+    edit = Edit(span=Span(SCRIPT, 26, 27), text="A")
+    data = json.loads(
+        render_json([diagnostic(Finding(span=edit.span, message="x", edits=(edit,)))])
+    )
+    assert faults(data, SCHEMA) == []
+    (item,) = data["diagnostics"]
+    assert item["edits"] == [{"place": item["place"], "text": "A"}]
+
+
 def test_an_empty_report_is_a_report() -> None:
     data = json.loads(render_json([]))
     assert data["diagnostics"] == []
@@ -102,7 +113,7 @@ def test_an_empty_report_is_a_report() -> None:
 def test_reports_fit_the_schema_and_others_do_not() -> None:
     data = json.loads(render_json([FULL, BARE]))
     assert faults(data, SCHEMA) == []
-    assert faults(data | {"version": 2}, SCHEMA) == ["$.version: not 1"]
+    assert faults(data | {"version": 1}, SCHEMA) == ["$.version: not 2"]
     data["diagnostics"][0]["place"]["line"] = 0
     del data["diagnostics"][1]["name"]
     assert faults(data, SCHEMA) == [

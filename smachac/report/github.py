@@ -1,0 +1,58 @@
+"""A report as workflow commands of GitHub Actions: each finding becomes a note at its line."""
+
+from __future__ import annotations
+
+from smachac.diagnostics import Diagnostic, Report, Severity
+from smachac.report.cells import visible
+from smachac.report.text import steps
+from smachac.source import NOWHERE
+
+_COMMANDS = {Severity.ERROR: "error", Severity.WARNING: "warning", Severity.INFO: "notice"}
+
+
+def render_github(report: Report) -> str:
+    """A line for each finding, each with a line feed; empty for none.
+
+    Nothing in the texts of the user can end a line and so begin a command of its own.
+    """
+    return "".join(f"{_command(item)}\n" for item in report)
+
+
+def _command(item: Diagnostic) -> str:
+    finding = item.finding
+    properties: dict[str, object] = {}
+    if finding.span.source is not NOWHERE.source:
+        line, column = finding.span.source.position(finding.span.start)
+        end_line, end_column = finding.span.source.position(finding.span.end)
+        properties = {"file": visible(finding.span.source.name), "line": line}
+        properties["endLine"] = max(line, end_line)
+        if line == end_line:  # GitHub refuses columns over several lines
+            properties |= {"col": column, "endColumn": max(column, end_column)}
+    properties["title"] = f"{item.code.code} {item.code.name}"
+    listed = ",".join(f"{name}={_property(str(value))}" for name, value in properties.items())
+    return f"::{_COMMANDS[item.severity]} {listed}::{_data(_words(item))}"
+
+
+def _words(item: Diagnostic) -> str:
+    finding = item.finding
+    lines = [finding.message]
+    lines += [
+        f"note: {related.message}"
+        if related.span.source is NOWHERE.source
+        else f"{related.span}: {related.message}"
+        for related in finding.related
+    ]
+    if finding.path:
+        lines.append(f"path: {''.join(steps(finding.path))}")
+    if finding.help:
+        lines.append(f"help: {finding.help}")
+    return visible("\n".join(lines))
+
+
+def _data(text: str) -> str:
+    """A message as the runner reads it back (actions/toolkit, command.ts)."""
+    return text.replace("%", "%25").replace("\r", "%0D").replace("\n", "%0A")
+
+
+def _property(text: str) -> str:
+    return _data(text).replace(":", "%3A").replace(",", "%2C")

@@ -1,0 +1,49 @@
+"""A report as JUnit XML, which GitLab, Jenkins and others show as tests: one for each script."""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Mapping
+from xml.etree import ElementTree as ET
+
+from smachac.diagnostics import Report
+from smachac.report.cells import visible
+from smachac.report.text import render_text, summary
+
+# XML 1.0 (fifth edition), section 2.2: all but these are characters.
+_NO_XML = re.compile("[^\t\n\r\x20-\ud7ff\ue000-\ufffd\U00010000-\U0010ffff]")
+
+
+def render_junit(reports: Mapping[str, Report], failing: Mapping[str, Report]) -> str:
+    """A test for each script of `reports`, failed where `failing` has findings of it.
+
+    What does not fail a script is printed under its test. There is no time in it.
+    """
+    suite = ET.Element("testsuite", name="smachac check")
+    suite.set("tests", str(len(reports)))
+    suite.set("failures", str(sum(bool(failing.get(name)) for name in reports)))
+    suite.set("errors", "0")
+    suite.set("skipped", "0")
+    for name, report in reports.items():
+        shown = _text(visible(name))
+        test = ET.SubElement(suite, "testcase", name=shown, classname="smachac.check", file=shown)
+        grave = failing.get(name, [])
+        if grave:
+            codes = dict.fromkeys(item.code.code for item in grave)
+            failure = ET.SubElement(test, "failure", message=_text(summary(grave)))
+            failure.set("type", " ".join(codes))
+            failure.text = "\n" + _text(render_text(grave))
+        ids = {id(item) for item in grave}
+        mild = [item for item in report if id(item) not in ids]
+        if mild:
+            ET.SubElement(test, "system-out").text = "\n" + _text(render_text(mild))
+    whole = ET.Element("testsuites", dict(suite.items()))
+    whole.set("name", "smachac")
+    whole.append(suite)
+    ET.indent(whole)
+    return '<?xml version="1.0" encoding="utf-8"?>\n' + ET.tostring(whole, "unicode") + "\n"
+
+
+def _text(text: str) -> str:
+    """A text without what XML cannot hold, even by number."""
+    return _NO_XML.sub(lambda found: f"<U+{ord(found.group()):04X}>", text)
