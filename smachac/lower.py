@@ -9,6 +9,7 @@ from pathlib import PurePath
 from typing import Any
 
 from smachac import schema, shapes
+from smachac.desugar import desugared
 from smachac.ir.nodes import (
     Concurrence,
     Condition,
@@ -31,6 +32,7 @@ from smachac.ir.nodes import (
 from smachac.ir.types import ANY, parse_type
 from smachac.script import Script, State
 from smachac.source import Word
+from smachac.sugar import NAMES, has_sugar, is_own, read_sugar
 from smachac.syntax import Map, Scalar, Tree
 from smachac.typed import is_long_form
 from smachac.values import as_value
@@ -164,7 +166,9 @@ def _leaf(state: State) -> Leaf:
         **fields,
         outcomes=tuple(outcomes.values()),
         variables=tuple(
-            _variable(state, name) for name in state.fields if name not in _NOT_VARIABLES
+            _variable(state, name)
+            for name in state.fields
+            if name not in _NOT_VARIABLES or (name in NAMES and is_own(name, type_))
         ),
         writes=type_.writes,
         open=type_.open,
@@ -206,7 +210,10 @@ def _container(state: State, owner: str) -> Container:
 
 
 def _node(state: State) -> Node:
-    return _leaf(state) if state.owner == "state" else _container(state, state.owner)
+    node = _leaf(state) if state.owner == "state" else _container(state, state.owner)
+    if not has_sugar(state.fields, state.type):
+        return node
+    return desugared(node, read_sugar(state.fields, state.type, []))
 
 
 def _linked(children: tuple[Node, ...], connector: str) -> tuple[Node, ...]:

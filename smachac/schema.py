@@ -43,6 +43,9 @@ VARIABLES: dict[str, Variable] = {
         _row("remapping", "r", "pairs", f"{_CONTAINERS} state"),
         _row("transitions", "t", "pairs", f"{_CONTAINERS} state"),
         _row("claims", "", "names", f"{_CONTAINERS} state"),
+        _row("timeout", "", "value", f"{_CONTAINERS} state"),
+        _row("retry", "", "value", f"{_CONTAINERS} state"),
+        _row("for_each", "", "value", f"{_CONTAINERS} state"),
         _row("callbacks", "cb", "map", ""),
         _row("default_outcome", "do", "name", "Concurrence"),
         _row("outcome_map", "om", "rules", "Concurrence"),
@@ -59,8 +62,9 @@ VARIABLES: dict[str, Variable] = {
         _row("script", "S", "name", ""),
     )
 }
-"""By long name. `callbacks` and `default_outcome` on a leaf are its state type's; `script` makes
-a state item a call, which may have every variable of what it calls."""
+"""By long name. `timeout`, `retry` and `for_each` are read by sugar.py; `callbacks` and
+`default_outcome` on a leaf are its state type's; `script` makes a state item a call, which may have
+every variable of what it calls."""
 
 LONG: dict[str, str] = {row.short: row.name for row in VARIABLES.values() if row.short}
 """Short name to long name."""

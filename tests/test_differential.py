@@ -57,6 +57,7 @@ def of_interpreter(machine: Machine) -> list[Event]:
         *sorted((ROOT / "examples").glob("0[1-7]*/main.yml")),
         ROOT / "tests" / "cases" / "containers" / "main.yml",
         ROOT / "tests" / "cases" / "deep_nesting" / "main.yml",
+        ROOT / "tests" / "cases" / "sugar" / "main.yml",
     ],
     ids=lambda path: path.parent.name,
 )

@@ -57,7 +57,7 @@ def dead_rule(machine: Machine) -> Iterator[Finding]:
         match container:
             case Concurrence():
                 yield from _dead_rules(path, container)
-            case nodes.Iterator():
+            case nodes.Iterator(sugar=""):
                 yield from _dead_renames(path, container)
 
 

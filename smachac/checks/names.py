@@ -310,7 +310,7 @@ def shadowed_name(machine: Machine) -> Iterator[Finding]:
     """
     for path, container in containers(machine.root):
         for child in container.children:
-            if child.name == container.name:
+            if child.name == container.name and not container.sugar:
                 yield Finding(
                     span=child.span,
                     message=f"`{child.name}` is called like the container it is in",

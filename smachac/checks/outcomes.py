@@ -203,6 +203,8 @@ def implicit_exit(machine: Machine) -> Iterator[Finding]:
     """
     for path, container in linear(machine):
         for child in container.children:
+            if container.sugar:
+                continue
             steps = [step for step in child.transitions if step.origin == "implicit"]
             if steps:
                 yield from _implicit(path, container, child, steps)

@@ -6,12 +6,9 @@ import random
 from collections.abc import Callable
 
 from smachac.ir.nodes import Data, Expression, Leaf, Struct
-from smachac.ir.result import PREEMPTED, Behaviour
+from smachac.ir.result import Behaviour
 from smachac.ir.userdata import BehaviourError, Userdata, called, python_data
-from smachac.ir.walk import outcome_names
-
-GOOD_OUTCOMES = ("succeeded", "success", "done", "ok", "true")
-"""Names of the outcome that a state of an unknown type is taken to have."""
+from smachac.ir.walk import GOOD_OUTCOMES, PREEMPTED, outcome_names
 
 
 def built_in(seed: int = 0) -> Behaviour:
@@ -117,7 +114,8 @@ def _draws(seed: int) -> Behaviour:
 
 
 def _sleep(path: str, leaf: Leaf, visit: int, userdata: Userdata) -> str:
-    seconds = python_data(variable(leaf, "time"))
+    time = variable(leaf, "time")
+    seconds = called(time, userdata) if isinstance(time, Expression) else python_data(time)
     if not isinstance(seconds, int | float):
         raise BehaviourError("`time` is no number of seconds")
     userdata.sleep(seconds)

@@ -80,6 +80,9 @@ class Outcome:
     span: Span = field(compare=False, repr=False)
 
 
+Sugar = Literal["", "timeout", "retry", "for_each"]
+"""The variables of a state that are lowered to a container around it (language.md)."""
+
 Origin = Literal["written", "implicit", "connector"]
 """Why a transition exists: the script says so; the container has an outcome of that name
 (smach-semantics M6); or a Sequence links its states (Q1)."""
@@ -166,10 +169,14 @@ class Leaf(_State):
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class _Container(_State):
-    """What every container has: states in the order of the script, and presets of userdata."""
+    """What every container has: states in the order of the script, and presets of userdata.
+
+    `sugar`: the variable of its state that it was made for, empty where the script has it.
+    """
 
     children: tuple[Node, ...] = ()
     userdata: tuple[Preset, ...] = ()
+    sugar: Sugar = ""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)

@@ -32,9 +32,6 @@ Fault = Literal[
 ]
 """Why a run failed: what a leaf did wrong, a graph that leads nowhere, or no end in sight."""
 
-PREEMPTED = "preempted"
-"""The outcome by which a state says that it stopped because it was asked to."""
-
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Failure:

@@ -15,7 +15,7 @@ from typing import NoReturn
 from smachac.ir.bodies import Routes, Run, body
 from smachac.ir.nodes import Leaf, Machine, Node
 from smachac.ir.preemption import Preemption
-from smachac.ir.result import PREEMPTED, Behaviour, Event, Failure, Fault, Result, RunError
+from smachac.ir.result import Behaviour, Event, Failure, Fault, Result, RunError
 from smachac.ir.schedule import Schedule
 from smachac.ir.userdata import (
     BehaviourError,
@@ -26,7 +26,7 @@ from smachac.ir.userdata import (
     python_data,
     trace_value,
 )
-from smachac.ir.walk import containers, outcome_names, walk
+from smachac.ir.walk import PREEMPTED, containers, outcome_names, walk
 from smachac.source import NOWHERE, Span
 
 MOST_STEPS = 1_000_000

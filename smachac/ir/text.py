@@ -106,6 +106,8 @@ def _statements(node: Node) -> Iterator[str]:
         yield f"output {_key(key)}"
     if node.claims:
         yield f"claims {_names(node.claims)}"
+    if not isinstance(node, Leaf):
+        yield from _line("sugar", node.sugar)
     match node:
         case Leaf():
             yield from _leaf(node)

@@ -15,6 +15,12 @@ from smachac.ir.nodes import (
 )
 from smachac.ir.nodes import Iterator as IteratorNode
 
+PREEMPTED = "preempted"
+"""The outcome by which a state says that it stopped because it was asked to."""
+
+GOOD_OUTCOMES = ("succeeded", "success", "done", "ok", "true")
+"""Names of the outcome by which a state usually ends."""
+
 
 def walk(node: Node, path: str = "") -> Iterator[tuple[str, Node]]:
     """A node and all below it with their paths, parents before children.

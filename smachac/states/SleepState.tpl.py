@@ -3,10 +3,10 @@ import threading
 {% endblock %}
 {% block class_defs %}
 class SleepState(smach.State):
-    """Waits for `time` seconds; a preempt request ends the wait."""
+    """Waits for `time` seconds, a number or a function of userdata; a preempt request ends it."""
 
-    def __init__(self, time):
-        super().__init__(outcomes=["succeeded", "preempted"])
+    def __init__(self, time, input_keys=()):
+        super().__init__(outcomes=["succeeded", "preempted"], input_keys=list(input_keys))
         self.time = time
         self.woken = threading.Event()
 
@@ -15,7 +15,7 @@ class SleepState(smach.State):
         self.woken.set()
 
     def execute(self, userdata):
-        self.woken.wait(self.time)
+        self.woken.wait(self.time(userdata) if callable(self.time) else self.time)
         self.woken.clear()
         if self.preempt_requested():
             self.service_preempt()

@@ -13,8 +13,8 @@ LAYERS = (
     ("source",),
     ("diagnostics", "problems", "grammars"),
     ("syntax", "ir", "shapes"),
-    ("states", "script", "schema", "lookups", "typed"),
-    ("lower", "values", "checks", "targets"),
+    ("states", "script", "schema", "lookups", "typed", "sugar"),
+    ("lower", "desugar", "values", "checks", "targets"),
     ("driver", "report", "refactor", "files", "execute"),
     ("__init__", "runs"),
     ("verbs",),
@@ -31,7 +31,11 @@ WITHIN = {
     ("script", "lookups"),
     ("script", "typed"),
     ("states", "typed"),
+    ("script", "sugar"),
+    ("sugar", "states"),
     ("lower", "values"),
+    ("lower", "desugar"),
+    ("desugar", "values"),
 }
 """The imports, as (who, whom), that are allowed inside one row."""
 

@@ -30,8 +30,8 @@ class ScriptedState(smach.State):
 class PrintUserdataState(smach.State):
     """Prints its input keys, one a line."""
 
-    def __init__(self, input_keys):
-        super().__init__(outcomes=["succeeded"], input_keys=input_keys)
+    def __init__(self, input_keys=()):
+        super().__init__(outcomes=["succeeded"], input_keys=list(input_keys))
         self.printed_keys = sorted(input_keys)
 
     def execute(self, userdata):

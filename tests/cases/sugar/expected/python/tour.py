@@ -1,0 +1,345 @@
+# Made by smachac 0.1.0 from main.yml (sha256 bbfdefbffce19a50).
+"""The state machine `tour`."""
+
+import threading
+
+try:
+    import smach
+except ImportError:  # no ROS on this machine: the same names without it
+    from smachac.runtime import smach
+
+
+class SleepState(smach.State):
+    """Waits for `time` seconds, a number or a function of userdata; a preempt request ends it."""
+
+    def __init__(self, time, input_keys=()):
+        super().__init__(outcomes=["succeeded", "preempted"], input_keys=list(input_keys))
+        self.time = time
+        self.woken = threading.Event()
+
+    def request_preempt(self):
+        super().request_preempt()
+        self.woken.set()
+
+    def execute(self, userdata):
+        self.woken.wait(self.time(userdata) if callable(self.time) else self.time)
+        self.woken.clear()
+        if self.preempt_requested():
+            self.service_preempt()
+            return "preempted"
+        return "succeeded"
+
+
+class ScriptedState(smach.State):
+    """Ends as it is told: visit n does step n, the last step is repeated."""
+
+    def __init__(self, outcomes, steps=(), input_keys=(), output_keys=()):
+        super().__init__(
+            outcomes=outcomes,
+            input_keys=list(input_keys),
+            output_keys=list(output_keys),
+        )
+        self.steps = list(steps) or [{"outcome": outcomes[0]}]
+        self.visits = 0
+
+    def execute(self, userdata):
+        step = self.steps[min(self.visits, len(self.steps) - 1)]
+        self.visits += 1
+        for key, value in step.get("set", {}).items():
+            userdata[key] = value
+        return step["outcome"]
+
+
+class CallbacksState(smach.State):
+    """Calls functions of the userdata, keeps what each returns under its own name."""
+
+    def __init__(self, callbacks, input_keys=(), output_keys=()):
+        super().__init__(
+            outcomes=["succeeded"],
+            input_keys=list(input_keys),
+            output_keys=list(output_keys),
+        )
+        self.callbacks = callbacks
+
+    def execute(self, userdata):
+        for key in sorted(self.callbacks):
+            userdata[key] = self.callbacks[key](userdata)
+        return "succeeded"
+
+
+class PrintUserdataState(smach.State):
+    """Prints its input keys, one a line."""
+
+    def __init__(self, input_keys=()):
+        super().__init__(outcomes=["succeeded"], input_keys=list(input_keys))
+        self.printed_keys = sorted(input_keys)
+
+    def execute(self, userdata):
+        for key in self.printed_keys:
+            print(f"{key}: {userdata[key]}")
+        return "succeeded"
+
+
+def build():
+    """Build the state machine `tour`."""
+    # main.yml:1
+    tour = smach.StateMachine(outcomes=["done", "failed", "stopped"])
+    tour.userdata.waypoints = [1, 2, 3]
+    tour.userdata.count = 0
+    with tour:
+        # main.yml:6
+        sm_look = smach.Iterator(
+            outcomes=["succeeded", "preempted", "exhausted"],
+            it=[0.0, 0.1, 0.1],
+            it_label="pause",
+            exhausted_outcome="exhausted",
+        )
+        with sm_look:
+            # main.yml:6
+            sm_try = smach.StateMachine(
+                outcomes=["succeeded", "aborted", "preempted", "timeout"],
+                input_keys=["pause"],
+            )
+            with sm_try:
+                # main.yml:6
+                smach.StateMachine.add(
+                    "PAUSE",
+                    SleepState(time=lambda ud: ud.pause, input_keys=["pause"]),
+                    transitions={"succeeded": "LOOK", "preempted": "preempted"},
+                )
+
+                # main.yml:6
+                sm_look_2 = smach.Concurrence(
+                    outcomes=["succeeded", "aborted", "preempted", "timeout"],
+                    default_outcome="timeout",
+                    outcome_map={
+                        "succeeded": {"LOOK": "succeeded", "TIMER": "preempted"},
+                        "aborted": {"LOOK": "aborted", "TIMER": "preempted"},
+                        "preempted": {"LOOK": "preempted", "TIMER": "preempted"},
+                    },
+                    child_termination_cb=lambda outcomes: True,
+                )
+                with sm_look_2:
+                    # main.yml:6
+                    smach.Concurrence.add(
+                        "LOOK",
+                        ScriptedState(
+                            outcomes=["succeeded", "aborted", "preempted"],
+                            steps=[{"outcome": "aborted"}, {"outcome": "succeeded"}],
+                        ),
+                    )
+
+                    # main.yml:6
+                    smach.Concurrence.add("TIMER", SleepState(time=20.0))
+
+                smach.StateMachine.add(
+                    "LOOK",
+                    sm_look_2,
+                    transitions={
+                        "succeeded": "succeeded",
+                        "aborted": "aborted",
+                        "preempted": "preempted",
+                        "timeout": "timeout",
+                    },
+                )
+
+            smach.Iterator.set_contained_state(
+                "TRY",
+                sm_try,
+                loop_outcomes=["aborted", "timeout"],
+                final_outcome_map={"aborted": "preempted", "timeout": "preempted"},
+            )
+
+        smach.StateMachine.add(
+            "LOOK",
+            sm_look,
+            transitions={
+                "succeeded": "VISIT",
+                "exhausted": "failed",
+                "preempted": "stopped",
+            },
+        )
+
+        # main.yml:13
+        sm_visit = smach.Iterator(
+            outcomes=["succeeded"],
+            it=lambda: sm_visit.userdata["waypoints"],
+            it_label="goal",
+            exhausted_outcome="exhausted",
+            input_keys=["total", "waypoints"],
+            output_keys=["total"],
+        )
+        with sm_visit:
+            # main.yml:13
+            smach.Iterator.set_contained_state(
+                "VISIT",
+                CallbacksState(
+                    callbacks={"total": lambda ud: ud.total + ud.goal},
+                    input_keys=["goal", "total"],
+                    output_keys=["total"],
+                ),
+                loop_outcomes=["succeeded"],
+                final_outcome_map={"exhausted": "succeeded", "succeeded": "succeeded"},
+            )
+
+        smach.StateMachine.add(
+            "VISIT",
+            sm_visit,
+            transitions={"succeeded": "HASTE", "exhausted": "HASTE"},
+            remapping={"total": "count"},
+        )
+
+        # main.yml:21
+        sm_haste = smach.Concurrence(
+            outcomes=["succeeded", "preempted", "timeout"],
+            default_outcome="timeout",
+            outcome_map={
+                "succeeded": {"HASTE": "succeeded", "TIMER": "preempted"},
+                "preempted": {"HASTE": "preempted", "TIMER": "preempted"},
+            },
+            child_termination_cb=lambda outcomes: True,
+        )
+        with sm_haste:
+            # main.yml:21
+            smach.Concurrence.add("HASTE", SleepState(time=60))
+
+            # main.yml:21
+            smach.Concurrence.add("TIMER", SleepState(time=0.05))
+
+        smach.StateMachine.add(
+            "HASTE",
+            sm_haste,
+            transitions={
+                "timeout": "TRIES",
+                "succeeded": "failed",
+                "preempted": "stopped",
+            },
+        )
+
+        # main.yml:27
+        sm_tries = smach.Iterator(
+            outcomes=["good", "exhausted"],
+            it=[1, 2],
+            it_label="attempt",
+            exhausted_outcome="exhausted",
+        )
+        with sm_tries:
+            # main.yml:27
+            sm_tries_2 = smach.StateMachine(outcomes=["again", "good"])
+            with sm_tries_2:
+                # main.yml:32
+                smach.StateMachine.add(
+                    "HOPE",
+                    ScriptedState(outcomes=["again"]),
+                    transitions={"again": "again"},
+                )
+
+            smach.Iterator.set_contained_state(
+                "TRIES",
+                sm_tries_2,
+                loop_outcomes=["again"],
+                final_outcome_map={"again": "exhausted"},
+            )
+
+        smach.StateMachine.add(
+            "TRIES",
+            sm_tries,
+            transitions={"good": "failed", "exhausted": "WITHOUT"},
+        )
+
+        # main.yml:36
+        sm_without = smach.Iterator(
+            outcomes=["succeeded", "preempted"],
+            it=[],
+            it_label="unused",
+            exhausted_outcome="exhausted",
+        )
+        with sm_without:
+            # main.yml:36
+            smach.Iterator.set_contained_state(
+                "WITHOUT",
+                SleepState(time=0.01),
+                loop_outcomes=["succeeded"],
+                final_outcome_map={"exhausted": "succeeded", "succeeded": "preempted"},
+            )
+
+        smach.StateMachine.add(
+            "WITHOUT",
+            sm_without,
+            transitions={
+                "succeeded": "EACH",
+                "preempted": "stopped",
+                "exhausted": "EACH",
+            },
+        )
+
+        # main.yml:41
+        sm_each = smach.Iterator(
+            outcomes=["found", "preempted", "exhausted"],
+            it=["a", "b"],
+            it_label="unused",
+            exhausted_outcome="exhausted_2",
+        )
+        with sm_each:
+            # main.yml:41
+            sm_each_2 = smach.Iterator(
+                outcomes=["found", "preempted", "exhausted"],
+                it=[1, 2],
+                it_label="attempt",
+                exhausted_outcome="exhausted",
+            )
+            with sm_each_2:
+                # main.yml:41
+                smach.Iterator.set_contained_state(
+                    "EACH",
+                    ScriptedState(
+                        outcomes=["found", "lost", "preempted"],
+                        steps=[
+                            {"outcome": "lost"},
+                            {"outcome": "lost"},
+                            {"outcome": "found"},
+                        ],
+                    ),
+                    loop_outcomes=["lost"],
+                    final_outcome_map={"lost": "preempted"},
+                )
+
+            smach.Iterator.set_contained_state(
+                "EACH",
+                sm_each_2,
+                loop_outcomes=["exhausted"],
+                final_outcome_map={
+                    "exhausted_2": "exhausted",
+                    "exhausted": "preempted",
+                },
+            )
+
+        smach.StateMachine.add(
+            "EACH",
+            sm_each,
+            transitions={
+                "found": "SHOW",
+                "exhausted": "failed",
+                "preempted": "stopped",
+                "exhausted_2": "failed",
+            },
+        )
+
+        # main.yml:48
+        smach.StateMachine.add(
+            "SHOW",
+            PrintUserdataState(input_keys=["count"]),
+            transitions={"succeeded": "done"},
+        )
+    return tour
+
+
+def main():
+    """Run the state machine once and return its outcome."""
+    return build().execute()
+
+
+if __name__ == "__main__":
+    outcome = main()
+    print(f"outcome: {outcome}")
+    raise SystemExit(outcome is None)

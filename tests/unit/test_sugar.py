@@ -1,0 +1,177 @@
+"""Time limits, retries and loops over items: what becomes of them when they run."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import Any
+
+import pytest
+
+import smachac
+from smachac.diagnostics import Report
+from smachac.ir.behaviours import built_in
+from smachac.ir.result import Event, Result
+from smachac.ir.run import run
+from smachac.ir.scenario import acted, read_scenario
+from smachac.source import Source
+from smachac.sugar import duration
+from smachac.syntax import parse
+
+SCRIPT = """
+name: sm
+template: Base
+outcomes: [succeeded, aborted, preempted, timeout, exhausted]
+userdata: {todo: [1, 2, 3]}
+states:
+  - WORK:
+      { template: ScriptedState, outcomes: [succeeded, aborted, preempted], SUGAR }
+"""
+
+
+def played(
+    folder: Path, sugar: str, script: str, steps: Any, **options: Any
+) -> tuple[Result, list[str]]:
+    """A run of one state with sugar: the result, and what each state ended with, in order."""
+    path = folder / "main.yml"
+    path.write_text(script.replace("SUGAR", sugar), encoding="utf-8")
+    machine = smachac.load(path)
+    scenario, problems = read_scenario({"states": steps}, machine)
+    assert problems == []
+    events: list[Event] = []
+    result = run(machine, acted(scenario, machine, built_in()), events.append, **options)
+    return result, [f"{e['path']} {e['outcome']}" for e in events if e["event"] == "exit"]
+
+
+@pytest.mark.parametrize(
+    ("sugar", "steps", "outcome", "visits"),
+    [
+        ("timeout: 1s", ["succeeded"], "succeeded", 1),
+        ("timeout: 1s", ["aborted"], "aborted", 1),
+        ("retry: {on: [aborted], max: 3}", ["succeeded"], "succeeded", 1),
+        ("retry: {on: [aborted], max: 3}", ["aborted", "aborted", "succeeded"], "succeeded", 3),
+        ("retry: {on: [aborted], max: 3}", ["aborted"], "exhausted", 3),
+        ("retry: {on: [aborted], max: 1, delay: 1s}", ["aborted"], "exhausted", 1),
+        ("retry: {on: [aborted, preempted], max: 2}", ["preempted", "succeeded"], "succeeded", 2),
+        ("for_each: {item: one, in: todo}", ["succeeded"], "succeeded", 3),
+        ("for_each: {item: one, in: todo}", ["succeeded", "aborted"], "aborted", 2),
+        ("for_each: {item: one, in: []}", ["aborted"], "succeeded", 0),
+        ("for_each: {item: one, in: [a, b], on: [aborted]}", ["aborted"], "aborted", 2),
+        (
+            "for_each: {item: one, in: todo}, retry: {on: [aborted], max: 2}",
+            ["aborted", "succeeded", "succeeded", "aborted", "succeeded"],
+            "succeeded",
+            5,
+        ),
+    ],
+)
+def test_outcomes(tmp_path: Path, sugar: str, steps: list[str], outcome: str, visits: int) -> None:
+    result, exits = played(tmp_path, sugar, SCRIPT, {"WORK": steps})
+    assert result.outcome == outcome
+    path = "sm/WORK/WORK/WORK" if "for_each" in sugar and "retry" in sugar else "sm/WORK/WORK"
+    path = "sm/WORK/TRY/WORK" if "delay" in sugar else path
+    assert sum(line.split()[0] == path for line in exits) == visits
+
+
+SLOW = SCRIPT.replace(
+    "ScriptedState, outcomes: [succeeded, aborted, preempted]", "SleepState, time: 60"
+)
+
+
+def test_a_time_limit_counts_virtual_time_and_asks_the_state_to_stop(tmp_path: Path) -> None:
+    result, exits = played(tmp_path, "timeout: 2.5s", SLOW, {})
+    assert (result.outcome, result.time) == ("timeout", 2.5)
+    assert exits == ["sm/WORK/TIMER succeeded", "sm/WORK/WORK preempted", "sm/WORK timeout"]
+
+
+def test_a_state_that_ignores_the_request_is_waited_for(tmp_path: Path) -> None:
+    text = SLOW.replace(
+        "template: SleepState, time: 60",
+        "template: StateMachine, outcomes: [succeeded, preempted], states: ["
+        "{NAP: {template: SleepState, time: 60,"
+        " transitions: {succeeded: succeeded, preempted: NAP_ON}}},"
+        "{NAP_ON: {template: SleepState, time: 7, transitions: {succeeded: succeeded}}}]",
+    )
+    result, exits = played(tmp_path, "timeout: 2s", text, {})
+    assert (result.outcome, result.time) == ("timeout", 9.0)
+    assert exits[-3:] == [
+        "sm/WORK/WORK/NAP_ON succeeded",
+        "sm/WORK/WORK succeeded",
+        "sm/WORK timeout",
+    ]
+
+
+def test_the_pause_between_tries_and_the_limit_of_each(tmp_path: Path) -> None:
+    sugar = "timeout: 2s, retry: {on: [timeout], max: 3, delay: 10s}"
+    result, _ = played(tmp_path, sugar, SLOW, {})
+    assert (result.outcome, result.time) == ("exhausted", 3 * 2 + 2 * 10)
+
+
+@pytest.mark.parametrize(
+    "sugar", ["timeout: 90s", "retry: {on: [succeeded], max: 9}", "for_each: {item: one, in: todo}"]
+)
+def test_a_request_to_stop_goes_through(tmp_path: Path, sugar: str) -> None:
+    result, _ = played(tmp_path, sugar, SLOW, {}, preempt_at=[1])
+    assert result.outcome == "preempted"
+
+
+def test_a_request_during_the_pause_ends_the_tries(tmp_path: Path) -> None:
+    sugar = "retry: {on: [aborted], max: 3, delay: 5s}"
+    result, exits = played(tmp_path, sugar, SCRIPT, {"WORK": "aborted"}, preempt_at=[3])
+    assert result.outcome == "preempted"
+    assert exits[2:] == [
+        "sm/WORK/TRY aborted",
+        "sm/WORK/TRY/PAUSE preempted",
+        "sm/WORK/TRY preempted",
+        "sm/WORK preempted",
+    ]
+
+
+@pytest.mark.parametrize(
+    ("text", "seconds"),
+    [
+        ("20s", 20),
+        ("500ms", 0.5),
+        ("1.5min", 90),
+        ("1.5 min", 90),
+        ("1h", 3600),
+        ("3", 3),
+        ("0.25", 0.25),
+        (".5s", 0.5),
+        ("0", 0),
+    ],
+)
+def test_durations(text: str, seconds: float) -> None:
+    tree = parse(Source("x.yml", text), [])
+    assert tree is not None
+    assert duration(tree, []) == seconds
+
+
+@pytest.mark.parametrize(
+    "text", ["-1s", "1 week", "soon", "true", "null", "[1]", "1e3s", "s", "1S"]
+)
+def test_no_durations(text: str) -> None:
+    tree = parse(Source("x.yml", text), [])
+    report: Report = []
+    assert tree is not None
+    assert duration(tree, report) is None
+    assert [item.code.code for item in report] == ["SM004"]
+
+
+def test_a_variable_of_the_state_type_comes_first(tmp_path: Path) -> None:
+    templates = tmp_path / "templates"
+    templates.mkdir()
+    (templates / "Wait.yml").write_text(
+        "name: Wait\nvariables: {timeout: {type: float}}\noutcomes: {done: {}}\n"
+        "code: {python: 'robot:Wait'}\n",
+        encoding="utf-8",
+    )
+    (templates / "Open.tpl.py").write_text("{% block body %}{% endblock %}", encoding="utf-8")
+    (tmp_path / "main.yml").write_text(
+        "name: sm\ntemplate: Base\noutcomes: [done]\nstates:\n"
+        "  - WAIT: {template: Wait, timeout: 3, transitions: {done: OPEN}}\n"
+        "  - OPEN: {template: Open, timeout: 3, transitions: {done: done}}\n",
+        encoding="utf-8",
+    )
+    for child in smachac.load(tmp_path / "main.yml").root.children:
+        assert type(child).__name__ == "Leaf"
+        assert [variable.name for variable in getattr(child, "variables", ())] == ["timeout"]
