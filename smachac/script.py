@@ -13,7 +13,7 @@ from smachac.ir.nodes import Key, Outcome
 from smachac.lookups import Scope, child_scope, fill_in
 from smachac.source import Source, Span, Word
 from smachac.states import Library, StateType, find_state_type
-from smachac.sugar import check_outcomes, has_sugar, read_sugar
+from smachac.sugar import check_sugar
 from smachac.syntax import Entry, Map, Scalar, Seq, Tree, parse
 from smachac.typed import Aliases, read_aliases, typed
 
@@ -334,8 +334,7 @@ class _Resolver:
                 continue
             if key not in ("template", "states"):
                 shapes.READERS[shape](entry.value, self.report)
-        if has_sugar(fields, type_):
-            self.check_sugar(fields, owner, type_)
+        check_sugar(fields, type_, self.report)
         if owner == "state" and not type_.open:
             self.check_interface(fields, type_)
         required = [*schema.REQUIRED[owner]]
@@ -344,14 +343,6 @@ class _Resolver:
             if key not in fields:
                 whose = f"state type `{type_.name}`" if key in type_.variables else _called(owner)
                 self.report.append(problems.missing_variable(name.span, key, whose))
-
-    def check_sugar(self, fields: Fields, owner: str, type_: StateType) -> None:
-        sugar = read_sugar(fields, type_, self.report)
-        own = tuple(outcome.name for outcome in type_.outcomes)
-        tree = fields["outcomes"].value if "outcomes" in fields else None
-        if tree is not None and (owner != "state" or "outcomes" in type_.given):
-            own += tuple(word.text for word in shapes.as_names(tree, []))
-        check_outcomes(sugar, own, self.report)
 
     def check_interface(self, fields: Fields, type_: StateType) -> None:
         """What a state lists beyond an interface that is complete."""

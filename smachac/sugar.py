@@ -149,9 +149,15 @@ def _for_each(entry: Entry, report: Report) -> ForEach | None:
     return ForEach(item=item.text, items=parts["in"], on=on, span=entry.key.span)
 
 
-def check_outcomes(sugar: Sugar, known: tuple[str, ...], report: Report) -> None:
-    """SM004 for an outcome that retries or loops wait for and the state does not have."""
-    first = (*known, TIMEOUT) if sugar.timeout else known
+def check_sugar(fields: Mapping[str, Entry], type_: StateType, report: Report) -> None:
+    """What is wrong with the sugar of a state: SM004, also for outcomes that it does not have."""
+    if not has_sugar(fields, type_):
+        return
+    sugar = read_sugar(fields, type_, report)
+    own = tuple(outcome.name for outcome in type_.outcomes)
+    if "outcomes" in fields and (type_.kind != "state" or "outcomes" in type_.given):
+        own += tuple(word.text for word in shapes.as_names(fields["outcomes"].value, []))
+    first = (*own, TIMEOUT) if sugar.timeout else own
     second = (*first, EXHAUSTED) if sugar.retry else first
     for part, outcomes in ((sugar.retry, first), (sugar.for_each, second)):
         for word in part.on if part is not None else ():
