@@ -3,12 +3,14 @@
 from __future__ import annotations
 
 import gc
+import os
 import re
 import sys
 import traceback
 from argparse import Namespace
 from collections.abc import Callable, Iterator
 from contextlib import ExitStack, contextmanager
+from functools import partial
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
@@ -151,8 +153,12 @@ def watching(
     with ExitStack() as stack:
         if arguments.trace is not None:
             arguments.trace.parent.mkdir(parents=True, exist_ok=True)
-            stream = stack.enter_context(arguments.trace.open("w", encoding="utf-8"))
-            sinks.append(TraceWriter(stream))
+            stream = stack.enter_context(arguments.trace.open("wb", buffering=0))
+            writer = TraceWriter(partial(os.write, stream.fileno()))
+            if arguments.quiet:
+                yield writer, writer.errors
+                return
+            sinks.append(writer)
         if not arguments.quiet:
             sinks.append(Progress(sys.stdout, colour=colour))
 

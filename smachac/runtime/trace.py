@@ -13,13 +13,12 @@ from the start. `src` is the place of the state in the script, where known.
 from __future__ import annotations
 
 import copy
-import json
-import threading
 import time
 from collections.abc import Callable, Iterator, Mapping, Sequence
-from typing import Any, TextIO
+from typing import Any
 
-from smachac.runtime.watch import Event, Observe, Recorder, Watch, is_container, trace_value
+from smachac.runtime.record import Event, Observe, Recorder, TraceWriter, trace_value
+from smachac.runtime.watch import Watch, is_container
 
 __all__ = ["Event", "TraceWriter", "attach", "script", "trace_value"]
 
@@ -30,7 +29,7 @@ PREEMPTED = "preempted"
 def attach(
     machine: Any,
     name: str,
-    observe: Observe,
+    observe: Observe | TraceWriter,
     sources: Mapping[str, str] = {},
     *,
     clock: Callable[[], float] = time.monotonic,
@@ -39,14 +38,15 @@ def attach(
 
     `name` is the path of the machine itself, `sources` the places of states by path, `clock`
     seconds. Calls of `observe` come one at a time, from the threads of the machine; when one
-    raises, that is told on stderr, the machine goes on, and no more calls are made.
+    raises, that is told on stderr, the machine goes on, and no more calls are made. For a
+    `TraceWriter` no event is made at all: its lines are prepared when they come the first time.
     """
     recorder = Recorder(observe, sources, clock)
     watches: dict[int, Watch] = {}
     for parent, label, state in _walk(machine, name):
         known = watches.get(id(state))
         if known is None:
-            known = watches[id(state)] = Watch(state, recorder)
+            known = watches[id(state)] = Watch(state, recorder, watches)
         known.places.append((watches[id(parent)] if parent is not None else None, label))
 
 
@@ -100,19 +100,3 @@ def _walk(machine: Any, name: str) -> Iterator[tuple[Any, str, Any]]:
         if is_container(state):
             children = [child for child in state.get_children().items() if child[1] is not None]
             stack.extend((state, each, child) for each, child in reversed(children))
-
-
-class TraceWriter:
-    """Writes events to a stream, one JSON object a line, each at once."""
-
-    def __init__(self, stream: TextIO) -> None:
-        self._stream = stream
-        self._lock = threading.RLock()
-        self._seq = 0
-
-    def __call__(self, event: Mapping[str, Any]) -> None:
-        with self._lock:
-            self._seq += 1
-            line = json.dumps({"seq": self._seq, **event}, default=repr)
-            self._stream.write(line + "\n")
-            self._stream.flush()

@@ -2,50 +2,31 @@
 
 from __future__ import annotations
 
-import json
-import re
-import sys
-import threading
+import functools
 from collections.abc import Callable, Mapping
+from operator import itemgetter
 from typing import Any
 
-Event = dict[str, Any]
-Observe = Callable[[Event], None]
+from smachac.runtime.record import Event, Recorder
 
 
-class Recorder:
-    """Makes events of what the watches see, one at a time."""
+class Stay:
+    """A state at one of its places, with what is told there again and again.
 
-    def __init__(
-        self, observe: Observe, sources: Mapping[str, str], clock: Callable[[], float]
-    ) -> None:
-        self._observe: Observe | None = observe
-        self._sources = sources
-        self._clock = clock
-        self._began = clock()
-        self._seq = 0
-        # A signal handler may ask for a stop, which is an event, in the middle of another one.
-        self._lock = threading.RLock()
+    Attributes:
+        parent: the watch of the container around it.
+        ends: outcome -> what is told when it ends so.
+        userdata: what the leaf was given last.
+        written: the same, with every write told.
+    """
 
-    def start(self) -> None:
-        """Count seconds from now."""
-        self._began = self._clock()
+    __slots__ = ("ends", "entered", "label", "parent", "path", "userdata", "written")
 
-    def emit(self, event: str, path: str, **more: object) -> None:
-        """Tell the observer of an event."""
-        with self._lock:
-            if self._observe is None:
-                return
-            self._seq += 1
-            t = round(self._clock() - self._began, 6)
-            line: Event = {"seq": self._seq, "event": event, "path": path, **more, "t": t}
-            if source := self._sources.get(path):
-                line["src"] = source
-            try:
-                self._observe(line)
-            except Exception as error:
-                self._observe = None
-                print(f"the trace stops here: {type(error).__name__}: {error}", file=sys.stderr)
+    def __init__(self, parent: Watch | None, label: str, path: str, entered: Any) -> None:
+        self.parent, self.label, self.path, self.entered = parent, label, path, entered
+        self.ends: dict[Any, Any] = {}
+        self.userdata: Any = None
+        self.written: Any = None
 
 
 class Watch:
@@ -57,32 +38,41 @@ class Watch:
         failed: a state inside has told of its error in this run.
     """
 
-    def __init__(self, state: Any, recorder: Recorder) -> None:
+    def __init__(self, state: Any, recorder: Recorder, family: Mapping[int, Watch]) -> None:
         self.state = state
         self.recorder = recorder
+        self._family = family
         self.places: list[tuple[Watch | None, str]] = []
         self.path = ""
         self.failed = False
+        self._is_container = is_container(state)
+        self._is_iterator = _is_a(state, "Iterator")
+        self._is_concurrence = _is_a(state, "Concurrence")
+        self._stays: dict[str, Stay] = {}
+        self._only: Stay | None = None
         self._exits: dict[tuple[str, str], str | None] | None = None
-        self._ended: tuple[str, str] | None = None
+        self._looped: tuple[str, str] | None = None
         self._execute = state.execute
         self._request_preempt = state.request_preempt
         state.execute = self._watched_execute
         state.request_preempt = self._watched_request
 
+    def _forget(self) -> None:
+        """Ask the machine anew where things lead: it may have been changed between two runs."""
+        self._only = self._exits = None
+        self._stays.clear()
+
     def _watched_execute(self, *arguments: Any, **named: Any) -> Any:
-        parent, label = self._place()
-        path = self.path = self._path(parent, label)
-        emit = self.recorder.emit
-        self.failed, self._exits, self._ended = False, None, None
-        if parent is None:
-            self.recorder.start()
-            emit("start", path)
-        else:
-            parent.entering()
-            emit("enter", path)
-        if not is_container(self.state) and arguments:
-            arguments = (self._watched_userdata(parent, arguments[0]), *arguments[1:])
+        stay = self._only or self._stay()
+        parent = stay.parent
+        if parent is not None and parent._looped is not None:
+            parent.looping()
+        if self._is_container:
+            self.failed, self._looped = False, None
+        elif arguments:
+            arguments = (self._watched_userdata(stay, arguments[0]), *arguments[1:])
+        tell = self.recorder.tell
+        tell(stay.entered)
         try:
             outcome = self._execute(*arguments, **named)
         except BaseException as error:
@@ -91,29 +81,61 @@ class Watch:
         if outcome is None:
             self._fail(parent, "ended without an outcome")
             return outcome
-        self._leaving(outcome)
-        if parent is None:
-            emit("finish", path, outcome=outcome)
-        else:
-            emit("exit", path, outcome=outcome)
-            parent.child_ended(self, label, outcome)
+        if self._looped is not None:
+            self._leaving(outcome)
+        try:
+            ended = stay.ends[outcome]
+        except (KeyError, TypeError):
+            ended = self._ended(stay, outcome)
+        if ended is not None:
+            tell(ended)
+        if parent is not None and parent._is_iterator:
+            parent._looped = (stay.path, outcome)
         return outcome
 
     def _watched_request(self) -> None:
         self.recorder.emit("preempt", self._path(*self._place()))
         self._request_preempt()
 
-    def _watched_userdata(self, parent: Watch | None, userdata: Any) -> Any:
+    def _watched_userdata(self, stay: Stay, userdata: Any) -> Any:
         """The leaf's userdata, with every write that counts told."""
-        keys = self.state.get_registered_output_keys()
-        loose = parent is None or _is_a(parent.state, "Iterator")
-        path = self.path
+        if userdata is stay.userdata:
+            return stay.written
+        loose = stay.parent is None or stay.parent._is_iterator
+        known: dict[str, Any] = {}
 
         def written(key: str, value: object) -> None:
-            if loose or key in keys:
-                self.recorder.emit("write", path, key=key, value=trace_value(value))
+            if key in known:
+                self.recorder.tell(known[key], value)
+            elif loose or key in self.state.get_registered_output_keys():
+                event = {"event": "write", "path": stay.path, "key": key, "value": None}
+                known[key] = self.recorder.prepare(event)
+                self.recorder.tell(known[key], value)
 
-        return _Written(userdata, written)
+        inputs = frozenset(self.state.get_registered_input_keys())
+        stay.userdata, stay.written = userdata, _writing(inputs)(userdata, written)
+        return stay.written
+
+    def _stay(self) -> Stay:
+        """Where it starts to run now."""
+        parent, label = self._place()
+        if parent is None:
+            self.recorder.start()
+            for watch in self._family.values():
+                watch._forget()
+        path = self.path = self._path(parent, label)
+        stay = self._stays.get(path)
+        if stay is None:
+            kind = "start" if parent is None else "enter"
+            told = self.recorder.prepare({"event": kind, "path": path})
+            stay = self._stays[path] = Stay(parent, label, path, told)
+        if parent is not None and len(self.places) == 1 and parent._is_fixed():
+            self._only = stay
+        return stay
+
+    def _is_fixed(self) -> bool:
+        """Whether its path is the same in the whole run."""
+        return self._only is not None or self.places[0][0] is None
 
     def _place(self) -> tuple[Watch | None, str]:
         """The container that runs it now; one state may stand in several places."""
@@ -140,37 +162,42 @@ class Watch:
         if parent is not None:
             parent.failed = True
 
-    def entering(self) -> None:
-        """A child is about to start: in an iterator, the one before has looped."""
-        if self._ended is not None:
-            path, outcome = self._ended
-            self.recorder.emit("transition", path, outcome=outcome, to=path)
-            self._ended = None
+    def looping(self) -> None:
+        """The child of an iterator starts again: its last outcome has led to itself."""
+        assert self._looped is not None
+        path, outcome = self._looped
+        self.recorder.emit("transition", path, outcome=outcome, to=path)
+        self._looped = None
 
-    def child_ended(self, child: Watch, label: str, outcome: str) -> None:
-        """A child has ended: tell where that leads."""
-        if _is_a(self.state, "Iterator"):
-            self._ended = (child.path, outcome)
-            return
-        if _is_a(self.state, "Concurrence"):
-            return
-        if outcome not in child.state.get_registered_outcomes():
-            message = f"ended with `{outcome}`, which is not one of its outcomes"
-            child._fail(self, message)
-            return
+    def _leaving(self, outcome: str) -> None:
+        """In an iterator, its child's last outcome has led to its end."""
+        assert self._looped is not None
+        path, ended = self._looped
+        self.recorder.emit("transition", path, outcome=ended, to=f"{self.path}:{outcome}")
+
+    def _ended(self, stay: Stay, outcome: Any) -> Any:
+        """What is told when it ends with an outcome; None if that leads nowhere, which is told."""
+        parent, path = stay.parent, stay.path
+        kind = "finish" if parent is None else "exit"
+        events: list[Event] = [{"event": kind, "path": path, "outcome": outcome}]
+        if parent is not None and not (parent._is_iterator or parent._is_concurrence):
+            if outcome not in self.state.get_registered_outcomes():
+                self.recorder.tell(self.recorder.prepare(*events))
+                self._fail(parent, f"ended with `{outcome}`, which is not one of its outcomes")
+                return None
+            to = parent.target(stay.label, outcome)
+            events.append({"event": "transition", "path": path, "outcome": outcome, "to": to})
+        told = stay.ends[outcome] = self.recorder.prepare(*events)
+        return told
+
+    def target(self, label: str, outcome: str) -> str:
+        """Where an outcome of a child leads: a path, or `path:outcome` where this ends."""
         if self._exits is None:
             edges = self.state.get_internal_edges()
             self._exits = {(edge[1], edge[0]): edge[2] for edge in edges}
         target = self._exits.get((label, outcome))
         inside = bool(target) and target in self.state.get_children()
-        to = f"{self.path}/{target}" if inside else f"{self.path}:{target or outcome}"
-        self.recorder.emit("transition", child.path, outcome=outcome, to=to)
-
-    def _leaving(self, outcome: str) -> None:
-        """In an iterator, its child's last outcome has led to its end."""
-        if self._ended is not None:
-            path, ended = self._ended
-            self.recorder.emit("transition", path, outcome=ended, to=f"{self.path}:{outcome}")
+        return f"{self.path}/{target}" if inside else f"{self.path}:{target or outcome}"
 
 
 class _Written:
@@ -224,9 +251,8 @@ def _message(error: BaseException) -> str:
     return f"{type(error).__name__}: {first}" if first else type(error).__name__
 
 
-def trace_value(value: object) -> object:
-    """A value as a trace shows it: a copy of what JSON can say, else its `repr`."""
-    try:
-        return json.loads(json.dumps(value, allow_nan=False))
-    except (TypeError, ValueError, RecursionError):
-        return re.sub(r" at 0x[0-9a-fA-F]+", "", repr(value))
+@functools.cache
+def _writing(keys: frozenset[str]) -> type[_Written]:
+    """The class with these keys as attributes: the detour over `__getattr__` is slow."""
+    names = [key for key in keys if not key.startswith("_") and not hasattr(_Written, key)]
+    return type("Written", (_Written,), {name: property(itemgetter(name)) for name in names})

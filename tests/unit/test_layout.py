@@ -25,7 +25,7 @@ TOUCHES = {
     "smachac/verbs.py": "prints what the commands say",
     "smachac/runs.py": "opens the trace, shows progress",
     "smachac/execute.py": "runs what was built, and keeps its output",
-    "smachac/runtime/watch.py": "says that a trace broke off",
+    "smachac/runtime/record.py": "says that a trace broke off",
     "smachac/runtime/smach/log.py": "prints what SMACH prints",
     "smachac/sim/film.py": "writes films",
     "smachac/sim/engine.py": "keeps the physics engine's banner off the streams",
