@@ -7,7 +7,8 @@ machine at the limit; the count reached is checked. CPU time, rounds of all in t
     python bench/runtime.py [rounds]
 
 The packages are those of the extra `bench`; one that is not installed is named and left out, and
-so is SMACH itself, which is not on PyPI.
+so is SMACH itself, which is not on PyPI. What a trace costs is measured after that, bare and traced
+steps in turn.
 """
 
 from __future__ import annotations
@@ -23,6 +24,7 @@ from pathlib import Path
 from typing import Any
 
 from peers import HIERARCHY, PEERS, PING_PONG
+from tracing import tracing
 
 import smachac
 from smachac.ir.nodes import Leaf
@@ -223,6 +225,7 @@ def main(rounds: int = ROUNDS) -> int:
     names = [row.name for row in every]
     flat = compare("two-state ping-pong", names, [row.ping_pong for row in every], rounds)
     deep = compare("three-level hierarchy", names, [row.hierarchy for row in every], rounds)
+    tracing(fastest, STEPS, rounds)
     worst = max(flat[1], deep[1])
     verdict = "within" if worst <= GOAL else "over"
     print(f"\ngoal: bundled runtime {GOAL:g} times the dict loop without info lines: {verdict}")
