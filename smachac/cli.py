@@ -82,6 +82,9 @@ def _check(verb: argparse.ArgumentParser) -> None:
     _search_folders(verb)
     verb.add_argument("--format", choices=FORMATS, default="text", help="of the report")
     verb.add_argument("--strict", action="store_true", help="warnings fail as errors do")
+    for name, what in (("select", "report these alone"), ("ignore", "leave these out")):
+        verb.add_argument(f"--{name}", action="append", default=[], metavar="CODE[,CODE]",
+                          help=f"{what}: codes, or beginnings such as SM2")  # fmt: skip
     _colour(verb)
 
 

@@ -30,12 +30,16 @@ class Severity(Enum):
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Code:
-    """A kind of finding: permanent code, name of the fault, usual severity, explanation."""
+    """A kind of finding: permanent code, name of the fault, usual severity, explanation.
+
+    `firm`: its errors leave no machine that a target could print, so nothing silences them.
+    """
 
     code: str
     name: str
     severity: Severity
     explanation: str
+    firm: bool = False
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -101,10 +105,13 @@ RULES: dict[str, RuleFunction] = {}
 """The rules over the IR by code: functions from a machine to findings."""
 
 
-def _register(code: str, name: str, severity: Severity, function: Callable[..., Any]) -> Code:
+def _register(
+    code: str, name: str, severity: Severity, function: Callable[..., Any], firm: bool
+) -> Code:
     if code in CODES:
         raise ValueError(f"{code} is taken by {CODES[code].name}")
-    CODES[code] = Code(code=code, name=name, severity=severity, explanation=function.__doc__ or "")
+    text = function.__doc__ or ""
+    CODES[code] = Code(code=code, name=name, severity=severity, explanation=text, firm=firm)
     return CODES[code]
 
 
@@ -115,10 +122,13 @@ def _diagnostic(code: Code, finding: Finding) -> Diagnostic:
 def problem(
     code: str, name: str, severity: Severity
 ) -> Callable[[Callable[P, Finding]], Callable[P, Diagnostic]]:
-    """Declare a fault that a phase before the IR finds: the function words it."""
+    """Declare a fault that a phase before the IR finds: the function words it.
+
+    As an error it is firm: nobody knows what the script would be without it.
+    """
 
     def declare(function: Callable[P, Finding]) -> Callable[P, Diagnostic]:
-        entry = _register(code, name, severity, function)
+        entry = _register(code, name, severity, function, severity is Severity.ERROR)
 
         def build(*args: P.args, **kwargs: P.kwargs) -> Diagnostic:
             return _diagnostic(entry, function(*args, **kwargs))
@@ -130,11 +140,13 @@ def problem(
     return declare
 
 
-def rule(code: str, name: str, severity: Severity) -> Callable[[RuleFunction], RuleFunction]:
+def rule(
+    code: str, name: str, severity: Severity, *, firm: bool = False
+) -> Callable[[RuleFunction], RuleFunction]:
     """Declare a rule over the IR: the function yields its findings."""
 
     def declare(function: RuleFunction) -> RuleFunction:
-        _register(code, name, severity, function)
+        _register(code, name, severity, function, firm)
         RULES[code] = function
         return function
 

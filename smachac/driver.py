@@ -7,13 +7,15 @@ from collections.abc import Iterator, Mapping
 from contextlib import contextmanager
 from dataclasses import dataclass, replace
 
+from smachac import problems
 from smachac.checks import check_machine
 from smachac.diagnostics import Finding, Report, has_errors, in_order
 from smachac.ir.nodes import Checked, Machine
 from smachac.ir.walk import walk
 from smachac.lower import lower
+from smachac.policy import Allowance, allowances, heeded, settled
 from smachac.script import resolve
-from smachac.source import Source, Span
+from smachac.source import Source, Span, Word
 from smachac.states import Library
 from smachac.syntax import parse
 from smachac.targets import Context, Files, Target
@@ -48,22 +50,46 @@ def check(machine: Machine, report: Report) -> Checked | None:
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Analysis:
     """What there is to say about a script: its machine as far as it could be read, the machine
-    again if it is without error, and every finding in order."""
+    again if it is without error, and every finding in order, but for those that are allowed.
+
+    `unused` are the allowances of sub-scripts that were of no use to this script; `given`, all.
+    """
 
     machine: Machine | None = None
     checked: Checked | None = None
     report: Report
+    given: tuple[Allowance, ...] = ()
+    unused: tuple[Allowance, ...] = ()
 
 
 def analyse(source: Source, library: Library, report: Report) -> Analysis:
     """Read a script and judge it by every rule; findings already in `report` count as well."""
     with _deep():
-        machine = load(source, library, report)
-        checked = check(machine, report) if machine is not None else None
-        found = in_order(report)
+        tree = parse(source, report)
+        script = resolve(source, tree, library, report)
+        machine = lower(script) if script is not None else None
+        if machine is not None:
+            report.extend(check_machine(machine))
+        sources = {id(text): text for text in (script.sources if script is not None else (source,))}
+        sources |= {id(item.span.source): item.span.source for item in report}
+        given = [fit for text in sources.values() for fit in allowances(text, report)]
+        found, used = heeded(report, given)
+        unused = [fit for fit in given if fit not in used]
+        found += [
+            problems.unused_allowance(Word(fit.code, fit.span))
+            for fit in unused
+            if fit.span.source is source
+        ]
+        found = settled(in_order(found), library.policy)
         if machine is not None:
             found = with_places(found, machine)
-    return Analysis(machine=machine, checked=checked, report=found)
+    return Analysis(
+        machine=machine,
+        checked=Checked(machine) if machine is not None and not has_errors(found) else None,
+        report=found,
+        given=tuple(given),
+        unused=tuple(fit for fit in unused if fit.span.source is not source),
+    )
 
 
 def with_places(report: Report, machine: Machine) -> Report:

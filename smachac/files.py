@@ -7,11 +7,11 @@ import errno
 import os
 import tempfile
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass
 from pathlib import Path
 
 from smachac import problems
 from smachac.diagnostics import Report, did_you_mean
+from smachac.project import Project, read_project
 from smachac.source import Source, Span
 from smachac.states import Library
 
@@ -60,14 +60,6 @@ def _decoded(data: bytes) -> str:
     return data.decode("utf-8-sig")
 
 
-@dataclass(frozen=True, slots=True, kw_only=True)
-class Project:
-    """Settings of a project file: search folders, each absolute or as seen from here."""
-
-    scripts: tuple[Path, ...] = ()
-    templates: tuple[Path, ...] = ()
-
-
 def find_project(main: Path, report: Report) -> Project:
     """The settings of the nearest `smachac.toml`, or `[tool.smachac]` of a `pyproject.toml`.
 
@@ -77,9 +69,10 @@ def find_project(main: Path, report: Report) -> Project:
         for name in ("smachac.toml", "pyproject.toml"):
             path = folder / name
             if path.is_file():
-                settings = _read_settings(path, report)
-                if settings is not None:
-                    return _project(path, settings, report)
+                source = read_source(path, report)
+                project = read_project(source, path, report) if source is not None else Project()
+                if project is not None:
+                    return project
         if (folder / ".git").exists():
             break
     return Project()
@@ -93,39 +86,6 @@ def _parents(folder: Path) -> list[Path]:
     above = Path.cwd().parents
     here = [Path()] if str(folder) != "." else []
     return [*named, *here, *(Path(*[".."] * (n + 1)) for n in range(len(above)))]
-
-
-def _read_settings(path: Path, report: Report) -> dict[str, object] | None:
-    try:
-        import tomllib as toml
-    except ImportError:  # Python 3.10
-        import tomli as toml  # type: ignore[import-not-found,no-redef,unused-ignore]
-    source = read_source(path, report)
-    if source is None:
-        return {}
-    try:
-        data = toml.loads(source.text)
-    except toml.TOMLDecodeError as error:
-        report.append(problems.unreadable_file(Span(source, 0, 0), f"not TOML: {error}"))
-        return {}
-    if path.name == "smachac.toml":
-        return data
-    settings = data.get("tool", {}).get("smachac")
-    return settings if isinstance(settings, dict) else None
-
-
-def _project(path: Path, settings: Mapping[str, object], report: Report) -> Project:
-    folders: dict[str, tuple[Path, ...]] = {}
-    for key, value in settings.items():
-        span = Span(Source(str(path), ""), 0, 0)
-        if key not in ("scripts", "templates"):
-            known = "it has `scripts` and `templates`"
-            report.append(problems.unreadable_file(span, f"unknown setting `{key}`", known))
-        elif not isinstance(value, list) or not all(isinstance(item, str) for item in value):
-            report.append(problems.unreadable_file(span, f"`{key}` must be a list of folders"))
-        else:
-            folders[key] = tuple(path.parent / item for item in value)
-    return Project(**folders)
 
 
 def disk_library(
@@ -169,6 +129,7 @@ def disk_library(
         ],
         script_names=lambda caller: _stems(script_folders(caller), (".yml", ".yaml")),
         template_names=lambda: _stems(template_folders[:-1], (".tpl.py", ".tpl", ".yml")),
+        policy=project.policy,
     )
 
 

@@ -15,6 +15,7 @@ from smachac import problems, shapes
 from smachac.diagnostics import Report, did_you_mean
 from smachac.ir.nodes import Key, Outcome
 from smachac.ir.types import ANY, Type
+from smachac.policy import Policy
 from smachac.source import Source, Span, Word
 from smachac.syntax import Map, Scalar, Tree, parse
 from smachac.typed import read_type
@@ -28,7 +29,7 @@ class Library:
 
     `script(name, caller)` is the text of a sub-script named in the source `caller`;
     `template(file)` that of an interface or template by file name (`MoveTo.yml`,
-    `MoveTo.tpl.py`). The folders and names serve messages.
+    `MoveTo.tpl.py`). The folders and names serve messages. `policy` is that of the project.
     """
 
     script: Callable[[str, str], Source | None]
@@ -37,6 +38,7 @@ class Library:
     template_folders: Callable[[], Sequence[str]] = lambda: ()
     script_names: Callable[[str], Sequence[str]] = lambda caller: ()
     template_names: Callable[[], Sequence[str]] = lambda: ()
+    policy: Policy = field(default_factory=Policy)
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)

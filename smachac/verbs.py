@@ -46,10 +46,18 @@ def _print_report(report: Report, arguments: argparse.Namespace, stream: Any) ->
 
 
 def _check(arguments: argparse.Namespace) -> int:
-    from smachac.diagnostics import Severity
+    from smachac import checks
+    from smachac.diagnostics import CODES, Severity
+    from smachac.policy import chosen
 
+    assert checks is not None  # imported for the codes it files
+    select, ignore = _codes(arguments.select), _codes(arguments.ignore)
+    for code in (*select, *ignore):
+        if not any(known.startswith(code) for known in CODES):
+            return _usage(f"there is no code `{code}`", code, list(CODES))
     reports = {
-        str(path): _load(path, arguments)[0].report for path in dict.fromkeys(arguments.script)
+        str(path): chosen(_load(path, arguments)[0].report, select, ignore)
+        for path in dict.fromkeys(arguments.script)
     }
     grave = {Severity.ERROR, Severity.WARNING} if arguments.strict else {Severity.ERROR}
     failing = {
@@ -58,6 +66,11 @@ def _check(arguments: argparse.Namespace) -> int:
     }
     _put_reports(reports, failing, arguments)
     return FINDINGS if any(failing.values()) else OK
+
+
+def _codes(words: list[str]) -> list[str]:
+    """Codes, or beginnings of codes, from options that may hold several."""
+    return [code.strip().upper() for word in words for code in word.split(",") if code.strip()]
 
 
 def _put_reports(

@@ -13,7 +13,7 @@ from smachac.ir.walk import containers, outcome_names
 from smachac.problems import listed
 
 
-@rule("SM403", "dead-rule", Severity.ERROR)
+@rule("SM403", "dead-rule", Severity.ERROR, firm=True)
 def dead_rule(machine: Machine) -> Iterator[Finding]:
     """A rule can never match: it names a child or an outcome that does not exist, or nothing.
 
@@ -116,7 +116,7 @@ def _dead_renames(path: str, container: nodes.Iterator) -> Iterator[Finding]:
         )
 
 
-@rule("SM408", "empty-concurrence", Severity.ERROR)
+@rule("SM408", "empty-concurrence", Severity.ERROR, firm=True)
 def empty_concurrence(machine: Machine) -> Iterator[Finding]:
     """A concurrence has no states.
 

@@ -11,7 +11,7 @@ from smachac.ir.nodes import Expression, Leaf, Machine, Struct
 from smachac.ir.walk import expressions, walk
 
 
-@rule("SM016", "bad-expression", Severity.ERROR)
+@rule("SM016", "bad-expression", Severity.ERROR, firm=True)
 def bad_expression(machine: Machine) -> Iterator[Finding]:
     """Code of the script is no expression, or something else stands where code is due.
 

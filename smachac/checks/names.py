@@ -32,7 +32,7 @@ class _Lost(NamedTuple):
     meant: str | None
 
 
-@rule("SM101", "unknown-target", Severity.ERROR)
+@rule("SM101", "unknown-target", Severity.ERROR, firm=True)
 def unknown_target(machine: Machine) -> Iterator[Finding]:
     """A transition leads to what is neither a state beside it nor an outcome of its container.
 
@@ -124,7 +124,7 @@ def _idle_transitions(path: str, container: Container) -> Iterator[Finding]:
                 )
 
 
-@rule("SM102", "unknown-outcome", Severity.ERROR)
+@rule("SM102", "unknown-outcome", Severity.ERROR, firm=True)
 def unknown_outcome(machine: Machine) -> Iterator[Finding]:
     """A transition starts from an outcome that its state does not have.
 
@@ -191,7 +191,7 @@ def _unknown_loops(path: str, container: nodes.Iterator) -> Iterator[Finding]:
             )
 
 
-@rule("SM106", "duplicate-state", Severity.ERROR)
+@rule("SM106", "duplicate-state", Severity.ERROR, firm=True)
 def duplicate_state(machine: Machine) -> Iterator[Finding]:
     """Two states of one container have the same name.
 
@@ -230,7 +230,7 @@ def duplicate_state(machine: Machine) -> Iterator[Finding]:
                 )
 
 
-@rule("SM107", "name-clash", Severity.ERROR)
+@rule("SM107", "name-clash", Severity.ERROR, firm=True)
 def name_clash(machine: Machine) -> Iterator[Finding]:
     """A state is called like an outcome of its container, or has a name that paths cannot hold.
 

@@ -12,7 +12,7 @@ from smachac.ir.nodes import Concurrence, Machine, Node, Outcome, Transition
 from smachac.ir.walk import containers, outcome_names
 
 
-@rule("SM103", "undeclared-container-outcome", Severity.ERROR)
+@rule("SM103", "undeclared-container-outcome", Severity.ERROR, firm=True)
 def undeclared_container_outcome(machine: Machine) -> Iterator[Finding]:
     """A concurrence or iterator can end with an outcome that it does not declare.
 
@@ -107,7 +107,7 @@ def _undeclared_endings(path: str, container: nodes.Iterator) -> Iterator[Findin
         )
 
 
-@rule("SM104", "unhandled-outcome", Severity.ERROR)
+@rule("SM104", "unhandled-outcome", Severity.ERROR, firm=True)
 def unhandled_outcome(machine: Machine) -> Iterator[Finding]:
     """An outcome of a state has no transition, and its container has no outcome of that name.
 

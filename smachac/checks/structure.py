@@ -202,7 +202,7 @@ def _impossible(path: str, container: Container, outcome: Outcome) -> Finding:
     )
 
 
-@rule("SM205", "no-initial", Severity.ERROR)
+@rule("SM205", "no-initial", Severity.ERROR, firm=True)
 def no_initial(machine: Machine) -> Iterator[Finding]:
     """A container has no state to start with.
 

@@ -1,5 +1,13 @@
 """The faults that phases before the rules find: in the text, its shape, its calls, templates."""
 
+from smachac.problems.allowances import (
+    bad_allowance,
+    bad_comment,
+    unfounded_allowance,
+    unknown_code,
+    unused_allowance,
+    vain_allowance,
+)
 from smachac.problems.calls import (
     bad_sub_script,
     recursive_include,
@@ -21,6 +29,8 @@ from smachac.problems.text import (
 from smachac.problems.wording import listed
 
 __all__ = [
+    "bad_allowance",
+    "bad_comment",
     "bad_sub_script",
     "bad_type",
     "duplicate_key",
@@ -31,9 +41,13 @@ __all__ = [
     "template_error",
     "template_not_found",
     "too_big",
+    "unfounded_allowance",
+    "unknown_code",
     "unknown_variable",
     "unreadable_file",
     "unresolved_look_up",
+    "unused_allowance",
+    "vain_allowance",
     "wrong_shape",
     "yaml_syntax",
 ]

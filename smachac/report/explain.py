@@ -70,7 +70,8 @@ def render_code(code: Code) -> str:
     """What `smachac explain` prints of a code, without a line feed at the end."""
     parts = explanation(code)
     prose = [parts.summary, *parts.reason.split("\n\n")]
-    lines = [f"{code.code} {code.name} ({code.severity.value})"]
+    firm = ", firm" if code.firm else ""
+    lines = [f"{code.code} {code.name} ({code.severity.value}{firm})"]
     lines += [fill(text, WIDTH, break_on_hyphens=False) for text in prose]
     for title, files in (("Wrong", parts.wrong), ("Right", parts.right)):
         for name, text in files.items():
@@ -89,9 +90,10 @@ _PREFACE = """# What smachac finds
 Generated from the docstrings of the rules: `make docs` writes this file, a test compares it.
 
 An error stops a build, a warning does so under `--strict`, an info never does. Some findings
-are milder or graver than their code: the text says when. Each example marked as wrong gives
-exactly its code, and each one marked as right gives nothing above an info; the tests run them all.
-A line `# --- name` begins another file."""
+are milder or graver than their code: the text says when. Errors of a code that is called firm
+leave nothing to print: no comment, setting or option silences them. Each example marked as wrong
+gives exactly its code, and each one marked as right gives nothing above an info; the tests run
+them all. A line `# --- name` begins another file."""
 
 
 def _groups() -> Iterator[tuple[str, list[Code]]]:
@@ -125,7 +127,8 @@ def _sections() -> Iterator[str]:
 def render_section(code: Code) -> str:
     """What a code says of itself as Markdown, without its heading."""
     parts = explanation(code)
-    lines = [f"*{code.severity.value}*: {parts.summary}", parts.reason]
+    firm = ", firm" if code.firm else ""
+    lines = [f"*{code.severity.value}{firm}*: {parts.summary}", parts.reason]
     for title, files in (("Wrong:", parts.wrong), ("Right:", parts.right)):
         if files:
             lines += [title, _fenced(files)]

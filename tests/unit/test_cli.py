@@ -270,3 +270,33 @@ def test_ctrl_c_preempts_the_machine(tmp_path: Path) -> None:
     assert "TIDY_UP" in rest
     assert shown.rstrip().endswith("outcome: preempted")
     assert "asked to stop" in told
+
+
+@pytest.mark.parametrize(
+    ("options", "codes", "ended"),
+    [
+        ([], ["SM201", "SM203"], 1),
+        (["--select", "SM203,SM204"], ["SM203"], 0),
+        (["--select", "SM203", "--select", "sm201"], ["SM201", "SM203"], 1),
+        (["--ignore", "SM2"], [], 0),
+        (["--ignore", "SM201", "--strict"], ["SM203"], 1),
+    ],
+)
+def test_select_and_ignore(
+    options: list[str],
+    codes: list[str],
+    ended: int,
+    tmp_path: Path,
+    capsys: pytest.CaptureFixture[str],
+) -> None:
+    path = tmp_path / "main.yml"
+    path.write_text(
+        "name: sm\ntemplate: Base\noutcomes: [done, never]\nstates:\n"
+        "  - A: {template: ScriptedState, outcomes: [ok], transitions: {ok: done}}\n"
+        "  - B: {template: ScriptedState, outcomes: [ok], transitions: {ok: done}}\n"
+    )
+    assert main(["check", str(path), "--format", "json", *options]) == ended
+    data = json.loads(capsys.readouterr().out)
+    assert sorted(item["code"] for item in data["diagnostics"]) == codes
+    assert main(["check", str(path), "--select", "SM21"]) == 2
+    assert "there is no code `SM21`\ndid you mean" in capsys.readouterr().err

@@ -12,10 +12,10 @@ import pytest
 LAYERS = (
     ("source",),
     ("diagnostics", "problems", "grammars"),
-    ("syntax", "ir", "shapes"),
+    ("syntax", "ir", "shapes", "policy"),
     ("states", "script", "schema", "lookups", "typed", "sugar"),
     ("lower", "desugar", "values", "checks", "targets"),
-    ("driver", "report", "refactor", "files", "execute"),
+    ("driver", "report", "refactor", "project", "files", "execute"),
     ("__init__", "runs"),
     ("verbs",),
     ("cli",),
@@ -26,6 +26,7 @@ LAYERS = (
 WITHIN = {
     ("problems", "diagnostics"),
     ("shapes", "syntax"),
+    ("policy", "syntax"),
     ("script", "states"),
     ("script", "schema"),
     ("script", "lookups"),
@@ -36,6 +37,7 @@ WITHIN = {
     ("lower", "values"),
     ("lower", "desugar"),
     ("desugar", "values"),
+    ("files", "project"),
 }
 """The imports, as (who, whom), that are allowed inside one row."""
 

@@ -1,0 +1,174 @@
+"""What is made of findings: what comments allow, and how much each code counts in a project."""
+
+from __future__ import annotations
+
+import re
+from bisect import bisect_right
+from collections.abc import Iterable, Iterator, Mapping, Sequence
+from dataclasses import dataclass, field, replace
+from typing import NamedTuple
+
+from smachac import problems
+from smachac.diagnostics import CODES, Diagnostic, Report, Severity
+from smachac.source import Source, Span, Word
+from smachac.syntax import Entry, Map, Scalar, Seq, Tree, parse
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Policy:
+    """Severities by code or by the beginning of codes; None turns them off."""
+
+    severities: Mapping[str, Severity | None] = field(default_factory=dict)
+
+
+def is_firm(item: Diagnostic) -> bool:
+    """Whether a finding counts whatever anybody says: no target could print such a machine."""
+    return item.code.firm and item.severity is Severity.ERROR
+
+
+def settled(report: Report, policy: Policy) -> Report:
+    """A report with the severities of a project. Of several that fit a code the longest counts."""
+    if not policy.severities:
+        return report
+    found = []
+    for item in report:
+        name = _longest(item.code.code, policy.severities)
+        level = item.severity if name is None else policy.severities[name]
+        if name is None or is_firm(item):
+            found.append(item)
+        elif level is not None:
+            found.append(replace(item, severity=level))
+    return found
+
+
+def chosen(report: Report, select: Sequence[str], ignore: Sequence[str]) -> Report:
+    """The findings whose code begins with one of `select` (none: all) and none of `ignore`.
+
+    The longer beginning wins. Firm ones stay: what else is found may follow from them.
+    """
+
+    def wanted(code: str) -> bool:
+        more, less = _longest(code, select), _longest(code, ignore)
+        if more is None or less is None:
+            return less is None and (more is not None or not select)
+        return len(more) > len(less)
+
+    return [item for item in report if is_firm(item) or wanted(item.code.code)]
+
+
+def _longest(code: str, beginnings: Iterable[str]) -> str | None:
+    return max((name for name in beginnings if code.startswith(name)), key=len, default=None)
+
+
+class Allowance(NamedTuple):
+    """One code of a comment `# smachac: allow SM201 reason`, and the line that it speaks of."""
+
+    code: str
+    span: Span
+    line: int
+
+
+MARK = "smachac:"
+_COMMENT = re.compile(r"(?:^|(?<=\s))#\s*smachac:[^\S\n]*(?P<verb>[^\s]*)(?P<rest>[^\n]*)", re.M)
+_CODE = re.compile(r"[^\S\n]*(?P<code>[A-Za-z]{2}\d+)\b[,:]?")
+
+
+def allowances(source: Source, report: Report) -> list[Allowance]:
+    """The allowances of a text, in its order. SM022 for a comment that does not say all it must.
+
+    A comment behind something speaks of its own line, one alone of the next line that holds more
+    than a comment.
+    """
+    if MARK not in source.text:
+        return []
+    hidden = _scalars(source)
+    speaks = _lines_spoken_of(source)
+    found: list[Allowance] = []
+    for comment in _COMMENT.finditer(source.text):
+        before = bisect_right(hidden, (comment.start(), len(source.text)))
+        if before and comment.start() < hidden[before - 1][1]:
+            continue
+        span = Span(source, comment.start(), comment.start() + len(comment.group().rstrip()))
+        if comment["verb"] != "allow":
+            word = Word(comment["verb"], Span(source, *comment.span("verb")))
+            report.append(problems.bad_comment(word))
+            continue
+        found += _codes(source, comment, span, speaks, report)
+    return found
+
+
+def _scalars(source: Source) -> list[tuple[int, int]]:
+    """The stretches of a YAML text, in order, that hold values: `#` begins no comment there."""
+    tree = parse(source, []) if not source.name.endswith(".py") else None
+    return sorted((span.start, span.end) for span in _spans(tree)) if tree is not None else []
+
+
+def _spans(tree: Tree) -> Iterator[Span]:
+    todo: list[Tree | Entry] = [tree]
+    seen: set[int] = set()
+    while todo:
+        here = todo.pop()
+        if id(here) in seen:  # an alias stands for what was met before
+            continue
+        seen.add(id(here))
+        match here:
+            case Scalar():
+                if MARK in here.span.text:
+                    yield here.span
+            case Seq():
+                todo.extend(here.items)
+            case Map():
+                todo.extend(part for entry in here.entries for part in (entry.key, entry.value))
+
+
+def _codes(
+    source: Source, comment: re.Match[str], span: Span, speaks: Sequence[int], report: Report
+) -> Iterator[Allowance]:
+    line, column = source.position(comment.start())
+    if not source.line(line)[: column - 1].strip():
+        line = speaks[line]
+    at, end = comment.start("rest"), comment.end("rest")
+    words = []
+    while (word := _CODE.match(source.text, at, end)) is not None:
+        words.append(Word(word["code"].upper(), Span(source, *word.span("code"))))
+        at = word.end()
+    for code in words:
+        if code.text not in CODES:
+            report.append(problems.unknown_code(code, CODES))
+        else:
+            yield Allowance(code.text, code.span, line)
+    if not words or not source.text[at:end].strip(" \t\r:,-"):
+        report.append(problems.unfounded_allowance(span, named=bool(words)))
+
+
+def _lines_spoken_of(source: Source) -> list[int]:
+    """For each line, counted from 1, the next one that holds more than a comment."""
+    last = len(source.line_starts)
+    speaks = [last] * (last + 1)
+    for number in range(last - 1, 0, -1):
+        text = source.line(number + 1).strip()
+        speaks[number] = number + 1 if text and text[0] != "#" else speaks[number + 1]
+    return speaks
+
+
+def heeded(report: Report, given: Sequence[Allowance]) -> tuple[Report, set[Allowance]]:
+    """A report without what is allowed, and the allowances that were of use.
+
+    A firm finding stays; the allowance that was to silence it is reported (SM022).
+    """
+    if not given:
+        return report, set()
+    by_place: dict[tuple[int, int, str], Allowance] = {}
+    for allowance in given:
+        place = (id(allowance.span.source), allowance.line, allowance.code)
+        by_place.setdefault(place, allowance)
+    kept, used = [], set()
+    for item in report:
+        fit = by_place.get((id(item.span.source), item.span.line, item.code.code))
+        if fit is not None and fit not in used and is_firm(item):
+            kept.append(problems.vain_allowance(Word(fit.code, fit.span)))
+        if fit is not None:
+            used.add(fit)
+        if fit is None or is_firm(item):
+            kept.append(item)
+    return kept, used
