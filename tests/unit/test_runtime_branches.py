@@ -183,25 +183,3 @@ def test_a_thread_that_cannot_start_leaves_none_behind(monkeypatch: pytest.Monke
     assert len(started) == 2
     assert not any(thread.is_alive() for thread in started)
     assert all(branch.flags == [] and branch.requests == 0 for branch in branches)
-
-
-def test_many_concurrences_leave_no_thread() -> None:
-    for round_number in range(200):
-        ended = round_number % 4
-        fails = ended == 3
-
-        def work(fails: bool = fails) -> None:
-            if fails:
-                raise ValueError
-
-        branches = [Branch(work), *(Branch() for _ in range(7))]
-        policy: dict[str, Any] = {"child_termination_cb": lambda so: True} if ended == 1 else {}
-        container = concurrence(*branches, **policy)
-        if ended == 2:
-            container.request_preempt()
-        if fails:
-            with pytest.raises(smach.InvalidStateError):
-                container.execute()
-        else:
-            assert container.execute() == ("preempted" if ended == 2 else "mixed")
-        assert not branches_alive()

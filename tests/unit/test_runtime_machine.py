@@ -121,14 +121,6 @@ def test_a_machine_is_not_re_entrant() -> None:
     assert not machine.is_running()
 
 
-def test_running_is_true_to_fact() -> None:
-    seen: list[bool] = []
-    machine = machine_of(leaf(do=lambda ud: seen.append(machine.is_running())))
-    machine.execute()
-    assert seen == [True]
-    assert not machine.is_running()
-
-
 def test_shutdown_ends_without_an_outcome(monkeypatch: pytest.MonkeyPatch) -> None:
     down: list[bool] = []
     monkeypatch.setattr(smach, "is_shutdown", lambda: bool(down))
