@@ -70,7 +70,7 @@ def test_a_command_prints_what_is_shown(
 
 @pytest.mark.parametrize("name", MACHINES)
 def test_a_machine_has_no_error(name: str, folder: Path) -> None:
-    smachac.load(name)
+    assert smachac.load(name).root.children
 
 
 APART = {"carry.yml", "late.yml", "look.yml", "speed.yml"}
