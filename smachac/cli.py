@@ -17,6 +17,18 @@ if TYPE_CHECKING:
 BUG, INTERRUPTED = 70, 130
 """Exit codes beside those of verbs.py: our fault; Ctrl-C."""
 
+CHECK_EXAMPLES = """\
+examples:
+  smachac check                                  every script below this folder
+  smachac check main.yml --format sarif          for code scanning
+  smachac check . --select SM3,SM4 --strict      data and concurrences alone; warnings fail
+  smachac check . --changed-since origin/main    what a pull request touches
+  smachac check . --baseline known.json --write-baseline   begin in an old code base
+  smachac check main.yml --watch                 again at every change
+
+exit codes: 0 clean, 1 findings, 2 wrong usage, 70 a bug in smachac
+"""
+
 FORMATS = ("text", "json", "sarif", "github", "junit")
 
 EPILOG = """\
@@ -78,13 +90,20 @@ def _parser(given: Sequence[str]) -> argparse.ArgumentParser:
 
 
 def _check(verb: argparse.ArgumentParser) -> None:
-    verb.add_argument("script", nargs="+", type=_path, help="a script (.yml, .yaml)")
+    verb.epilog = CHECK_EXAMPLES
+    verb.add_argument("script", nargs="*", type=_path, default=None,
+                      help="scripts, folders, patterns (default: this folder)")  # fmt: skip
     _search_folders(verb)
     verb.add_argument("--format", choices=FORMATS, default="text", help="of the report")
     verb.add_argument("--strict", action="store_true", help="warnings fail as errors do")
     for name, what in (("select", "report these alone"), ("ignore", "leave these out")):
         verb.add_argument(f"--{name}", action="append", default=[], metavar="CODE[,CODE]",
                           help=f"{what}: codes, or beginnings such as SM2")  # fmt: skip
+    verb.add_argument("--baseline", type=_path, metavar="FILE", help="leave out what it knows")
+    verb.add_argument("--write-baseline", action="store_true", help="make --baseline know all")
+    verb.add_argument("--changed-since", metavar="REV",
+                      help="only scripts made of files that changed since then (git)")  # fmt: skip
+    verb.add_argument("--watch", action="store_true", help="check again when a file changes")
     _colour(verb)
 
 

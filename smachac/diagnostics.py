@@ -160,6 +160,11 @@ def run_rules(machine: object) -> Iterator[Diagnostic]:
             yield _diagnostic(CODES[code], finding)
 
 
+def identity(item: Diagnostic) -> tuple[object, ...]:
+    """What two findings have in common that say the same, met through different calls."""
+    return item.code.code, item.span, item.finding.message
+
+
 def in_order(report: Iterable[Diagnostic]) -> Report:
     """A report as users read it: by file as first met, then by place; each fault once.
 
@@ -169,7 +174,7 @@ def in_order(report: Iterable[Diagnostic]) -> Report:
     unique: dict[tuple[object, ...], Diagnostic] = {}
     for item in report:
         files.setdefault(id(item.span.source), len(files))
-        unique.setdefault((item.code.code, item.span, item.finding.message), item)
+        unique.setdefault(identity(item), item)
     return sorted(
         unique.values(),
         key=lambda item: (
@@ -184,11 +189,12 @@ def in_order(report: Iterable[Diagnostic]) -> Report:
 def fingerprint(item: Diagnostic) -> str:
     """What stays of a finding when the lines around it move: 16 hexadecimal digits.
 
-    Taken over its code, its message and its state; without one over the name of its file.
+    Taken over its code and message, the name of its file and that of its state; not over the
+    path of the state, which depends on the caller.
     """
-    node = item.finding.node
-    place = PurePath(item.span.source.name).name if node is None else node
-    text = "\0".join((item.code.code, place, item.finding.message))
+    file = PurePath(item.span.source.name).name
+    state = (item.finding.node or "").rpartition("/")[2]
+    text = "\0".join((item.code.code, file, state, item.finding.message))
     return hashlib.sha256(text.encode("utf-8", "surrogatepass")).hexdigest()[:16]
 
 

@@ -2,14 +2,15 @@
 
 from __future__ import annotations
 
+import json
 import sys
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterable, Iterator, Mapping
 from contextlib import contextmanager
 from dataclasses import dataclass, replace
 
 from smachac import problems
 from smachac.checks import check_machine
-from smachac.diagnostics import Finding, Report, has_errors, in_order
+from smachac.diagnostics import Diagnostic, Finding, Report, has_errors, in_order
 from smachac.ir.nodes import Checked, Machine
 from smachac.ir.walk import walk
 from smachac.lower import lower
@@ -17,7 +18,6 @@ from smachac.policy import Allowance, allowances, heeded, settled
 from smachac.script import resolve
 from smachac.source import Source, Span, Word
 from smachac.states import Library
-from smachac.syntax import parse
 from smachac.targets import Context, Files, Target
 
 FRAMES = 8_000
@@ -36,7 +36,7 @@ def _deep() -> Iterator[None]:
 
 def load(source: Source, library: Library, report: Report) -> Machine | None:
     """The machine a script describes, as far as it can be read."""
-    tree = parse(source, report)
+    tree = library.parse(source, report)
     script = resolve(source, tree, library, report)
     return None if script is None else lower(script)
 
@@ -65,7 +65,7 @@ class Analysis:
 def analyse(source: Source, library: Library, report: Report) -> Analysis:
     """Read a script and judge it by every rule; findings already in `report` count as well."""
     with _deep():
-        tree = parse(source, report)
+        tree = library.parse(source, report)
         script = resolve(source, tree, library, report)
         machine = lower(script) if script is not None else None
         if machine is not None:
@@ -90,6 +90,57 @@ def analyse(source: Source, library: Library, report: Report) -> Analysis:
         given=tuple(given),
         unused=tuple(fit for fit in unused if fit.span.source is not source),
     )
+
+
+def analyse_alone(source: Source, library: Library, report: Report) -> Analysis:
+    """A sub-script that nobody calls, judged as far as that goes without its caller.
+
+    It is called by a script made for it, which takes in the keys it needs and ends with its
+    outcomes. Params come from callers, so look-ups that find nothing are passed over.
+    """
+    name = f"{source.name} (alone)"
+
+    def called(outcomes: Iterable[str], inputs: Iterable[str], outputs: Iterable[str]) -> Source:
+        ends = list(outcomes)
+        script = {
+            "name": "alone",
+            "template": "Base",
+            "outcomes": ends or ["done"],
+            "forever": not ends,
+            "input_keys": list(inputs),
+            "output_keys": list(outputs),
+            "states": [{"CALL": {"script": "called", "transitions": {end: end for end in ends}}}],
+        }
+        return Source(name, json.dumps(script, ensure_ascii=False))
+
+    def script(word: str, by: str) -> Source | None:
+        return source if by == name else library.script(word, by)
+
+    own = replace(library, script=script)
+    with _deep():
+        machine = load(called((), (), ()), own, [])
+    if machine is None or not machine.root.children:
+        outside = called((), (), ())
+    else:
+        state = machine.root.children[0]
+        outer = {remap.key: remap.to for remap in state.remaps}
+        keys = (
+            [outer.get(key.name, key.name) for key in part]
+            for part in (state.inputs, state.outputs)
+        )
+        outside = called([outcome.name for outcome in state.outcomes], *keys)
+    found = analyse(outside, own, report)
+    return replace(found, report=list(_inside(found.report, outside)), machine=None, checked=None)
+
+
+def _inside(report: Report, outside: Source) -> Iterator[Diagnostic]:
+    """The findings that do not speak of the script made around."""
+    for item in report:
+        if item.span.source is outside or item.code.code == "SM015":
+            continue
+        finding = item.finding
+        related = tuple(each for each in finding.related if each.span.source is not outside)
+        yield replace(item, finding=replace(finding, related=related))
 
 
 def with_places(report: Report, machine: Machine) -> Report:

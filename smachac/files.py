@@ -6,7 +6,7 @@ import contextlib
 import errno
 import os
 import tempfile
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterable, Mapping, Sequence
 from pathlib import Path
 
 from smachac import problems
@@ -14,6 +14,7 @@ from smachac.diagnostics import Report, did_you_mean
 from smachac.project import Project, read_project
 from smachac.source import Source, Span
 from smachac.states import Library
+from smachac.syntax import Tree, parse
 
 _HERE = Path(__file__).parent
 BUILT_IN = (_HERE / "states", _HERE / "targets" / "python" / "templates")
@@ -60,16 +61,57 @@ def _decoded(data: bytes) -> str:
     return data.decode("utf-8-sig")
 
 
-def find_project(main: Path, report: Report) -> Project:
+class Disk:
+    """What one run reads: each file once, each text parsed once, whoever asks for it.
+
+    `texts` stand for the files at their (real) paths. `asked` collects the real paths of all that
+    was looked for, whether it was there or not; whoever wants to know empties it before.
+    """
+
+    def __init__(self, texts: Mapping[str, str] | None = None) -> None:
+        self.texts = texts or {}
+        self.asked: set[str] = set()
+        self._sources: dict[str, tuple[Source | None, Report]] = {}
+        self._trees: dict[Source, tuple[Tree | None, Report]] = {}
+
+    def read(self, path: Path, report: Report) -> Source | None:
+        """As `read_source`."""
+        key = os.path.realpath(path)
+        self.asked.add(key)
+        if key not in self._sources:
+            found: Report = []
+            text = self.texts.get(key)
+            source = read_source(path, found) if text is None else Source(str(path), text)
+            self._sources[key] = (source, found)
+        source, problems_found = self._sources[key]
+        report.extend(problems_found)
+        return source
+
+    def parse(self, source: Source, report: Report) -> Tree | None:
+        """As `syntax.parse`."""
+        if source not in self._trees:
+            found: Report = []
+            self._trees[source] = (parse(source, found), found)
+        tree, problems_found = self._trees[source]
+        report.extend(problems_found)
+        return tree
+
+    def is_file(self, path: Path) -> bool:
+        self.asked.add(os.path.realpath(path))
+        return path.is_file()
+
+
+def find_project(main: Path, report: Report, disk: Disk | None = None) -> Project:
     """The settings of the nearest `smachac.toml`, or `[tool.smachac]` of a `pyproject.toml`.
 
     Looked for from the script's folder upwards, as far as the root of the git repository.
     """
+    disk = disk or Disk()
     for folder in (main.parent, *_parents(main.parent)):
         for name in ("smachac.toml", "pyproject.toml"):
             path = folder / name
-            if path.is_file():
-                source = read_source(path, report)
+            if disk.is_file(path):
+                source = disk.read(path, report)
                 project = read_project(source, path, report) if source is not None else Project()
                 if project is not None:
                     return project
@@ -89,7 +131,12 @@ def _parents(folder: Path) -> list[Path]:
 
 
 def disk_library(
-    main: Path, report: Report, *, scripts: Sequence[Path] = (), templates: Sequence[Path] = ()
+    main: Path,
+    report: Report,
+    *,
+    scripts: Sequence[Path] = (),
+    templates: Sequence[Path] = (),
+    disk: Disk | None = None,
 ) -> Library:
     """The library of a script on disk.
 
@@ -97,27 +144,21 @@ def disk_library(
     project file's; templates in `templates`, the project file's, `templates/` beside the main
     script, and the built-in ones. Nothing outside these folders is read.
     """
-    project = find_project(main, report)
+    disk = disk or Disk()
+    project = find_project(main, report, disk)
     own_scripts = [*scripts, *project.scripts]
     template_folders = [*templates, *project.templates, main.parent / "templates", *BUILT_IN]
-    cache: dict[Path, Source | None] = {}
-
-    def read(path: Path) -> Source | None:
-        key = path.resolve()
-        if key not in cache:
-            cache[key] = read_source(path, report)
-        return cache[key]
 
     def script_folders(caller: str) -> list[Path]:
         return list(dict.fromkeys([Path(caller).parent, *own_scripts]))
 
     def script(name: str, caller: str) -> Source | None:
-        path = _found(name, script_folders(caller), SUFFIXES)
-        return read(path) if path else None
+        path = _found(name, script_folders(caller), SUFFIXES, disk)
+        return disk.read(path, report) if path else None
 
     def template(name: str) -> Source | None:
-        path = _found(name, template_folders, ("",))
-        return read(path) if path else None
+        path = _found(name, template_folders, ("",), disk)
+        return disk.read(path, report) if path else None
 
     return Library(
         script=script,
@@ -129,11 +170,12 @@ def disk_library(
         ],
         script_names=lambda caller: _stems(script_folders(caller), (".yml", ".yaml")),
         template_names=lambda: _stems(template_folders[:-1], (".tpl.py", ".tpl", ".yml")),
+        parse=disk.parse,
         policy=project.policy,
     )
 
 
-def _found(name: str, folders: Sequence[Path], suffixes: Sequence[str]) -> Path | None:
+def _found(name: str, folders: Sequence[Path], suffixes: Sequence[str], disk: Disk) -> Path | None:
     """The first file of that name that lies inside one of the folders."""
     if "\0" in name:
         return None
@@ -141,7 +183,7 @@ def _found(name: str, folders: Sequence[Path], suffixes: Sequence[str]) -> Path 
         for suffix in suffixes:
             path = folder / f"{name}{suffix}"
             with contextlib.suppress(OSError):  # a name too long for the file system is not there
-                if path.is_file() and path.resolve().is_relative_to(folder.resolve()):
+                if disk.is_file(path) and path.resolve().is_relative_to(folder.resolve()):
                     return path
     return None
 
@@ -211,3 +253,15 @@ def write_files(folder: Path, files: Mapping[str, str]) -> list[Path]:
                 Path(temporary).unlink()
         raise
     return [path for _, path in written]
+
+
+def stamps(paths: Iterable[str]) -> dict[str, tuple[int, int] | None]:
+    """What tells that files have changed: time of writing (ns) and size; None for what is not."""
+    found: dict[str, tuple[int, int] | None] = {}
+    for path in paths:
+        try:
+            status = Path(path).stat()
+            found[path] = (status.st_mtime_ns, status.st_size)
+        except OSError:
+            found[path] = None
+    return found

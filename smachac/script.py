@@ -14,7 +14,7 @@ from smachac.lookups import Scope, child_scope, fill_in
 from smachac.source import Source, Span, Word
 from smachac.states import Library, StateType, find_state_type
 from smachac.sugar import check_sugar
-from smachac.syntax import Entry, Map, Scalar, Seq, Tree, parse
+from smachac.syntax import Entry, Map, Scalar, Seq, Tree
 from smachac.typed import Aliases, read_aliases, typed
 
 MAX_STATES = 1_000_000
@@ -243,7 +243,8 @@ class _Resolver:
         key = (word.text, place.source.name)
         if key not in self.sub_scripts:
             source = self.library.script(word.text, place.source.name)
-            self.sub_scripts[key] = (source, parse(source, self.report)) if source else None
+            tree = self.library.parse(source, self.report) if source else None
+            self.sub_scripts[key] = (source, tree) if source else None
         found = self.sub_scripts[key]
         if found is None:
             caller = place.source.name

@@ -29,7 +29,8 @@ class Library:
 
     `script(name, caller)` is the text of a sub-script named in the source `caller`;
     `template(file)` that of an interface or template by file name (`MoveTo.yml`,
-    `MoveTo.tpl.py`). The folders and names serve messages. `policy` is that of the project.
+    `MoveTo.tpl.py`). The folders and names serve messages. `policy` is that of the project;
+    `parse` may remember the trees of texts that several scripts share.
     """
 
     script: Callable[[str, str], Source | None]
@@ -38,6 +39,7 @@ class Library:
     template_folders: Callable[[], Sequence[str]] = lambda: ()
     script_names: Callable[[str], Sequence[str]] = lambda caller: ()
     template_names: Callable[[], Sequence[str]] = lambda: ()
+    parse: Callable[[Source, Report], Tree | None] = parse
     policy: Policy = field(default_factory=Policy)
 
 
@@ -100,7 +102,7 @@ def find_state_type(name: str, library: Library, report: Report) -> StateType | 
     """The state type of that name, or None where there is neither interface nor template."""
     interface = library.template(f"{name}.yml")
     if interface is not None:
-        return _read_interface(name, interface, report)
+        return _read_interface(name, interface, library, report)
     for pattern in TEMPLATE_FILES:
         template = library.template(pattern.format(name))
         if template is not None:
@@ -108,8 +110,8 @@ def find_state_type(name: str, library: Library, report: Report) -> StateType | 
     return None
 
 
-def _read_interface(name: str, source: Source, report: Report) -> StateType:
-    tree = parse(source, report)
+def _read_interface(name: str, source: Source, library: Library, report: Report) -> StateType:
+    tree = library.parse(source, report)
     if not isinstance(tree, Map):
         span = tree.span if tree is not None else Span(source, 0, 0)
         report.append(problems.wrong_shape(span, f"the interface of `{name}` must be a mapping"))

@@ -1,15 +1,15 @@
-"""What the commands do: the only module that writes to streams."""
+"""What the commands do."""
 
 from __future__ import annotations
 
 import argparse
-import os
 import sys
 from collections.abc import Callable
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from smachac import analyse_file
+from smachac.streams import print_report, shown, usage, wants_colour
 
 if TYPE_CHECKING:
     from smachac.diagnostics import Report
@@ -17,91 +17,18 @@ if TYPE_CHECKING:
     from smachac.states import Library
     from smachac.targets import Target
 
-OK, FINDINGS, USAGE = 0, 1, 2
-"""Exit codes: clean; findings or a failed run; wrong usage."""
-
-
-def _wants_colour(arguments: argparse.Namespace, stream: Any) -> bool:
-    if arguments.colour != "auto":
-        return bool(arguments.colour == "always")
-    return bool(stream.isatty()) and "NO_COLOR" not in os.environ
+OK, FINDINGS = 0, 1
+"""Exit codes: clean; findings or a failed run."""
 
 
 def _load(path: Path, arguments: argparse.Namespace) -> tuple[Analysis, Library | None]:
     return analyse_file(path, arguments.scripts, arguments.templates)
 
 
-def _shown(report: Report) -> Report:
-    """What people are shown of a report: all but information."""
-    from smachac.diagnostics import Severity
-
-    return [item for item in report if item.severity is not Severity.INFO]
-
-
-def _print_report(report: Report, arguments: argparse.Namespace, stream: Any) -> None:
-    from smachac.report.text import render_text
-
-    if report:
-        print(render_text(report, colour=_wants_colour(arguments, stream)), file=stream)
-
-
 def _check(arguments: argparse.Namespace) -> int:
-    from smachac import checks
-    from smachac.diagnostics import CODES, Severity
-    from smachac.policy import chosen
+    from smachac.checkup import check
 
-    assert checks is not None  # imported for the codes it files
-    select, ignore = _codes(arguments.select), _codes(arguments.ignore)
-    for code in (*select, *ignore):
-        if not any(known.startswith(code) for known in CODES):
-            return _usage(f"there is no code `{code}`", code, list(CODES))
-    reports = {
-        str(path): chosen(_load(path, arguments)[0].report, select, ignore)
-        for path in dict.fromkeys(arguments.script)
-    }
-    grave = {Severity.ERROR, Severity.WARNING} if arguments.strict else {Severity.ERROR}
-    failing = {
-        name: [item for item in report if item.severity in grave]
-        for name, report in reports.items()
-    }
-    _put_reports(reports, failing, arguments)
-    return FINDINGS if any(failing.values()) else OK
-
-
-def _codes(words: list[str]) -> list[str]:
-    """Codes, or beginnings of codes, from options that may hold several."""
-    return [code.strip().upper() for word in words for code in word.split(",") if code.strip()]
-
-
-def _put_reports(
-    reports: dict[str, Report], failing: dict[str, Report], arguments: argparse.Namespace
-) -> None:
-    """Print what was found about each script, in the form that is asked for."""
-    from smachac.report.text import summary
-
-    report = [item for found in reports.values() for item in found]
-    match arguments.format:
-        case "json":
-            from smachac.report.json import render_json
-
-            sys.stdout.write(render_json(report))
-        case "sarif":
-            from smachac.report.sarif import render_sarif
-
-            sys.stdout.write(render_sarif(report))
-        case "junit":
-            from smachac.report.junit import render_junit
-
-            shown = {name: _shown(found) for name, found in reports.items()}
-            sys.stdout.write(render_junit(shown, failing))
-        case "github":
-            from smachac.report.github import render_github
-
-            sys.stdout.write(render_github(_shown(report)))
-            print(summary(report))
-        case _:
-            _print_report(_shown(report), arguments, sys.stdout)
-            print(summary(report))
+    return check(arguments)
 
 
 def _build(arguments: argparse.Namespace) -> int:
@@ -109,20 +36,20 @@ def _build(arguments: argparse.Namespace) -> int:
 
     target = load_target(arguments.target)
     if target is None:
-        return _usage(f"there is no target `{arguments.target}`", arguments.target, target_names())
+        return usage(f"there is no target `{arguments.target}`", arguments.target, target_names())
     options: dict[str, str] = {}
     for text in arguments.option:
         name, equals, value = text.partition("=")
         if not equals:
-            return _usage(f"--option wants NAME=VALUE, not `{text}`")
+            return usage(f"--option wants NAME=VALUE, not `{text}`")
         if name not in target.options:
             message = f"target `{target.name}` has no option `{name}`"
-            return _usage(message, name, list(target.options))
+            return usage(message, name, list(target.options))
         options[name] = value
     try:
         _, files = _compile(arguments, target, options)
     except OptionError as error:
-        return _usage(f"--option {error}")
+        return usage(f"--option {error}")
     return FINDINGS if files is None else _put(files, arguments)
 
 
@@ -140,7 +67,7 @@ def _compile(
         files = build(analysis.checked, target, library, found, options)
         report = [*report, *found]
         files = None if found else files
-    _print_report(_shown(report), arguments, sys.stderr)
+    print_report(shown(report), arguments, sys.stderr)
     return analysis, files
 
 
@@ -176,12 +103,12 @@ def _run(arguments: argparse.Namespace) -> int:
     from smachac.targets import load_target
 
     if arguments.mock is None and (arguments.schedule or arguments.orders):
-        return _usage("--schedule and --orders are for --mock: a program's threads run as they do")
+        return usage("--schedule and --orders are for --mock: a program's threads run as they do")
     target = load_target("python")
     assert target is not None
     if arguments.mock is not None:
         analysis, files = _load(arguments.script, arguments)[0], {}
-        _print_report(_shown(analysis.report), arguments, sys.stderr)
+        print_report(shown(analysis.report), arguments, sys.stderr)
     else:
         analysis, made = _compile(arguments, target, {})
         files = made or {}
@@ -190,12 +117,12 @@ def _run(arguments: argparse.Namespace) -> int:
         return FINDINGS
     wrong = _wrong_film(arguments, "".join(files.values()))
     if wrong:
-        return _usage(wrong)
+        return usage(wrong)
     scenario = None
     if arguments.mock is not None:
         report: Report = []
         scenario = read_scenario_file(arguments.mock, machine, report)
-        _print_report(report, arguments, sys.stderr)
+        print_report(report, arguments, sys.stderr)
         if scenario is None:
             return FINDINGS
         if arguments.orders is not None:
@@ -203,7 +130,7 @@ def _run(arguments: argparse.Namespace) -> int:
             print(text)
             return OK if agree else FINDINGS
     try:
-        with watching(arguments, _wants_colour(arguments, sys.stdout)) as (observe, errors):
+        with watching(arguments, wants_colour(arguments, sys.stdout)) as (observe, errors):
             try:
                 if scenario is not None:
                     outcome = play(machine, scenario, arguments.seed, arguments.schedule, observe)
@@ -253,10 +180,10 @@ def _explain(arguments: argparse.Namespace) -> int:
         sys.stdout.write(render_rules())
         return OK
     if arguments.code is None:
-        return _usage("name a code, such as SM201, or --all")
+        return usage("name a code, such as SM201, or --all")
     code = CODES.get(arguments.code.upper())
     if code is None:
-        return _usage(f"there is no code `{arguments.code}`", arguments.code.upper(), list(CODES))
+        return usage(f"there is no code `{arguments.code}`", arguments.code.upper(), list(CODES))
     print(render_code(code))
     return OK
 
@@ -271,16 +198,6 @@ def _targets(arguments: argparse.Namespace) -> int:
         for option, text in target.options.items():
             print(f"{'':<10}   --option {option}=...  {text}")
     return OK
-
-
-def _usage(message: str, word: str = "", known: list[str] | None = None) -> int:
-    """Wrong usage, in the words of argparse, with what may have been meant."""
-    from smachac.diagnostics import did_you_mean
-
-    print(f"smachac: error: {message}", file=sys.stderr)
-    if known:
-        print(did_you_mean(word, known) or f"known: {', '.join(known)}", file=sys.stderr)
-    return USAGE
 
 
 VERBS: dict[str, Callable[[argparse.Namespace], int]] = {

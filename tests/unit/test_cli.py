@@ -192,8 +192,14 @@ def test_a_state_that_raises(tmp_path: Path, capsys: pytest.CaptureFixture[str])
 def test_a_missing_file_a_folder_and_a_full_stop(
     tmp_path: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:
-    assert main(["check", str(tmp_path / "no.yml"), str(tmp_path)]) == 1
-    assert capsys.readouterr().out.count("SM007") == 2
+    (tmp_path / "folder.yml").mkdir()
+    (tmp_path / "folder.yml" / "x.yml").write_text("states: [")
+    assert main(["check", str(tmp_path / "no.yml")]) == 1
+    assert capsys.readouterr().out.count("SM007") == 1
+    assert main(["build", str(tmp_path), "-t", "dot"]) == 1
+    assert capsys.readouterr().err.count("SM007") == 1
+    assert main(["check", str(tmp_path)]) == 2
+    assert "there is no script in" in capsys.readouterr().err
 
 
 def test_output_that_cannot_be_written(capsys: pytest.CaptureFixture[str]) -> None:

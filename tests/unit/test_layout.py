@@ -23,6 +23,8 @@ TOUCHES = {
     "smachac/files.py": "the compiler's one place that touches the disk",
     "smachac/cli.py": "arguments and exit codes",
     "smachac/verbs.py": "prints what the commands say",
+    "smachac/checkup.py": "prints reports",
+    "smachac/streams.py": "prints reports",
     "smachac/runs.py": "opens the trace, shows progress",
     "smachac/execute.py": "runs what was built, and keeps its output",
     "smachac/runtime/record.py": "says that a trace broke off",
