@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import hashlib
+import re
 from collections.abc import Iterable
 from dataclasses import replace
 from pathlib import PurePath
@@ -39,6 +40,9 @@ from smachac.values import as_value
 
 _NOT_VARIABLES = frozenset(schema.names_for("state")) | {"script"}
 """What of a leaf's fields belongs to the language; the rest are variables of its state type."""
+
+_VARIABLE = re.compile(r"(\.?)\{(\w+)\}")
+"""A part of a claim that is filled in."""
 
 _BASE_VARIABLES = ("node_name", "function_name", "manifest")
 
@@ -143,11 +147,33 @@ def _interface(state: State) -> dict[str, Any]:
             Remap(key=key.text, to=to.text, span=key.span) for key, to in _pairs(state, "remapping")
         ),
         "claims": tuple(
-            dict.fromkeys((*type_.claims, *(word.text for word in _words(state, "claims"))))
+            dict.fromkeys(
+                _VARIABLE.sub(lambda found: _part(state, found), claim)
+                for claim in (*type_.claims, *(word.text for word in _words(state, "claims")))
+            )
         ),
         "span": state.name.span,
         "via": state.via,
     }
+
+
+def _part(state: State, found: re.Match[str]) -> str:
+    """A part of a claim in braces: what a variable holds, without its dot where that is nothing.
+    What is no constant, and a key, stays in braces."""
+    dot, name = found.groups()
+    entry = state.fields.get(name)
+    known = state.type.variables.get(name)
+    tree = entry.value if entry is not None else known.default if known is not None else None
+    if tree is None or name in schema.VARIABLES:
+        return found[0]
+    match as_value(tree).data:
+        case None:
+            return ""
+        case bool():
+            return found[0]
+        case str() | int() as value:
+            return f"{dot}{value}"
+    return found[0]
 
 
 def _leaf(state: State) -> Leaf:

@@ -73,7 +73,7 @@ REQUIRED: dict[str, tuple[str, ...]] = {
     "base": ("name", "outcomes", "states"),
     "StateMachine": ("outcomes", "states"),
     "Sequence": ("outcomes", "connector_outcome", "states"),
-    "Concurrence": ("outcomes", "default_outcome", "states"),
+    "Concurrence": ("outcomes", "states"),
     "Iterator": ("it", "states"),
     "state": (),
 }

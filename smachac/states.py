@@ -51,6 +51,7 @@ class VariableType:
     type: Type = ANY
     required: bool = True
     doc: str = ""
+    default: Tree | None = None
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -200,11 +201,13 @@ def _type(tree: Tree | None, report: Report) -> Type:
 
 
 def _variable(name: str, tree: Tree, report: Report) -> VariableType:
+    default = tree.get("default") if isinstance(tree, Map) else None
     return VariableType(
         name=name,
         type=_type(tree, report),
-        required=not (isinstance(tree, Map) and tree.get("default") is not None),
+        required=default is None,
         doc=_doc(tree),
+        default=default.value if default is not None else None,
     )
 
 

@@ -2,11 +2,32 @@
 
 from __future__ import annotations
 
-from smachac.checks import concurrence, expressions, liveness, names, structure
+from smachac.checks import (
+    concurrence,
+    coverage,
+    expressions,
+    liveness,
+    masking,
+    names,
+    races,
+    structure,
+    waiting,
+)
 from smachac.diagnostics import Report, run_rules
 from smachac.ir.nodes import Machine
 
-__all__ = ["check_machine", "concurrence", "expressions", "liveness", "names", "structure"]
+__all__ = [
+    "check_machine",
+    "concurrence",
+    "coverage",
+    "expressions",
+    "liveness",
+    "masking",
+    "names",
+    "races",
+    "structure",
+    "waiting",
+]
 
 
 def check_machine(machine: Machine) -> Report:

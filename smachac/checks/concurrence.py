@@ -4,7 +4,9 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 
-from smachac.checks.hints import calls, did_you_mean, guesser
+from smachac.checks.combinations import UndecidedError, bits
+from smachac.checks.endings import Judged, judged
+from smachac.checks.hints import calls, did_you_mean, guesser, other_place
 from smachac.checks.outline import is_open
 from smachac.diagnostics import Finding, Severity, rule
 from smachac.ir import nodes
@@ -15,11 +17,16 @@ from smachac.problems import listed
 
 @rule("SM403", "dead-rule", Severity.ERROR, firm=True)
 def dead_rule(machine: Machine) -> Iterator[Finding]:
-    """A rule can never match: it names a child or an outcome that does not exist, or nothing.
+    """A rule can never decide: it names a child or an outcome that does not exist, or nothing, or
+    larger rules always win over it.
 
-    The case it was written for falls to the default outcome; the robot goes on as if that case
-    had never been thought of. SMACH does not even run a concurrence whose rule names an unknown
-    child, and its versions disagree on a rule without conditions.
+    The case it was written for ends otherwise; the robot goes on as if that case had never been
+    thought of. SMACH does not even run a concurrence whose rule names an unknown child, and its
+    versions disagree on a rule without conditions.
+
+    A warning where in each combination in which the rule holds, a rule that lists more children
+    holds as well. An outcome that a container declares but never ends with is not told again
+    here.
 
     Wrong:
         name: sm
@@ -59,6 +66,8 @@ def dead_rule(machine: Machine) -> Iterator[Finding]:
                 yield from _dead_rules(path, container)
             case nodes.Iterator(sugar=""):
                 yield from _dead_renames(path, container)
+    for each in judged(machine):
+        yield from _shadowed_rules(each)
 
 
 def _dead_rules(path: str, container: Concurrence) -> Iterator[Finding]:
@@ -94,6 +103,34 @@ def _other_outcome(child: Node, outcome: str) -> str:
     names = outcome_names(child)
     known = f"its outcomes are {listed(names)}" if names else "it has no outcomes"
     return did_you_mean(guesser(names)(outcome)) or known
+
+
+def _shadowed_rules(each: Judged) -> Iterator[Finding]:
+    """The rules over which larger ones win in every combination."""
+    read, rules = each.read, each.read.rules
+    for number, entry in enumerate(read.written):
+        given, larger = rules.conditions[number], read.larger(number)
+        rivals = larger & rules.compatible(number)
+        if not rivals or any(end not in each.whole[child] for child, end in given.items()):
+            continue
+        try:
+            if rules.find(each.whole, given, larger) is not None:
+                continue
+        except UndecidedError:
+            return
+        winners = [read.written[rival] for rival in bits(rivals)]
+        yield Finding(
+            span=entry.span,
+            message=f"the rule for `{entry.outcome}` never decides: whenever it holds, so does one"
+            f" that lists more children, for {listed(winner.outcome for winner in winners)}",
+            help="take it out, or let it list the children that make it differ",
+            related=(
+                *(part for one in winners[:3] for part in other_place(one.span, "wins over it")),
+                *calls(read.node, entry.span),
+            ),
+            severity=Severity.WARNING,
+            node=each.path,
+        )
 
 
 def _dead_renames(path: str, container: nodes.Iterator) -> Iterator[Finding]:

@@ -11,7 +11,7 @@ from collections.abc import Set as AbstractSet
 from dataclasses import replace
 from typing import TypeAlias
 
-from smachac.checks.hints import PREEMPTED, Guesser, guesser
+from smachac.checks.hints import PREEMPTED, Guesser, guesser, is_failure
 from smachac.ir import nodes
 from smachac.ir.graph import START, can_end, edges, reachable
 from smachac.ir.nodes import (
@@ -40,6 +40,13 @@ def linear(machine: Machine) -> Iterator[tuple[str, Linear]]:
 
 def is_open(node: Node) -> bool:
     return isinstance(node, Leaf) and node.open
+
+
+def fails(node: Node, outcome: str) -> bool:
+    """Whether a state has failed when it ends so; tries that are used up (`retry:`) have."""
+    if isinstance(node, nodes.Iterator) and node.sugar == "retry":
+        return outcome == node.exhausted_outcome or is_failure(outcome)
+    return is_failure(outcome)
 
 
 def children_names(container: nodes.Container) -> frozenset[str]:

@@ -94,7 +94,7 @@ def test_good_scripts_fit(data: Any) -> None:
         script({"A": None}),
         script({"A": {"time": 1}}),
         script({"A": {"template": "T", "transitions": ["done"]}}),
-        script({"A": {name: value for name, value in BOTH.items() if name != "default_outcome"}}),
+        script({"A": {name: value for name, value in BOTH.items() if name != "states"}}),
         script({"A": BOTH | {"join": "some"}}),
         [],
         [{"A": {"template": "T"}}, {"B": {"template": "T"}}],

@@ -62,7 +62,9 @@ def construct(node: Container, variable: str, depth: int) -> str:
         case Sequence():
             arguments.append(("connector_outcome=", string(node.connector_outcome)))
         case Concurrence():
-            arguments.append(("default_outcome=", string(node.default_outcome)))
+            # SMACH insists on a default; rules that leave nothing out never come to it.
+            default = node.default_outcome or node.rules[-1].outcome
+            arguments.append(("default_outcome=", string(default)))
         case IteratorNode():
             items: Doc = f"lambda: {variable}.userdata[{string(node.items_key)}]"
             if node.items is not None:

@@ -1,0 +1,312 @@
+"""Rules over failures that end as a success."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Mapping
+from typing import NamedTuple
+
+from smachac.checks.branches import Space, Study
+from smachac.checks.combinations import Combination, UndecidedError
+from smachac.checks.coverage import written
+from smachac.checks.endings import Judged, judged
+from smachac.checks.hints import (
+    GOOD,
+    PREEMPTED,
+    SUCCESSES,
+    calls,
+    is_failure,
+    other_place,
+    successes,
+)
+from smachac.checks.ways import MOST_STEPS
+from smachac.diagnostics import Finding, Severity, rule
+from smachac.ir import nodes
+from smachac.ir.nodes import Concurrence, Container, Leaf, Machine, Node, Sequence, StateMachine
+from smachac.ir.walk import containers, leads_to_child, outcome_names
+from smachac.problems import listed
+from smachac.source import Span
+
+
+@rule("SM404", "masked-failure", Severity.WARNING)
+def masked_failure(machine: Machine) -> Iterator[Finding]:
+    """A child failed, and the concurrence ends as if all had gone well.
+
+    The robot goes on with a part it did not grasp, or to a place it did not look at. Most often
+    the default outcome is one of success, or a rule does not list all children.
+
+    Exactly: an outcome of failure is `aborted`, `failed`, `error`, `timeout` and the like. A
+    success is an outcome called `succeeded` (or `done`, `ok` and the like beside one of failure),
+    and one with which the concurrence always ends when no child failed; not one that leads
+    straight to an outcome of failure. A rule that lists the child that failed, with that failure,
+    is meant so. Nobody preempts the concurrence; with `join: any` it is the first child to end that
+    failed, for the others are told to give up.
+
+    Wrong:
+        name: sm
+        template: Base
+        outcomes: [ready, failed]
+        states:
+          - BOTH:
+              template: Concurrence
+              outcomes: [ready, failed]
+              default_outcome: ready
+              outcome_map:
+                failed: {LEFT: aborted, RIGHT: aborted}
+              states:
+                - LEFT: {template: ScriptedState, outcomes: [done, aborted]}
+                - RIGHT: {template: ScriptedState, outcomes: [done, aborted]}
+              transitions: {ready: ready, failed: failed}
+
+    Right:
+        name: sm
+        template: Base
+        outcomes: [ready, failed]
+        states:
+          - BOTH:
+              template: Concurrence
+              outcomes: [ready, failed]
+              default_outcome: failed
+              outcome_map:
+                ready: {LEFT: done, RIGHT: done}
+              states:
+                - LEFT: {template: ScriptedState, outcomes: [done, aborted]}
+                - RIGHT: {template: ScriptedState, outcomes: [done, aborted]}
+              transitions: {ready: ready, failed: failed}
+    """
+    for each in judged(machine):
+        try:
+            yield from _masked(each)
+        except UndecidedError:
+            continue
+
+
+def _masked(each: Judged) -> Iterator[Finding]:
+    """For the default outcome and each rule with a success the failures that it hides."""
+    read, node = each.read, each.read.node
+    spaces = each.calm
+    if not any(read.failures(*ends) for space, _ in spaces for ends in space.items()):
+        return
+    good = _good_results(read, [space for space, _ in spaces])
+    if node.default_outcome in good:
+        hidden = _hidden(read, spaces, {}, read.rules.all)
+        help = "let the default be an outcome of failure, and list what is a success in a rule"
+        yield from _masks(each, node.default_outcome, node.default_span, hidden, help)
+    for number, entry in enumerate(read.written):
+        if entry.outcome in good:
+            given = read.rules.conditions[number]
+            rivals = read.rules.larger_than(len(given) - 1) & ~(1 << number)
+            hidden = _hidden(read, spaces, given, rivals)
+            help = f"list every child in the rule for `{entry.outcome}`"
+            yield from _masks(each, entry.outcome, entry.span, hidden, help)
+
+
+def _good_results(read: Study, spaces: list[Space]) -> frozenset[str]:
+    """The outcomes of a concurrence that mean success."""
+    node = read.node
+    found = set(successes(outcome_names(node)))
+    results: set[str] = set()
+    for space in (_good_part(read, each) for each in spaces):
+        if read.rules.find(space, {}, read.rules.all) is not None:
+            results.add(node.default_outcome)
+        for number, entry in enumerate(read.written):
+            given = read.rules.conditions[number]
+            if read.rules.find(space, given, read.larger(number)) is not None:
+                results.add(entry.outcome)
+    if len(results) == 1:
+        found |= results
+    leads = {step.outcome: step.target for step in node.transitions}
+    return frozenset(name for name in found if not (_bad(name) or _bad(leads.get(name, ""))))
+
+
+def _bad(name: str) -> bool:
+    return is_failure(name) or name == PREEMPTED
+
+
+def _good_part(read: Study, space: Space) -> Space:
+    """The outcomes of success of each child; those that say nothing where it has none."""
+    found: Space = {}
+    for name, ends in space.items():
+        good = tuple(end for end in ends if end.lower() in SUCCESSES | GOOD)
+        found[name] = (
+            good or read.neutral(name, ends) or tuple(end for end in ends if end == PREEMPTED)
+        )
+    return found
+
+
+def _hidden(
+    read: Study, spaces: list[tuple[Space, str]], given: Combination, avoided: int
+) -> dict[str, Combination]:
+    """The children that a deciding rule does not ask and that may have failed, each with what
+    decides then."""
+    found: dict[str, Combination] = {}
+    for space, first in spaces:
+        for child in [first] if first else space:
+            if child in given or child in found:
+                continue
+            for end in read.failures(child, space[child]):
+                fixed = {**given, child: end}
+                whole = read.rules.find(space, fixed, avoided)
+                if whole is not None:
+                    found[child] = read.rules.shown(whole, fixed, avoided)
+                    break
+    return found
+
+
+def _masks(
+    each: Judged, outcome: str, span: Span, hidden: dict[str, Combination], help: str
+) -> Iterator[Finding]:
+    if not hidden:
+        return
+    node = each.read.node
+    child, shown = next(iter(hidden.items()))
+    others = [name for name in hidden if name != child]
+    also = f"; {listed(others)} may fail unseen as well" if others else ""
+    failed = next(one for one in node.children if one.name == child)
+    step = next((step for step in node.transitions if step.outcome == outcome), None)
+    yield Finding(
+        span=span,
+        message=f"`{node.name}` ends with `{outcome}` although `{child}` failed: {written(shown)}"
+        f"{also}",
+        help=help,
+        related=(
+            *other_place(failed.span, f"ends with `{shown[child]}`"),
+            *calls(node, span),
+        ),
+        path=(node.name, f"({outcome})", step.target) if step else (),
+        node=each.path,
+    )
+
+
+class _Fate(NamedTuple):
+    """An outcome of `node` that leaves container after container until the machine has ended with
+    a success. `turn` is the first step on which the failure is called a success."""
+
+    path: str
+    node: Node
+    outcome: str
+    turn: _Fate | None
+    span: Span
+    then: _Fate | None
+
+
+@rule("SM206", "unhandled-failure", Severity.WARNING)
+def unhandled_failure(machine: Machine) -> Iterator[Finding]:
+    """A state fails, and the machine ends with a success, without any other state in between.
+
+    Whoever started the robot is told that the task is done. The failure needs a recovery, or an
+    outcome of its own.
+
+    Exactly: an outcome of failure of a state (`aborted`, `failed`, `error`, `timeout` and the
+    like) leaves the containers around it, by whatever transitions, until the machine has ended
+    with `succeeded`, or with `done`, `ok` or the like where the machine has an outcome of failure
+    as well. What a concurrence makes of the failures of its children is told by SM404.
+
+    Wrong:
+        name: sm
+        template: Base
+        outcomes: [succeeded, failed]
+        states:
+          - PICK:
+              template: ScriptedState
+              outcomes: [done, lost]
+              transitions: {done: PLACE, lost: failed}
+          - PLACE:
+              template: ScriptedState
+              outcomes: [done, timeout]
+              transitions: {done: succeeded, timeout: succeeded}
+
+    Right:
+        name: sm
+        template: Base
+        outcomes: [succeeded, failed]
+        states:
+          - PICK:
+              template: ScriptedState
+              outcomes: [done, lost]
+              transitions: {done: PLACE, lost: failed}
+          - PLACE:
+              template: ScriptedState
+              outcomes: [done, timeout]
+              transitions: {done: succeeded, timeout: failed}
+    """
+    root = machine.root
+    good = successes(outcome_names(root))
+    if not good:
+        return
+    fates: dict[tuple[int, str], _Fate | None] = {(id(root), name): None for name in good}
+    turns: dict[tuple[int, str], list[_Fate]] = {}
+    for path, container in containers(root):
+        names = frozenset(child.name for child in container.children)
+        for child in container.children:
+            for fate in _fates(container, names, f"{path}/{child.name}", child, fates):
+                if not isinstance(child, Leaf):
+                    fates[id(child), fate.outcome] = fate
+                if _starts(child, fate.outcome):
+                    turn = fate.turn or fate
+                    turns.setdefault((id(turn.node), turn.outcome), []).append(fate)
+    for found in turns.values():
+        yield _unhandled_failure(root, found)
+
+
+def _starts(node: Node, outcome: str) -> bool:
+    """Whether a failure begins here: with a leaf, tries that are used up, or a time limit."""
+    match node:
+        case Leaf():
+            return is_failure(outcome)
+        case nodes.Iterator(sugar="retry"):
+            return outcome == node.exhausted_outcome
+        case Concurrence(sugar="timeout"):
+            return outcome == node.default_outcome
+    return False
+
+
+def _fates(
+    container: Container,
+    names: frozenset[str],
+    path: str,
+    child: Node,
+    fates: Mapping[tuple[int, str], _Fate | None],
+) -> Iterator[_Fate]:
+    """The outcomes of a child that end the machine with a success."""
+    ways: list[tuple[str, str, Span]] = []
+    match container:
+        case StateMachine() | Sequence():
+            steps = (step for step in child.transitions if not leads_to_child(step, names))
+            ways = [(step.outcome, step.target, step.span) for step in steps]
+        case nodes.Iterator():
+            ends = (end for end in outcome_names(child) if end not in container.loop_outcomes)
+            final = dict(container.final_map)
+            ways = [(end, final.get(end, end), container.span) for end in ends]
+        case Concurrence(sugar="timeout"):
+            inner = outcome_names(child) if child.name == container.name else ()
+            ways = [(end, end, container.span) for end in inner]
+    for outcome, target, span in ways:
+        if (id(container), target) in fates:
+            then = fates[id(container), target]
+            called_good = target.lower() in SUCCESSES | GOOD
+            turn = None if called_good or then is None else then.turn or then
+            yield _Fate(path, child, outcome, turn, span, then)
+
+
+def _unhandled_failure(root: StateMachine, found: list[_Fate]) -> Finding:
+    first = found[0]
+    turn = first.turn or first
+    way: list[str] = []
+    step: _Fate | None = first
+    while step is not None and len(way) < 2 * MOST_STEPS:
+        way += [step.node.name, f"({step.outcome})"]
+        step = step.then
+    others = [fate.node.name for fate in found[1:]]
+    also = f"; so it does after {listed(others)}" if others else ""
+    return Finding(
+        span=turn.span,
+        message=f"`{first.node.name}` fails with `{first.outcome}`, and `{root.name}` ends with a"
+        f" success{also}",
+        help="lead the failure to a state that recovers, or to an outcome of failure",
+        related=(
+            *(other_place(first.node.span, "the state that fails") if turn is not first else ()),
+            *calls(turn.node, turn.span),
+        ),
+        path=tuple(way),
+        node=turn.path,
+    )
