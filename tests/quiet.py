@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 from contextlib import contextmanager
+from typing import Any
 
 from smachac.runtime import smach
 
@@ -13,11 +14,14 @@ def _silent(message: str, *arguments: object) -> None:
 
 
 @contextmanager
-def quiet() -> Iterator[None]:
-    """Loggers are process-wide: what was set before comes back."""
-    before = smach.loginfo, smach.logwarn, smach.logdebug, smach.logerr
-    smach.set_loggers(_silent, _silent, _silent, _silent)
+def quiet(library: Any = smach) -> Iterator[None]:
+    """Loggers are process-wide: what was set before comes back.
+
+    `library` is the SMACH in use, if not the bundled runtime.
+    """
+    before = library.loginfo, library.logwarn, library.logdebug, library.logerr
+    library.set_loggers(_silent, _silent, _silent, _silent)
     try:
         yield
     finally:
-        smach.set_loggers(*before)
+        library.set_loggers(*before)

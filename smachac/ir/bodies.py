@@ -11,30 +11,30 @@ from smachac.ir.nodes import (
     Container,
     Expression,
     Iterator,
+    Leaf,
     Node,
     Sequence,
     StateMachine,
 )
-from smachac.ir.result import Failure, RunError
+from smachac.ir.result import NO_OUTCOME, Failure, Fault, RunError
 from smachac.ir.userdata import BehaviourError, called, python_data
 from smachac.ir.walk import leads_to_child, outcome_names
 
 if TYPE_CHECKING:
     from smachac.ir.run import Interpreter
 
-Run: TypeAlias = "Generator[float, None, str]"
-"""A state on its way to its outcome."""
+Run: TypeAlias = "Generator[float, None, str | None]"
+"""A state on its way to its outcome; None where a leaf gave none."""
 
 
 def body(run: Interpreter, node: Container, path: str, own: dict[str, object]) -> Run:
     """What a container does between its entry and its end, over its own userdata."""
+    if isinstance(node, Iterator):
+        return _iterator(run, node, path, own)
     if not node.children:
         run.fail("no-state", path, "has no states", node.span)
-    match node:
-        case Concurrence():
-            return _concurrence(run, node, path, own)
-        case Iterator():
-            return _iterator(run, node, path, own)
+    if isinstance(node, Concurrence):
+        return _concurrence(run, node, path, own)
     return _machine(run, node, path, own)
 
 
@@ -50,6 +50,11 @@ def _machine(
         run.preemption.before_next(path, previous, here)
         run.preemption.running[path] = [here]
         outcome = yield from run.visit(child, here, own)
+        if outcome is None:
+            raise RunError(no_outcome(child, here, "undeclared-outcome"))
+        if outcome not in outcome_names(child) and not (isinstance(child, Leaf) and child.open):
+            message = f"ended with `{outcome}`, which is not one of its outcomes"
+            run.fail("undeclared-outcome", here, message, child.span)
         if outcome not in routes.targets[name]:
             message = f"no transition for outcome `{outcome}`"
             run.fail("no-transition", here, message, child.span)
@@ -59,8 +64,13 @@ def _machine(
             run.fail("no-target", here, message, child.span)
         to = f"{path}/{name}" if inside else f"{path}:{name}"
         run.emit("transition", here, outcome=outcome, to=to)
-    run.preemption.at_end(path, [here] if here else [])
+    run.preemption.after_last(path, here or path)
     return name
+
+
+def no_outcome(node: Node, path: str, kind: Fault) -> Failure:
+    """Why the container of a state that ended without an outcome cannot go on; already told."""
+    return Failure(kind=kind, path=path, message=NO_OUTCOME, span=node.span)
 
 
 @dataclass(frozen=True, slots=True)
@@ -88,7 +98,7 @@ def _routes(node: StateMachine | Sequence) -> Routes:
 
 def _concurrence(run: Interpreter, node: Concurrence, path: str, own: dict[str, object]) -> Run:
     children = {f"{path}/{child.name}": child for child in node.children}
-    live = {here: _Branch(run.visit(child, here, own)) for here, child in children.items()}
+    live = {here: _Branch(_branch(run, child, here, own)) for here, child in children.items()}
     run.preemption.wake.update((here, branch.wake) for here, branch in live.items())
     running = run.preemption.running[path] = list(live)
     if path in run.preemption.asked:
@@ -116,18 +126,28 @@ def _concurrence(run: Interpreter, node: Concurrence, path: str, own: dict[str, 
             told = True
             for other in live:
                 run.preemption.request(other)
-    run.preemption.at_end(path, children)
+    run.preemption.after_all(path, children)
     for end in ended.values():
         if isinstance(end, Failure):
             raise RunError(end)
     return _outcome_of(node, ended)
 
 
+def _branch(
+    run: Interpreter, child: Node, here: str, own: dict[str, object]
+) -> Generator[float, None, str]:
+    """A child of a concurrence: any outcome will do, but there must be one."""
+    outcome = yield from run.visit(child, here, own)
+    if outcome is None:
+        raise RunError(no_outcome(child, here, "no-outcome"))
+    return outcome
+
+
 @dataclass(slots=True)
 class _Branch:
     """A child of a concurrence that has not ended, and when it can go on."""
 
-    body: Run
+    body: Generator[float, None, str]
     ready_at: float = 0.0
 
     def wake(self) -> None:
@@ -163,17 +183,18 @@ def _outcome_of(node: Concurrence, ended: Mapping[str, str | Failure]) -> str:
 
 
 def _iterator(run: Interpreter, node: Iterator, path: str, own: dict[str, object]) -> Run:
-    child = node.children[0]
-    here = f"{path}/{child.name}"
-    result = node.exhausted_outcome
-    outcome = None
+    """Item after item; a request to stop ends it after the item that runs then (P9)."""
+    result: str | None = node.exhausted_outcome
+    outcome, here = None, path
     items = _items_of(run, node, path, own)
     position = 0
     while position < len(items):
         own[node.item_key] = items[position]
         position += 1
-        if path in run.preemption.asked:
-            run.preemption.request(here)
+        if not node.children:
+            run.fail("no-state", path, "has no states", node.span)
+        child = node.children[0]
+        here = f"{path}/{child.name}"
         run.preemption.running[path] = [here]
         outcome = yield from run.visit(child, here, own, loose=True)
         if path in run.preemption.asked or outcome not in node.loop_outcomes:
@@ -183,7 +204,8 @@ def _iterator(run: Interpreter, node: Iterator, path: str, own: dict[str, object
         if position < len(items):
             run.emit("transition", here, outcome=outcome, to=here)
     run.preemption.running.pop(path, None)
-    result = dict(node.final_map).get(result, result)
+    if result is not None:
+        result = dict(node.final_map).get(result, result)
     if outcome is not None:
         run.emit("transition", here, outcome=outcome, to=f"{path}:{result}")
     return result

@@ -37,21 +37,29 @@ class Preemption:
         self.asked -= {one for one in self.asked if one == path or one.startswith(below)}
 
     def before_next(self, path: str, previous: str | None, child: str) -> None:
-        """A machine goes on to its next state (P3, P5): what was not answered is asked again."""
+        """A machine goes on to its next state (P3, P5): what was not answered is asked again.
+
+        The request is taken back from the state before, not from what is below it (P7).
+        """
         if path not in self.asked:
             return
         if previous is not None and previous not in self.asked:
             self.asked.discard(path)
             return
         if previous is not None:
-            self.recall(previous)
+            self.asked.discard(previous)
         self.request(child)
 
-    def at_end(self, path: str, children: Collection[str]) -> None:
-        """A container has ended (P4, P10): its request is served if no child still holds one.
+    def after_last(self, path: str, last: str) -> None:
+        """A machine has ended (P4): its request is served if its last state holds none."""
+        self.running.pop(path, None)
+        if last not in self.asked:
+            self.asked.discard(path)
 
-        `children` are those that ran last. Without a request to the container itself, what the
-        children hold is taken back, or it would stop a later visit.
+    def after_all(self, path: str, children: Collection[str]) -> None:
+        """A concurrence has ended (P10): its request is served if no child still holds one.
+
+        What the children hold is taken back, or it would stop a later visit.
         """
         self.running.pop(path, None)
         held = [child for child in children if child in self.asked]

@@ -24,6 +24,7 @@ Fault = Literal[
     UserdataFault,
     "behaviour",
     "undeclared-outcome",
+    "no-outcome",
     "no-transition",
     "no-target",
     "no-state",
@@ -31,6 +32,9 @@ Fault = Literal[
     "no-end",
 ]
 """Why a run failed: what a leaf did wrong, a graph that leads nowhere, or no end in sight."""
+
+NO_OUTCOME = "ended without an outcome"
+"""What a trace says of a state whose code returned nothing."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)

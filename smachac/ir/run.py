@@ -15,7 +15,7 @@ from typing import NoReturn
 from smachac.ir.bodies import Routes, Run, body
 from smachac.ir.nodes import Leaf, Machine, Node
 from smachac.ir.preemption import Preemption
-from smachac.ir.result import Behaviour, Event, Failure, Fault, Result, RunError
+from smachac.ir.result import NO_OUTCOME, Behaviour, Event, Failure, Fault, Result, RunError
 from smachac.ir.schedule import Schedule
 from smachac.ir.userdata import (
     BehaviourError,
@@ -128,7 +128,8 @@ class Interpreter:
         if failure is None:
             if parent is not None:
                 copy_out(root, own, parent)
-            self.emit("finish", path, outcome=outcome)
+            if outcome is not None:
+                self.emit("finish", path, outcome=outcome)
         scopes = {where: dict(scope) for where, scope in self._scopes.items()}
         return Result(
             outcome=outcome,
@@ -167,11 +168,10 @@ class Interpreter:
         else:
             copy_in(node, around, own)
             outcome = yield from body(self, node, path, own)
-        self.emit("exit", path, outcome=outcome)
-        anything = isinstance(node, Leaf) and node.open
-        if not anything and outcome not in outcome_names(node):
-            message = f"ended with `{outcome}`, which is not one of its outcomes"
-            self.fail("undeclared-outcome", path, message, node.span)
+        if outcome is not None:
+            self.emit("exit", path, outcome=outcome)
+        elif isinstance(node, Leaf):
+            self.emit("error", path, message=NO_OUTCOME)
         if not isinstance(node, Leaf):
             copy_out(node, own, around)
         return outcome

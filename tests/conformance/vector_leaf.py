@@ -18,7 +18,6 @@ _EXCEPTIONS: dict[str, Callable[[str], BaseException]] = {
     "KeyError": KeyError,
     "RuntimeError": RuntimeError,
     "KeyboardInterrupt": KeyboardInterrupt,
-    "InvalidUserCodeError": smach.InvalidUserCodeError,
 }
 
 
@@ -28,9 +27,13 @@ def join(path: str, label: str) -> str:
 
 
 class Recording:
-    """Events in order; those inside a concurrence are kept apart by branch."""
+    """Events in order; those inside a concurrence are kept apart by branch.
 
-    def __init__(self, case: Json) -> None:
+    `library` is the SMACH that runs the case: the bundled runtime, or SMACH itself.
+    """
+
+    def __init__(self, case: Json, library: Any = smach) -> None:
+        self.library = library
         self.preempts = bool(case.get("preempt"))
         self.budget = int(case.get("budget", 400))
         self.nodes: dict[str, Any] = {}
@@ -115,7 +118,7 @@ class Script:
             return "user_exception"
         if isinstance(error, KeyError):
             return "missing_key"
-        if isinstance(error, smach.InvalidUserCodeError):
+        if isinstance(error, self.recording.library.InvalidUserCodeError):
             return "undeclared_read"
         return f"fault of the replay: {error!r}"
 
@@ -158,7 +161,8 @@ class Script:
 
 def scripted(name: str, recording: Recording) -> BaseException:
     """An exception that the case asks for, remembered as such."""
-    error = _EXCEPTIONS[name]("scripted")
+    make = _EXCEPTIONS[name] if name in _EXCEPTIONS else getattr(recording.library, name)
+    error: BaseException = make("scripted")
     recording.scripted.append(error)
     return error
 
@@ -182,29 +186,37 @@ def value(expression: Json, ud: Any) -> Any:
     return [*value(operand[0], ud), value(operand[1], ud)]
 
 
-class Leaf(smach.State):
-    """A state that follows a script and reports preempt requests."""
+class Follower:
+    """What makes a state follow a script and report preempt requests; a State comes behind it."""
 
-    def __init__(self, script: Script) -> None:
-        node = script.node
-        super().__init__(
-            node["outcomes"], node.get("in", []), node.get("out", []), node.get("io", [])
-        )
-        self._script = script
-        script.state = self
+    script: Script
 
     def execute(self, ud: Any, /) -> str | None:
-        return self._script.run(ud)
+        return self.script.run(ud)
 
     def request_preempt(self) -> None:
-        recording = self._script.recording
+        recording = self.script.recording
         if recording.preempts:
-            recording.add("P", self._script.path)
-        super().request_preempt()
+            recording.add("P", self.script.path)
+        state: Any = super()
+        state.request_preempt()
         with recording.changed:
             recording.changed.notify_all()
 
     def recall_preempt(self) -> None:
-        if self._script.recording.preempts:
-            self._script.recording.add("R", self._script.path)
-        super().recall_preempt()
+        if self.script.recording.preempts:
+            self.script.recording.add("R", self.script.path)
+        state: Any = super()
+        state.recall_preempt()
+
+
+class Leaf(Follower, smach.State):
+    """A state of the bundled runtime that follows a script."""
+
+    def __init__(self, script: Script) -> None:
+        node = script.node
+        smach.State.__init__(
+            self, node["outcomes"], node.get("in", []), node.get("out", []), node.get("io", [])
+        )
+        self.script = script
+        script.state = self

@@ -25,6 +25,9 @@ class BuildError(Exception):
         self.path = path
 
 
+Make = Callable[[Json, str, Recording], Any]
+
+
 def build(node: Json, path: str, recording: Recording) -> Any:
     """The state or container that a node describes. Raises BuildError."""
     recording.types[path] = node["type"]
@@ -62,23 +65,29 @@ def _container(node: Json, path: str, recording: Recording) -> Any:
     for key, preset in node.get("preset", {}).items():
         container.userdata[key] = copy.deepcopy(preset)
     if "initial" in node:
-        container.set_initial_state(list(node["initial"]), store(node.get("initial_ud", {})))
+        held = store(recording.library, node.get("initial_ud", {}))
+        container.set_initial_state(list(node["initial"]), held)
+    watch(container, path, recording)
+    return container
+
+
+def watch(container: Any, path: str, recording: Recording) -> None:
+    """Have the callbacks of a container recorded."""
     container.register_start_cb(lambda ud, labels: recording.add("<", path, list(labels)))
-    if node["type"] != "concurrence":
+    if recording.types[path] != "concurrence":
         container.register_transition_cb(lambda ud, labels: recording.add("~", path, list(labels)))
     container.register_termination_cb(
         lambda ud, labels, outcome: recording.add(">", path, labels, outcome)
     )
-    return container
 
 
 def _has(node: Json) -> bool:
     return any(node.get(field) for field in ("states", "children", "child"))
 
 
-def store(content: Mapping[str, Json]) -> smach.UserData:
+def store(library: Any, content: Mapping[str, Json]) -> Any:
     """A UserData with copies of some values."""
-    ud = smach.UserData()
+    ud = library.UserData()
     for key, held in content.items():
         ud[key] = copy.deepcopy(held)
     return ud
@@ -179,21 +188,24 @@ _ADD = {
 }
 
 
-def replay(case: Json) -> Json:
-    """Build and run a case; the result in the form of the recorded expectations."""
-    recording = Recording(case)
+def replay(case: Json, make: Make = build, library: Any = smach) -> Json:
+    """Build and run a case; the result in the form of the recorded expectations.
+
+    `make` builds the machine with the classes of `library`.
+    """
+    recording = Recording(case, library)
     try:
-        root = build(case["machine"], "/", recording)
+        root = make(case["machine"], "/", recording)
     except BuildError as error:
         return {"build": {"error": type(error.__cause__).__name__, "at": error.path}}
     result: dict[str, Json] = {}
-    faulty = [path for path in _containers(recording) if not _consistent(recording.nodes[path])]
+    faulty = [path for path in _containers(recording) if not _consistent(recording, path)]
     if faulty:
         result["inconsistent"] = faulty
-    root.userdata.update(store(case.get("userdata", {})))
+    root.userdata.update(store(library, case.get("userdata", {})))
     if case.get("preempt_before"):
         root.request_preempt()
-    parent = store(case["parent"]) if "parent" in case else None
+    parent = store(library, case["parent"]) if "parent" in case else None
     result["runs"] = [_run(root, parent, recording, faulty) for _ in range(case.get("runs", 1))]
     return result
 
@@ -202,10 +214,11 @@ def _containers(recording: Recording) -> list[str]:
     return sorted(path for path, kind in recording.types.items() if kind != "leaf")
 
 
-def _consistent(container: Any) -> bool:
+def _consistent(recording: Recording, path: str) -> bool:
+    library = recording.library
     try:
-        container.check_consistency()
-    except (smach.InvalidStateError, smach.InvalidTransitionError):
+        recording.nodes[path].check_consistency()
+    except (library.InvalidStateError, library.InvalidTransitionError):
         return False
     return True
 
@@ -252,7 +265,7 @@ def _walk(events: list[Json]) -> list[Json]:
     return events + [w for e in inside for branch in e[2].values() for w in _walk(branch)]
 
 
-def _content(ud: smach.UserData) -> dict[str, Json]:
+def _content(ud: Any) -> dict[str, Json]:
     return {key: copy.deepcopy(ud[key]) for key in ud.keys()}  # noqa: SIM118 (no mapping)
 
 
@@ -266,6 +279,6 @@ def _category(error: BaseException | None, recording: Recording) -> str:
         error = error.__cause__ or error.__context__
     if any(cause is known for cause in causes for known in recording.scripted):
         return "user_callback"
-    if any(isinstance(cause, smach.InvalidTransitionError) for cause in causes):
+    if any(isinstance(cause, recording.library.InvalidTransitionError) for cause in causes):
         return "invalid_transition"
     return "other"

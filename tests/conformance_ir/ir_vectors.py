@@ -15,6 +15,7 @@ from smachac.ir.nodes import (
     Leaf,
     Machine,
     Node,
+    Origin,
     Outcome,
     OutcomeRule,
     Preset,
@@ -42,19 +43,19 @@ def machine_of(case: Json) -> Machine:
     return Machine(root=cast(StateMachine, _node(case["machine"], {"label": ""}, {})))
 
 
-def _data(value: Json) -> Data:
+def data_of(value: Json) -> Data:
     if isinstance(value, list):
-        return tuple(_data(item) for item in value)
+        return tuple(data_of(item) for item in value)
     if isinstance(value, dict):
-        return Struct(entries=tuple((key, _data(item)) for key, item in value.items()))
+        return Struct(entries=tuple((key, data_of(item)) for key, item in value.items()))
     return cast(Data, value)
 
 
 def _value(value: Json) -> Value:
-    return Value(data=_data(value), span=NOWHERE)
+    return Value(data=data_of(value), span=NOWHERE)
 
 
-def _node(node: Json, spec: Json, targets: dict[str, str | None]) -> Node:
+def _node(node: Json, spec: Json, targets: dict[str, tuple[str, Origin]]) -> Node:
     """A node; `spec` is its entry in the container, `targets` where its outcomes lead."""
     both = node.get("io", [])
     common: dict[str, Any] = {
@@ -67,13 +68,8 @@ def _node(node: Json, spec: Json, targets: dict[str, str | None]) -> Node:
             Remap(key=key, to=to, span=NOWHERE) for key, to in spec.get("remapping", {}).items()
         ),
         "transitions": tuple(
-            Transition(
-                outcome=outcome,
-                target=target or outcome,
-                origin="written" if target else "implicit",
-                span=NOWHERE,
-            )
-            for outcome, target in targets.items()
+            Transition(outcome=outcome, target=target, origin=origin, span=NOWHERE)
+            for outcome, (target, origin) in targets.items()
         ),
     }
     if node["type"] == "leaf":
@@ -108,51 +104,81 @@ def _machine(node: Json, common: dict[str, Any]) -> Node:
     )
 
 
-def _targets(node: Json) -> list[dict[str, str | None]]:
+def _targets(node: Json) -> list[dict[str, tuple[str, Origin]]]:
     """Where the outcomes of each state of a machine lead, connectors included (A1, A2, Q1-Q5)."""
     states = node["states"]
-    targets: list[dict[str, str | None]] = [
-        {**dict.fromkeys(spec["node"]["outcomes"]), **spec.get("transitions", {})}
+    targets: list[dict[str, tuple[str, Origin]]] = [
+        {
+            outcome: (target or outcome, "written" if target else "implicit")
+            for outcome, target in {
+                **dict.fromkeys(spec["node"]["outcomes"]),
+                **spec.get("transitions", {}),
+            }.items()
+        }
         for spec in states
     ]
     last: int | None = None
     for at, spec in enumerate(states):
         label = spec["label"]
         if at and "auto" in states[at - 1]:
-            targets[at - 1].update(dict.fromkeys(states[at - 1]["auto"], label))
+            targets[at - 1].update(dict.fromkeys(states[at - 1]["auto"], (label, "written")))
         if node["type"] == "sequence" and "auto" not in spec:
-            if last is not None and targets[last].get(node["connector"]) is None:
-                targets[last][node["connector"]] = label
+            if last is not None and _links(states[last], node["connector"]):
+                origin: Origin = "connector" if last == at - 1 else "written"
+                targets[last][node["connector"]] = (label, origin)
             last = at
     return targets
 
 
+def _links(spec: Json, connector: str) -> bool:
+    """Whether a sequence links a state to the next: it can end so, and leads nowhere yet (Q2)."""
+    known = connector in spec["node"]["outcomes"]
+    return known and spec.get("transitions", {}).get(connector) is None
+
+
 def _concurrence(node: Json, common: dict[str, Any]) -> Node:
     specs = {spec["label"]: spec for spec in node["children"]}
+    default, rules = _rules(node)
     return Concurrence(
         type="Concurrence",
         children=tuple(_node(spec["node"], spec, {}) for spec in specs.values()),
-        default_outcome=node["default"],
+        default_outcome=default,
         join="any" if any(rule["ret"] for rule in node.get("term_cb", [])) else "all",
-        rules=tuple(_rules(node)),
+        rules=tuple(rules),
         **common,
     )
 
 
-def _rules(node: Json) -> Iter[OutcomeRule]:
-    """The rules of the map, then what an outcome callback overrides them by.
+def _rules(node: Json) -> tuple[str, list[OutcomeRule]]:
+    """The default outcome, and the rules of the map and of the outcome callback.
 
-    A callback's word counts more than any rule, so its conditions are repeated.
+    The last that holds wins in SMACH (N6, N7), in the graph the one with most conditions: so each
+    repeats its conditions until it has more than those before it. One without conditions always
+    holds, which makes it the default.
     """
-    given = [(outcome, when, 1) for outcome, when in node.get("map", [])]
-    for rule in node.get("outcome_cb", []):
-        if isinstance(rule["ret"], str):
-            given.append((rule["ret"], rule["when"], len(node["children"]) + 1))
-    for outcome, when, times in given:
+    rules: list[OutcomeRule] = []
+    default, most = node["default"], 0
+    for outcome, when in _given_rules(node):
+        if not when:
+            default, rules, most = outcome, [], 0
+            continue
+        times = most // len(when) + 1
+        most = times * len(when)
         conditions = tuple(
             Condition(child=label, outcome=ended, span=NOWHERE) for label, ended in when.items()
         )
-        yield OutcomeRule(outcome=outcome, when=conditions * times, span=NOWHERE)
+        rules.append(OutcomeRule(outcome=outcome, when=conditions * times, span=NOWHERE))
+    return default, rules
+
+
+def _given_rules(node: Json) -> list[tuple[str, dict[str, str]]]:
+    """What decides on a concurrence's outcome, from what counts least to what counts most."""
+    called = [
+        (rule["ret"], rule.get("when", {}))
+        for rule in reversed(node.get("outcome_cb", []))
+        if isinstance(rule["ret"], str) and None not in rule.get("when", {}).values()
+    ]
+    return [*dict(node.get("map", [])).items(), *called]
 
 
 def _iterator(node: Json, common: dict[str, Any]) -> Node:

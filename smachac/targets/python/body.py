@@ -76,7 +76,9 @@ def construct(node: Container, variable: str, depth: int) -> str:
             pass
     arguments += key_arguments(node.inputs, node.outputs)
     if isinstance(node, Concurrence):
-        if node.rules:
+        if len({rule.outcome for rule in node.rules}) < len(node.rules):
+            arguments.append(("outcome_cb=", _outcome_function(node)))
+        elif node.rules:
             arguments.append(("outcome_map=", _outcome_map(node)))
         if node.join == "any":
             arguments.append(("child_termination_cb=", "lambda outcomes: True"))
@@ -108,6 +110,17 @@ def _outcome_map(node: Concurrence) -> Group:
         (rule.outcome, mapping((one.child, string(one.outcome)) for one in rule.when))
         for rule in rules
     )
+
+
+def _outcome_function(node: Concurrence) -> str:
+    """The rules as a function, where an outcome has several: a map has room for one."""
+    text = "None"
+    for rule in sorted(node.rules, key=lambda rule: len(rule.when)):
+        holds = " and ".join(
+            f"ended[{string(one.child)}] == {string(one.outcome)}" for one in rule.when
+        )
+        text = f"{string(rule.outcome)} if {holds or True} else {text}"
+    return f"lambda ended: {text}"
 
 
 def userdata(node: Container, variable: str, depth: int) -> list[str]:
@@ -165,6 +178,20 @@ def _never_taken(node: Node) -> Iterator[Transition]:
     for edge in node.transitions:
         if edge.outcome == renamed:
             yield replace(edge, outcome=node.exhausted_outcome, origin="written")
+
+
+def children(node: Container) -> Iterator[Node]:
+    """The states of a container, without the implicit exits that share their name with a state:
+    written out they would lead to that state, left out they do not (smach-semantics M7)."""
+    names = frozenset(child.name for child in node.children)
+    for child in node.children:
+        kept = [
+            edge
+            for edge in child.transitions
+            if edge.origin != "implicit" or edge.target not in names
+        ]
+        shadowed = len(kept) < len(child.transitions)
+        yield replace(child, transitions=tuple(kept)) if shadowed else child
 
 
 def place(node: Node) -> str:

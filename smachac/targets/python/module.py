@@ -112,7 +112,7 @@ def _container(
         return _function(node, parent, variable, depth, path, gathered)
     header: list[str] = []
     states = []
-    for child in node.children:
+    for child in body.children(node):
         below = f"{path}/{child.name}"
         if isinstance(child, Leaf):
             states.append(_leaf(child, node, variable, depth + 1, below, header, gathered))
