@@ -3,11 +3,13 @@
 Code written for `import smach` runs on this package unchanged:
 `from smachac.runtime import smach`. What differs from SMACH is what could not be relied on there:
 hangs raise, an exception while building leaves nothing open, the caller's dicts and lists are not
-written to, Ctrl-C stops a machine, and values in userdata are never wrapped.
+written to, Ctrl-C stops a machine, and values in userdata are never wrapped. docs/semantics.md
+lists every difference; `compat` takes back those that a script may depend on.
 """
 
 from __future__ import annotations
 
+import os
 from collections.abc import Callable
 
 from . import (
@@ -53,6 +55,7 @@ __all__ = [
     "StateMachine",
     "UserData",
     "cb_interface",
+    "compat",
     "concurrence",
     "container",
     "exceptions",
@@ -72,6 +75,15 @@ __all__ = [
     "user_data",
     "util",
 ]
+
+compat: bool = os.environ.get("SMACHAC_COMPAT", "") == "1"
+"""Whether to do as SMACH does also where a script should not depend on it:
+
+Ctrl-C and SystemExit become errors of the state; what the items of an Iterator raise ends them;
+`keys` of remapped userdata gives the container's names, `update` writes them, declared or not; a
+Concurrence keeps its children from a request that came before they ran, and leaves one that they
+did not answer to their next visit. To be set before a machine runs.
+"""
 
 loginfo: log.Logger = log.loginfo
 logwarn: log.Logger = log.logwarn

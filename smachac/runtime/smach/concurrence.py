@@ -150,7 +150,7 @@ class Concurrence(Container):
             branches.start()
             if self._preempt_requested:
                 branches.request()
-            if branches.take():
+            if branches.take() and not smach.compat:
                 self._preempt(branches)
             branches.release()
             while branches.wait():
@@ -166,7 +166,7 @@ class Concurrence(Container):
             return
         self._left_flagged = True
         label, error = branches.failure
-        if not isinstance(error, Exception):
+        if not (isinstance(error, Exception) or smach.compat):
             raise error
         raise InvalidStateError(f"branch '{label}' failed: {error}") from error
 
@@ -234,6 +234,8 @@ class Concurrence(Container):
 
     def _settle(self, branches: Branches) -> None:
         """Take back what the children did not answer; see `Branches.answered`."""
+        if smach.compat and not self._preempt_requested:
+            return
         flagged = [state for state in self._states.values() if state.preempt_requested()]
         for state in flagged:
             withdraw(state)

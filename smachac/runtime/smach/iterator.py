@@ -147,7 +147,12 @@ class Iterator(Container):
         self._active = state
         outcome: str | None = self._exhausted
         while not smach.is_shutdown():
-            item = next(items, _NO_MORE)
+            try:
+                item = next(items, _NO_MORE)
+            except Exception:
+                if not smach.compat:
+                    raise
+                item = _NO_MORE
             if item is _NO_MORE:
                 outcome = self._exhausted
                 break
@@ -170,7 +175,9 @@ class Iterator(Container):
             outcome: str | None = state.execute(self.userdata)
         except InvalidUserCodeError:
             raise
-        except Exception as error:
+        except BaseException as error:
+            if not (isinstance(error, Exception) or smach.compat):
+                raise
             raise InvalidUserCodeError(
                 f"state '{self._label}' of type {type(state).__name__} failed:\n"
                 f"{traceback.format_exc()}"

@@ -215,7 +215,9 @@ class StateMachine(Container):
                 outcome = state.execute(step.view)
             except InvalidUserCodeError:
                 raise
-            except Exception as error:
+            except BaseException as error:
+                if not (isinstance(error, Exception) or smach.compat):
+                    raise
                 raise InvalidUserCodeError(
                     f"state '{step.label}' of type {type(state).__name__} failed:\n"
                     f"{traceback.format_exc()}"

@@ -152,12 +152,16 @@ class Remapper:
 
     def keys(self) -> list[str]:
         """The declared inputs that are present, under the child's names."""
-        return [key for key in self._view[0] if key in self]
+        inputs, _, remapping, data = self._view
+        if smach.compat:
+            return [remapping.get(key, key) for key in data if key in inputs]
+        return [key for key in inputs if key in self]
 
     def update(self, ud: UserData | Remapper) -> None:
         """Write every key of another store, by the same rules as single writes."""
+        target = self._view[3] if smach.compat else self
         for key in ud.keys():  # noqa: SIM118 (a store is no mapping)
-            self[key] = ud[key]
+            target[key] = ud[key]
 
     def _refusal(self, key: str) -> Exception:
         inputs, _, remapping, data = self._view
