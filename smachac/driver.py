@@ -3,14 +3,13 @@
 from __future__ import annotations
 
 import json
-import sys
-from collections.abc import Iterable, Iterator, Mapping
-from contextlib import contextmanager
+from collections.abc import Iterable, Mapping
 from dataclasses import dataclass, replace
 
 from smachac import problems
 from smachac.checks import check_machine
 from smachac.diagnostics import Diagnostic, Finding, Report, has_errors, in_order
+from smachac.ir.depth import deep_recursion
 from smachac.ir.nodes import Checked, Machine
 from smachac.ir.walk import walk
 from smachac.lower import lower
@@ -19,19 +18,6 @@ from smachac.script import resolve
 from smachac.source import Source, Span, Word
 from smachac.states import Library
 from smachac.targets import Context, Files, Target
-
-FRAMES = 8_000
-"""Python's limit of recursion while we work: enough for the deepest script that is accepted."""
-
-
-@contextmanager
-def _deep() -> Iterator[None]:
-    before = sys.getrecursionlimit()
-    sys.setrecursionlimit(max(before, FRAMES))
-    try:
-        yield
-    finally:
-        sys.setrecursionlimit(before)
 
 
 def load(source: Source, library: Library, report: Report) -> Machine | None:
@@ -64,7 +50,7 @@ class Analysis:
 
 def analyse(source: Source, library: Library, report: Report) -> Analysis:
     """Read a script and judge it by every rule; findings already in `report` count as well."""
-    with _deep():
+    with deep_recursion():
         tree = library.parse(source, report)
         script = resolve(source, tree, library, report)
         machine = lower(script) if script is not None else None
@@ -117,7 +103,7 @@ def analyse_alone(source: Source, library: Library, report: Report) -> Analysis:
         return source if by == name else library.script(word, by)
 
     own = replace(library, script=script)
-    with _deep():
+    with deep_recursion():
         machine = load(called((), (), ()), own, [])
     if machine is None or not machine.root.children:
         outside = called((), (), ())
@@ -175,7 +161,7 @@ def build(
 ) -> Files:
     """The files a target prints; none if a template is at fault (SM605)."""
     context = Context(library=library, options=options or {})
-    with _deep():
+    with deep_recursion():
         files = target.emit(machine, context, report)
     return {} if has_errors(report) else files
 

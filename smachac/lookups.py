@@ -22,6 +22,26 @@ MAX_NODES = 100_000
 """The most nodes that a param may hold once its look-ups are filled in."""
 
 
+MAX_LEVELS = 100
+"""The most levels of a value: what reads Python or C++ allows about 200 brackets in brackets."""
+
+
+def is_too_deep(tree: Tree) -> bool:
+    """Whether a value has more than MAX_LEVELS levels."""
+    level = [tree]
+    for _ in range(MAX_LEVELS + 1):
+        below: list[Tree] = []
+        for one in level:
+            if isinstance(one, Seq):
+                below += one.items
+            elif isinstance(one, Map):
+                below += [entry.value for entry in one.entries]
+        if not below:
+            return False
+        level = below
+    return True
+
+
 def look_up_word(tree: Tree) -> Word | None:
     """The param that a tree asks for, or None when it is no look-up."""
     match tree:

@@ -203,7 +203,7 @@ def _leaf(state: State) -> Leaf:
 
 
 def _container(state: State, owner: str) -> Container:
-    children = tuple(_node(child) for child in state.states)
+    children = tuple([_node(child) for child in state.states])
     lifted = [
         preset for child in state.states if child.owner == "state" for preset in _presets(child)
     ]

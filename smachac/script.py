@@ -8,17 +8,18 @@ from collections.abc import Mapping
 from dataclasses import dataclass, field, replace
 
 from smachac import problems, schema, shapes
+from smachac.calls import overridden, sub_script_entries
 from smachac.diagnostics import Related, Report, did_you_mean
 from smachac.ir.nodes import Key, Outcome
-from smachac.lookups import Scope, child_scope, fill_in
+from smachac.lookups import MAX_LEVELS, Scope, child_scope, fill_in, is_too_deep
 from smachac.source import Source, Span, Word
 from smachac.states import Library, StateType, find_state_type
 from smachac.sugar import check_sugar
-from smachac.syntax import Entry, Map, Scalar, Seq, Tree
+from smachac.syntax import Entry, Map, Scalar, Seq, Tree, known_wrong
 from smachac.typed import Aliases, read_aliases, typed
 
 MAX_STATES = 1_000_000
-MAX_NESTED = 150
+MAX_NESTED = 1_000
 """The most states a script may have once its sub-scripts are called, and the most containers
 inside one another."""
 
@@ -129,6 +130,8 @@ class _Resolver:
 
     def state(self, name: Word, own: dict[str, Entry], place: _Place, role: str = "") -> State:
         """A state from its variables; `role` is "base" for the script itself."""
+        if "params" in own:
+            own["params"] = self.shallow(own["params"])
         params = own.get("params")
         scope = child_scope(place.scope, params.value if params else None, self.report)
         place = replace(place, scope=scope, depth=place.depth + 1)
@@ -141,6 +144,10 @@ class _Resolver:
             self.count += 1
         self.check_variables(name, fields, owner, type_)
         children: tuple[State, ...] = ()
+        if "states" in fields and place.depth > MAX_NESTED:
+            message = f"more than {MAX_NESTED} containers stand inside one another here"
+            self.report.append(problems.too_big(fields["states"].key.span, message))
+            return _unknown(name, fields, place)
         if "states" in fields and owner != "state":
             children = self.children(fields["states"].value, place)
             if owner == "Iterator":
@@ -155,18 +162,23 @@ class _Resolver:
             return entry
         row = schema.VARIABLES.get(key)
         names = row is not None and row.shape in ("names", "keys")
-        new = fill_in(value, scope, self.report, names=names)
-        filled = entry if new is value else Entry(entry.key, new)
+        entry = self.shallow(entry)
+        new = fill_in(entry.value, scope, self.report, names=names)
+        filled = entry if new is entry.value else self.shallow(Entry(entry.key, new))
         return typed(key, filled, self.aliases, self.report)
+
+    def shallow(self, entry: Entry) -> Entry:
+        """The entry, without a value that is nested too deep."""
+        if not is_too_deep(entry.value):
+            return entry
+        span = Span(entry.value.span.source, entry.value.span.start, entry.value.span.start + 1)
+        message = f"a value is nested deeper than {MAX_LEVELS} levels"
+        self.report.append(problems.too_big(span, message))
+        return Entry(entry.key, known_wrong(span))
 
     def children(self, tree: Tree, place: _Place) -> tuple[State, ...]:
         if not isinstance(tree, Seq):
             shapes.wrong(tree, "a list of states", self.report, "write each as `- NAME: {...}`")
-            return ()
-        if place.depth > MAX_NESTED:
-            span = Span(tree.span.source, tree.span.start, tree.span.start + 1)
-            message = f"more than {MAX_NESTED} containers stand inside one another here"
-            self.report.append(problems.too_big(span, message))
             return ()
         found = []
         for item in tree.items:
@@ -236,7 +248,7 @@ class _Resolver:
             source, inner = found
             call = Span(place.source, entry.key.span.start, entry.value.span.end)
             place = _Place(source, place.scope, (*place.calls, (source.name, call)), place.depth)
-            own = _overridden(inner, own)
+            own = overridden(inner, own)
         return self.state(name, own, place)
 
     def sub_script(self, word: Word, place: _Place) -> tuple[Source, dict[str, Entry]] | None:
@@ -264,35 +276,8 @@ class _Resolver:
                 message = "the sub-script is empty"
                 self.report.append(problems.bad_sub_script(span, message, word.span))
             return None
-        inner = self.sub_script_body(tree, word)
-        return None if inner is None else (source, inner)
-
-    def sub_script_body(self, tree: Tree, call: Word) -> dict[str, Entry] | None:
-        """The variables of the one state that a sub-script holds."""
-        start = Span(tree.span.source, tree.span.start, tree.span.start + 1)
-        if isinstance(tree, Map):
-            message = "a sub-script is a list with one state; this is a mapping"
-            self.report.append(problems.bad_sub_script(start, message, call.span))
-            return None
-        if not isinstance(tree, Seq) or len(tree.items) != 1:
-            count = f"{len(tree.items)} states" if isinstance(tree, Seq) else shapes.kind_of(tree)
-            message = f"a sub-script is a list with one state; this is {count}"
-            self.report.append(problems.bad_sub_script(start, message, call.span))
-            return None
-        item = tree.items[0]
-        if not isinstance(item, Map) or not item.entries:
-            self.report.append(
-                problems.bad_sub_script(start, "the sub-script's item is no state", call.span)
-            )
-            return None
-        first, rest = item.entries[0], item.entries[1:]
-        if isinstance(first.value, Map) and not rest:
-            return self.expand(first.value.entries)
-        if isinstance(first.value, Scalar) and first.value.value is None and rest:
-            return self.expand(rest)
-        message = "a sub-script is a list with one state that has one key: its name"
-        self.report.append(problems.bad_sub_script(first.key.span, message, call.span))
-        return None
+        entries = sub_script_entries(tree, word, self.report)
+        return None if entries is None else (source, self.expand(entries))
 
     def type_of(self, name: Word, fields: Fields, role: str) -> tuple[StateType, str]:
         """The state type a state names, and which variables of the schema are its own."""
@@ -377,17 +362,3 @@ def _called(owner: str) -> str:
     if owner == "base":
         return "the script"
     return "a state" if owner == "state" else f"a container of type `{owner}`"
-
-
-def _overridden(inner: dict[str, Entry], call: dict[str, Entry]) -> dict[str, Entry]:
-    """The variables of a sub-script under those of its call: mappings merge, the rest replaces."""
-    merged = dict(inner)
-    for key, entry in call.items():
-        below = merged.get(key)
-        if below is None or not isinstance(below.value, Map) or not isinstance(entry.value, Map):
-            merged[key] = entry
-            continue
-        own = {item.key.value: item for item in entry.value.entries}
-        entries = [own.pop(item.key.value, item) for item in below.value.entries]
-        merged[key] = Entry(entry.key, Map((*entries, *own.values()), entry.value.span))
-    return merged

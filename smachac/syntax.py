@@ -18,7 +18,7 @@ from smachac.diagnostics import Diagnostic, Report
 from smachac.source import Source, Span, Word
 
 MAX_CHARACTERS = 10_000_000
-MAX_DEPTH = 400
+MAX_DEPTH = 3_500
 MAX_EXPANDED = 5_000_000
 """Limits of a script: its length, its nesting, and its nodes with every alias written out."""
 

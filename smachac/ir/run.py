@@ -13,6 +13,7 @@ from pathlib import PurePath
 from typing import NoReturn
 
 from smachac.ir.bodies import Routes, Run, body
+from smachac.ir.depth import deep_recursion
 from smachac.ir.nodes import Leaf, Machine, Node
 from smachac.ir.preemption import Preemption
 from smachac.ir.result import NO_OUTCOME, Behaviour, Event, Failure, Fault, Result, RunError
@@ -119,8 +120,9 @@ class Interpreter:
         outcome, failure = None, None
         try:
             going = body(self, root, path, own)
-            while True:
-                self.clock = max(self.clock, next(going))
+            with deep_recursion():
+                while True:
+                    self.clock = max(self.clock, next(going))
         except StopIteration as end:
             outcome = end.value
         except RunError as failed:

@@ -7,6 +7,8 @@ import pytest
 from smachac.diagnostics import Report
 from smachac.driver import analyse, build, memory_library
 from smachac.files import disk_library
+from smachac.ir.behaviours import built_in
+from smachac.ir.run import run
 from smachac.source import Source
 from smachac.states import Library
 from smachac.targets import load_target, target_names
@@ -34,27 +36,49 @@ HEAD = "name: sm\noutcomes: [done]\nstates:\n  - X: "
 
 @pytest.mark.parametrize("target", target_names())
 def test_deep_machines_are_built(target: str) -> None:
-    analysis = analyse(Source("main.yml", HEAD + nested(95)), library({}), [])
+    analysis = analyse(Source("main.yml", HEAD + nested(998)), library({}), [])
     assert analysis.checked is not None
     found = load_target(target)
     assert found is not None
     report: Report = []
     (text,) = build(analysis.checked, found, library({}), report).values()
     assert report == []
-    assert "C94" in text
+    assert "C997" in text
     if target == "python":
         compile(text, "x.py", "exec")
 
 
 def test_too_deep_a_text() -> None:
-    assert codes(HEAD + nested(200)) == {"SM006"}
-    deep = "[" * 390 + "]" * 390
-    value = HEAD.replace("states", f"userdata: {{x: {deep}}}\nstates") + nested(1)
-    assert codes(value) == set()
+    assert codes(HEAD + nested(1001)) == {"SM006"}
+    assert codes(HEAD + nested(1200)) == {"SM006"}
+
+
+@pytest.mark.parametrize("shape", ["[{}]", "{{a: {}}}"])
+@pytest.mark.parametrize("name", ["userdata", "params"])
+def test_too_deep_a_value(shape: str, name: str) -> None:
+    opening, closing = shape.format("|").split("|")
+    for levels, found in ((98, set()), (101, {"SM006"}), (3000, {"SM006"})):
+        deep = opening * levels + "1" + closing * levels
+        script = HEAD.replace("states", f"{name}: {{x: {deep}}}\nstates") + nested(1)
+        assert codes(script) == found, levels
+
+
+def test_values_that_look_ups_make_deep() -> None:
+    deep = "[" * 90 + "1" + "]" * 90
+    script = HEAD.replace("states", f"params: {{x: {deep}}}\nuserdata: {{y: {{z: @}}}}\nstates")
+    assert codes(script.replace("@", "[[x]]") + nested(1)) == set()
+    more = "[" * 15 + "[[x]], 1" + "]" * 15
+    assert codes(script.replace("@", more) + nested(1)) == {"SM006"}
 
 
 def test_too_deep_a_chain_of_sub_scripts() -> None:
-    files = {f"s{n}.yml": f"- S: {nested(5, f'{{script: s{n + 1}}}')}\n" for n in range(40)}
+    files = {f"s{n}.yml": f"- S: {nested(26, f'{{script: s{n + 1}}}')}\n" for n in range(40)}
     files["s40.yml"] = "- S: {T: ScriptedState, o: [done]}\n"
     assert "SM006" in codes(HEAD + "{script: s0}", files)
-    assert codes(HEAD + "{script: s14}", files) == set()
+    assert codes(HEAD + "{script: s4}", files) == set()
+
+
+def test_deep_machines_are_interpreted() -> None:
+    analysis = analyse(Source("main.yml", HEAD + nested(998)), library({}), [])
+    assert analysis.checked is not None
+    assert run(analysis.checked, built_in()).outcome == "done"
