@@ -6,7 +6,10 @@ class SleepState(smach.State):
     """Waits for `time` seconds, a number or a function of userdata; a preempt request ends it."""
 
     def __init__(self, time, input_keys=()):
-        super().__init__(outcomes=["succeeded", "preempted"], input_keys=list(input_keys))
+        super().__init__(
+            outcomes=["succeeded", "preempted"],
+            input_keys=list(input_keys),
+        )
         self.time = time
         self.woken = threading.Event()
 
