@@ -45,8 +45,8 @@ def read(text: str) -> Counter[str]:
         raise BaselineError("it was not written by --write-baseline") from error
 
 
-def compared(report: Report, known: Counter[str]) -> tuple[Report, int]:
-    """The findings that a baseline does not know, and how many it knows that are gone.
+def compared(report: Report, known: Counter[str]) -> tuple[Report, int, int]:
+    """The findings that a baseline does not know, how many it knows, and how many of it are gone.
 
     Of several alike the first are taken for those that are known.
     """
@@ -58,4 +58,4 @@ def compared(report: Report, known: Counter[str]) -> tuple[Report, int]:
             left[mark] -= 1
         else:
             new.append(item)
-    return new, sum(left.values())
+    return new, len(report) - len(new), sum(left.values())

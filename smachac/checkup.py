@@ -9,14 +9,25 @@ from argparse import Namespace
 from collections import Counter
 from collections.abc import Iterable
 from pathlib import Path
+from typing import TYPE_CHECKING
 
 from smachac import baseline, checks
 from smachac.diagnostics import CODES, Report, Severity
 from smachac.discover import GitError, NothingFoundError, changed_since, scripts_of, yaml_files
-from smachac.files import Disk, read_source, stamps, write_files
+from smachac.files import (
+    ChangedError,
+    Disk,
+    read_source,
+    rewrite_files,
+    stamps,
+    write_files,
+)
 from smachac.policy import chosen
 from smachac.streams import print_report, shown, usage
 from smachac.survey import Survey, survey
+
+if TYPE_CHECKING:
+    from smachac.fixes import Mended
 
 assert checks is not None  # imported for the codes it files
 
@@ -34,7 +45,10 @@ def check(arguments: Namespace) -> int:
             return usage(f"there is no code `{code}`", code, list(CODES))
     if arguments.write_baseline and arguments.baseline is None:
         return usage("--write-baseline wants --baseline FILE")
-    return _watch(arguments) if arguments.watch else _once(arguments, set())
+    try:
+        return _watch(arguments) if arguments.watch else _once(arguments, set())
+    except (NothingFoundError, GitError, baseline.BaselineError) as error:
+        return usage(str(error))
 
 
 def _codes(words: list[str]) -> list[str]:
@@ -45,28 +59,31 @@ def _codes(words: list[str]) -> list[str]:
 def _once(arguments: Namespace, used: set[str]) -> int:
     """One round; the exit code. What the scripts are made of comes into `used`."""
     started = time.perf_counter()
-    try:
-        disk = Disk()
-        paths = scripts_of(arguments.script, disk)
-        found = survey(paths, disk, arguments.scripts, arguments.templates)
-        used.update(*found.uses.values())
-        if arguments.changed_since is not None:
-            found = found.touched_by(changed_since(arguments.changed_since))
-    except (NothingFoundError, GitError) as error:
-        return usage(str(error))
-    report = chosen(found.report, _codes(arguments.select), _codes(arguments.ignore))
+    disk = Disk()
+    paths = scripts_of(arguments.script, disk)
+    whole = survey(paths, disk, arguments.scripts, arguments.templates)
+    used.update(*whole.uses.values())
+    changed = changed_since(arguments.changed_since) if arguments.changed_since else None
+    found, notes = _counted(whole, changed, arguments)
     if arguments.write_baseline:
-        return _write_baseline(arguments.baseline, report)
-    notes = []
-    if arguments.baseline is not None:
-        known = _read_baseline(arguments.baseline)
-        if isinstance(known, str):
-            return usage(f"--baseline {arguments.baseline}: {known}")
-        before = len(report)
-        report, gone = baseline.compared(report, known)
-        notes += [f"{before - len(report)} known"] if before > len(report) else []
-        notes += [f"{gone} of the baseline gone"] if gone else []
-    found = found.only(report)
+        return _write_baseline(arguments.baseline, found.report)
+    mends = 0
+    if arguments.fix or arguments.diff:
+        from smachac.fixes import Texts, mended
+
+        def again(texts: Texts) -> Survey:
+            return survey(paths, Disk(texts), arguments.scripts, arguments.templates)
+
+        cured = mended(whole, found.report, again)
+        mends = len(cured.findings)
+        if arguments.diff:
+            _put_diff(cured)
+        elif not _rewritten(cured):
+            return FINDINGS
+        found, notes = _counted(cured.survey, changed, arguments)
+        notes += [f"{mends} mended"] if mends else []
+    elif cures := sum(bool(item.finding.edits) for item in found.report):
+        notes.append(f"{cures} with a cure: --fix")
     grave = {Severity.ERROR, Severity.WARNING} if arguments.strict else {Severity.ERROR}
     failing = {
         name: [item for item in each if item.severity in grave]
@@ -74,8 +91,43 @@ def _once(arguments: Namespace, used: set[str]) -> int:
     }
     if sys.stdout.isatty():
         notes.append(f"{time.perf_counter() - started:.2f} s")
-    _put(found, failing, notes, arguments)
-    return FINDINGS if any(failing.values()) else OK
+    if not arguments.diff:
+        _put(found, failing, notes, arguments)
+    return FINDINGS if any(failing.values()) or (arguments.diff and mends) else OK
+
+
+def _counted(
+    found: Survey, changed: set[str] | None, arguments: Namespace
+) -> tuple[Survey, list[str]]:
+    """What of a survey counts by the arguments, and notes on what does not."""
+    if changed is not None:
+        found = found.touched_by(changed)
+    report = chosen(found.report, _codes(arguments.select), _codes(arguments.ignore))
+    notes = []
+    if arguments.baseline is not None and not arguments.write_baseline:
+        report, known, gone = baseline.compared(report, _read_baseline(arguments.baseline))
+        notes += [f"{known} known"] if known else []
+        notes += [f"{gone} of the baseline gone"] if gone else []
+    return found.only(report), notes
+
+
+def _put_diff(cured: Mended) -> None:
+    from smachac.fixes import differences
+
+    sys.stdout.writelines(differences(cured))
+    count = len(cured.findings)
+    print(f"--fix would mend {count} findings in {len(cured.texts)} files", file=sys.stderr)
+
+
+def _rewritten(cured: Mended) -> bool:
+    """Write what was mended; whether that went well."""
+    try:
+        rewrite_files(cured.texts, cured.sources)
+    except (OSError, ChangedError) as error:
+        words = getattr(error, "strerror", None) or str(error)
+        print(f"nothing was mended: {words}", file=sys.stderr)
+        return False
+    return True
 
 
 def _put(found: Survey, failing: dict[str, Report], notes: list[str], arguments: Namespace) -> None:
@@ -123,16 +175,15 @@ def _write_baseline(path: Path, report: Report) -> int:
     return OK
 
 
-def _read_baseline(path: Path) -> Counter[str] | str:
-    """What a baseline knows, or what is wrong with it."""
+def _read_baseline(path: Path) -> Counter[str]:
     problems: Report = []
     source = read_source(path, problems)
     if source is None:
-        return problems[0].finding.message
+        raise baseline.BaselineError(f"--baseline {path}: {problems[0].finding.message}")
     try:
         return baseline.read(source.text)
     except baseline.BaselineError as error:
-        return str(error)
+        raise baseline.BaselineError(f"--baseline {path}: {error}") from error
 
 
 def _watch(arguments: Namespace) -> int:
@@ -141,9 +192,7 @@ def _watch(arguments: Namespace) -> int:
     while True:
         before = stamps(_watched(arguments, known))
         used: set[str] = set()
-        code = _once(arguments, used)
-        if code not in (OK, FINDINGS):
-            return code
+        _once(arguments, used)
         known = used
         now = stamps(_watched(arguments, known))
         base = {**now, **{path: before[path] for path in now if path in before}}

@@ -232,16 +232,52 @@ def write_files(folder: Path, files: Mapping[str, str]) -> list[Path]:
 
     Raises OSError; nothing is left behind then.
     """
+    paths = {folder / name: text.encode("utf-8") for name, text in files.items()}
+    for path in paths:
+        path.parent.mkdir(parents=True, exist_ok=True)
+    _put_all({path: (data, 0o644) for path, data in paths.items()})
+    return list(paths)
+
+
+class ChangedError(Exception):
+    """A file is not what it was when it was read; the words name it."""
+
+
+def rewrite_files(texts: Mapping[str, str], before: Mapping[str, Source]) -> None:
+    """Give files, named by real path, new texts: all of them or none, in the encoding and with the
+    permissions they have.
+
+    Raises OSError, and ChangedError where somebody else has written since `before` was read.
+    """
+    contents: dict[Path, tuple[bytes, int]] = {}
+    for name, text in texts.items():
+        path = Path(name)
+        data = path.read_bytes()
+        if _decoded(data) != before[name].text:
+            raise ChangedError(f"{before[name].name} was changed by somebody else meanwhile")
+        contents[path] = (_encoded(text, data), path.stat().st_mode & 0o7777)
+    _put_all(contents)
+
+
+def _encoded(text: str, like: bytes) -> bytes:
+    """A text in the encoding of other bytes, as `_decoded` reads it."""
+    for mark, encoding in ((b"\xff\xfe", "utf-16-le"), (b"\xfe\xff", "utf-16-be"),
+                           (b"\xef\xbb\xbf", "utf-8")):  # fmt: skip
+        if like.startswith(mark):
+            return mark + text.encode(encoding)
+    return text.encode("utf-8")
+
+
+def _put_all(contents: Mapping[Path, tuple[bytes, int]]) -> None:
+    """Write bytes, with their permissions, to all paths or to none."""
     written: list[tuple[str, Path]] = []
     try:
-        for name, text in files.items():
-            path = folder / name
-            path.parent.mkdir(parents=True, exist_ok=True)
+        for path, (data, mode) in contents.items():
             handle, temporary = tempfile.mkstemp(prefix=f".{path.name}.", dir=path.parent)
             written.append((temporary, path))
-            with os.fdopen(handle, "w", encoding="utf-8", newline="") as stream:
-                stream.write(text)
-            Path(temporary).chmod(0o644)
+            with os.fdopen(handle, "wb") as stream:
+                stream.write(data)
+            Path(temporary).chmod(mode)
         for _, path in written:
             if path.is_dir():
                 raise IsADirectoryError(errno.EISDIR, os.strerror(errno.EISDIR), str(path))
@@ -252,7 +288,6 @@ def write_files(folder: Path, files: Mapping[str, str]) -> list[Path]:
             with contextlib.suppress(OSError):
                 Path(temporary).unlink()
         raise
-    return [path for _, path in written]
 
 
 def stamps(paths: Iterable[str]) -> dict[str, tuple[int, int] | None]:

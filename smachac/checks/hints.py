@@ -2,19 +2,13 @@
 
 from __future__ import annotations
 
-import difflib
-from collections.abc import Callable, Iterable
+from collections.abc import Iterable
 from itertools import takewhile
 
 from smachac.diagnostics import Related
 from smachac.ir.nodes import Node
 from smachac.source import NOWHERE, Span
-
-MOST_COMPARED = 40
-"""Among more names than these, only a name one slip away is found, so that ten thousand misspelt
-names take no longer than they should."""
-
-Guesser = Callable[[str], "str | None"]
+from smachac.spelling import Guesser
 
 FAILURES = frozenset(
     ["abort", "aborted", "error", "fail", "failed", "failure", "timed_out", "timeout"]
@@ -58,35 +52,8 @@ def good_first(outcomes: Iterable[str]) -> tuple[str, ...]:
 
 
 def guesser(candidates: Iterable[str]) -> Guesser:
-    """A function that finds the candidate nearest to a misspelt name, or None.
-
-    One slip is another case, or a letter too many, missing, wrong, or in the place of the next.
-    """
-    names = list(dict.fromkeys(candidates))
-    index: dict[str, str] = {}
-
-    def guess(word: str) -> str | None:
-        if not index:
-            index.update((slip, name) for name in reversed(names) for slip in _slips(name))
-            index.update((name.casefold(), name) for name in reversed(names))
-        one_slip = next((index[slip] for slip in _slips(word) if slip in index), None)
-        if one_slip is not None or len(names) > MOST_COMPARED:
-            return one_slip
-        return next(iter(difflib.get_close_matches(word, names, n=1)), None)
-
-    return guess
-
-
-SHORTEST_SLIP = 3
-
-
-def _slips(name: str) -> list[str]:
-    """A name without regard to case, and without each of its letters. Two names one slip apart
-    have one of these in common."""
-    word = name.casefold()
-    if len(word) <= SHORTEST_SLIP:
-        return [word]
-    return [word, *(word[:at] + word[at + 1 :] for at in range(len(word)))]
+    """What finds the candidate nearest to a misspelt name."""
+    return Guesser(candidates)
 
 
 def did_you_mean(name: str | None) -> str | None:

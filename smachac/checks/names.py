@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterator
 from typing import NamedTuple
 
-from smachac.checks.hints import calls, did_you_mean, other_place
+from smachac.checks.hints import calls, did_you_mean, guesser, other_place
 from smachac.checks.outline import (
     Linear,
     children_names,
@@ -20,16 +20,20 @@ from smachac.ir import nodes
 from smachac.ir.nodes import Concurrence, Container, Machine, Node, Transition
 from smachac.ir.walk import containers, outcome_names, walk
 from smachac.problems import listed
+from smachac.source import Word
+from smachac.spelling import respelt
 
 
 class _Lost(NamedTuple):
-    """A transition to nowhere: where it stands, and the name it probably means."""
+    """A transition to nowhere: where it stands, the name it probably means, and that which it
+    means for certain."""
 
     path: str
     container: Linear
     child: Node
     step: Transition
     meant: str | None
+    sure: str | None
 
 
 @rule("SM101", "unknown-target", Severity.ERROR, firm=True)
@@ -85,11 +89,12 @@ def _lost(path: str, container: Linear) -> Iterator[_Lost]:
     for child in container.children:
         for step in child.transitions:
             if not leads_somewhere(step, names, exits):
-                yield _Lost(path, container, child, step, guess(step.target))
+                meant, sure = guess(step.target), guess.sure(step.target)
+                yield _Lost(path, container, child, step, meant, sure)
 
 
 def _nowhere(fault: _Lost, elsewhere: str | None) -> Finding:
-    path, container, child, step, meant = fault
+    path, container, child, step, meant, sure = fault
     whole = f"`{step.target}` is neither a state nor an outcome of `{container.name}`"
     if not step.target:
         whole = f"`{step.outcome}` of `{child.name}` leads nowhere: its target is empty"
@@ -97,12 +102,14 @@ def _nowhere(fault: _Lost, elsewhere: str | None) -> Finding:
     help = did_you_mean(meant)
     if above:
         help = f"the state is in `{above}`; a transition cannot cross the edge of a container"
+        sure = None
     return Finding(
         span=step.target_span,
         message=whole,
         help=help or f"name a state or an outcome of `{container.name}`",
         related=calls(child, step.target_span),
         node=f"{path}/{child.name}",
+        edits=respelt(Word(step.target, step.target_span), sure),
     )
 
 
@@ -161,6 +168,7 @@ def unknown_outcome(machine: Machine) -> Iterator[Finding]:
 def _unknown_steps(path: str, child: Node) -> Iterator[Finding]:
     unknown = unknown_outcomes(child)
     known = _has(child) if unknown else ""
+    guess = guesser(outcome_names(child))
     for step, meant in unknown:
         yield Finding(
             span=step.span,
@@ -168,6 +176,7 @@ def _unknown_steps(path: str, child: Node) -> Iterator[Finding]:
             help=did_you_mean(meant) or known,
             related=calls(child, step.span),
             node=f"{path}/{child.name}",
+            edits=respelt(Word(step.outcome, step.span), guess.sure(step.outcome)),
         )
 
 

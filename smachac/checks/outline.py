@@ -11,7 +11,7 @@ from collections.abc import Set as AbstractSet
 from dataclasses import replace
 from typing import TypeAlias
 
-from smachac.checks.hints import PREEMPTED, Guesser, guesser, is_failure
+from smachac.checks.hints import PREEMPTED, guesser, is_failure
 from smachac.ir import nodes
 from smachac.ir.graph import START, can_end, edges, reachable
 from smachac.ir.nodes import (
@@ -26,6 +26,7 @@ from smachac.ir.nodes import (
 )
 from smachac.ir.walk import containers, leads_to_child, outcome_names, walk
 from smachac.source import assert_never
+from smachac.spelling import Guesser
 
 Linear: TypeAlias = "StateMachine | Sequence"
 """A container whose states follow one another along transitions."""

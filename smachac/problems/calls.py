@@ -7,13 +7,14 @@ from collections.abc import Iterable, Sequence
 from smachac.diagnostics import Finding, Related, Severity, did_you_mean, problem
 from smachac.problems.wording import listed
 from smachac.source import Span, Word
+from smachac.spelling import Guesser, respelt
 
 
-def _searched(word: Word, searched: Sequence[str], known: Iterable[str]) -> str:
+def _searched(word: Word, searched: Sequence[str], known: Sequence[str]) -> str:
     # Not every place is a folder of the user: "the built-in ones" is none to be quoted.
     folders = ", ".join(at if at.startswith("the ") else f"`{at}`" for at in searched)
     where = f"searched in {folders}" if folders else "there was no folder to search in"
-    guess = did_you_mean(word.text, sorted(known))
+    guess = did_you_mean(word.text, known)
     return f"{where}; {guess}" if guess else where
 
 
@@ -41,10 +42,12 @@ def script_not_found(word: Word, searched: Sequence[str], known: Iterable[str]) 
         == pick_block.yml ==
         - PICK_BLOCK: {template: ScriptedState, outcomes: [done]}
     """
+    names = sorted(known)
     return Finding(
         span=word.span,
         message=f"there is no script `{word.text}`",
-        help=_searched(word, searched, known),
+        help=_searched(word, searched, names),
+        edits=respelt(word, Guesser(names).sure(word.text)),
     )
 
 
@@ -117,10 +120,12 @@ def template_not_found(word: Word, searched: Sequence[str], known: Iterable[str]
         states:
           - PICK: {template: ScriptedState, outcomes: [done], transitions: {done: done}}
     """
+    names = sorted(known)
     return Finding(
         span=word.span,
         message=f"there is no template `{word.text}`",
-        help=_searched(word, searched, known),
+        help=_searched(word, searched, names),
+        edits=respelt(word, Guesser(names).sure(word.text)),
     )
 
 

@@ -7,6 +7,7 @@ from collections.abc import Iterable
 from smachac.diagnostics import Finding, Related, Severity, did_you_mean, problem
 from smachac.problems.wording import listed
 from smachac.source import Span, Word
+from smachac.spelling import Guesser, respelt
 
 
 @problem("SM001", "yaml-syntax", Severity.ERROR)
@@ -104,10 +105,12 @@ def unknown_variable(word: Word, owner: str, known: Iterable[str]) -> Finding:
     """
     names = sorted(known)
     variables = f"its variables are {listed(names)}" if names else "it has no variables"
+    sure = Guesser(names).sure(word.text)
     return Finding(
         span=word.span,
         message=f"`{word.text}` is not a variable of {owner}",
-        help=did_you_mean(word.text, names) or variables,
+        help=did_you_mean(word.text, [sure] if sure else names) or variables,
+        edits=respelt(word, sure),
     )
 
 

@@ -11,12 +11,13 @@ import pytest
 
 LAYERS = (
     ("source",),
-    ("diagnostics", "problems", "grammars"),
+    ("diagnostics", "problems", "spelling", "grammars"),
     ("syntax", "ir", "shapes", "policy"),
     ("states", "script", "schema", "lookups", "calls", "typed", "sugar"),
     ("lower", "desugar", "values", "checks", "targets"),
     ("driver", "report", "refactor", "project", "files", "execute"),
     ("__init__", "runs", "streams", "survey", "discover", "baseline"),
+    ("fixes",),
     ("checkup",),
     ("verbs",),
     ("cli",),
@@ -26,6 +27,8 @@ LAYERS = (
 
 WITHIN = {
     ("problems", "diagnostics"),
+    ("problems", "spelling"),
+    ("spelling", "diagnostics"),
     ("shapes", "syntax"),
     ("policy", "syntax"),
     ("script", "states"),

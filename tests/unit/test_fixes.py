@@ -1,0 +1,254 @@
+"""Names that are mended: when that is certain, what is kept, what is written."""
+
+from __future__ import annotations
+
+import os
+import subprocess
+from collections.abc import Mapping
+from pathlib import Path
+
+import pytest
+from hypothesis import given, settings
+from hypothesis import strategies as st
+
+from smachac.cli import main
+from smachac.diagnostics import Diagnostic, Edit, Finding, Severity, fingerprint, has_errors
+from smachac.files import ChangedError, Disk, rewrite_files
+from smachac.fixes import Mended, mended
+from smachac.source import Source, Span, Word
+from smachac.spelling import Guesser, respelt
+from smachac.survey import Survey, survey
+
+NAMES = ["PICK_BLOCK", "PLACE_BLOCK", "PICK_1", "GRASP", "LEFT", "done", "aborted", "Left_Arm"]
+
+
+@pytest.mark.parametrize(
+    ("word", "meant"),
+    [
+        ("PALCE_BLOCK", "PLACE_BLOCK"),
+        ("PLACE_BLOK", "PLACE_BLOCK"),
+        ("PLACE_BLOCKS", "PLACE_BLOCK"),
+        ("PLACE_BLACK", "PLACE_BLOCK"),
+        ("pick_block", "PICK_BLOCK"),
+        ("GRAPS", "GRASP"),
+        ("PICK_2", None),  # another number is another thing
+        ("PICK_", None),
+        ("LIFT", None),  # a word of its own
+        ("PARSG", None),
+        ("dne", None),
+        ("DONE", "done"),
+        ("nothing", None),
+        ("GRASP", None),
+    ],
+)
+def test_what_was_meant_for_certain(word: str, meant: str | None) -> None:
+    assert Guesser(NAMES).sure(word) == meant
+
+
+def test_of_two_names_as_near_none_is_certain() -> None:
+    assert Guesser(["GRASP_A", "GRASP_B"]).sure("GRASP_C") is None
+    assert Guesser(["GRASP_A", "grasp_a"]).sure("Grasp_A") is None
+    assert Guesser(["GRASP_A", "OTHER"]).sure("GRASP_C") == "GRASP_A"
+
+
+@pytest.mark.parametrize(
+    ("written", "name", "text"),
+    [
+        ("PIKC", "PICK", "PICK"),
+        ("'PIKC'", "PICK", "'PICK'"),
+        ('"PIKC"', "PICK", '"PICK"'),
+        ("[[x]]", "PICK", None),  # a look-up
+        ("PIKC", "no", None),
+        ("PIKC", "a: b", None),
+        ("PIKC", None, None),
+    ],
+)
+def test_respelling(written: str, name: str | None, text: str | None) -> None:
+    span = Span(Source("main.yml", f"a: {written} "), 3, 3 + len(written))
+    edits = respelt(Word("PIKC", span), name)
+    assert [edit.text for edit in edits] == ([text] if text else [])
+
+
+BAD = """\
+name: sm
+template: Base
+outcomes: [done, aborted]
+states:
+  - GRASP_IT:
+      template: ScriptedState
+      outcomes: [there, slipped]
+      transitions: {there: LIFT_IT, sliped: abroted}
+  - LIFT_IT: {script: lfit, transitions: {up: done}}
+"""
+SUB = """\
+- LIFT:
+    template: StateMachine
+    outcomes: [up]
+    states:
+      - RAISE: {template: ScriptedStat, outcomes: [ok], transitions: {ok: WAIT_FOR_IT}}
+      - WAIT_FOR_TI: {template: ScriptedState, outcomes: [ok], transitions: {ok: up}}
+"""
+
+
+@pytest.fixture
+def folder(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
+    (tmp_path / "sub").mkdir()
+    (tmp_path / "main.yml").write_text(BAD)
+    (tmp_path / "smachac.toml").write_text('scripts = ["sub"]\n')
+    (tmp_path / "sub" / "lift.yml").write_text(SUB)
+    monkeypatch.chdir(tmp_path)
+    return tmp_path
+
+
+def test_names_are_mended_in_every_file(folder: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    (folder / "main.yml").chmod(0o640)
+    assert main(["check", "main.yml"]) == 1
+    assert "(3 with a cure: --fix)" in capsys.readouterr().out
+    assert main(["check", "--fix"]) == 0
+    assert capsys.readouterr().out == "no findings (5 mended)\n"
+    assert main(["check", "--fix"]) == 0
+    right = BAD.replace("sliped", "slipped").replace("abroted", "aborted")
+    assert (folder / "main.yml").read_text() == right.replace("lfit", "lift")
+    assert (folder / "main.yml").stat().st_mode & 0o777 == 0o640
+    text = SUB.replace("ScriptedStat,", "ScriptedState,").replace("TI: {", "TI: {")
+    assert (folder / "sub" / "lift.yml").read_text() == text.replace("FOR_IT", "FOR_TI")
+    assert sorted(path.name for path in folder.iterdir()) == ["main.yml", "smachac.toml", "sub"]
+
+
+def test_a_diff_is_a_patch_and_writes_nothing(
+    folder: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    text = BAD.replace("lfit", "lift").rstrip("\n")
+    (folder / "main.yml").write_bytes(text.replace("\n", "\r\n").encode())
+    assert main(["check", "--diff"]) == 1
+    shown = capsys.readouterr()
+    assert shown.err == "--fix would mend 4 findings in 2 files\n"
+    assert "\\ No newline at end of file" in shown.out
+    assert (folder / "sub" / "lift.yml").read_text() == SUB
+    assert main(["check", "--fix"]) == 0
+    fixed = [(folder / name).read_bytes() for name in ("main.yml", "sub/lift.yml")]
+    (folder / "main.yml").write_bytes(text.replace("\n", "\r\n").encode())
+    (folder / "sub" / "lift.yml").write_text(SUB)
+    patch = ["git", "apply", "-p0", "--unsafe-paths", f"--directory={folder}", "-"]
+    subprocess.run(patch, input=shown.out.encode(), check=True, cwd=folder.parent)
+    assert [(folder / name).read_bytes() for name in ("main.yml", "sub/lift.yml")] == fixed
+    capsys.readouterr()
+    assert main(["check", "--diff"]) == 0
+    assert capsys.readouterr().out == ""
+
+
+@pytest.mark.parametrize("options", [["--select", "SM2"], ["--ignore", "SM"]])
+def test_a_fix_that_adds_an_error_is_not_written(
+    options: list[str], folder: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    text = (
+        "name: sm\ntemplate: Base\noutcomes: [done]\nstates:\n"
+        "  - A: {template: ScriptedState, outcomes: [ok], transition: {ok: done},"
+        " transitions: {ok: dnoe}}\n"
+    )
+    (folder / "main.yml").write_text(text)
+    assert main(["check", "main.yml", "--fix", *options]) == 1  # firm codes count all the same
+    # Both keys would be `transitions`; the target is mended on its own.
+    assert (folder / "main.yml").read_text() == text.replace("dnoe", "done")
+    assert "(1 mended)" in capsys.readouterr().out
+
+
+def test_what_was_changed_meanwhile_is_left(tmp_path: Path) -> None:
+    path, other = str(tmp_path / "a.yml"), str(tmp_path / "b.yml")
+    for name in (path, other):
+        Path(name).write_text("old")
+    sources = {name: Source(name, "old") for name in (path, other)}
+    Path(other).write_text("newer")
+    with pytest.raises(ChangedError, match=r"b\.yml was changed"):
+        rewrite_files({path: "new", other: "new"}, sources)
+    assert Path(path).read_text() == "old"
+
+
+@pytest.mark.parametrize("encoding", ["utf-8", "utf-8-sig", "utf-16"])
+def test_the_encoding_stays(encoding: str, tmp_path: Path) -> None:
+    path = tmp_path / "a.yml"
+    path.write_bytes("\u00fc: \u2713\r\n".encode(encoding))
+    link = tmp_path / "link.yml"
+    link.symlink_to(path)
+    name = os.path.realpath(link)
+    rewrite_files({name: "\u2713\r\n"}, {name: Source(name, "\u00fc: \u2713\r\n")})
+    assert path.read_bytes() == "\u2713\r\n".encode(encoding)
+    assert link.is_symlink()
+
+
+def test_a_fix_that_shows_more_errors_is_not_written(folder: Path) -> None:
+    text = BAD.replace("transitions: {there", "transition: {there").replace("lfit", "lift")
+    (folder / "main.yml").write_text(text)
+    assert main(["check", "main.yml", "--fix"]) == 1
+    assert (folder / "main.yml").read_text() == text
+
+
+def look(texts: Mapping[str, str]) -> Survey:
+    return survey([Path("main.yml")], Disk({os.path.realpath("main.yml"): texts["main.yml"]}))
+
+
+def tried(text: str) -> Mended:
+    before = look({"main.yml": text})
+
+    def again(texts: Mapping[str, str]) -> Survey:
+        return look({"main.yml": next(iter(texts.values()))})
+
+    return mended(before, before.report, again)
+
+
+LETTERS = st.sampled_from("abdefgilnoprstuPLACEKX_:{, ")
+
+
+@settings(max_examples=60)
+@given(st.lists(st.tuples(st.integers(0, 400), LETTERS, st.integers(0, 1)), max_size=4))
+def test_fixes_never_make_it_worse(damage: list[tuple[int, str, int]]) -> None:
+    text = (
+        "name: sm\ntemplate: Base\noutcomes: [placed, aborted]\nstates:\n"
+        "  - PICK_BLOCK:\n      template: ScriptedState\n      outcomes: [picked, slipped]\n"
+        "      transitions: {picked: PLACE_BLOCK, slipped: RELEASE}\n"
+        "  - PLACE_BLOCK:\n      template: ScriptedState\n      outcomes: [there, blocked]\n"
+        "      transitions: {there: placed, blocked: RELEASE}\n"
+        "  - RELEASE: {template: ScriptedState, outcomes: [open], transitions: {open: aborted}}\n"
+    )
+    for at, letter, cut in damage:
+        at %= len(text)
+        text = text[:at] + letter + text[at + cut :]
+    before = look({"main.yml": text}).report
+    result = tried(text)
+    after = result.survey.report
+    errors = [fingerprint(item) for item in after if item.severity is Severity.ERROR]
+    assert len(errors) <= sum(item.severity is Severity.ERROR for item in before)
+    assert set(errors) <= {fingerprint(item) for item in before}
+    if result.findings:
+        assert len(after) < len(before) or not has_errors(after)
+        (mended_text,) = result.texts.values()
+        assert look({"main.yml": mended_text}).report == after or mended_text != text
+    else:
+        assert result.texts == {}
+
+
+def edit(start: int, end: int, text: str, source: Source) -> Diagnostic:
+    edits = (Edit(span=Span(source, start, end), text=text),)
+    template = look({"main.yml": "name: sm\n"}).report[0]
+    finding = Finding(span=edits[0].span, message=f"{start}", edits=edits)
+    return Diagnostic(code=template.code, severity=Severity.ERROR, finding=finding)
+
+
+@pytest.mark.parametrize(
+    ("edits", "expected"),
+    [
+        ([(0, 1, "A"), (1, 2, "B")], "ABcdef"),
+        ([(0, 1, "A"), (0, 1, "A")], "Abcdef"),
+        ([(0, 1, "A"), (0, 1, "B"), (2, 3, "C")], "abCdef"),
+        ([(0, 5, "A"), (1, 2, "B"), (3, 4, "C"), (5, 6, "F")], "abcdeF"),
+        ([(1, 1, "+"), (1, 1, "-"), (3, 3, "*")], "abc*def"),
+        ([(1, 1, "+"), (1, 2, "B")], "abcdef"),
+    ],
+)
+def test_edits_that_overlap_are_left_out(edits: list[tuple[int, int, str]], expected: str) -> None:
+    source = Source("main.yml", "abcdef")
+    report = [edit(*each, source) for each in edits]
+    nothing = Survey(reports={}, uses={})
+    before = Survey(reports={"main.yml": report}, uses={})
+    result = mended(before, report, lambda texts: nothing)
+    assert list(result.texts.values()) == ([expected] if expected != "abcdef" else [])
