@@ -5,6 +5,7 @@ from __future__ import annotations
 from smachac.checks import (
     concurrence,
     coverage,
+    dataflow,
     expressions,
     liveness,
     masking,
@@ -20,6 +21,7 @@ __all__ = [
     "check_machine",
     "concurrence",
     "coverage",
+    "dataflow",
     "expressions",
     "liveness",
     "masking",

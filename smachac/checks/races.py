@@ -152,6 +152,7 @@ def resource_clash(machine: Machine) -> Iterator[Finding]:
           - BOTH:
               template: Concurrence
               outcomes: [succeeded, aborted]
+              input_keys: [home, up]
               default_outcome: aborted
               outcome_map: {succeeded: {HOME: succeeded, UP: succeeded}}
               states:
@@ -171,6 +172,7 @@ def resource_clash(machine: Machine) -> Iterator[Finding]:
           - BOTH:
               template: Concurrence
               outcomes: [succeeded, aborted]
+              input_keys: [home, up]
               default_outcome: aborted
               outcome_map: {succeeded: {HOME: succeeded, UP: succeeded}}
               states:

@@ -230,8 +230,6 @@ def test_what_the_graph_cannot_express_is_known() -> None:
 
 
 NO_ERROR = {
-    "h035-constants": "a way to write userdata that scripts do not have",
-    "h036-constants-before-remap-every-entry": "a way to write userdata that scripts do not have",
     "h087-concurrence-none-default": "no default outcome in a script is told by its reader",
 }
 """Machines that SMACH refuses to build, without a fault that the graph shows."""

@@ -61,7 +61,7 @@ def test_a_sequence_whose_link_is_missing_says_so() -> None:
 
 @pytest.mark.parametrize("kind", [machine, iterator])
 def test_an_empty_container_has_no_start(kind: Any) -> None:
-    options = {"items_key": "k"} if kind is iterator else {}
+    options = {"items_key": "k", "held": {"k": [1]}} if kind is iterator else {}
     inner = kind("IN", "exhausted", to={"exhausted": "done"}, **options)
     assert found(machine("sm", "done", inner)) == ["SM205 sm/IN"]
     assert found(machine("sm", "done")) == ["SM205 sm"]
@@ -194,8 +194,8 @@ def test_a_default_and_a_preemption_are_possible() -> None:
 @pytest.mark.parametrize(
     ("options", "codes"),
     [
-        ({"items_key": "k", "loop": "ok"}, []),
-        ({"items_key": "k"}, []),
+        ({"items_key": "k", "held": {"k": [1]}, "loop": "ok"}, []),
+        ({"items_key": "k", "held": {"k": [1]}}, []),
         ({"items": [1, 2], "loop": "bad"}, []),
         ({"items": [1, 2]}, ["SM203 sm/IT"]),
         ({"items": []}, []),

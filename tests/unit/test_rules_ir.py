@@ -50,7 +50,7 @@ def test_children_that_run_together_have_no_transitions() -> None:
     both = concurrence("BOTH", "ok", leaf("L", {"x": "R"}), leaf("R", {"x": "ok"}), default="ok",
                        to={"ok": "IT"})  # fmt: skip
     each = iterator("IT", "exhausted", leaf("C", {"x": "exhausted"}), loop="x", items_key="k",
-                    to={"exhausted": "done"})  # fmt: skip
+                    held={"k": [1]}, to={"exhausted": "done"})  # fmt: skip
     root = machine("sm", "done", both, each)
     assert found(root) == ["SM101 sm/BOTH/L", "SM101 sm/BOTH/R", "SM101 sm/IT/C"]
     severities = {item.severity for item in report(root)}
@@ -80,7 +80,8 @@ def test_a_misspelt_outcome_does_not_count_as_an_exit_by_name() -> None:
 
 def test_an_iterator_loops_only_on_outcomes_of_its_child() -> None:
     node = iterator("IT", "exhausted ok", leaf("C", outcomes="ok bad"), loop="bad baad",
-                    items_key="k", to={"ok": "done", "exhausted": "done"})  # fmt: skip
+                    items_key="k", held={"k": [1]},
+                    to={"ok": "done", "exhausted": "done"})  # fmt: skip
     item = one(machine("sm", "done", node), "SM102")
     assert item.finding.message == "`IT` loops on `baad`, which its child never ends with"
 
@@ -166,7 +167,7 @@ def test_a_missing_default_is_somebody_elses_fault() -> None:
 )
 def test_endings_of_an_iterator_are_declared(options: dict[str, Any], codes: list[str]) -> None:
     node = iterator("IT", "exhausted ok", leaf("C", outcomes="ok bad"), items_key="k",
-                    to={"ok": "done", "exhausted": "done"}, **options)  # fmt: skip
+                    held={"k": [1]}, to={"ok": "done", "exhausted": "done"}, **options)  # fmt: skip
     assert found(machine("sm", "done", node)) == codes
 
 

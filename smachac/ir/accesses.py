@@ -1,0 +1,187 @@
+"""What a leaf reads and writes of userdata: as its interface says, or as its built-in type does."""
+
+from __future__ import annotations
+
+import ast
+import warnings
+from collections.abc import Iterable, Mapping
+from functools import lru_cache
+from typing import NamedTuple
+
+from smachac.ir.behaviours import default_outcome, variable
+from smachac.ir.nodes import Expression, Leaf, Node, Struct
+from smachac.ir.walk import PREEMPTED
+
+NONE: frozenset[str] = frozenset()
+
+
+class Writes(NamedTuple):
+    """The keys that are set when a state ends with some outcome.
+
+    `sure`: always. `trusted`: unless a stand-in or unknown code proves otherwise, so that nobody is
+    blamed for what is not known. `perhaps`: possibly. `anything`: unknown code may set any key.
+    """
+
+    sure: frozenset[str] = NONE
+    trusted: frozenset[str] = NONE
+    perhaps: frozenset[str] = NONE
+    anything: bool = False
+
+
+NOTHING = Writes()
+ANYTHING = Writes(anything=True)
+
+
+def is_optional(node: Node, key: str) -> bool:
+    """Whether a declared input may be absent: its type is `T?`."""
+    return any(each.name == key and each.type.name == "optional" for each in node.inputs)
+
+
+def leaf_reads(leaf: Leaf, *, raw: bool = False) -> tuple[str, ...]:
+    """The keys, under the leaf's names, that have to be there when it is entered.
+
+    These are its declared inputs but for optional ones; callbacks say it exactly. `raw`: the leaf
+    sees every key of its container, as the child of an iterator does (smach-semantics I7).
+    """
+    if leaf.open:
+        return ()
+    needed = tuple(key.name for key in leaf.inputs if key.type.name != "optional")
+    functions = callbacks(leaf)
+    match leaf.type if functions is not None else "":
+        case "CallbacksState":
+            order = sorted(functions or {})
+        case "ConditionalOutcomeState":
+            order = [name for name in _names(leaf) if name in (functions or {})]
+        case _:
+            return needed
+    found: dict[str, None] = {}
+    written: set[str] = set()
+    for name in order:
+        code = (functions or {})[name]
+        fields = userdata_fields(code.text)
+        reads = needed if fields is None else fields.read
+        optional = NONE if fields is None else fields.tested
+        found |= {
+            key: None
+            for key in reads
+            if key not in written and key not in optional and (raw or key in needed)
+        }
+        written.add(name)
+    return tuple(found)
+
+
+def leaf_writes(leaf: Leaf, outcome: str, *, raw: bool = False) -> Writes:
+    """The keys, under the leaf's names, that it has set when it ends with an outcome."""
+    if leaf.open:
+        return ANYTHING
+    outputs = frozenset(key.name for key in leaf.outputs)
+    if leaf.type == "ScriptedState":
+        return _scripted(leaf, outcome, outputs, raw)
+    functions = callbacks(leaf)
+    if leaf.type == "CallbacksState" and functions is not None:
+        keys = frozenset(functions) if raw else outputs.intersection(functions)
+        return Writes(keys, keys, keys)
+    if not outputs:
+        return NOTHING
+    told = frozenset(key for _, keys in leaf.writes for key in keys)
+    here = frozenset(key for name, keys in leaf.writes for key in keys if name == outcome)
+    untold = outputs - told
+    sure = here & outputs if outcome == PREEMPTED else untold | (here & outputs)
+    return Writes(sure, sure, untold | sure)
+
+
+def _scripted(leaf: Leaf, outcome: str, outputs: frozenset[str], raw: bool) -> Writes:
+    """What the steps of a ScriptedState set. A key that no step sets is left to the real state."""
+    steps = list(scripted_steps(leaf))
+    ever = frozenset(key for _, keys in steps for key in keys)
+    sets = [frozenset(keys) for name, keys in steps if name == outcome]
+    if not raw:
+        sets = [keys & outputs for keys in sets]
+    perhaps = frozenset(outputs if not sets else (outputs - ever)).union(*sets)
+    if outcome == PREEMPTED:
+        # It comes without a step when the state is asked to stop.
+        return Writes(NONE, NONE, perhaps)
+    sure = frozenset.intersection(*sets) if sets else NONE
+    return Writes(sure, sure | (outputs if not sets else outputs - ever), perhaps)
+
+
+def scripted_steps(leaf: Leaf) -> Iterable[tuple[str, tuple[str, ...]]]:
+    """The outcome and the keys of each step of a ScriptedState."""
+    data = variable(leaf, "steps")
+    for step in data if isinstance(data, tuple) else ():
+        told = dict(step.entries) if isinstance(step, Struct) else {}
+        outcome, sets = told.get("outcome"), told.get("set")
+        keys = tuple(key for key, _ in sets.entries) if isinstance(sets, Struct) else ()
+        yield outcome if isinstance(outcome, str) else default_outcome(leaf), keys
+
+
+def _names(leaf: Leaf) -> tuple[str, ...]:
+    return tuple(outcome.name for outcome in leaf.outcomes)
+
+
+def callbacks(leaf: Leaf) -> Mapping[str, Expression] | None:
+    """The functions of a leaf by key or outcome; None where they cannot be told."""
+    data = variable(leaf, "callbacks")
+    if data is None:
+        return {}
+    if not isinstance(data, Struct):
+        return None
+    return {key: code for key, code in data.entries if isinstance(code, Expression)}
+
+
+class Fields(NamedTuple):
+    """The keys that code reads of userdata, in order, and those it asks for with `in`."""
+
+    read: tuple[str, ...]
+    tested: frozenset[str]
+
+
+_METHODS = frozenset(["keys", "update", "extract", "merge"])
+
+
+@lru_cache(maxsize=10_000)
+def userdata_fields(text: str) -> Fields | None:
+    """What a lambda over userdata, or an expression over `ud`, reads; None where it cannot be told.
+
+    It cannot where the code hands userdata on, or is the name of a function.
+    """
+    try:
+        with warnings.catch_warnings():
+            warnings.simplefilter("ignore", SyntaxWarning)
+            body: ast.expr = ast.parse(text.strip(), mode="eval").body
+    except (SyntaxError, ValueError, RecursionError, MemoryError):
+        return None
+    names = {"ud", "userdata"}
+    if isinstance(body, ast.Lambda):
+        names = {each.arg for each in [*body.args.posonlyargs, *body.args.args][:1]}
+        body = body.body
+    elif not any(isinstance(node, ast.Name) and node.id in names for node in ast.walk(body)):
+        return None
+    return _fields(body, names)
+
+
+def _fields(body: ast.expr, names: set[str]) -> Fields | None:
+    def is_userdata(node: ast.expr) -> bool:
+        return isinstance(node, ast.Name) and node.id in names
+
+    read: dict[str, None] = {}
+    tested: set[str] = set()
+    uses = 0
+    for node in ast.walk(body):
+        match node:
+            case ast.Name(id=name) if name in names:
+                uses += 1
+            case ast.Attribute(value=value, attr=key) if is_userdata(value):
+                uses -= key not in _METHODS
+                read[key] = None
+            case ast.Subscript(value=value, slice=ast.Constant(str() as key)) if is_userdata(value):
+                uses -= 1
+                read[key] = None
+            case ast.Compare(
+                left=ast.Constant(str() as key),
+                ops=[ast.In() | ast.NotIn()],
+                comparators=[value],
+            ) if is_userdata(value):
+                uses -= 1
+                tested.add(key)
+    return None if uses else Fields(tuple(read), frozenset(tested))

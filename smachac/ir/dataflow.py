@@ -1,0 +1,240 @@
+"""Definite assignment of userdata: which keys are surely set where, through the whole hierarchy.
+
+Keys are only ever added to a container's userdata (smach-semantics V3, V4), so a key is surely set
+at a place exactly if every path from the container's start writes it on the way. A container is
+therefore judged once, from the inside to the outside, as if nothing were handed in; an input that
+is set at its entry is set everywhere in it. What a container needs and writes is what it is
+judged by from outside. Linear in the states; keys are bits of whole numbers.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping
+from collections.abc import Set as AbstractSet
+from dataclasses import dataclass
+
+from smachac.ir import nodes
+from smachac.ir.accesses import NOTHING, Writes, leaf_reads, leaf_writes, userdata_fields
+from smachac.ir.assignment import (
+    Bits,
+    Order,
+    Step,
+    Steps,
+    flow_order,
+    looping,
+    may_be_set,
+    may_be_unset,
+)
+from smachac.ir.graph import START, Place, edges
+from smachac.ir.joins import joined
+from smachac.ir.nodes import Concurrence, Container, Expression, Leaf, Machine, Node
+from smachac.ir.userdata import remapping
+from smachac.ir.walk import containers
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Scope:
+    """A container and its own userdata.
+
+    `held` are the keys that are there before it starts; `inputs` and `outputs` go by its own names
+    to those of the container around it, `optional` inputs may be absent. `steps` lead on from each
+    place that can be reached, `reads` are the keys that a place needs. `needed` inputs are read
+    inside before they are written; `endings` are the keys around it that each outcome sets.
+    `unset` has the keys that may be unset at each place if nothing is handed in. `inner` are the
+    containers in it, `again` those of them that a path can come back to.
+    """
+
+    path: str
+    container: Container
+    held: frozenset[str]
+    inputs: Mapping[str, str]
+    optional: frozenset[str]
+    outputs: Mapping[str, str]
+    reads: Mapping[Place, tuple[str, ...]]
+    steps: Steps
+    bits: Bits
+    unset: Mapping[Place, int]
+    needed: frozenset[str]
+    endings: Mapping[str, Writes]
+    inner: frozenset[str]
+    again: frozenset[Place]
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Flow:
+    """The scopes of a machine by path, parents before children.
+
+    `entered` are the paths of states and containers that can be entered, `repeated` the containers
+    that can be entered more than once.
+    """
+
+    machine: Machine
+    scopes: Mapping[str, Scope]
+    entered: frozenset[str]
+    repeated: frozenset[str]
+
+
+def data_flow(
+    machine: Machine, mend: Callable[[Container], Container] = lambda container: container
+) -> Flow:
+    """Judge a machine. `mend` gives a container whose transitions count in place of its own."""
+    found: dict[str, Scope] = {}
+    for path, container in reversed(list(containers(machine.root))):
+        found[path] = _scope(path, container, mend(container), found, machine.root)
+    entered = {machine.root.name}
+    repeated: set[str] = set()
+    scopes = {path: found[path] for path, _ in containers(machine.root)}
+    for path, scope in scopes.items():
+        if path not in entered:
+            continue
+        entered.update(f"{path}/{place}" for place in scope.unset if isinstance(place, str))
+        repeated.update(
+            f"{path}/{name}"
+            for name in scope.inner
+            if name in scope.unset and (name in scope.again or path in repeated)
+        )
+    return Flow(
+        machine=machine,
+        scopes=scopes,
+        entered=frozenset(entered),
+        repeated=frozenset(repeated),
+    )
+
+
+def _scope(
+    path: str, container: Container, mended: Container, inner: Mapping[str, Scope], root: Container
+) -> Scope:
+    names = remapping(container)
+    inputs = {key.name: names.get(key.name, key.name) for key in container.inputs}
+    held = {preset.key for preset in container.userdata}
+    if container is root:
+        held |= inputs.keys()
+    optional = frozenset(k.name for k in container.inputs if k.type.name == "optional")
+    outputs = {key.name: names.get(key.name, key.name) for key in container.outputs}
+    reads: dict[Place, tuple[str, ...]] = {START: _items_read(container)}
+    raw = isinstance(container, nodes.Iterator)
+    containing = frozenset(c.name for c in container.children if not isinstance(c, Leaf))
+    for child in container.children:
+        reads[child.name] = _reads(child, inner.get(f"{path}/{child.name}"), raw)
+    steps = _steps(path, mended, inner)
+    bits = Bits(key for keys in (*reads.values(), outputs) for key in keys if key not in held)
+    order = flow_order(steps)
+    unset = may_be_unset(bits, steps, order)
+    needed = {
+        key
+        for place, keys in reads.items()
+        for key in bits.among(keys, unset.get(place, 0))
+        if key in inputs and key not in optional
+    }
+    return Scope(
+        path=path,
+        container=container,
+        held=frozenset(held),
+        inputs=inputs,
+        optional=optional,
+        outputs=outputs,
+        reads={place: keys for place, keys in reads.items() if keys},
+        steps=steps,
+        bits=bits,
+        unset=unset,
+        needed=frozenset(needed),
+        endings=_endings(outputs, held, bits, unset, steps, order),
+        inner=containing,
+        again=looping(steps, order) & containing if containing else frozenset(),
+    )
+
+
+def _endings(
+    outputs: Mapping[str, str],
+    held: AbstractSet[str],
+    bits: Bits,
+    unset: Mapping[Place, int],
+    steps: Steps,
+    order: Order,
+) -> Mapping[str, Writes]:
+    """What each outcome that can come hands out (smach-semantics V4)."""
+    exits = [place for place in unset if isinstance(place, tuple) and place != START]
+    if not outputs:
+        return {place[1]: NOTHING for place in exits}
+    few = Bits(key for key in outputs if key not in held)
+    unsure = may_be_unset(few, steps, order, sure=True)
+    possible = may_be_set(few, steps, order)
+
+    def outer(missing: Bits, mask: int) -> frozenset[str]:
+        """What those outputs are called outside that are not missing."""
+        return frozenset(to for key, to in outputs.items() if not missing.of.get(key, 0) & mask)
+
+    return {
+        place[1]: Writes(
+            outer(few, unsure[place]),
+            outer(bits, unset[place]),
+            outer(few, few.whole & ~possible[place]),
+        )
+        for place in exits
+    }
+
+
+def _items_read(container: Container) -> tuple[str, ...]:
+    """The keys that an iterator needs to know what it goes through."""
+    if not isinstance(container, nodes.Iterator):
+        return ()
+    if container.items_key:
+        return (container.items_key,)
+    if container.items is not None and isinstance(container.items.data, Expression):
+        fields = userdata_fields(container.items.data.text)
+        return tuple(key for key in fields.read if key not in fields.tested) if fields else ()
+    return ()
+
+
+def _reads(child: Node, scope: Scope | None, raw: bool) -> tuple[str, ...]:
+    """The keys of its container that a child needs at its entry."""
+    names = remapping(child)
+    own: tuple[str, ...]
+    if isinstance(child, Leaf):
+        own = leaf_reads(child, raw=raw)
+    else:
+        own = tuple(key for key in scope.inputs if key in scope.needed) if scope else ()
+    return tuple(dict.fromkeys(names.get(key, key) for key in own))
+
+
+def child_writes(child: Node, scope: Scope | None, outcome: str, *, raw: bool) -> Writes | None:
+    """The keys of its container that a child has set when it ends so; None where it never does."""
+    if not isinstance(child, Leaf):
+        return scope.endings.get(outcome) if scope else NOTHING
+    writes = leaf_writes(child, outcome, raw=raw)
+    names = remapping(child)
+    if not names:
+        return writes
+    sure, trusted, perhaps = (frozenset(names.get(key, key) for key in keys) for keys in writes[:3])
+    return Writes(sure, trusted, perhaps, writes.anything)
+
+
+def _steps(path: str, container: Container, inner: Mapping[str, Scope]) -> Steps:
+    """The steps of a container, those of a concurrence being its start, its children and ends."""
+    children = {child.name: child for child in reversed(container.children)}
+    raw = isinstance(container, nodes.Iterator)
+    known: dict[tuple[str, str], Writes | None] = {}
+
+    def writes(name: str, outcome: str) -> Writes | None:
+        key = (name, outcome)
+        if key not in known:
+            scope = inner.get(f"{path}/{name}")
+            known[key] = child_writes(children[name], scope, outcome, raw=raw)
+        return known[key]
+
+    found: dict[Place, list[Step]] = {}
+    if isinstance(container, Concurrence):
+        for target, together in joined(container, writes):
+            found.setdefault(START, []).append(Step(target, "", together))
+        return {place: tuple(steps) for place, steps in found.items()}
+    for edge in edges(container):
+        given: Writes | None = NOTHING
+        if isinstance(edge.source, str):
+            given = writes(edge.source, edge.outcome)
+        if given is None:
+            continue
+        if isinstance(container, nodes.Iterator) and isinstance(edge.target, str):
+            item = frozenset([container.item_key])
+            given = Writes(given[0] | item, given[1] | item, given[2] | item, given[3])
+        found.setdefault(edge.source, []).append(Step(edge.target, edge.outcome, given))
+    return {place: tuple(steps) for place, steps in found.items()}

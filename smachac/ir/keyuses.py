@@ -1,0 +1,119 @@
+"""Who uses a userdata key: presets, readers, writers, and the containers that pass it on."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from dataclasses import dataclass, field
+from typing import Literal
+
+from smachac.ir import nodes
+from smachac.ir.dataflow import Flow, Scope, child_writes
+from smachac.ir.keypaths import around
+from smachac.ir.nodes import Key, Leaf, Node
+from smachac.ir.userdata import remapping
+from smachac.ir.walk import outcome_names
+from smachac.source import Span
+
+Kind = Literal["presets", "items", "reads", "writes", "takes in", "hands out"]
+"""How a key is used: the container holds it before it starts; an iterator puts its items there; a
+leaf; a container, from and to the userdata around it."""
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Use:
+    """One use of a key of a container, at its place in a script.
+
+    `path` is the state that uses it, `key` what it calls it there. `outcomes` are those of a
+    writer that come with the key; `always` says that they are all it has.
+    """
+
+    path: str
+    kind: Kind
+    key: str
+    outcomes: tuple[str, ...] = ()
+    always: bool = True
+    span: Span = field(compare=False, repr=False)
+
+
+def uses(flow: Flow, path: str, key: str) -> Iterator[Use]:
+    """The uses of a key of the container at a path, in the order of the script."""
+    scope = flow.scopes[path]
+    container = scope.container
+    for preset in container.userdata:
+        if preset.key == key:
+            yield Use(path=path, kind="presets", key=key, span=preset.span)
+    if isinstance(container, nodes.Iterator):
+        if container.item_key == key:
+            yield Use(path=path, kind="items", key=key, span=container.span)
+        if container.items_key == key:
+            yield Use(path=path, kind="reads", key=key, span=container.span)
+    for child in container.children:
+        yield from _uses_of(flow, scope, child, key)
+
+
+def _uses_of(flow: Flow, scope: Scope, child: Node, key: str) -> Iterator[Use]:
+    raw = isinstance(scope.container, nodes.Iterator) and isinstance(child, Leaf)
+    names = remapping(child)
+    path = f"{scope.path}/{child.name}"
+    is_leaf = isinstance(child, Leaf)
+    for each in child.inputs:
+        if names.get(each.name, each.name) == key:
+            kind: Kind = "reads" if is_leaf else "takes in"
+            yield Use(path=path, kind=kind, key=each.name, span=place_of(child, each))
+    for each in child.outputs:
+        if names.get(each.name, each.name) == key:
+            kind = "writes" if is_leaf else "hands out"
+            known = outcome_names(child)
+            inner = flow.scopes.get(path)
+            written = tuple(
+                name
+                for name in known
+                if (writes := child_writes(child, inner, name, raw=raw)) is not None
+                and key in writes.trusted
+            )
+            yield Use(
+                path=path,
+                kind=kind,
+                key=each.name,
+                outcomes=written,
+                always=written == known,
+                span=place_of(child, each),
+            )
+
+
+def place_of(node: Node, key: Key) -> Span:
+    """Where a script says that a state has a key: its list of keys, its remapping, or its name."""
+    remap = next((remap for remap in node.remaps if remap.key == key.name), None)
+    if key.span.source is node.span.source:
+        return key.span
+    return remap.span if remap is not None else node.span
+
+
+def same_key(flow: Flow, path: str, key: str) -> tuple[tuple[str, str], ...]:
+    """The keys of other containers that a key of one comes from or goes to, itself among them.
+
+    In the order of the script.
+    """
+    found = {(path, key)}
+    todo = [(path, key)]
+    while todo:
+        where, name = todo.pop()
+        for pair in _next_to(flow, where, name):
+            if pair not in found:
+                found.add(pair)
+                todo.append(pair)
+    order = {path: number for number, path in enumerate(flow.scopes)}
+    return tuple(sorted(found, key=lambda pair: (order[pair[0]], pair[1])))
+
+
+def _next_to(flow: Flow, path: str, key: str) -> Iterator[tuple[str, str]]:
+    """The keys one copy away, inwards and outwards."""
+    scope = flow.scopes[path]
+    outer = around(flow, path)
+    for names in (scope.inputs, scope.outputs):
+        if outer is not None and key in names:
+            yield outer, names[key]
+    for name in scope.inner:
+        inner = flow.scopes[f"{path}/{name}"]
+        for names in (inner.inputs, inner.outputs):
+            yield from ((inner.path, own) for own, to in names.items() if to == key)
