@@ -25,7 +25,7 @@ def accesses(machine: Machine) -> dict[int, Accesses]:
 
     A leaf may read and write the keys it declares, at any time. A container copies its inputs when
     it starts, and its outputs when it ends (smach-semantics V1, V4); it counts as reading what
-    something in it reads or what it hands on, and as writing what something in it has put there.
+    something in it reads, and as writing what it hands on or something in it has put there.
     """
     found: dict[int, Accesses] = {}
     for _, node in reversed(list(walk(machine.root))):
@@ -60,10 +60,7 @@ def around(node: Node, own: Accesses) -> Accesses:
     inputs = {key.name for key in node.inputs}
     held = {*inputs, *(preset.key for preset in node.userdata)}
     outputs = [key.name for key in node.outputs]
-    passed = [key for key in outputs if key in inputs]
     reads = {key.name: own.reads[key.name] for key in node.inputs if key.name in own.reads}
-    for key in passed:
-        reads.setdefault(key, node)
     written = (key for key in outputs if key in own.writes or key in held)
     writes = {key: own.writes.get(key, node) for key in written}
     return Accesses(_renamed(node, reads), _renamed(node, writes))

@@ -59,9 +59,13 @@ def study(node: Concurrence) -> Study | None:
     children = {child.name: child for child in node.children}
     if not children or len(children) < len(node.children):
         return None
+    ends = {
+        name: None if is_open(child) else frozenset(outcome_names(child))
+        for name, child in children.items()
+    }
     written = []
     for rule in node.rules:
-        understood = _understood(rule, children)
+        understood = rule if _is_sound(rule, ends) else _understood(rule, children)
         if understood is None:
             return None
         written.append(understood)
@@ -69,23 +73,33 @@ def study(node: Concurrence) -> Study | None:
     return Study(node, children, tuple(written), Rules(conditions))
 
 
+def _is_sound(rule: OutcomeRule, ends: Mapping[str, frozenset[str] | None]) -> bool:
+    """Whether a rule asks each of some children once, for an outcome that it may have."""
+    for condition in rule.when:
+        known = ends.get(condition.child, frozenset())
+        if known is not None and condition.outcome not in known:
+            return False
+    return 0 < len({condition.child for condition in rule.when}) == len(rule.when)
+
+
 def _understood(rule: OutcomeRule, children: Mapping[str, Node]) -> OutcomeRule | None:
     when = []
     for condition in rule.when:
-        name: str | None = condition.child
+        name = condition.child
         if name not in children:
-            name = guesser(children)(condition.child)
-        if name is None:
+            name = guesser(children)(name) or ""
+        if not name:
             return None
         outcomes = outcome_names(children[name])
-        outcome: str | None = condition.outcome
+        outcome = condition.outcome
         if outcome not in outcomes and not is_open(children[name]):
-            outcome = guesser(outcomes)(condition.outcome)
-        if outcome is None:
+            outcome = guesser(outcomes)(outcome) or ""
+        if not outcome:
             return None
         when.append(replace(condition, child=name, outcome=outcome))
-    names = [condition.child for condition in when]
-    return replace(rule, when=tuple(when)) if 0 < len(set(names)) == len(names) else None
+    understood = replace(rule, when=tuple(when))
+    once = len({condition.child for condition in when}) == len(when)
+    return understood if when and once else None
 
 
 def space(read: Study, known: Known) -> Space:

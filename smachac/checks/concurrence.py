@@ -107,14 +107,14 @@ def _other_outcome(child: Node, outcome: str) -> str:
 
 def _shadowed_rules(each: Judged) -> Iterator[Finding]:
     """The rules over which larger ones win in every combination."""
-    read, rules = each.read, each.read.rules
+    read, rules, whole = each.read, each.read.rules, each.whole
     for number, entry in enumerate(read.written):
         given, larger = rules.conditions[number], read.larger(number)
         rivals = larger & rules.compatible(number)
-        if not rivals or any(end not in each.whole[child] for child, end in given.items()):
+        if not rivals or any(end not in whole[child] for child, end in given.items()):
             continue
         try:
-            if rules.find(each.whole, given, larger) is not None:
+            if rules.find(whole, given, larger) is not None:
                 continue
         except UndecidedError:
             return

@@ -102,7 +102,7 @@ def _race(
     else:
         message = f"{writers} write `{key}` at the same time"
         message += f", and {readers} reads it" if reading else ""
-    here = (reading if len(writing) == 1 else writing[1:])[0]
+    here = writing[:2][-1]
     span = here[0].span
     return Finding(
         span=span,
@@ -110,7 +110,7 @@ def _race(
         help="remap it, so that each has a key of its own, or let one run after the other",
         related=(
             *_places("writes", key, [one for one in writing if one is not here]),
-            *_places("reads", key, [one for one in reading if one is not here]),
+            *_places("reads", key, reading),
             *_inner(span, here[1], "here"),
             *calls(here[0], span),
         ),

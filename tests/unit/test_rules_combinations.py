@@ -20,7 +20,7 @@ from smachac.checks.coverage import written
 from smachac.diagnostics import Diagnostic, Severity
 from smachac.ir.nodes import Concurrence, StateMachine
 
-ENDS = ("ok", "lost", "aborted", "preempted")
+ENDS = ("ok", "lost", "seen", "aborted", "preempted")
 RESULTS = ("succeeded", "partly", "again", "bad")
 Conditions = dict[str, str]
 
@@ -142,7 +142,9 @@ def always_good(node: Concurrence) -> set[str]:
     best = []
     for child in node.children:
         ends = [one.name for one in child.outcomes]
-        picked = [end for end in ends if end == "ok"] or [end for end in ends if end == "lost"]
+        picked = [end for end in ends if end == "ok"] or [
+            end for end in ends if end in ("lost", "seen")
+        ]
         best.append([(child.name, end) for end in picked])
     results = {name for ended in map(dict, itertools.product(*best))
                for name in winners(node, ended) or [node.default_outcome]}  # fmt: skip
@@ -343,3 +345,18 @@ def test_a_concurrence_inside_one_ends_only_as_its_rules_say() -> None:
 
 def test_combinations_are_written_as_in_a_script() -> None:
     assert written({"LEFT": "done", "RIGHT": "aborted"}) == "`LEFT: done`, `RIGHT: aborted`"
+
+
+def test_a_misspelt_rule_is_one_fault() -> None:
+    """It is read as what it means, or else nothing is said of the combinations."""
+    branches = (leaf("LEFT", outcomes="done aborted"), leaf("RIGHT", outcomes="done aborted"))
+    names = ("succeeded", "failed")
+    for child, outcome in (("RIHGT", "done"), ("RIGHT", "doen"), ("XYZ", "done"), ("RIGHT", "zzz")):
+        rules = (("succeeded", {"LEFT": "done", child: outcome}),)
+        node = concurrence("BOTH", " ".join(names), *branches, default="failed", rules=rules,
+                           to=dict.fromkeys(names, "done"))  # fmt: skip
+        loud = [item for item in report(around(node)) if item.severity is not Severity.INFO]
+        assert [item.code.code for item in loud] == ["SM403"]
+        whole = replace(node, default_outcome="")
+        missed = said(whole, "SM401")
+        assert bool(missed) == ((child, outcome) in (("RIHGT", "done"), ("RIGHT", "doen")))
