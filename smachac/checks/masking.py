@@ -184,6 +184,7 @@ class _Fate(NamedTuple):
     path: str
     node: Node
     outcome: str
+    target: str
     turn: _Fate | None
     span: Span
     then: _Fate | None
@@ -285,17 +286,18 @@ def _fates(
             then = fates[id(container), target]
             called_good = target.lower() in SUCCESSES | GOOD
             turn = None if called_good or then is None else then.turn or then
-            yield _Fate(path, child, outcome, turn, span, then)
+            yield _Fate(path, child, outcome, target, turn, span, then)
 
 
 def _unhandled_failure(root: StateMachine, found: list[_Fate]) -> Finding:
     first = found[0]
     turn = first.turn or first
     way: list[str] = []
+    end = ""
     step: _Fate | None = first
     while step is not None and len(way) < 2 * MOST_STEPS:
         way += [step.node.name, f"({step.outcome})"]
-        step = step.then
+        end, step = step.target, step.then
     others = [fate.node.name for fate in found[1:]]
     also = f"; so it does after {listed(others)}" if others else ""
     return Finding(
@@ -307,6 +309,6 @@ def _unhandled_failure(root: StateMachine, found: list[_Fate]) -> Finding:
             *(other_place(first.node.span, "the state that fails") if turn is not first else ()),
             *calls(turn.node, turn.span),
         ),
-        path=tuple(way),
+        path=(*way, end),
         node=turn.path,
     )
