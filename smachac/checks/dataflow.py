@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 
-from smachac.checks.hints import Guesser, calls, did_you_mean, guesser, other_place
+from smachac.checks.hints import calls, did_you_mean, guesser, other_place
 from smachac.checks.lost import lost_outputs
 from smachac.checks.missing import Missing, missing_keys
 from smachac.checks.userdata import flow_of, unknown_remaps
@@ -15,6 +15,8 @@ from smachac.ir.keyuses import place_of, uses
 from smachac.ir.nodes import Machine, Node
 from smachac.ir.walk import walk
 from smachac.problems import listed
+from smachac.spelling import Guesser
+
 
 MOST_RELATED = 3
 """More places beside the fault than these help nobody."""
