@@ -203,7 +203,9 @@ def has_errors(report: Iterable[Diagnostic]) -> bool:
 
 
 MOST_CANDIDATES = 1000
-"""Beyond so many names only a difference in case is looked for, so that no run is quadratic."""
+LONGEST_WORD = 100
+"""Beyond so many names, and for longer ones than this, only a difference in case is looked for, so
+that no run is quadratic."""
 
 
 def did_you_mean(word: str, candidates: Iterable[str]) -> str | None:
@@ -211,6 +213,6 @@ def did_you_mean(word: str, candidates: Iterable[str]) -> str | None:
     names = list(dict.fromkeys(candidates))
     folded = word.casefold()
     nearest = [name for name in names if name.casefold() == folded and name != word]
-    if not nearest and len(names) <= MOST_CANDIDATES:
+    if not nearest and len(names) <= MOST_CANDIDATES and len(word) <= LONGEST_WORD:
         nearest = difflib.get_close_matches(word, names, n=1, cutoff=0.6)
     return f"did you mean `{nearest[0]}`?" if nearest else None

@@ -16,6 +16,10 @@ names take no longer than they should."""
 SHORTEST_SLIP = 4
 """Shorter names are one slip away from too many others: only their case may differ."""
 
+LONGEST_SLIP = 100
+"""In characters. Of longer names, which nobody types, only the case may differ: to compare them
+takes time and memory as their length squared."""
+
 SHORTEST_WRONG_LETTER = 6
 """Names as long as this may be meant for certain though a letter is another: LIFT is not LEFT."""
 
@@ -39,7 +43,7 @@ class Guesser:
         """The nearest name, or None."""
         index = self._slips()
         one_slip = next((index[slip] for slip in slips(word) if slip in index), None)
-        if one_slip is not None or len(self.names) > MOST_COMPARED:
+        if one_slip is not None or len(self.names) > MOST_COMPARED or len(word) > LONGEST_SLIP:
             return one_slip
         return next(iter(difflib.get_close_matches(word, self.names, n=1)), None)
 
@@ -68,7 +72,7 @@ def slips(name: str) -> list[str]:
     """A name without regard to case, and without each of its letters. Two names one slip apart
     have one of these in common."""
     word = name.casefold()
-    if len(word) < SHORTEST_SLIP:
+    if not SHORTEST_SLIP <= len(word) <= LONGEST_SLIP:
         return [word]
     return [word, *(word[:at] + word[at + 1 :] for at in range(len(word)))]
 

@@ -1,0 +1,31 @@
+"""Names that nobody means cost nothing: a guess at a spelling is not quadratic in its length."""
+
+from __future__ import annotations
+
+import random
+import tracemalloc
+
+from smachac.diagnostics import did_you_mean
+from smachac.spelling import LONGEST_SLIP, Guesser, slips
+
+
+def test_only_the_case_of_a_very_long_name_may_differ() -> None:
+    name = "x" * LONGEST_SLIP
+    assert len(slips(name)) > LONGEST_SLIP
+    assert slips(f"{name}Y") == [f"{name}y"]
+    assert Guesser([f"{name}y"])(f"{name}Y") == f"{name}y"
+    assert Guesser([f"{name}y"])(f"{name}yz") is None
+    assert Guesser([name])(f"{name}y") is None
+    assert did_you_mean(f"{name}Y", [f"{name}y"]) == f"did you mean `{name}y`?"
+
+
+def test_a_long_name_takes_no_memory() -> None:
+    name = "".join(map(chr, range(0x4E00, 0x4E00 + 20_000)))
+    other = "".join(random.Random(0).sample(name, len(name)))
+    tracemalloc.start()
+    try:
+        assert Guesser([other])(name) is None
+        assert did_you_mean(name, [other]) is None
+        assert tracemalloc.get_traced_memory()[1] < 2_000_000
+    finally:
+        tracemalloc.stop()
