@@ -234,20 +234,20 @@ def tried(files: Mapping[str, str], index: int) -> str:
         assert analysis.report, "no machine, and nothing is said"
         return "refused"
     if index % 4 == 0:
-        printed(analysis.checked, library)
+        printed(analysis.checked, library, ours=not any(".tpl." in name for name in files))
     if index % 8 == 1:
         run(analysis.checked, built_in(), max_steps=300)
     return "checked"
 
 
-def printed(machine: Any, library: Library) -> None:
-    """Every target; what is Python must compile."""
+def printed(machine: Any, library: Library, ours: bool) -> None:
+    """Every target; what is Python must compile, if it is all from templates of ours."""
     for target in TARGETS:
         report: Report = []
         made = build(machine, target, library, report)
         assert bool(made) != bool(report), "files and findings, or neither"
         render_text(report)
-        if target.name == "python" and made:
+        if target.name == "python" and made and ours:
             compile("".join(made.values()), "generated.py", "exec")
 
 

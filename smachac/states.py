@@ -9,6 +9,7 @@ from __future__ import annotations
 import re
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, field
+from keyword import iskeyword
 from typing import Literal
 
 from smachac import problems, shapes
@@ -149,12 +150,27 @@ def _read_interface(name: str, source: Source, library: Library, report: Report)
         if "claims" in fields
         else (),
         blocking="blocking" in fields and shapes.as_flag(fields["blocking"], []),
-        code={
-            key: str(value.value)
-            for key, value in _declared(fields.get("code"))
-            if isinstance(value, Scalar)
-        },
+        code=_code(fields.get("code"), report),
     )
+
+
+def _code(tree: Tree | None, report: Report) -> dict[str, str]:
+    """The code by language; what is to be imported has to have a name that can be."""
+    found = {}
+    for language, value in _declared(tree):
+        if isinstance(value, Scalar):
+            found[language] = str(value.value)
+            names = found[language].replace(":", ".", 1).split(".")
+            if language == "python" and ":" in found[language] and not all(map(_is_name, names)):
+                message = f"`{value.value}` names no class of a module"
+                help = "write it as `my_robot.states:Grasp`, or name the file of a template"
+                report.append(problems.wrong_shape(value.span, message, help))
+    return found
+
+
+def _is_name(word: str) -> bool:
+    """Whether programs can have such a name."""
+    return word.isidentifier() and not iskeyword(word)
 
 
 def _kind(tree: Tree | None, report: Report) -> Kind:

@@ -175,3 +175,20 @@ def test_no_text_makes_it_fail(text: str) -> None:
     tree = parse(Source("x.yml", text), report)
     assert all(0 <= item.span.start <= item.span.end <= len(text) for item in report)
     assert tree is None or tree.span.end <= len(text)
+
+
+@pytest.mark.parametrize("text", ["[" * 300, "a: b\n" * 20_000 + "]"], ids=["deep", "long"])
+def test_the_slow_parser_does_not_read_again_what_takes_it_long(
+    text: str, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    pytest.importorskip("ruamel.yaml.cyaml", exc_type=ImportError)
+
+    def slow(text: str) -> None:
+        raise AssertionError("read again")
+
+    monkeypatch.setattr(syntax, "_pure_events", slow)
+    report: Report = []
+    assert parse(Source("x.yml", text), report) is None
+    (found,) = [item for item in report if item.code.code == "SM001"]
+    assert found.span.start in (len(text), len(text) - 1)
+    assert "expected" in found.finding.message
