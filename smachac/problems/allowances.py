@@ -35,7 +35,7 @@ def unused_allowance(code: Word) -> Finding:
     return Finding(
         span=code.span,
         message=f"{code.text} is allowed here, and not found here",
-        help="remove the comment, or put it behind the line that it is meant for",
+        help="remove it, or put it behind the line that it is meant for",
     )
 
 
