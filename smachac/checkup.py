@@ -74,8 +74,11 @@ def _once(arguments: Namespace, used: set[str]) -> int:
         def again(texts: Texts) -> Survey:
             return survey(paths, Disk(texts), arguments.scripts, arguments.templates)
 
-        cured = mended(whole, found.report, again)
-        mends = len(cured.findings)
+        def counted(survey: Survey) -> Report:
+            return _counted(survey, changed, arguments)[0].report
+
+        cured = mended(whole, counted, again)
+        mends = cured.count
         if arguments.diff:
             _put_diff(cured)
         elif not _rewritten(cured):
@@ -115,8 +118,7 @@ def _put_diff(cured: Mended) -> None:
     from smachac.fixes import differences
 
     sys.stdout.writelines(differences(cured))
-    count = len(cured.findings)
-    print(f"--fix would mend {count} findings in {len(cured.texts)} files", file=sys.stderr)
+    print(f"--fix would mend {cured.count} findings in {len(cured.texts)} files", file=sys.stderr)
 
 
 def _rewritten(cured: Mended) -> bool:

@@ -18,24 +18,50 @@ Texts = Mapping[str, str]
 """Changed texts by the real path of their file."""
 
 
+MOST_ROUNDS = 10
+"""What is mended may show what else can be mended; so often it is looked at."""
+
+
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Mended:
-    """What edits make of scripts: the findings they mend, the new texts, the sources as they were,
-    by real path, and what there is to say afterwards."""
+    """What edits make of scripts: how many findings they mend, the new texts, the sources as they
+    were, by real path, and what there is to say afterwards."""
 
-    findings: tuple[Diagnostic, ...]
+    count: int
     texts: Texts
     sources: Mapping[str, Source]
     survey: Survey
 
 
-def mended(before: Survey, report: Report, again: Callable[[Texts], Survey]) -> Mended:
-    """Apply the edits of the findings in `report` as far as they prove right.
+def mended(
+    before: Survey, counted: Callable[[Survey], Report], again: Callable[[Texts], Survey]
+) -> Mended:
+    """Apply the edits of the findings that count, as far as they prove right.
 
     `again` looks at the same scripts with other texts. Edits that overlap are left out unless they
     are the same, so are those of files that come with smachac. If all together do not do, halves
     are tried: each finding kept is gone afterwards, and no error is new.
     """
+    count = 0
+    survey = before
+    texts: dict[str, str] = {}
+    sources: dict[str, Source] = {}
+    for _ in range(MOST_ROUNDS):
+        kept, after = _round(survey, counted(survey), lambda new: again({**texts, **new}))
+        if not kept:
+            break
+        for path, (source, text) in _edited(kept).items():
+            texts[path] = text
+            sources.setdefault(path, source)
+        count += len(kept)
+        survey = after
+    return Mended(count=count, texts=texts, sources=sources, survey=survey)
+
+
+def _round(
+    before: Survey, report: Report, again: Callable[[Texts], Survey]
+) -> tuple[list[Diagnostic], Survey]:
+    """The findings of a report that their edits mend, and what is left then."""
     kept: list[Diagnostic] = []
     survey = before
 
@@ -43,9 +69,9 @@ def mended(before: Survey, report: Report, again: Callable[[Texts], Survey]) -> 
         nonlocal survey
         if not batch:
             return
-        texts = {path: text for path, (_, text) in _edited([*kept, *batch]).items()}
-        after = again(texts)
-        if _better(before, after, [*kept, *batch]):
+        tried = [*kept, *batch]
+        after = again({path: text for path, (_, text) in _edited(tried).items()})
+        if _better(before, after, tried):
             kept.extend(batch)
             survey = after
         elif len(batch) > 1:
@@ -53,13 +79,7 @@ def mended(before: Survey, report: Report, again: Callable[[Texts], Survey]) -> 
             settle(batch[len(batch) // 2 :])
 
     settle(_compatible([item for item in report if item.finding.edits]))
-    edited = _edited(kept)
-    return Mended(
-        findings=tuple(kept),
-        texts={path: text for path, (_, text) in edited.items()},
-        sources={path: source for path, (source, _) in edited.items()},
-        survey=survey,
-    )
+    return kept, survey
 
 
 def _path(edit: Edit) -> str:
@@ -67,22 +87,30 @@ def _path(edit: Edit) -> str:
 
 
 def _compatible(report: Report) -> Report:
-    """The findings whose edits touch none of another finding, unless both say the same."""
+    """The findings whose edits touch none of another finding, unless both say the same.
+
+    Of insertions at one place the first stays; the next round finds the others.
+    """
     ours = tuple(os.path.realpath(folder) + os.sep for folder in BUILT_IN)
-    taken: dict[str, list[tuple[int, int, str, int]]] = {}
+    taken: dict[str, list[tuple[int, int, int, str]]] = {}
     out: set[int] = set()
     for number, item in enumerate(report):
         for edit in item.finding.edits:
             if _path(edit).startswith(ours):
                 out.add(number)
-            row = (edit.span.start, edit.span.end, edit.text, number)
+            row = (edit.span.start, edit.span.end, number, edit.text)
             taken.setdefault(_path(edit), []).append(row)
     for rows in taken.values():
-        furthest = (-1, -1, "", -1)
+        furthest = (-1, -1, -1, "")
         for row in sorted(rows):
-            apart = row[0] >= furthest[1] and row[0] > furthest[0]
-            if not apart and row[:3] != furthest[:3]:
-                out |= {row[3], furthest[3]}
+            start, end, number, text = row
+            if (start, end, text) == (*furthest[:2], furthest[3]):
+                continue
+            if start == end == furthest[0] == furthest[1]:
+                out.add(number)
+                continue
+            if start < furthest[1] or start == furthest[0]:
+                out |= {number, furthest[2]}
             furthest = max(furthest, row, key=lambda row: row[1])
     return [item for number, item in enumerate(report) if number not in out]
 

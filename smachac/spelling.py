@@ -93,9 +93,14 @@ def _one_slip(word: str, name: str) -> bool:
     return len(word) >= SHORTEST_WRONG_LETTER
 
 
+def is_plain(name: str) -> bool:
+    """Whether YAML takes a name for what it is wherever it stands, without quotes."""
+    return _PLAIN.fullmatch(name) is not None and name.casefold() not in _NOT_PLAIN
+
+
 def respelt(word: Word, name: str | None) -> tuple[Edit, ...]:
     """The edit that makes a word of a script another name; none where it is not written there."""
-    if name is None or not _PLAIN.fullmatch(name) or name.casefold() in _NOT_PLAIN:
+    if name is None or not is_plain(name):
         return ()
     written = word.span.text
     for quote in ("", "'", '"'):

@@ -4,19 +4,19 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 
+from smachac.checks.cures import with_input
 from smachac.checks.hints import calls, did_you_mean, guesser, other_place
 from smachac.checks.lost import lost_outputs
 from smachac.checks.missing import Missing, missing_keys
 from smachac.checks.userdata import flow_of, unknown_remaps
 from smachac.checks.witness import Searches, Witness, reader_at
-from smachac.diagnostics import Finding, Related, Severity, rule
+from smachac.diagnostics import Edit, Finding, Related, Severity, rule
 from smachac.ir.dataflow import Flow, Scope
 from smachac.ir.keyuses import place_of, uses
 from smachac.ir.nodes import Machine, Node
 from smachac.ir.walk import walk
 from smachac.problems import listed
 from smachac.spelling import Guesser
-
 
 MOST_RELATED = 3
 """More places beside the fault than these help nobody."""
@@ -281,7 +281,20 @@ def undeclared_container_key(machine: Machine) -> Iterator[Finding]:
                 *calls(reader.node, reader.span),
             ),
             node=reader.path,
+            edits=_taken_in(flow, scope.path, missing.other, key),
         )
+
+
+def _taken_in(flow: Flow, path: str, holder: str, key: str) -> tuple[Edit, ...]:
+    """What makes every container between the key and its reader take it in."""
+    edits: list[Edit] = []
+    while path != holder:
+        added = with_input(flow.scopes[path].container, key)
+        if not added:
+            return ()
+        edits += added
+        path = path.rpartition("/")[0]
+    return tuple(edits)
 
 
 def _between(path: str, holder: str) -> list[str]:

@@ -193,7 +193,51 @@ def tried(text: str) -> Mended:
     def again(texts: Mapping[str, str]) -> Survey:
         return look({"main.yml": next(iter(texts.values()))})
 
-    return mended(before, before.report, again)
+    return mended(before, lambda survey: survey.report, again)
+
+
+KEYS = """\
+name: sm
+template: Base
+outcomes: [held]
+userdata: {pose: 0.5, speed: 1.0, name: block}
+states:
+  - PICK:  # a container
+      # that takes nothing in
+      template: StateMachine
+      outcomes: [done]
+      states:
+        - REACH: {template: StateMachine, outcomes: [done], transitions: {done: GRASP}, states: [
+            LOOK: {template: PrintUserdataState, input_keys: [pose, speed],
+                   transitions: {succeeded: done}}]}
+        - GRASP:
+            template: StateMachine
+            outcomes: [done]
+            input_keys:
+              - name  # of the block
+            states:
+              - HOLD:
+                  template: PrintUserdataState
+                  input_keys: [name, pose]
+                  transitions: {succeeded: done}
+      transitions: {done: held}
+"""
+
+
+@pytest.mark.parametrize("end", ["\n", "\r\n"])
+def test_keys_are_taken_in_by_every_container_between(end: str, tmp_path: Path) -> None:
+    path = tmp_path / "main.yml"
+    path.write_bytes(KEYS.replace("\n", end).encode())
+    assert main(["check", str(path), "--fix"]) == 0
+    text = path.read_bytes().decode()
+    assert text.replace("\r\n", "\n").count("\r") == 0
+    assert text.count("\n") == KEYS.count("\n") + 2
+    lines = text.split(end)
+    at = lines.index("  - PICK:  # a container")
+    assert lines[at + 2].startswith("      input_keys: [")
+    assert {"pose", "speed", "name"} == set(lines[at + 2].partition("[")[2][:-1].split(", "))
+    assert "REACH: {input_keys: [" in text
+    assert f"              - name  # of the block{end}              - pose{end}" in text
 
 
 LETTERS = st.sampled_from("abdefgilnoprstuPLACEKX_:{, ")
@@ -219,7 +263,7 @@ def test_fixes_never_make_it_worse(damage: list[tuple[int, str, int]]) -> None:
     errors = [fingerprint(item) for item in after if item.severity is Severity.ERROR]
     assert len(errors) <= sum(item.severity is Severity.ERROR for item in before)
     assert set(errors) <= {fingerprint(item) for item in before}
-    if result.findings:
+    if result.count:
         assert len(after) < len(before) or not has_errors(after)
         (mended_text,) = result.texts.values()
         assert look({"main.yml": mended_text}).report == after or mended_text != text
@@ -227,10 +271,10 @@ def test_fixes_never_make_it_worse(damage: list[tuple[int, str, int]]) -> None:
         assert result.texts == {}
 
 
-def edit(start: int, end: int, text: str, source: Source) -> Diagnostic:
+def edit(number: int, start: int, end: int, text: str, source: Source) -> Diagnostic:
     edits = (Edit(span=Span(source, start, end), text=text),)
     template = look({"main.yml": "name: sm\n"}).report[0]
-    finding = Finding(span=edits[0].span, message=f"{start}", edits=edits)
+    finding = Finding(span=edits[0].span, message=f"{number}", edits=edits)
     return Diagnostic(code=template.code, severity=Severity.ERROR, finding=finding)
 
 
@@ -241,14 +285,14 @@ def edit(start: int, end: int, text: str, source: Source) -> Diagnostic:
         ([(0, 1, "A"), (0, 1, "A")], "Abcdef"),
         ([(0, 1, "A"), (0, 1, "B"), (2, 3, "C")], "abCdef"),
         ([(0, 5, "A"), (1, 2, "B"), (3, 4, "C"), (5, 6, "F")], "abcdeF"),
-        ([(1, 1, "+"), (1, 1, "-"), (3, 3, "*")], "abc*def"),
+        ([(1, 1, "+"), (1, 1, "-"), (3, 3, "*")], "a+bc*def"),
         ([(1, 1, "+"), (1, 2, "B")], "abcdef"),
     ],
 )
 def test_edits_that_overlap_are_left_out(edits: list[tuple[int, int, str]], expected: str) -> None:
     source = Source("main.yml", "abcdef")
-    report = [edit(*each, source) for each in edits]
+    report = [edit(number, *each, source) for number, each in enumerate(edits)]
     nothing = Survey(reports={}, uses={})
     before = Survey(reports={"main.yml": report}, uses={})
-    result = mended(before, report, lambda texts: nothing)
+    result = mended(before, lambda survey: survey.report, lambda texts: nothing)
     assert list(result.texts.values()) == ([expected] if expected != "abcdef" else [])

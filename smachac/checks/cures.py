@@ -1,0 +1,62 @@
+"""Edits beyond spelling: what a script lacks, put where it belongs."""
+
+from __future__ import annotations
+
+import re
+
+from smachac.diagnostics import Edit
+from smachac.ir.nodes import Container
+from smachac.source import NOWHERE, Span
+from smachac.spelling import is_plain
+
+_BODY = re.compile(
+    r"[ \t]*:[ \t]*(?:(?P<flow>\{)|(?:#[^\n]*)?(?:\r?\n[ \t]*(?:#[^\n]*)?)*(?P<block>\S))"
+)
+"""What follows the name of a state, as far as the first of its variables."""
+
+
+def with_input(container: Container, key: str) -> tuple[Edit, ...]:
+    """The edit that adds a key to the `input_keys` of a container; none if that is not plain."""
+    if not is_plain(key):
+        return ()
+    last = max(
+        (known.span for known in container.inputs), key=lambda span: span.start, default=None
+    )
+    return _listed(last, key) if last is not None else _begun(container.span, key)
+
+
+def _listed(last: Span, key: str) -> tuple[Edit, ...]:
+    """Another item behind the last one of a list."""
+    text = last.source.text
+    if last.source is NOWHERE.source or text[last.end :].lstrip(" \t").startswith(":"):
+        return ()
+    start = text.rfind("\n", 0, last.start) + 1
+    if text[start : last.start].strip() != "-":
+        return (Edit(span=Span(last.source, last.end, last.end), text=f", {key}"),)
+    line, _ = last.source.position(last.start)
+    end = start + len(last.source.line(line))
+    new = f"{_line_end(text, last.end)}{text[start : last.start]}{key}"
+    return (Edit(span=Span(last.source, end, end), text=new),)
+
+
+def _begun(name: Span, key: str) -> tuple[Edit, ...]:
+    """A list with one item, as the first variable of a state."""
+    text = name.source.text
+    body = _BODY.match(text, name.end)
+    if body is None or name.source is NOWHERE.source:
+        return ()
+    if body["flow"]:
+        place = Span(name.source, body.end(), body.end())
+        return (Edit(span=place, text=f"input_keys: [{key}], "),)
+    at = body.start("block")
+    indent = text[text.rfind("\n", 0, at) + 1 : at]
+    if indent.strip() or at <= name.end:
+        return ()
+    new = f"input_keys: [{key}]{_line_end(text, name.end)}{indent}"
+    return (Edit(span=Span(name.source, at, at), text=new),)
+
+
+def _line_end(text: str, at: int) -> str:
+    """What ends the line of an offset: a script has one kind of line ends, as a rule."""
+    end = text.find("\n", at)
+    return "\r\n" if end > 0 and text[end - 1] == "\r" else "\n"
