@@ -210,15 +210,15 @@ STORED = "count"
 """The userdata key that state machines and sequences hold; leaves call it so or `value`."""
 
 
-def _outcomes(names: list[str]) -> tuple[Outcome, ...]:
+def outcomes_of(names: list[str]) -> tuple[Outcome, ...]:
     return tuple(Outcome(name=name, span=NOWHERE) for name in names)
 
 
-def _keys(*names: str) -> tuple[Key, ...]:
+def keys_of(*names: str) -> tuple[Key, ...]:
     return tuple(Key(name=name, span=NOWHERE) for name in names)
 
 
-class _Building:
+class Building:
     """What draws the parts of a machine without a fault.
 
     A chain of first outcomes leads from every initial state through all its siblings to the first
@@ -264,9 +264,9 @@ class _Building:
         return Leaf(
             name=self.fresh(),
             type="ScriptedState",
-            outcomes=_outcomes(exits),
-            inputs=_keys(key) if reads else (),
-            outputs=_keys(key) if writes else (),
+            outcomes=outcomes_of(exits),
+            inputs=keys_of(key) if reads else (),
+            outputs=keys_of(key) if writes else (),
             remaps=(remap,) if (reads or writes) and key != STORED else (),
             variables=(
                 Variable(name="steps", value=Value(data=tuple(steps), span=NOWHERE), span=NOWHERE),
@@ -289,11 +289,11 @@ class _Building:
         passed = stored and self.draw(BOOLEANS)
         return {
             "name": self.fresh(),
-            "outcomes": _outcomes(exits),
+            "outcomes": outcomes_of(exits),
             "children": tuple(children),
             "initial": children[0].name,
-            "inputs": _keys(STORED) if passed else (),
-            "outputs": _keys(STORED) if passed else (),
+            "inputs": keys_of(STORED) if passed else (),
+            "outputs": keys_of(STORED) if passed else (),
             "userdata": (Preset(key=STORED, value=Value(data=0, span=NOWHERE), span=NOWHERE),),
             "span": NOWHERE,
         }
@@ -306,10 +306,10 @@ class _Building:
         for child, following in zip(children, [*names[1:], exits[0]], strict=True):
             first, *others = outcome_names(child)
             chain = origin if following in names else self.origin(first, following)
-            steps = [_transition(first, following, chain)]
+            steps = [transition(first, following, chain)]
             for outcome in others:
                 target = self.draw(anywhere)
-                steps.append(_transition(outcome, target, self.origin(outcome, target)))
+                steps.append(transition(outcome, target, self.origin(outcome, target)))
             found.append(dataclasses.replace(child, transitions=tuple(steps)))
         return found
 
@@ -344,7 +344,7 @@ class _Building:
         return Concurrence(
             name=self.fresh(),
             type="Concurrence",
-            outcomes=_outcomes(exits),
+            outcomes=outcomes_of(exits),
             children=tuple(children),
             default_outcome=exits[0],
             # A script, and SMACH, have one rule for an outcome.
@@ -364,7 +364,7 @@ class _Building:
         return Iterator(
             name=self.fresh(),
             type="Iterator",
-            outcomes=_outcomes(exits),
+            outcomes=outcomes_of(exits),
             children=(child,),
             items=Value(data=self.draw(SHORT_ITEMS), span=NOWHERE),
             item_key="item",
@@ -374,7 +374,7 @@ class _Building:
         )
 
 
-def _transition(outcome: str, target: str, origin: Origin) -> Transition:
+def transition(outcome: str, target: str, origin: Origin) -> Transition:
     return Transition(outcome=outcome, target=target, origin=origin, span=NOWHERE)
 
 
@@ -385,6 +385,6 @@ def valid_machines(draw: st.DrawFn, depth: int = 3) -> Machine:
     Every kind of container, loops, implicit exits, userdata written and read, passed into nested
     machines and out of them. Every run ends, and ends the same: concurrences wait for all.
     """
-    building = _Building(draw)
+    building = Building(draw)
     root = building.state_machine(depth, building.exits(), stored=False)
     return Machine(root=dataclasses.replace(root, name="sm"), source="main.yml")

@@ -14,16 +14,17 @@ from smachac.ir.walk import GOOD_OUTCOMES, PREEMPTED, outcome_names
 def built_in(seed: int = 0) -> Behaviour:
     """The behaviour of every leaf by its state type.
 
-    A leaf that a request to stop has reached ends as `preempted` where it declares that. `seed`
-    settles what leaves draw that have no seed of their own; 0 is what generated programs take.
+    A leaf that a request to stop has reached ends as `preempted` where it declares that, unless it
+    is of a built-in type that does not look for requests. `seed` settles what leaves draw that have
+    no seed of their own; 0 is what generated programs take.
     """
     behaviours = {**_BEHAVIOURS, "RandomOutcomeState": _draws(seed)}
 
     def behave(path: str, leaf: Leaf, visit: int, userdata: Userdata) -> str:
-        behaviour = behaviours.get(leaf.type, _default)
+        behaviour = behaviours.get(leaf.type, stopping_when_asked(_default))
         return behaviour(path, leaf, visit, userdata)
 
-    return stopping_when_asked(behave)
+    return behave
 
 
 def stopping_when_asked(behaviour: Behaviour) -> Behaviour:
@@ -123,9 +124,9 @@ def _sleep(path: str, leaf: Leaf, visit: int, userdata: Userdata) -> str:
 
 
 _BEHAVIOURS: dict[str, Callable[[str, Leaf, int, Userdata], str]] = {
-    "ScriptedState": _scripted,
+    "ScriptedState": stopping_when_asked(_scripted),
     "CallbacksState": _run_callbacks,
     "ConditionalOutcomeState": _first_true,
-    "SleepState": _sleep,
+    "SleepState": stopping_when_asked(_sleep),
 }
 """By state type. PrintUserdataState prints nothing here, so the stand-in does."""

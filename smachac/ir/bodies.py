@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Generator, Iterable, Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING, TypeAlias
 
 from smachac.ir.nodes import (
@@ -186,14 +186,15 @@ def _iterator(run: Interpreter, node: Iterator, path: str, own: dict[str, object
     """Item after item; a request to stop ends it after the item that runs then (P9)."""
     result: str | None = node.exhausted_outcome
     outcome, here = None, path
+    children = [replace(child, remaps=()) for child in node.children]  # own keys, as they are (I7)
     items = _items_of(run, node, path, own)
     position = 0
     while position < len(items):
         own[node.item_key] = items[position]
         position += 1
-        if not node.children:
+        if not children:
             run.fail("no-state", path, "has no states", node.span)
-        child = node.children[0]
+        child = children[0]
         here = f"{path}/{child.name}"
         run.preemption.running[path] = [here]
         outcome = yield from run.visit(child, here, own, loose=True)

@@ -189,7 +189,11 @@ def _iterator(node: Json, common: dict[str, Any]) -> Node:
     children = tuple(_node(spec["node"], spec, {}) for spec in specs)
     loop = tuple(node.get("loop", []))
     if node.get("break"):
-        loop = tuple(name for name in outcome_names(children[0]) if name not in node["break"])
+        known = outcome_names(children[0])
+        # Where all declared outcomes break, what the child does not declare loops (I6).
+        told = [step.get("ret") for step in specs[0]["node"].get("steps", [])]
+        undeclared = [name for name in told if isinstance(name, str) and name not in known]
+        loop = tuple(name for name in known if name not in node["break"]) or tuple(undeclared)
     keyed = isinstance(node["it"], dict)
     return Iterator(
         type="Iterator",

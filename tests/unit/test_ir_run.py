@@ -351,3 +351,22 @@ def test_two_hundred_machines_inside_one_another_run() -> None:
     result, events = ran(machine("sm", "x", node))
     assert result.outcome == "x"
     assert len(events) == 2 + 201 * 3
+
+
+def test_i7_the_state_of_an_iterator_is_not_remapped() -> None:
+    each = iterator(
+        "I",
+        "none",
+        leaf("L", outcomes="next", ins="x", remaps={"x": "it_data"}),
+        items=[7],
+        exhausted="none",
+        loop="next",
+        to={"none": "end"},
+    )
+
+    def read(userdata: Userdata) -> str:
+        return str(userdata["x"])
+
+    result, _ = ran(machine("sm", "end", each), {"L": read})
+    assert result.error is not None
+    assert result.error.kind == "missing-key"

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from busy_strategies import busy_machines
 from hypothesis import given, settings
 from strategies import valid_machines
 
@@ -50,3 +51,31 @@ def test_valid_machines_have_all_there_is() -> None:
     assert any(node.remaps for node in nodes)
     assert any(node.outputs for node in nodes if not isinstance(node, Leaf))
     assert any(node.rules for node in nodes if isinstance(node, Concurrence))
+
+
+def test_busy_machines_have_all_there_is() -> None:
+    found: set[str] = set()
+
+    @given(busy_machines())
+    @settings(max_examples=150)
+    def collect(drawn: tuple[Machine, tuple[str, int]]) -> None:
+        machine, asked = drawn
+        found.add("asked" if asked[0] else "not asked")
+        result = run(machine, built_in(), max_steps=300)
+        found.add(result.error.kind if result.error else "ended")
+        for _, node in walk(machine.root):
+            found.add(node.type)
+            if isinstance(node, Concurrence):
+                outcomes = [rule.outcome for rule in node.rules]
+                found.add(f"join {node.join}")
+                found.add("same outcome" if len(set(outcomes)) < len(outcomes) else "")
+            if isinstance(node, Iterator):
+                found.add("items by key" if node.items_key else "items")
+
+    collect()
+    assert found >= {
+        *("StateMachine", "Sequence", "Concurrence", "Iterator"),
+        *("ScriptedState", "CallbacksState", "ConditionalOutcomeState", "SleepState"),
+        *("asked", "not asked", "ended", "behaviour", "missing-key", "no-items"),
+        *("join all", "join any", "same outcome", "items", "items by key"),
+    }

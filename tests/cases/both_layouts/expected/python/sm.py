@@ -8,7 +8,10 @@ except ImportError:  # no ROS on this machine: the same names without it
 
 
 class ScriptedState(smach.State):
-    """Ends as it is told: visit n does step n, the last step is repeated."""
+    """Ends as it is told: visit n does step n, the last step is repeated.
+
+    Asked to stop, it ends as `preempted` where it has that outcome.
+    """
 
     def __init__(self, outcomes, steps=(), input_keys=(), output_keys=()):
         super().__init__(
@@ -22,6 +25,9 @@ class ScriptedState(smach.State):
     def execute(self, userdata):
         step = self.steps[min(self.visits, len(self.steps) - 1)]
         self.visits += 1
+        if self.preempt_requested() and "preempted" in self.get_registered_outcomes():
+            self.service_preempt()
+            return "preempted"
         for key, value in step.get("set", {}).items():
             userdata[key] = value
         return step["outcome"]
