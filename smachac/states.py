@@ -15,7 +15,7 @@ from typing import Literal
 from smachac import problems, shapes
 from smachac.diagnostics import Report, did_you_mean
 from smachac.ir.nodes import Key, Outcome
-from smachac.ir.types import ANY, Type
+from smachac.ir.types import ANY, Type, optional
 from smachac.policy import Policy
 from smachac.source import Source, Span, Word
 from smachac.syntax import Map, Scalar, Tree, parse
@@ -217,10 +217,14 @@ def _type(tree: Tree | None, report: Report) -> Type:
 
 
 def _variable(name: str, tree: Tree, report: Report) -> VariableType:
+    type_ = _type(tree, report)
     default = tree.get("default") if isinstance(tree, Map) else None
+    if default is not None and isinstance(default.value, Scalar) and default.value.value is None:
+        # Whoever may leave it out may also write `null`.
+        type_ = optional(type_)
     return VariableType(
         name=name,
-        type=_type(tree, report),
+        type=type_,
         required=default is None,
         doc=_doc(tree),
         default=default.value if default is not None else None,

@@ -11,7 +11,9 @@ from smachac.checks import (
     masking,
     names,
     races,
+    robot,
     structure,
+    types,
     waiting,
 )
 from smachac.diagnostics import Report, run_rules
@@ -27,7 +29,9 @@ __all__ = [
     "masking",
     "names",
     "races",
+    "robot",
     "structure",
+    "types",
     "waiting",
 ]
 

@@ -46,7 +46,7 @@ from smachac.ir.fitting import (
     record,
     unit_of,
 )
-from smachac.ir.joining import item_of, joined, widened
+from smachac.ir.joining import item_of, joined, plain, widened
 from smachac.ir.nodes import Data, Expression, Struct
 from smachac.ir.types import ANY, Type
 from smachac.source import assert_never
@@ -237,16 +237,16 @@ def _number(type_: Type) -> Type:
     """A number as arithmetic sees it; `any` where it is none."""
     if type_ == BOOL:
         return INT
-    plain = widened(type_)
-    return plain if plain.name in ("int", "float") else ANY
+    found = plain(type_)
+    return found if found.name in ("int", "float") else ANY
 
 
 def _binary(word: str, left: Type, right: Type) -> Type:
     one, other = _number(left), _number(right)
     if ANY not in (one, other):
         return _arithmetic(word, one, other)
-    plain = widened(left), widened(right)
-    match word, plain[0].name, plain[1].name:
+    first, second = plain(left), plain(right)
+    match word, first.name, second.name:
         case "+", "str", "str":
             return STR
         case "+", "list" | "array", "list" | "array":
@@ -255,7 +255,7 @@ def _binary(word: str, left: Type, right: Type) -> Type:
         case ("*", "str", "int") | ("*", "int", "str"):
             return STR
         case "*", "list" | "array", "int":
-            return Type("list", (inside(plain[0]),))
+            return Type("list", (widened(inside(first)),))
     return ANY
 
 

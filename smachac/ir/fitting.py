@@ -65,14 +65,11 @@ def record(of: Iterable[tuple[str, Type]]) -> Type:
     return Type("record", tuple(part for pair in of for part in pair))
 
 
-def optional(type_: Type) -> Type:
-    """The type or nothing."""
-    return type_ if type_.name in ("optional", "any", "none") else Type("optional", (type_,))
-
-
 def present(type_: Type) -> Type:
     """The type without nothing."""
-    return inside(type_) if type_.name == "optional" else type_
+    while type_.name == "optional":
+        type_ = inside(type_)
+    return type_
 
 
 def unit_of(type_: Type) -> str:
@@ -80,6 +77,7 @@ def unit_of(type_: Type) -> str:
     return str(type_.args[0]) if type_.name in ("int", "float") and type_.args else ""
 
 
+@lru_cache(maxsize=10_000)
 def misfit(given: Type, wanted: Type) -> Misfit | None:
     """Why a value of one type may not be read as another; None where it may."""
     if given == wanted or is_open(given) or is_open(wanted):
@@ -90,7 +88,7 @@ def misfit(given: Type, wanted: Type) -> Misfit | None:
             return None if given == NONE else misfit(present(given), inside(wanted))
         case "optional", _:
             return clash
-        case "literal" | "one_of", "one_of":
+        case "literal" | "one_of", "one_of" | "literal":
             return None if set(given.args) <= set(wanted.args) else clash
         case "literal" | "one_of", "str" | "int" | "float":
             return _first(_misfit_choice(choice, wanted) for choice in given.args)
@@ -102,6 +100,9 @@ def misfit(given: Type, wanted: Type) -> Misfit | None:
             return _first(misfit(item, inside(wanted)) for item in fields(given).values())
         case "dict", "dict":
             return misfit(inside(given), inside(wanted))
+        case ("tuple", "tuple") | ("record", "record") if len(given.args) == len(wanted.args):
+            parts = zip(items(given), items(wanted), strict=False)
+            return _first(misfit(item, part) for item, part in parts)
         case "tuple", _:
             return _misfit_struct(given, wanted)
         case "record", "PoseStamped" | "JointState":

@@ -18,13 +18,12 @@ from __future__ import annotations
 from collections import deque
 from collections.abc import Mapping
 from dataclasses import dataclass, replace
-from functools import reduce
 
 from smachac.ir import nodes
 from smachac.ir.behaviours import variable
 from smachac.ir.expression_types import keys_read, type_of_call, type_of_data
-from smachac.ir.fitting import is_open, misfit
-from smachac.ir.joining import item_of, join, joined, meet, settled, widened
+from smachac.ir.fitting import NONE, is_open, misfit
+from smachac.ir.joining import item_of, join, widened
 from smachac.ir.nodes import (
     Container,
     Data,
@@ -35,7 +34,8 @@ from smachac.ir.nodes import (
     Struct,
     Variable,
 )
-from smachac.ir.places import Clash, Code, Flow, Groups, Place, Role, place_of
+from smachac.ir.places import Clash, Code, Flow, Place, Role, place_of
+from smachac.ir.settling import key_types
 from smachac.ir.types import ANY, Type
 from smachac.ir.userdata import remapping
 from smachac.source import Span
@@ -228,14 +228,21 @@ class _Inference:
                 return
             self.constants.append(flow)
             flow = replace(flow, judged=True)
-        mark = (flow.type, flow.judged, flow.how == "value" and (flow.span, id(flow.value)))
-        kind = widened(flow.type)
-        if mark in place.flows or (len(place.flows) >= MOST_FLOWS and kind in place.kinds):
+        mark = flow.mark
+        if mark in place.flows:
+            place.flows[mark].append(flow)
             return
-        place.flows[mark] = flow
+        kind = widened(flow.type) if flow.how == "value" else flow.type
+        if len(place.flows) >= MOST_FLOWS and kind in place.kinds:
+            return
+        place.flows[mark] = [flow]
         place.kinds.add(kind)
         if not flow.judged:
-            place.holds = flow.type if place.holds is None else join(place.holds, flow.type)
+            # Nothing, written before the run, stands where something is to come.
+            if place.holds is None or place.holds == NONE:
+                place.holds = flow.type
+            elif flow.type != NONE:
+                place.holds = join(place.holds, flow.type)
         self.todo.append(flow)
 
     def clash(self, clash: Clash) -> None:
@@ -266,7 +273,7 @@ class _Inference:
         found: dict[Role, dict[tuple[str, str], Type]] = {
             role: {} for role in ("scope", "input", "output", "variable")
         }
-        types = self.settled()
+        types = key_types(self.places)
         for place in self.places:
             found[place.role].setdefault((place.path, place.key), types[id(place)])
         return Types(
@@ -276,32 +283,6 @@ class _Inference:
             clashes=tuple(self.clashes.values()),
             constants=tuple(self.constants),
         )
-
-    def settled(self) -> dict[int, Type]:
-        """The type of each place by `id`; linked places without a declaration have one type."""
-        group = Groups()
-        for place in self.places:
-            for link in place.links:
-                if place.declared == ANY and link.declared == ANY:
-                    group.unite(id(place), id(link))
-        written: dict[int, dict[Type, None]] = {}
-        read: dict[int, dict[Type, None]] = {}
-        for place in self.places:
-            here = group.of(id(place))
-            fresh = (flow.type for flow in place.flows.values() if not flow.judged)
-            written.setdefault(here, {}).update(dict.fromkeys(fresh))
-            for link in place.links:
-                if link.declared != ANY:
-                    read.setdefault(here, {})[link.declared] = None
-        one: dict[int, Type] = {}
-        for place in self.places:
-            here = group.of(id(place))
-            if place.declared != ANY:
-                one[id(place)] = place.declared
-            elif here not in one:
-                wanted = reduce(meet, sorted(read.get(here, ()), key=repr), ANY)
-                one[here] = settled(joined(written[here]), wanted)
-        return {id(place): one.get(id(place), one[group.of(id(place))]) for place in self.places}
 
 
 def _written(leaf: Leaf) -> dict[str, list[tuple[Span, Data]]]:

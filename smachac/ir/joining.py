@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterable
-from functools import reduce
+from functools import lru_cache, reduce
 
 from smachac.ir.fitting import (
     DICT,
@@ -17,12 +17,11 @@ from smachac.ir.fitting import (
     is_open,
     items,
     length_of,
-    optional,
     present,
     record,
     unit_of,
 )
-from smachac.ir.types import ANY, Type
+from smachac.ir.types import ANY, Type, optional
 
 MOST_CHOICES = 16
 """Constants that one literal type tells apart; more are a `str` or an `int`."""
@@ -32,9 +31,10 @@ def constants(choices: Iterable[int | str]) -> Type:
     """One of these constants."""
     found = tuple(sorted(set(choices), key=lambda each: (str(each), isinstance(each, str))))
     type_ = Type("literal", found)
-    return type_ if len(found) <= MOST_CHOICES else _plain(type_)
+    return type_ if len(found) <= MOST_CHOICES else plain(type_)
 
 
+@lru_cache(maxsize=10_000)
 def join(one: Type, other: Type) -> Type:
     """The least type that both fit; `any` where there is none."""
     if one == other:
@@ -62,8 +62,8 @@ def join(one: Type, other: Type) -> Type:
     for low, high in ((one, other), (other, one)):
         if fits(low, high):
             return high
-    plain = _plain(one), _plain(other)
-    return ANY if plain == (one, other) else join(*plain)
+    both = plain(one), plain(other)
+    return ANY if both == (one, other) else join(*both)
 
 
 def _join_choices(one: Type, other: Type) -> Type:
@@ -115,7 +115,7 @@ def _value(type_: Type) -> Type:
     return joined(fields(type_).values()) if type_.name == "record" else inside(type_)
 
 
-def _plain(type_: Type) -> Type:
+def plain(type_: Type) -> Type:
     """A literal as the type that a script would write for it, one level deep."""
     match type_.name:
         case "literal" | "one_of":
@@ -130,10 +130,11 @@ def _plain(type_: Type) -> Type:
     return type_
 
 
+@lru_cache(maxsize=10_000)
 def widened(type_: Type) -> Type:
     """A type with the forms of literals in it as a script would write them."""
     if type_.name in ("literal", "tuple", "record"):
-        return widened(_plain(type_))
+        return widened(plain(type_))
     return Type(type_.name, tuple(widened(a) if isinstance(a, Type) else a for a in type_.args))
 
 

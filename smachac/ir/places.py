@@ -29,7 +29,7 @@ class Place:
     span: Span
     declared: Type = ANY
     links: list[Place] = field(default_factory=list, repr=False)
-    flows: dict[tuple[object, ...], Flow] = field(default_factory=dict, repr=False)
+    flows: dict[tuple[object, ...], list[Flow]] = field(default_factory=dict, repr=False)
     kinds: set[Type] = field(default_factory=set, repr=False)
     readers: list[Code] = field(default_factory=list, repr=False)
     holds: Type | None = None
@@ -50,6 +50,12 @@ class Flow:
     value: Data = None
     before: Flow | None = None
     judged: bool = False
+
+    @property
+    def mark(self) -> tuple[object, ...]:
+        """What tells a flow from others in its place; of those alike one is carried along."""
+        which = (self.span, id(self.value)) if self.how == "value" else None
+        return self.type, self.judged, which
 
     @property
     def origin(self) -> Flow:
@@ -81,24 +87,6 @@ class Code:
     reads: Mapping[str, Place]
     expression: Expression | None = None
     items: bool = False
-
-
-class Groups:
-    """Sets that are united step by step; each has one member that stands for it."""
-
-    def __init__(self) -> None:
-        self.parent: dict[int, int] = {}
-
-    def of(self, member: int) -> int:
-        root = member
-        while (above := self.parent.get(root, root)) != root:
-            root = above
-        while member != root:
-            self.parent[member], member = root, self.parent[member]
-        return root
-
-    def unite(self, one: int, other: int) -> None:
-        self.parent[self.of(one)] = self.of(other)
 
 
 def place_of(node: Node, key: Key) -> Span:

@@ -9,6 +9,7 @@ import json
 import re
 from collections.abc import Iterable, Iterator
 from functools import lru_cache
+from typing import TYPE_CHECKING
 
 from smachac.ir import nodes
 from smachac.ir.nodes import (
@@ -29,6 +30,9 @@ from smachac.ir.read import IrSyntaxError, parse_machine
 from smachac.ir.types import ANY, Type
 from smachac.source import assert_never
 
+if TYPE_CHECKING:
+    from smachac.ir.inference import Types
+
 __all__ = ["IrSyntaxError", "parse_machine", "print_machine"]
 
 HEADER = "# A state graph of smachac, format 1: one statement a line, as in grammars/ir.lark."
@@ -43,21 +47,23 @@ MOST_BITS = 10_000
 """Whole numbers of more binary digits are printed in hexadecimal; Python limits decimal ones."""
 
 
-def print_machine(machine: Machine) -> str:
+def print_machine(machine: Machine, types: Types | None = None) -> str:
     """The text of a machine, for people and for `parse_machine`, ending in a line feed.
 
-    Iterative over the nodes, so that deep nesting costs nothing.
+    Of `types` those that no statement says follow as comments. Iterative over the nodes, so that
+    deep nesting costs nothing.
     """
+    inferred = _inferred(types) if types is not None else {}
     lines = [HEADER, *_preamble(machine)]
-    todo: list[tuple[Node | None, int]] = [(machine.root, 0)]
+    todo: list[tuple[Node | None, str, int]] = [(machine.root, machine.root.name, 0)]
     while todo:
-        node, depth = todo.pop()
+        node, path, depth = todo.pop()
         margin = "  " * depth
         if node is None:
             lines.append(f"{margin}}}")
             continue
         head = f"{_kind(node)} {_name(node.name)}: {_name(node.type)} {{"
-        body = list(_statements(node))
+        body = [*_statements(node), *_comments(node, inferred.get(path, ()))]
         children = () if isinstance(node, Leaf) else node.children
         lines.append("")
         if not body and not children:
@@ -65,9 +71,29 @@ def print_machine(machine: Machine) -> str:
             continue
         lines.append(margin + head)
         lines.extend(f"{margin}  {statement}" for statement in body)
-        todo.append((None, depth))
-        todo.extend((child, depth + 1) for child in reversed(children))
+        todo.append((None, path, depth))
+        todo.extend((each, f"{path}/{each.name}", depth + 1) for each in reversed(children))
     return "\n".join(lines) + "\n"
+
+
+def _inferred(types: Types) -> dict[str, list[tuple[str, str, Type]]]:
+    """What is known of keys, by path: the word of the statement, the key, its type."""
+    found: dict[str, list[tuple[str, str, Type]]] = {}
+    maps = (("userdata", types.keys), ("input", types.inputs), ("output", types.outputs))
+    for word, known in maps:
+        for (path, key), type_ in known.items():
+            found.setdefault(path, []).append((word, key, type_))
+    return found
+
+
+def _comments(node: Node, inferred: Iterable[tuple[str, str, Type]]) -> Iterator[str]:
+    """The types of keys that the statements of a node do not say."""
+    held = () if isinstance(node, Leaf) else node.userdata
+    own = {*node.inputs, *node.outputs}
+    said = {key.name for key in own if key.type != ANY} | {p.key for p in held if p.type != ANY}
+    for word, key, type_ in inferred:
+        if type_ != ANY and key not in said:
+            yield f"# {word} {_name(key)}{_type(type_)}"
 
 
 def _preamble(machine: Machine) -> Iterator[str]:

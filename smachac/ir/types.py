@@ -98,6 +98,11 @@ def _complete(type_: Type) -> Type:
     return type_
 
 
+def optional(type_: Type) -> Type:
+    """The type or nothing."""
+    return type_ if type_.name in ("optional", "any", "none") else Type("optional", (type_,))
+
+
 def unknown_words(type_: Type) -> tuple[str, ...]:
     """The words in a type that name no type; they are `any` to whoever asks what fits."""
     inner = [arg for arg in type_.args if isinstance(arg, Type)]

@@ -9,9 +9,11 @@ from smachac.targets import Context, Files, Target, made_by, stem
 
 def emit(machine: Checked, context: Context, report: Report) -> Files:
     """One text in the notation of grammars/ir.lark, named after the machine."""
+    from smachac.ir.inference import infer
     from smachac.ir.text import print_machine
 
-    return {f"{stem(machine)}.smir": f"# {made_by(machine)}\n{print_machine(machine)}"}
+    text = print_machine(machine, infer(machine))
+    return {f"{stem(machine)}.smir": f"# {made_by(machine)}\n{text}"}
 
 
 TARGET = Target(name="ir", description="the state graph as text", emit=emit)

@@ -1,0 +1,295 @@
+"""Rules over numbers that reach a robot: how many, within the limits, a rotation, in which unit."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterator, Mapping
+
+from smachac.checks.clashes import clash_findings
+from smachac.checks.hints import calls, other_place
+from smachac.checks.types import clashes_of, types_of
+from smachac.diagnostics import Finding, Related, Severity, rule
+from smachac.ir.fitting import inside, present, unit_of
+from smachac.ir.nodes import Data, Leaf, Machine, Struct
+from smachac.ir.places import Flow
+from smachac.ir.types import Type
+
+Limits = tuple[tuple[float, float], ...]
+
+BAXTER: Limits = (
+    (-1.70168, 1.70168),
+    (-2.147, 1.047),
+    (-3.05418, 3.05418),
+    (-0.05, 2.618),
+    (-3.059, 3.059),
+    (-1.5708, 2.094),
+    (-3.059, 3.059),
+)
+"""Of either arm, s0 to w2: baxter_common (Rethink Robotics), baxter_base.urdf.xacro."""
+
+PANDA: Limits = (
+    (-2.9671, 2.9671),
+    (-1.8326, 1.8326),
+    (-2.9671, 2.9671),
+    (-3.1416, 0.0),
+    (-2.9671, 2.9671),
+    (-0.0873, 3.8223),
+    (-2.9671, 2.9671),
+)
+"""franka_panda/panda.urdf of PyBullet's data, the limits of the joints."""
+
+ARMS: Mapping[str, Limits] = {"baxter": BAXTER, "panda": PANDA}
+"""The lower and upper limit (rad) of each joint of the built-in arms, from the base to the hand."""
+
+DEFAULT_ARMS = {"PyBulletBase": "panda"}
+"""The robot of a base template where the script names none."""
+
+ROTATION_TOLERANCE = 1e-3
+"""How far the length of a quaternion may be from 1: what three decimals leave open."""
+
+JOINT_TOLERANCE = 1e-4
+"""rad: limits are given with as many decimals."""
+
+
+@rule("SM501", "wrong-length", Severity.ERROR)
+def wrong_length(machine: Machine) -> Iterator[Finding]:
+    """A list has more or fewer items than where it is read.
+
+    Seven joints take seven numbers: with six the skill fails when its turn comes, with the arm in
+    the middle of the task.
+
+    Wrong:
+        name: sm
+        template: Base
+        outcomes: [done]
+        userdata: {home: [0.0, -0.8, 0.0, -2.4, 0.0, 1.6]}
+        states:
+          - MOVE:
+              template: ScriptedState
+              input_keys: {joints: "float<rad>[7]"}
+              remapping: {joints: home}
+              outcomes: [done]
+              transitions: {done: done}
+
+    Right:
+        name: sm
+        template: Base
+        outcomes: [done]
+        userdata: {home: [0.0, -0.8, 0.0, -2.4, 0.0, 1.6, 0.8]}
+        states:
+          - MOVE:
+              template: ScriptedState
+              input_keys: {joints: "float<rad>[7]"}
+              remapping: {joints: home}
+              outcomes: [done]
+              transitions: {done: done}
+    """
+    yield from clash_findings(clashes_of(machine, "length"))
+    limits = limits_of(machine)
+    for flow in types_of(machine).constants if limits else ():
+        if _moves_arm(flow) and flow.place.node and flow.place.node.type in ARM_STATES:
+            assert isinstance(flow.value, tuple)
+            if len(flow.value) != len(limits):
+                message = f"the arm has {len(limits)} joints, and `{flow.origin.place.key}` has"
+                yield _at(flow, f"{message} {len(flow.value)} numbers", "give one for each joint")
+
+
+ARM_STATES = frozenset(["MoveToJointPositionsState"])
+"""State types whose list of angles is that of all joints of an arm, however many it has."""
+
+
+@rule("SM502", "joint-limit", Severity.ERROR)
+def joint_limit(machine: Machine) -> Iterator[Finding]:
+    """A joint position is beyond what the joint of the robot can reach.
+
+    The arm stops at its limit and the skill fails. Known are the joints of the built-in arms; they
+    are asked of lists of angles that a state which claims an arm reads, one for each joint.
+
+    Wrong:
+        name: sm
+        template: PyBulletBase
+        robot: panda
+        outcomes: [done, failed]
+        userdata: {home: [0.0, -0.785, 0.0, 2.356, 0.0, 1.571, 0.785]}
+        states:
+          - MOVE:
+              template: MoveToJointPositionsState
+              remapping: {positions: home}
+              transitions: {succeeded: done, aborted: failed, preempted: failed}
+
+    Right:
+        name: sm
+        template: PyBulletBase
+        robot: panda
+        outcomes: [done, failed]
+        userdata: {home: [0.0, -0.785, 0.0, -2.356, 0.0, 1.571, 0.785]}
+        states:
+          - MOVE:
+              template: MoveToJointPositionsState
+              remapping: {positions: home}
+              transitions: {succeeded: done, aborted: failed, preempted: failed}
+    """
+    limits = limits_of(machine)
+    for flow in types_of(machine).constants if limits else ():
+        if not _moves_arm(flow) or not isinstance(flow.value, tuple):
+            continue
+        if len(flow.value) != len(limits):
+            continue
+        for number, (angle, (low, high)) in enumerate(zip(flow.value, limits, strict=True), 1):
+            inside_limits = low - JOINT_TOLERANCE <= _as_float(angle) <= high + JOINT_TOLERANCE
+            if _is_number(angle) and not inside_limits:
+                yield _at(
+                    flow,
+                    f"joint {number} of `{flow.origin.place.key}` is {angle} rad, beyond its limits"
+                    f" {low} to {high}",
+                    "are these degrees?" if abs(_as_float(angle)) > 2 * math.pi else None,
+                )
+
+
+def limits_of(machine: Machine) -> Limits:
+    """The limits of the machine's robot; nothing where it is not known."""
+    name: Data = DEFAULT_ARMS.get(machine.base)
+    for held in machine.variables:
+        if held.name == "robot":
+            name = held.value.data
+    return ARMS.get(name, ()) if isinstance(name, str) else ()
+
+
+def _moves_arm(flow: Flow) -> bool:
+    """Whether a literal is a list of angles that a state which holds an arm reads."""
+    node, wanted = flow.place.node, present(flow.place.declared)
+    if flow.place.role != "input" or not isinstance(node, Leaf):
+        return False
+    held = any(claim == "arm" or claim.startswith("arm.") for claim in node.claims)
+    angles = wanted.name in ("list", "array") and unit_of(inside(wanted)) == "rad"
+    return held and angles and isinstance(flow.value, tuple)
+
+
+@rule("SM503", "not-a-rotation", Severity.WARNING)
+def not_a_rotation(machine: Machine) -> Iterator[Finding]:
+    """A quaternion does not have the length 1, so it is no rotation.
+
+    Some programs read the nearest rotation, others refuse it, and others bend the pose: the hand
+    comes from where nobody sent it. Four zeros are read as no rotation at all in the simulation.
+
+    Wrong:
+        name: sm
+        template: Base
+        outcomes: [done]
+        userdata: {grasp: [[0.5, 0.0, 0.1], [1.0, 0.0, 0.0, 1.0]]}
+        states:
+          - PICK:
+              template: ScriptedState
+              input_keys: {grasp: Pose}
+              outcomes: [done]
+              transitions: {done: done}
+
+    Right:
+        name: sm
+        template: Base
+        outcomes: [done]
+        userdata: {grasp: [[0.5, 0.0, 0.1], [0.7071, 0.0, 0.0, 0.7071]]}
+        states:
+          - PICK:
+              template: ScriptedState
+              input_keys: {grasp: Pose}
+              outcomes: [done]
+              transitions: {done: done}
+    """
+    for flow in types_of(machine).constants:
+        for rotation in _rotations(flow.value, flow.place.declared):
+            numbers = [_as_float(each) for each in rotation if _is_number(each)]
+            if len(numbers) != 4:
+                continue
+            length = math.hypot(*numbers)
+            if abs(length - 1.0) <= ROTATION_TOLERANCE:
+                continue
+            help = "write no rotation as `[0.0, 0.0, 0.0, 1.0]`"
+            if length > 0.0 and math.isfinite(length):
+                nearest = ", ".join(f"{number / length:.4f}" for number in numbers)
+                help = f"the nearest rotation is `[{nearest}]`"
+            yield _at(flow, f"the quaternion {list(rotation)} has the length {length:.4g}", help)
+
+
+def _rotations(data: Data, wanted: Type) -> Iterator[tuple[Data, ...]]:
+    """The quaternions in a literal that is read as a type."""
+    match wanted.name, data:
+        case "optional", _:
+            yield from _rotations(data, inside(wanted))
+        case "Quaternion", tuple():
+            yield data
+        case (("Pose" | "Transform"), (_, tuple() as rotation)):
+            yield rotation
+        case (("list" | "array"), tuple()) if inside(wanted).name in HOLDERS:
+            for item in data:
+                yield from _rotations(item, inside(wanted))
+        case "dict", Struct(entries=entries) if inside(wanted).name in HOLDERS:
+            for _, item in entries:
+                yield from _rotations(item, inside(wanted))
+
+
+HOLDERS = frozenset(["Pose", "Transform", "Quaternion", "optional", "list", "array", "dict"])
+"""Types that a rotation may be in."""
+
+
+@rule("SM504", "unit-mismatch", Severity.ERROR)
+def unit_mismatch(machine: Machine) -> Iterator[Finding]:
+    """A number is written in one unit and read in another.
+
+    Ninety degrees read as radians turn a joint fourteen times, or run it into its limit. Numbers
+    without a unit fit every unit.
+
+    Wrong:
+        name: sm
+        template: Base
+        outcomes: [done]
+        userdata: {angle: {type: "float<deg>", value: 90.0}}
+        states:
+          - TURN:
+              template: ScriptedState
+              input_keys: {angle: "float<rad>"}
+              outcomes: [done]
+              transitions: {done: done}
+
+    Right:
+        name: sm
+        template: Base
+        outcomes: [done]
+        userdata: {angle: {type: "float<rad>", value: 1.5708}}
+        states:
+          - TURN:
+              template: ScriptedState
+              input_keys: {angle: "float<rad>"}
+              outcomes: [done]
+              transitions: {done: done}
+    """
+    yield from clash_findings(clashes_of(machine, "unit"))
+
+
+def _is_number(data: Data) -> bool:
+    return isinstance(data, int | float) and not isinstance(data, bool)
+
+
+def _as_float(data: Data) -> float:
+    """A number as a float; one that is too large for it is infinite."""
+    try:
+        return float(data) if isinstance(data, int | float) else math.nan
+    except OverflowError:
+        return math.inf
+
+
+def _at(flow: Flow, message: str, help: str | None) -> Finding:
+    """A finding at a literal, with where it is read."""
+    origin, place = flow.origin, flow.place
+    reader = place.node.name if place.node is not None else "the base"
+    related: tuple[Related, ...] = ()
+    if place.span != origin.span and place is not origin.place:
+        related = other_place(place.span, f"`{reader}` reads it here as `{place.key}`")
+    node = origin.place.node
+    return Finding(
+        span=origin.span,
+        message=message,
+        help=help,
+        related=(*related, *(calls(node, origin.span) if node is not None else ())),
+        node=origin.place.path,
+    )
