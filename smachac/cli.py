@@ -30,6 +30,17 @@ examples:
 exit codes: 0 clean, 1 findings, 2 wrong usage, 70 a bug in smachac
 """
 
+EXPLAIN_EXAMPLES = """\
+examples:
+  smachac explain SM201                          what a code means
+  smachac explain main.yml grasp_pose            a key: who sets, reads, passes it on; where unset
+  smachac explain main.yml PICK/GRASP            a state, by its path or the end of it
+  smachac explain main.yml --failures            what becomes of every failure
+  smachac explain main.yml --failures --format csv > failures.csv
+
+exit codes: 0 explained, 1 unreadable script, 2 wrong usage or no such name, 70 a bug in smachac
+"""
+
 FORMATS = ("text", "json", "sarif", "github", "junit")
 
 EPILOG = """\
@@ -39,6 +50,7 @@ examples:
   smachac run main.yml --record film.gif     run it on the simulated arm
   smachac run main.yml --mock scenario.yml   run it without robot or simulation
   smachac explain SM201                      what a code means, with examples
+  smachac explain main.yml --failures        what becomes of every failure
 
 exit codes: 0 clean, 1 findings, 2 wrong usage, 70 a bug in smachac
 """
@@ -152,8 +164,15 @@ def _run(verb: argparse.ArgumentParser) -> None:
 
 
 def _explain(verb: argparse.ArgumentParser) -> None:
-    verb.add_argument("code", nargs="?", help="such as SM201")
+    verb.epilog = EXPLAIN_EXAMPLES
+    verb.add_argument("words", nargs="*", metavar="CODE | SCRIPT [NAME]",
+                      help="a code, or a script and a state or key of it")  # fmt: skip
     verb.add_argument("--all", action="store_true", help="every code, as Markdown")
+    verb.add_argument("--failures", action="store_true", help="of a script: where failures lead")
+    verb.add_argument("--format", choices=("text", "json", "md", "csv"), default="text",
+                      help="md and csv for --failures alone")  # fmt: skip
+    _search_folders(verb)
+    _colour(verb)
 
 
 def _targets(verb: argparse.ArgumentParser) -> None:
@@ -164,7 +183,7 @@ COMMANDS = {
     "check": ("judge scripts by every rule", _check),
     "build": ("print a script for a target", _build),
     "run": ("run a script: on the simulated arm, or with mock states", _run),
-    "explain": ("what a code means, with examples", _explain),
+    "explain": ("what a code means, or a state, key or failure of a script", _explain),
     "targets": ("list what can be built", _targets),
 }
 """Command to what it does and what adds its arguments; verbs.py holds what it does."""

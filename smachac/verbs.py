@@ -171,19 +171,50 @@ def _where(errors: list[dict[str, Any]]) -> str:
 
 
 def _explain(arguments: argparse.Namespace) -> int:
-    import smachac.checks
-    from smachac.diagnostics import CODES
-    from smachac.report.explain import render_code, render_rules
+    words, form = arguments.words, arguments.format
+    if form in ("md", "csv") and not arguments.failures:
+        return usage(f"--format {form} is for --failures")
+    if arguments.all or (len(words) == 1 and not arguments.failures):
+        return _explain_code(*words) if not arguments.all else _explain_all()
+    if len(words) != (1 if arguments.failures else 2):
+        return usage("name a code such as SM201, or a script with a state or key or --failures")
+    analysis, _ = _load(Path(words[0]), arguments)
+    if analysis.machine is None:
+        print_report(shown(analysis.report), arguments, sys.stderr)
+        return FINDINGS
+    if analysis.checked is None:
+        print("the script has errors: this is what can be read of it", file=sys.stderr)
+    if arguments.failures:
+        from smachac.checks.failures import failures
+        from smachac.report.explain_failures import render_failures
 
-    assert smachac.checks is not None  # imported for the rules it files
-    if arguments.all:
-        sys.stdout.write(render_rules())
+        machine = analysis.machine
+        sys.stdout.write(render_failures(machine.root.name, list(failures(machine)), form))
         return OK
-    if arguments.code is None:
-        return usage("name a code, such as SM201, or --all")
-    code = CODES.get(arguments.code.upper())
+    from smachac.report.explain_name import UnclearError, explain_name
+
+    try:
+        sys.stdout.write(explain_name(analysis.machine, analysis.report, words[1], form))
+    except UnclearError as error:
+        return usage(str(error))
+    return OK
+
+
+def _explain_all() -> int:
+    from smachac.report.explain import render_rules
+
+    sys.stdout.write(render_rules())
+    return OK
+
+
+def _explain_code(word: str) -> int:
+    from smachac.report.explain import CODES, render_code
+
+    code = CODES.get(word.upper())
+    if code is None and Path(word).suffix:
+        return usage(f"name a state or a key of {word}, or say --failures")
     if code is None:
-        return usage(f"there is no code `{arguments.code}`", arguments.code.upper(), list(CODES))
+        return usage(f"there is no code `{word}`", word.upper(), list(CODES))
     print(render_code(code))
     return OK
 

@@ -242,14 +242,14 @@ def unhandled_failure(machine: Machine) -> Iterator[Finding]:
             for fate in _fates(container, names, f"{path}/{child.name}", child, fates):
                 if not isinstance(child, Leaf):
                     fates[id(child), fate.outcome] = fate
-                if _starts(child, fate.outcome):
+                if starts_failure(child, fate.outcome):
                     turn = fate.turn or fate
                     turns.setdefault((id(turn.node), turn.outcome), []).append(fate)
     for found in turns.values():
         yield _unhandled_failure(root, found)
 
 
-def _starts(node: Node, outcome: str) -> bool:
+def starts_failure(node: Node, outcome: str) -> bool:
     """Whether a failure begins here: with a leaf, tries that are used up, or a time limit."""
     match node:
         case Leaf():

@@ -33,7 +33,7 @@ from smachac.source import assert_never
 if TYPE_CHECKING:
     from smachac.ir.inference import Types
 
-__all__ = ["IrSyntaxError", "parse_machine", "print_machine"]
+__all__ = ["IrSyntaxError", "parse_machine", "print_data", "print_machine"]
 
 HEADER = "# A state graph of smachac, format 1: one statement a line, as in grammars/ir.lark."
 
@@ -185,7 +185,7 @@ def _concurrence(node: Concurrence) -> Iterator[str]:
 
 def _iterator(node: nodes.Iterator) -> Iterator[str]:
     if node.items is not None:
-        yield f"items {_data(node.items.data)}"
+        yield f"items {print_data(node.items.data)}"
     if node.items_key:
         yield f"items from {_name(node.items_key)}"
     if node.item_key != "it_data":
@@ -211,11 +211,13 @@ def _key(key: Key) -> str:
 
 
 def _preset(preset: Preset) -> str:
-    return f"userdata {_name(preset.key)}{_type(preset.type)} = {_data(preset.value.data)}"
+    return f"userdata {_name(preset.key)}{_type(preset.type)} = {print_data(preset.value.data)}"
 
 
 def _variable(variable: Variable) -> str:
-    return f"variable {_name(variable.name)}{_type(variable.type)} = {_data(variable.value.data)}"
+    return (
+        f"variable {_name(variable.name)}{_type(variable.type)} = {print_data(variable.value.data)}"
+    )
 
 
 def _transition(step: Transition) -> str:
@@ -252,7 +254,8 @@ def _quote(text: str) -> str:
     return json.dumps(text) if _SURROGATE.search(text) else _encode(text)
 
 
-def _data(data: Data) -> str:
+def print_data(data: Data) -> str:
+    """A value in one line; code stands in backticks."""
     match data:
         case float():
             return repr(data)
@@ -267,8 +270,8 @@ def _data(data: Data) -> str:
         case Expression(text=text):
             return f"`{text}`" if _PLAIN_CODE.fullmatch(text) else f"code {_quote(text)}"
         case Struct(entries=entries):
-            pairs = (f"{_name(name)}: {_data(item)}" for name, item in entries)
+            pairs = (f"{_name(name)}: {print_data(item)}" for name, item in entries)
             return f"{{{', '.join(pairs)}}}"
         case tuple():
-            return f"[{', '.join(map(_data, data))}]"
+            return f"[{', '.join(map(print_data, data))}]"
     return assert_never(data)

@@ -12,7 +12,7 @@ from textwrap import dedent, fill, indent
 from smachac import checks, problems
 from smachac.diagnostics import CODES, Code
 
-__all__ = ["GROUPS", "Explanation", "checks", "explanation", "problems", "render_code"]
+__all__ = ["CODES", "GROUPS", "Explanation", "checks", "explanation", "problems", "render_code"]
 __all__ += ["render_rules", "render_section"]
 
 MAIN = "main.yml"

@@ -68,6 +68,16 @@ def steps(path: tuple[str, ...]) -> list[str]:
     return [*parts, arrow.rstrip()] if arrow else parts
 
 
+def shortened(path: tuple[str, ...]) -> list[str]:
+    """The steps of a path as they are printed; long ones lose their middle."""
+    parts = [visible(part).replace("\n", "␊") for part in steps(path)]
+    if len(parts) <= MOST_STEPS:
+        return parts
+    left_out = len(parts) - MOST_STEPS
+    half = MOST_STEPS // 2
+    return [*parts[:half], f" -> ... {left_out} more ...", *parts[-half:]]
+
+
 def _rendered(item: Diagnostic, *, colour: bool, width: int) -> str:
     def paint(style: str, text: str) -> str:
         if not colour or not text:
@@ -120,11 +130,7 @@ def _snippets(marks: list[Mark], width: int, paint: Paint) -> Iterator[str]:
 
 def _path(path: tuple[str, ...], width: int, paint: Paint) -> Iterator[str]:
     """The line `path: A -(aborted)-> B`, broken before an arrow where it is too long."""
-    parts = [visible(part).replace("\n", "␊") for part in steps(path)]
-    if len(parts) > MOST_STEPS:
-        left_out = len(parts) - MOST_STEPS
-        half = MOST_STEPS // 2
-        parts = [*parts[:half], f" -> ... {left_out} more ...", *parts[-half:]]
+    parts = shortened(path)
     line = ""
     indent = "      "
     head = paint("path", "path") + ": "

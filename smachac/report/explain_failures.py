@@ -1,0 +1,137 @@
+"""The failures of a machine as a text, a table in Markdown or CSV, or JSON."""
+
+from __future__ import annotations
+
+import csv
+import io
+import json
+import re
+from collections import Counter
+from collections.abc import Iterable, Iterator, Sequence
+
+from smachac.checks.failures import Answer, Failure
+from smachac.report.cells import visible
+from smachac.report.paragraphs import alternatives, at
+from smachac.report.text import steps
+
+HEADINGS = ("state", "failure", "place", "way", "caught by", "the machine ends with")
+
+_MARKUP = re.compile(r"[\\`*<\[\]|]|\b_|_\b")
+"""What Markdown would take for more than a character."""
+
+_COUNTED: dict[Answer, str] = {
+    "caught": "caught",
+    "repeated": "run again",
+    "passed over": "passed over as after a success",
+    "not caught": "caught by nobody",
+    "lost": "without a transition",
+}
+
+
+def render_failures(name: str, found: Sequence[Failure], form: str) -> str:
+    """The failures of the machine called `name`; `form` is `text`, `json`, `md` or `csv`."""
+    match form:
+        case "json":
+            return _json(found)
+        case "csv":
+            return _csv(found)
+        case "md":
+            return _markdown(name, found)
+    return _text(name, found)
+
+
+def _text(name: str, found: Sequence[Failure]) -> str:
+    parts = [f"{visible(name)}: {_summary(found)}"]
+    for each in found:
+        head = f"{each.path} fails with {each.outcome} ({each.span})"
+        way = "".join(steps(each.way))
+        parts.append("\n".join(visible(line) for line in (head, f"  {way}", f"  {told(each)}")))
+    return "\n\n".join(parts) + "\n"
+
+
+def _summary(found: Sequence[Failure]) -> str:
+    if not found:
+        return "no state can fail"
+    answers = Counter(each.answer for each in found)
+    count = len({(each.path, each.outcome) for each in found})
+    ways = f" on {len(found)} ways" if len(found) > count else ""
+    counts = [f"{answers[key]} {words}" for key, words in _COUNTED.items() if key in answers]
+    return f"{count} {'failure' if count == 1 else 'failures'}{ways}: {', '.join(counts)}"
+
+
+def told(failure: Failure) -> str:
+    """What becomes of a failure, in words."""
+    next = failure.next.rpartition("/")[2]
+    match failure.answer:
+        case "caught":
+            return f"caught by {next}; then {_end(failure)}"
+        case "repeated":
+            return f"{next} runs again; then {_end(failure)}"
+        case "passed over":
+            what = f"{next} follows; then {_end(failure)}" if next else _end(failure)
+            return f"passed over: as after a success, {what}"
+        case "not caught":
+            success = ", a success" if failure.good else ""
+            return f"caught by nobody: {_end(failure)}{success}"
+    return "nothing is said to follow"
+
+
+def _end(failure: Failure) -> str:
+    if not failure.ends:
+        return "the machine never ends"
+    return f"the machine ends with {alternatives(failure.ends)}"
+
+
+def _caught_by(failure: Failure) -> str:
+    match failure.answer:
+        case "caught":
+            return failure.next
+        case "repeated":
+            return f"{failure.next} (again)"
+        case "passed over":
+            return "nobody (passed over)"
+    return "nobody"
+
+
+def _rows(found: Iterable[Failure]) -> Iterator[tuple[str, ...]]:
+    for each in found:
+        ends = alternatives(each.ends) or "never"
+        way = "".join(steps(each.way))
+        yield each.path, each.outcome, str(each.span), way, _caught_by(each), ends
+
+
+def _json(found: Iterable[Failure]) -> str:
+    rows = [
+        {
+            "state": each.path,
+            "failure": each.outcome,
+            "at": at(each.span),
+            "way": list(each.way),
+            "answer": each.answer,
+            "next": each.next,
+            "ends": list(each.ends),
+        }
+        for each in found
+    ]
+    return json.dumps({"failures": rows}, indent=2, ensure_ascii=False) + "\n"
+
+
+def _csv(found: Iterable[Failure]) -> str:
+    text = io.StringIO()
+    writer = csv.writer(text, lineterminator="\n")
+    writer.writerows([HEADINGS, *_rows(found)])
+    return text.getvalue()
+
+
+def _markdown(name: str, found: Sequence[Failure]) -> str:
+    def row(cells: Iterable[str]) -> str:
+        return f"| {' | '.join(map(_cell, cells))} |"
+
+    lines = [f"Failures of {_cell(name)}: {_summary(found)}.", "", row(HEADINGS)]
+    lines += ["|" + " --- |" * len(HEADINGS), *map(row, _rows(found))]
+    return "\n".join(lines) + "\n"
+
+
+def _cell(text: str) -> str:
+    """A text that Markdown shows as it is."""
+    return _MARKUP.sub(r"\\\g<0>", visible(text).replace("\n", " "))

@@ -1,0 +1,193 @@
+"""What there is to say about a userdata key: who sets, reads and passes it on, where it is set."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Iterator
+from dataclasses import dataclass, field
+from typing import Any
+
+from smachac.ir import nodes
+from smachac.ir.dataflow import Flow, Scope
+from smachac.ir.inference import Types
+from smachac.ir.keypaths import Status, around, key_status, path_without
+from smachac.ir.keyuses import Use, same_key, uses
+from smachac.ir.text import print_data
+from smachac.ir.types import ANY, Type
+from smachac.ir.userdata import remapping
+from smachac.report.paragraphs import STATUS, Paragraph, at, place, way
+from smachac.source import Span
+
+MOST_READERS = 100
+"""For so many readers of one key its paths are followed; the others are only named."""
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Met:
+    """A use of a key; for one that reads, whether the key is set there, and a path on which it is
+    not."""
+
+    use: Use
+    status: Status | None = None
+    without: tuple[str, ...] = ()
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class KeyPart:
+    """A key as one container holds it.
+
+    `inside` is the container around, with its name for the key, where it is the same there.
+    `given`: whoever runs the machine hands it in.
+    """
+
+    container: str
+    key: str
+    type: Type
+    value: str
+    given: bool
+    inside: tuple[str, str] | None
+    met: tuple[Met, ...]
+    span: Span = field(compare=False, repr=False)
+
+
+KeyStory = tuple[KeyPart, ...]
+"""One key in all the containers that it is copied to and from, outer ones first."""
+
+
+def key_names(flow: Flow) -> dict[str, list[tuple[str, str]]]:
+    """The keys of containers, as path and key, by each name that they have there or with a state
+    in there; in the order of the script."""
+    found: dict[str, dict[tuple[str, str], None]] = {}
+    for path, scope in flow.scopes.items():
+        for name, key in _names_in(scope):
+            found.setdefault(name, {})[path, key] = None
+    return {name: list(pairs) for name, pairs in found.items()}
+
+
+def _names_in(scope: Scope) -> Iterator[tuple[str, str]]:
+    """Names of keys in a container, with its own name for each."""
+    container = scope.container
+    own = [*scope.held, *scope.inputs, *scope.outputs]
+    if isinstance(container, nodes.Iterator):
+        own += [container.item_key, *filter(None, [container.items_key])]
+    yield from ((key, key) for key in sorted(own))
+    for child in container.children:
+        names = remapping(child)
+        for each in (*child.inputs, *child.outputs):
+            outer = names.get(each.name, each.name)
+            yield outer, outer
+            yield each.name, outer
+
+
+def key_stories(
+    flow: Flow, types: Types, pairs: Iterable[tuple[str, str]]
+) -> Iterator[KeyStory]:
+    """The stories of some keys; one for those that are copies of each other."""
+    told: set[tuple[str, str]] = set()
+    for pair in pairs:
+        if pair not in told:
+            same = same_key(flow, *pair)
+            told.update(same)
+            yield tuple(_part(flow, types, path, key) for path, key in same)
+
+
+def _part(flow: Flow, types: Types, path: str, key: str) -> KeyPart:
+    scope = flow.scopes[path]
+    container = scope.container
+    outer = around(flow, path)
+    beyond = (scope.inputs.get(key), scope.outputs.get(key))
+    inside = next(((outer, name) for name in beyond if outer and name), None)
+    preset = next((each for each in container.userdata if each.key == key), None)
+    found = list(uses(flow, path, key))
+    read = [use for use in found if use.kind in ("reads", "takes in") and use.path != path]
+    followed = frozenset(use.path for use in read[:MOST_READERS])
+    return KeyPart(
+        container=path,
+        key=key,
+        type=types.keys.get((path, key), ANY),
+        value=print_data(preset.value.data) if preset else "",
+        given=outer is None and key in scope.inputs,
+        inside=inside,
+        met=tuple(_met(flow, use, key, followed) for use in found),
+        span=container.span,
+    )
+
+
+def _met(flow: Flow, use: Use, key: str, followed: frozenset[str]) -> Met:
+    if use.path not in followed or use.kind not in ("reads", "takes in"):
+        return Met(use=use)
+    status = key_status(flow, use.path, key)
+    without = path_without(flow, use.path, key) if status in ("sometimes", "never") else ()
+    return Met(use=use, status=status, without=without)
+
+
+def key_text(part: KeyPart) -> tuple[str, list[Paragraph]]:
+    """A headline, and what is said below it."""
+    words: dict[str, list[str]] = {"is": [], "set": [], "written": [], "read": [], "copied": []}
+    if part.inside is not None:
+        path, name = part.inside
+        words["is"].append(f"`{name}` of {path}, copied")
+    if part.given:
+        words["set"].append("by whoever runs the machine")
+    for each in part.met:
+        word, lines = _told(part, each)
+        words[word] += lines
+    if not (words["set"] or words["written"] or words["copied"] or words["is"]):
+        words["set"].append("by nobody")
+    if not (words["read"] or words["copied"] or words["is"]):
+        words["read"].append("by nobody")
+    type_ = "" if part.type == ANY else f": {part.type}"
+    return f"key `{part.key}` of {part.container}{type_}", list(words.items())
+
+
+def _told(part: KeyPart, met: Met) -> tuple[str, list[str]]:
+    use = met.use
+    name = use.path.rpartition("/")[2]
+    called = f" as `{use.key}`" if use.key != part.key else ""
+    where = place(use.span)
+    status = f": {STATUS[met.status]}" if met.status else ""
+    unset = list(way("  unset on the way ", met.without))
+    match use.kind:
+        case "presets":
+            return "set", [f"before {name} starts, to {part.value}{where}"]
+        case "items":
+            return "set", [f"by {name}, to one item after the other{where}"]
+        case "reads" if use.path == part.container:
+            return "read", [f"by {name} itself, which goes through its items{where}"]
+        case "reads":
+            return "read", [f"by {name}{called}{status}{where}", *unset]
+        case "takes in":
+            return "copied", [f"into {name}{called}{status}{where}", *unset]
+        case "writes":
+            return "written", [f"by {name}{called}{_on(use)}{where}"]
+    return "copied", [f"out of {name}{called}{_on(use)}{where}"]
+
+
+def _on(use: Use) -> str:
+    if use.always:
+        return ""
+    return f", on {' and '.join(use.outcomes)} alone" if use.outcomes else ", on no outcome surely"
+
+
+def key_json(story: KeyStory) -> list[dict[str, Any]]:
+    """The story as data for JSON."""
+    return [
+        {
+            "key": part.key,
+            "container": part.container,
+            "type": str(part.type),
+            "copy_of": list(part.inside) if part.inside else None,
+            "given": part.given,
+            "uses": [_met_json(each) for each in part.met],
+        }
+        for part in story
+    ]
+
+
+def _met_json(met: Met) -> dict[str, Any]:
+    use = met.use
+    found: dict[str, Any] = {"state": use.path, "use": use.kind, "as": use.key, "at": at(use.span)}
+    if use.kind in ("writes", "hands out"):
+        found |= {"on": list(use.outcomes), "always": use.always}
+    if met.status is not None:
+        found |= {"set": met.status, "unset_path": list(met.without)}
+    return found

@@ -1,0 +1,94 @@
+"""What a name of a script means: a state, a key, or several of them."""
+
+from __future__ import annotations
+
+import json
+from collections.abc import Iterable
+
+from smachac.diagnostics import Report, did_you_mean
+from smachac.ir.dataflow import Flow, data_flow
+from smachac.ir.inference import infer
+from smachac.ir.nodes import Machine
+from smachac.ir.walk import walk
+from smachac.problems import listed
+from smachac.report.explain_key import KeyStory, key_json, key_names, key_stories, key_text
+from smachac.report.explain_state import StateStory, state_json, state_story, state_text
+from smachac.report.paragraphs import paragraphs
+
+
+class UnclearError(Exception):
+    """A name means nothing, or more than can be told; the message says what there is."""
+
+
+def explain_name(machine: Machine, report: Report, name: str, form: str) -> str:
+    """All that there is to say about the state or key of a name; `form` is `text` or `json`.
+
+    A state is named by its path or the end of it; so is a key, behind its container.
+
+    Raises:
+        UnclearError: there is no such name, or several states have it.
+    """
+    flow = data_flow(machine)
+    types = infer(machine)
+    paths = [path for path, _ in walk(machine.root)]
+    states = list(dict.fromkeys(path for path in paths if _ends(path, name)))
+    exact = [path for path in states if path == name]
+    keys = _keys(flow, name)
+    if not states and not keys:
+        raise UnclearError(_unknown(flow, paths, name))
+    if len(states) > 1 and not exact:
+        raise UnclearError(_several_states(machine, name, states, keys))
+    if not states and len(keys) > 1 and all(key != name.rpartition("/")[2] for _, key in keys):
+        raise UnclearError(_several_keys(name, keys))
+    found = [state_story(machine, flow, types, path, report) for path in exact or states]
+    stories = list(key_stories(flow, types, keys))
+    return _json(found, stories) if form == "json" else _text(found, stories)
+
+
+def _ends(path: str, name: str) -> bool:
+    return path == name or path.endswith(f"/{name}")
+
+
+def _keys(flow: Flow, name: str) -> list[tuple[str, str]]:
+    """The keys that a name means: those that a container calls so, else those that states do."""
+    names = key_names(flow)
+    pairs = names.get(name, [])
+    where, _, key = name.rpartition("/")
+    if not pairs and where:
+        pairs = [pair for pair in names.get(key, []) if _ends(pair[0], where)]
+        name = key
+    return [pair for pair in pairs if pair[1] == name] or pairs
+
+
+def _unknown(flow: Flow, paths: Iterable[str], name: str) -> str:
+    states = dict.fromkeys(path.rpartition("/")[2] for path in paths)
+    keys = key_names(flow)
+    near = did_you_mean(name.rpartition("/")[2], [*states, *keys])
+    known = near or f"states: {listed(states)}\nkeys: {listed(keys) or 'none'}"
+    return f"there is no state and no key `{name}`\n{known}"
+
+
+def _several_states(
+    machine: Machine, name: str, states: list[str], keys: list[tuple[str, str]]
+) -> str:
+    spans = {path: node.span for path, node in reversed(list(walk(machine.root)))}
+    lines = [f"there are {len(states)} states `{name}`; name one by its path:"]
+    lines += [f"  {path} ({spans[path]})" for path in states]
+    lines += [f"  {path}/{key} (a key)" for path, key in keys]
+    return "\n".join(lines)
+
+
+def _several_keys(name: str, keys: list[tuple[str, str]]) -> str:
+    lines = [f"`{name}` is what states call {len(keys)} keys; name one of those:"]
+    return "\n".join([*lines, *(f"  {path}/{key}" for path, key in keys)])
+
+
+def _text(states: list[StateStory], keys: list[KeyStory]) -> str:
+    parts = [state_text(story) for story in states]
+    parts += [key_text(part) for story in keys for part in story]
+    return "\n".join(paragraphs(*part) for part in parts)
+
+
+def _json(states: list[StateStory], keys: list[KeyStory]) -> str:
+    found = {"states": [*map(state_json, states)], "keys": [*map(key_json, keys)]}
+    return json.dumps(found, indent=2, ensure_ascii=False) + "\n"

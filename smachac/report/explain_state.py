@@ -1,0 +1,247 @@
+"""What there is to say about one state: what it is, how it is entered and left, what was found."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Iterator
+from dataclasses import dataclass, field
+from typing import Any
+
+from smachac.checks.claims import claims
+from smachac.checks.routes import Arrival, Routes, path_to
+from smachac.diagnostics import Report
+from smachac.ir.dataflow import Flow
+from smachac.ir.inference import Types
+from smachac.ir.keypaths import Status, key_status
+from smachac.ir.nodes import Key, Leaf, Machine, Node, Transition
+from smachac.ir.text import print_data
+from smachac.ir.types import ANY, Type
+from smachac.ir.userdata import remapping
+from smachac.ir.walk import outcome_names
+from smachac.problems.wording import MOST_LISTED
+from smachac.report.paragraphs import STATUS, Paragraph, article, at, place, way
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Taken:
+    """A key of a state, its type as far as it is known, what its container calls it, and for an
+    input whether it is set."""
+
+    key: Key
+    type: Type
+    outer: str
+    status: Status | None = None
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Exit:
+    """An outcome, where it leads in the end, and the transitions that say so."""
+
+    outcome: str
+    arrivals: tuple[Arrival, ...]
+    steps: tuple[Transition, ...]
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class StateStory:
+    """All there is to say about the state at a path.
+
+    `entered` are the states that it follows, with their outcomes; an empty name is the start of
+    its container. `way` is a shortest way to it, empty where there is none.
+    """
+
+    path: str
+    node: Node
+    reads: tuple[Taken, ...]
+    writes: tuple[Taken, ...]
+    claims: tuple[str, ...]
+    entered: tuple[tuple[str, str], ...]
+    way: tuple[str, ...]
+    reachable: bool
+    exits: tuple[Exit, ...]
+    report: Report = field(compare=False, repr=False)
+
+
+def state_story(
+    machine: Machine, flow: Flow, types: Types, path: str, report: Report
+) -> StateStory:
+    """The story of the state at a path, which the machine must have."""
+    routes = Routes(machine)
+    ways = routes.ways()
+    node = routes.nodes[path]
+    names = remapping(node)
+    entered = {
+        (before[0].rpartition("/")[2] if before[1] else "", before[1]): None
+        for before in ways
+        if (path, "") in routes.follow(before)
+    }
+
+    def read(key: Key) -> Taken:
+        outer = names.get(key.name, key.name)
+        status = key_status(flow, path, outer) if node is not machine.root else None
+        known = types.inputs.get((path, key.name)) or types.keys.get((path, key.name), key.type)
+        return Taken(key=key, type=known, outer=outer, status=status)
+
+    def written(key: Key) -> Taken:
+        known = types.outputs.get((path, key.name)) or types.keys.get((path, key.name), key.type)
+        return Taken(key=key, type=known, outer=names.get(key.name, key.name))
+
+    found = [*outcome_names(node), *(step.outcome for step in node.transitions)]
+    return StateStory(
+        path=path,
+        node=node,
+        reads=tuple(map(read, node.inputs)),
+        writes=tuple(map(written, node.outputs)),
+        claims=tuple(sorted(claims(machine)[id(node)])),
+        entered=tuple(entered),
+        way=path_to(ways, (path, "")) if (path, "") in ways else (),
+        reachable=(path, "") in ways,
+        exits=tuple(
+            Exit(
+                outcome=name,
+                arrivals=tuple(routes.arrivals(path, name)),
+                steps=tuple(step for step in node.transitions if step.outcome == name),
+            )
+            for name in dict.fromkeys(found)
+        ),
+        report=[item for item in report if item.finding.node == path],
+    )
+
+
+def state_text(story: StateStory) -> tuple[str, list[Paragraph]]:
+    """A headline, and what is said below it."""
+    node = story.node
+    lines = [f"{article(kind(node))}{place(node.span)}"]
+    lines += [f"from the sub-script called at {call}" for call in node.via]
+    if node.doc:
+        lines.append(" ".join(node.doc.split()))
+    return f"state {story.path}", [
+        ("is", lines),
+        ("holds", list(_held(node))),
+        ("reads", [_read(each) for each in story.reads]),
+        ("writes", [_written(node, each) for each in story.writes]),
+        ("claims", list(story.claims)),
+        ("entered", list(_entered(story))),
+        ("left", [_left(story, each) for each in story.exits] or ["never: it has no outcome"]),
+        ("found", [_found(item) for item in story.report] or ["nothing"]),
+    ]
+
+
+def kind(node: Node) -> str:
+    """The state type; what a container was written as."""
+    if isinstance(node, Leaf):
+        return node.type or "state that could not be read"
+    if node.sugar:
+        return f"{type(node).__name__} made for `{node.sugar}`"
+    return type(node).__name__
+
+
+def _held(node: Node) -> Iterator[str]:
+    if isinstance(node, Leaf):
+        for each in node.variables:
+            yield f"{each.name} = {print_data(each.value.data)}"
+        return
+    for preset in node.userdata:
+        yield f"the key `{preset.key}` = {print_data(preset.value.data)}"
+    names = [child.name for child in node.children]
+    more = f" and {len(names) - MOST_LISTED} more" if len(names) > MOST_LISTED else ""
+    yield f"the states {', '.join(names[:MOST_LISTED])}{more}" if names else "no state"
+
+
+def _typed(taken: Taken) -> str:
+    key = taken.key
+    type_ = "" if taken.type == ANY else f": {taken.type}"
+    doc = f" ({' '.join(key.doc.split())})" if key.doc else ""
+    return f"`{key.name}`{type_}{doc}"
+
+
+def _read(taken: Taken) -> str:
+    outer = f", which is `{taken.outer}` around it" if taken.outer != taken.key.name else ""
+    set_ = f": {STATUS[taken.status]}" if taken.status else ""
+    if taken.key.type.name == "optional" and taken.status in ("sometimes", "never"):
+        set_ += ", which is fine, as it is optional"
+    return f"{_typed(taken)}{outer}{set_}"
+
+
+def _written(node: Node, taken: Taken) -> str:
+    outer = f", which is `{taken.outer}` around it" if taken.outer != taken.key.name else ""
+    told = node.writes if isinstance(node, Leaf) else ()
+    on = [outcome for outcome, keys in told if taken.key.name in keys]
+    return f"{_typed(taken)}{outer}{', on ' + ' and '.join(on) if on else ''}"
+
+
+def _entered(story: StateStory) -> Iterator[str]:
+    container = story.path.rpartition("/")[0].rpartition("/")[2]
+    if not story.reachable:
+        yield "never: no path from the start leads there"
+        return
+    if not container:
+        yield "first: it is the whole machine"
+        return
+    for name, outcome in story.entered:
+        if name == container and not outcome:
+            continue
+        yield f"after {name} on {outcome}" if name else f"when {container} starts"
+    yield from way("shortest way: ", story.way)
+
+
+def _left(story: StateStory, leaving: Exit) -> str:
+    if "/" not in story.path:
+        return f"on {leaving.outcome}: the machine has ended"
+    places = [step.span for step in leaving.steps if step.origin == "written"]
+    where = place(places[0]) if places else ""
+    if leaving.arrivals:
+        ways = " or ".join(dict.fromkeys(_arrival(story.node, each) for each in leaving.arrivals))
+        return f"on {leaving.outcome}: {ways}{where}"
+    if leaving.steps:
+        return f"on {leaving.outcome}: to {leaving.steps[0].target}, which there is not{where}"
+    return f"on {leaving.outcome}: nothing is said to follow"
+
+
+def _arrival(node: Node, arrival: Arrival) -> str:
+    parts = [f"{path.rpartition('/')[2]} ends with {end}" for path, end in arrival.through]
+    if arrival.target:
+        name = arrival.target.rpartition("/")[2]
+        again = name == node.name and not arrival.through
+        parts.append("again" if again else f"to {name}")
+    return ", then ".join(parts)
+
+
+def _found(item: Any) -> str:
+    finding = item.finding
+    return f"{item.severity.value}[{item.code.code}] {finding.message}{place(finding.span)}"
+
+
+def state_json(story: StateStory) -> dict[str, Any]:
+    """The story as data for JSON."""
+    node = story.node
+    return {
+        "state": story.path,
+        "type": kind(node),
+        "doc": node.doc,
+        "at": at(node.span),
+        "called": [at(call) for call in node.via],
+        "reads": [_taken_json(each) for each in story.reads],
+        "writes": [_taken_json(each) for each in story.writes],
+        "claims": list(story.claims),
+        "entered": [{"after": name, "outcome": outcome} for name, outcome in story.entered],
+        "way": list(story.way),
+        "reachable": story.reachable,
+        "exits": [_exit_json(each) for each in story.exits],
+        "findings": [{"code": i.code.code, "message": i.finding.message} for i in story.report],
+    }
+
+
+def _taken_json(taken: Taken) -> dict[str, Any]:
+    status = {} if taken.status is None else {"set": taken.status}
+    return {"key": taken.key.name, "type": str(taken.type), "outer": taken.outer, **status}
+
+
+def _exit_json(leaving: Exit) -> dict[str, Any]:
+    arrivals: Iterable[Arrival] = leaving.arrivals
+    return {
+        "outcome": leaving.outcome,
+        "leads": [
+            {"through": [list(each) for each in arrival.through], "to": arrival.target}
+            for arrival in arrivals
+        ],
+    }
