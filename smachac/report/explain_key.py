@@ -78,9 +78,7 @@ def _names_in(scope: Scope) -> Iterator[tuple[str, str]]:
             yield each.name, outer
 
 
-def key_stories(
-    flow: Flow, types: Types, pairs: Iterable[tuple[str, str]]
-) -> Iterator[KeyStory]:
+def key_stories(flow: Flow, types: Types, pairs: Iterable[tuple[str, str]]) -> Iterator[KeyStory]:
     """The stories of some keys; one for those that are copies of each other."""
     told: set[tuple[str, str]] = set()
     for pair in pairs:

@@ -147,26 +147,27 @@ def _held(node: Node) -> Iterator[str]:
     yield f"the states {', '.join(names[:MOST_LISTED])}{more}" if names else "no state"
 
 
-def _typed(taken: Taken) -> str:
-    key = taken.key
-    type_ = "" if taken.type == ANY else f": {taken.type}"
-    doc = f" ({' '.join(key.doc.split())})" if key.doc else ""
-    return f"`{key.name}`{type_}{doc}"
+def _named(taken: Taken) -> str:
+    type_ = "" if taken.type == ANY else f" of type {taken.type}"
+    around = f", which is `{taken.outer}` around it" if taken.outer != taken.key.name else ""
+    return f"`{taken.key.name}`{type_}{around}"
+
+
+def _doc(key: Key) -> str:
+    return f" ({' '.join(key.doc.split())})" if key.doc else ""
 
 
 def _read(taken: Taken) -> str:
-    outer = f", which is `{taken.outer}` around it" if taken.outer != taken.key.name else ""
-    set_ = f": {STATUS[taken.status]}" if taken.status else ""
+    told = f": {STATUS[taken.status]}" if taken.status else ""
     if taken.key.type.name == "optional" and taken.status in ("sometimes", "never"):
-        set_ += ", which is fine, as it is optional"
-    return f"{_typed(taken)}{outer}{set_}"
+        told += ", which is fine, as it is optional"
+    return f"{_named(taken)}{told}{_doc(taken.key)}"
 
 
 def _written(node: Node, taken: Taken) -> str:
-    outer = f", which is `{taken.outer}` around it" if taken.outer != taken.key.name else ""
     told = node.writes if isinstance(node, Leaf) else ()
     on = [outcome for outcome, keys in told if taken.key.name in keys]
-    return f"{_typed(taken)}{outer}{', on ' + ' and '.join(on) if on else ''}"
+    return f"{_named(taken)}{', on ' + ' and '.join(on) if on else ''}{_doc(taken.key)}"
 
 
 def _entered(story: StateStory) -> Iterator[str]:
