@@ -69,7 +69,9 @@ class Allowance(NamedTuple):
 
 
 MARK = "smachac:"
-_COMMENT = re.compile(r"(?:^|(?<=\s))#\s*smachac:[^\S\n]*(?P<verb>[^\s]*)(?P<rest>[^\n]*)", re.M)
+_COMMENT = re.compile(
+    r"(?:^|(?<=\s))#[^\S\n]*smachac:[^\S\n]*(?P<verb>[^\s]*)(?P<rest>[^\n]*)", re.M
+)
 _CODE = re.compile(r"[^\S\n]*(?P<code>[A-Za-z]{2}\d+)\b[,:]?")
 
 

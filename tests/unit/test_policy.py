@@ -58,12 +58,20 @@ def found(analysis: Analysis) -> list[str]:
             PICK.replace("done}}", "doen}}  # smachac: allow SM101 x"),
             ["SM101:5", "SM022:5"],
         ),
+        (PICK + "  #\n" + LOST.replace("LOST", "smachac"), ["SM201:7"]),
+        (PICK + "  # smachac:\n" + LOST, ["SM022:6", "SM201:7"]),
         (PICK.replace("outcomes", "doc: ' # smachac: allow SM201 x', outcomes"), []),
     ],
 )  # fmt: skip
 def test_comments(states: str, expected: list[str], tmp_path: Path) -> None:
     shown = found(judged(HEAD + states + "\n", tmp_path))
     assert shown == expected
+
+
+def test_a_comment_ends_with_its_line() -> None:
+    report: Report = []
+    assert allowances(Source("main.yml", "#\nsmachac: allow SM201 x\n"), report) == []
+    assert report == []
 
 
 def test_text_in_a_block_is_no_comment(tmp_path: Path) -> None:
