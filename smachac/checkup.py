@@ -33,6 +33,8 @@ assert checks is not None  # imported for the codes it files
 
 OK, FINDINGS = 0, 1
 
+WRONG_USAGE = (NothingFoundError, GitError, baseline.BaselineError)
+
 PAUSE = 0.3
 """Seconds between two looks at the files that are watched."""
 
@@ -47,7 +49,7 @@ def check(arguments: Namespace) -> int:
         return usage("--write-baseline wants --baseline FILE")
     try:
         return _watch(arguments) if arguments.watch else _once(arguments, set())
-    except (NothingFoundError, GitError, baseline.BaselineError) as error:
+    except WRONG_USAGE as error:
         return usage(str(error))
 
 
@@ -194,8 +196,13 @@ def _watch(arguments: Namespace) -> int:
     while True:
         before = stamps(_watched(arguments, known))
         used: set[str] = set()
-        _once(arguments, used)
-        known = used
+        try:
+            _once(arguments, used)
+        except WRONG_USAGE as error:
+            if not known:
+                raise
+            usage(str(error))  # a folder may be empty for a while
+        known = used or known
         now = stamps(_watched(arguments, known))
         base = {**now, **{path: before[path] for path in now if path in before}}
         print(f"watching {len(base)} files; Ctrl-C ends", flush=True)

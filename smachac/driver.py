@@ -58,7 +58,9 @@ def analyse(source: Source, library: Library, report: Report) -> Analysis:
             report.extend(check_machine(machine))
         sources = {id(text): text for text in (script.sources if script is not None else (source,))}
         sources |= {id(item.span.source): item.span.source for item in report}
-        given = [fit for text in sources.values() for fit in allowances(text, report)]
+        given = [
+            fit for text in sources.values() for fit in allowances(text, report, library.parse)
+        ]
         found, used = heeded(report, given)
         unused = [fit for fit in given if fit not in used]
         found += [

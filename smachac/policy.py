@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import re
 from bisect import bisect_right
-from collections.abc import Iterable, Iterator, Mapping, Sequence
+from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from typing import NamedTuple
 
@@ -68,6 +68,9 @@ class Allowance(NamedTuple):
     line: int
 
 
+Parser = Callable[[Source, Report], "Tree | None"]
+"""As `syntax.parse`, which may remember what it parsed."""
+
 MARK = "smachac:"
 _COMMENT = re.compile(
     r"(?:^|(?<=\s))#[^\S\n]*smachac:[^\S\n]*(?P<verb>[^\s]*)(?P<rest>[^\n]*)", re.M
@@ -75,7 +78,7 @@ _COMMENT = re.compile(
 _CODE = re.compile(r"[^\S\n]*(?P<code>[A-Za-z]{2}\d+)\b[,:]?")
 
 
-def allowances(source: Source, report: Report) -> list[Allowance]:
+def allowances(source: Source, report: Report, parse: Parser = parse) -> list[Allowance]:
     """The allowances of a text, in its order. SM022 for a comment that does not say all it must.
 
     A comment behind something speaks of its own line, one alone of the next line that holds more
@@ -83,7 +86,7 @@ def allowances(source: Source, report: Report) -> list[Allowance]:
     """
     if MARK not in source.text:
         return []
-    hidden = _scalars(source)
+    hidden = _scalars(source, parse)
     speaks = _lines_spoken_of(source)
     found: list[Allowance] = []
     for comment in _COMMENT.finditer(source.text):
@@ -99,7 +102,7 @@ def allowances(source: Source, report: Report) -> list[Allowance]:
     return found
 
 
-def _scalars(source: Source) -> list[tuple[int, int]]:
+def _scalars(source: Source, parse: Parser) -> list[tuple[int, int]]:
     """The stretches of a YAML text, in order, that hold values: `#` begins no comment there."""
     tree = parse(source, []) if not source.name.endswith(".py") else None
     return sorted((span.start, span.end) for span in _spans(tree)) if tree is not None else []

@@ -238,7 +238,7 @@ def test_watching_checks_at_every_change(folder: Path) -> None:
         for line in process.stdout or ():
             if line.startswith("watching"):
                 return last
-            last = line
+            last = line.strip("\n") and line
         raise AssertionError(process.communicate()[1])
 
     try:
@@ -251,8 +251,12 @@ def test_watching_checks_at_every_change(folder: Path) -> None:
         assert summary() == "no findings; 3 scripts checked\n"
         (folder / "deep" / "pick.yml").replace(folder / "deep" / "x.yml")
         assert "error" in summary()
+        (folder / "smachac.toml").write_text('exclude = ["deep/*"]')
+        assert summary() == ""
+        (folder / "smachac.toml").unlink()
+        assert "error" in summary()
     finally:
         process.send_signal(signal.SIGINT)
         told = process.communicate(timeout=60)[1]
-    assert told == "interrupted\n"
+    assert told.endswith("there is no script in `deep`\ninterrupted\n")
     assert process.returncode == 130
