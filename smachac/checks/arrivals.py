@@ -25,7 +25,9 @@ class Arrivals:
     def __init__(self) -> None:
         self.visits = 0
         self.steps: dict[int, dict[Stop, list[tuple[Stop, str]]]] = {}
-        self.found: dict[tuple[int, str, str | None], frozenset[Stop] | None] = {}
+        self.children: dict[int, dict[str, Node]] = {}
+        self.found: dict[tuple[int, str, str | None], tuple[Stop, ...] | None] = {}
+        self.flows: dict[tuple[int, object], dict[Stop, Flow]] = {}
 
     def arrived(self, clash: Clash) -> Clash | None:
         """The clash, by a way that the value can come; None where it cannot be there."""
@@ -37,16 +39,23 @@ class Arrivals:
                 continue
             seen.add(id(flow))
             sources = self.sources(flow.place, after)
-            alike = flow.place.flows.get(flow.mark, [flow])
-            for each in alike[:1] if sources is None else reversed(alike):
-                if sources is not None and _stop(each) not in sources:
-                    continue
+            alike = self.alike(flow)
+            coming = [alike[stop] for stop in sources if stop in alike] if sources else []
+            for each in coming if sources is not None else [flow]:
                 if each.before is None:
                     return replace(clash, flow=_linked(each, after))
                 todo.append((each.before, (each, *after)))
         return None
 
-    def sources(self, place: Place, after: tuple[Flow, ...]) -> frozenset[Stop] | None:
+    def alike(self, flow: Flow) -> dict[Stop, Flow]:
+        """The flows of one place that are of one type, by the stop they come from."""
+        which = id(flow.place), flow.mark
+        if which not in self.flows:
+            every = flow.place.flows.get(flow.mark, [flow])
+            self.flows[which] = {_stop(each): each for each in reversed(every)}
+        return self.flows[which]
+
+    def sources(self, place: Place, after: tuple[Flow, ...]) -> tuple[Stop, ...] | None:
         """From where the value can come that the next place takes; None for anywhere."""
         container = place.node
         linear = isinstance(container, nodes.StateMachine | nodes.Sequence)
@@ -59,24 +68,24 @@ class Arrivals:
             self.found[which] = None if spent else self.search(container, *which[1:])
         return self.found[which]
 
-    def search(self, container: nodes.Container, key: str, goal: str | None) -> frozenset[Stop]:
+    def search(self, container: nodes.Container, key: str, goal: str | None) -> tuple[Stop, ...]:
         """The children that may have been the last to write a key before a child reads it, or
         before the end (no goal); and the start, where none need be."""
         steps = self.steps_back(container)
-        children = {child.name: child for child in container.children}
+        children = self.children[id(container)]
         todo: list[Stop] = [goal] if goal is not None else []
         todo += [stop for stop in steps if goal is None and isinstance(stop, tuple)]
         seen: set[Stop] = set(todo)
-        sources: set[Stop] = set()
+        sources: dict[Stop, None] = {}
         while todo:
             self.visits += 1
             for before, outcome in steps.get(todo.pop(), ()):
                 if before == START or replaces(children[str(before)], key, outcome):
-                    sources.add(before)
+                    sources[before] = None
                 elif before not in seen:
                     seen.add(before)
                     todo.append(before)
-        return frozenset(sources)
+        return tuple(sources)
 
     def steps_back(self, container: nodes.Container) -> dict[Stop, list[tuple[Stop, str]]]:
         """For each stop of a container, the stops before it and their outcomes."""
@@ -85,6 +94,7 @@ class Arrivals:
             for edge in edges(container):
                 found.setdefault(edge.target, []).append((edge.source, edge.outcome))
             self.steps[id(container)] = found
+            self.children[id(container)] = {child.name: child for child in container.children}
         return self.steps[id(container)]
 
 

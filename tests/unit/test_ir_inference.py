@@ -4,16 +4,22 @@ from collections.abc import Mapping, Sequence
 from dataclasses import replace
 
 import pytest
+from expression_strategies import NAMES_OF_VALUES, VALUES, computations
 from hypothesis import given, settings
 from hypothesis import strategies as st
 from strategies import machines, valid_machines
 
 from smachac.checks import check_machine
-from smachac.ir.expression_types import type_of, type_of_call
-from smachac.ir.expressions import parse_expression
+from smachac.ir.behaviours import built_in
+from smachac.ir.evaluate import EvaluationError, evaluate
+from smachac.ir.expression_types import limited, type_of, type_of_call, type_of_data
+from smachac.ir.expressions import Expr, parse_expression
+from smachac.ir.fitting import fits, misfit
 from smachac.ir.inference import infer
 from smachac.ir.joining import widened
-from smachac.ir.nodes import Expression, Leaf, Machine, Node, StateMachine
+from smachac.ir.nodes import Data, Expression, Leaf, Machine, Node, StateMachine, Struct
+from smachac.ir.result import Event
+from smachac.ir.run import run
 from smachac.ir.text import parse_machine, print_machine
 from smachac.ir.types import Type, parse_type
 from smachac.ir.walk import walk
@@ -375,3 +381,41 @@ def test_every_machine_is_typed_and_its_text_with_types_reads_as_the_same(
 @settings(max_examples=60, deadline=None)
 def test_a_valid_machine_has_no_clash(machine: Machine) -> None:
     assert infer(machine).clashes == ()
+
+
+def data_of(value: object) -> Data:
+    """What the interpreter computed, as data of a script."""
+    if isinstance(value, list | tuple | range):
+        return tuple(data_of(item) for item in value)
+    if isinstance(value, dict):
+        return Struct(entries=tuple((str(key), data_of(item)) for key, item in value.items()))
+    assert value is None or isinstance(value, bool | int | float | str)
+    return value
+
+
+@given(computations(), st.fixed_dictionaries(dict.fromkeys(NAMES_OF_VALUES, VALUES)))
+@settings(max_examples=500, deadline=None)
+def test_what_an_expression_gives_is_of_its_type(expr: Expr, values: dict[str, object]) -> None:
+    try:
+        value = evaluate(expr, values)
+    except EvaluationError:
+        return
+    if callable(value) or isinstance(value, complex):
+        return
+    names = {name: widened(type_of_data(data_of(each))) for name, each in values.items()}
+    exact = {name: type_of_data(data_of(each)) for name, each in values.items()}
+    found = type_of_data(data_of(value))
+    for known in (names, exact):
+        assert misfit(found, limited(type_of(expr, known))) is None
+
+
+@given(valid_machines())
+@settings(max_examples=60, deadline=None)
+def test_what_a_run_writes_is_of_the_type_of_its_key(machine: Machine) -> None:
+    types = infer(machine)
+    seen: list[Event] = []
+    run(machine, built_in(), seen.append)
+    for event in seen:
+        if event["event"] == "write":
+            key = event["path"], event["key"]
+            assert fits(type_of_data(data_of(event["value"])), types.outputs[key])
