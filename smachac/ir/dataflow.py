@@ -113,8 +113,10 @@ def _scope(
     outputs = {key.name: names.get(key.name, key.name) for key in container.outputs}
     reads: dict[Place, tuple[str, ...]] = {START: _items_read(container)}
     raw = isinstance(container, nodes.Iterator)
-    containing = frozenset(c.name for c in container.children if not isinstance(c, Leaf))
-    for child in container.children:
+    # Of two states of one name (SM106) the first counts, everywhere.
+    children = {child.name: child for child in reversed(container.children)}
+    containing = frozenset(name for name, c in children.items() if not isinstance(c, Leaf))
+    for child in reversed(children.values()):
         reads[child.name] = _reads(child, inner.get(f"{path}/{child.name}"), raw)
     steps = _steps(path, mended, inner)
     bits = Bits(key for keys in (*reads.values(), outputs) for key in keys if key not in held)
