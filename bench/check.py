@@ -4,7 +4,7 @@ into them and out of them, typed keys, code, concurrences, retries, sub-scripts.
     python bench/check.py [rounds [states ...]]
 
 Everything is CPU time in processes of their own, taken in turn, the least of several; the garbage
-collector is paused, as the command line does. The floor is libyaml's bare events over the same text.
+collector is paused, as the command line does. The floor are libyaml's bare events over that text.
 """
 
 from __future__ import annotations
@@ -17,7 +17,14 @@ import subprocess
 import sys
 import tempfile
 import time
+from collections.abc import Iterator
+from functools import partial
+from itertools import pairwise
 from pathlib import Path
+from typing import TYPE_CHECKING
+
+if TYPE_CHECKING:
+    from smachac.diagnostics import Finding, RuleFunction
 
 SIZES = (1_000, 10_000, 100_000)
 DEPTH = 1_000
@@ -52,7 +59,9 @@ PART = """\
         default_outcome: bad
         outcome_map: {ok: {L: ok, R: succeeded}}
         transitions: {ok: COUNT, bad: bad}
-        states: [L: {template: ScriptedState, outcomes: [ok, bad]}, R: {template: SleepState, time: 1}]
+        states:
+        - L: {template: ScriptedState, outcomes: [ok, bad]}
+        - R: {template: SleepState, time: 1}
     - COUNT:
         template: CallbacksState
         input_keys: [tries]
@@ -152,10 +161,23 @@ def events(path: str) -> dict[str, float]:
     return {"events": time.process_time() - began, "count": count}
 
 
+class Laps:
+    """CPU seconds by name, each since the one before."""
+
+    def __init__(self) -> None:
+        self.found: dict[str, float] = {}
+        self.began = self.last = time.process_time()
+
+    def __call__(self, name: str) -> None:
+        now = time.process_time()
+        self.found[name] = now - self.last
+        self.last = now
+
+
 def phases(path: str) -> dict[str, float]:
-    """CPU seconds of each phase and rule; those of `check` as a whole, without its start-up."""
-    from smachac import diagnostics
-    from smachac.diagnostics import in_order, run_rules
+    """CPU seconds of each phase and rule, and of `check` as a whole, without its start-up."""
+    from smachac.checks import check_machine
+    from smachac.diagnostics import RULES, Report, in_order
     from smachac.files import disk_library, read_source
     from smachac.ir.depth import deep_recursion
     from smachac.ir.walk import walk
@@ -163,50 +185,39 @@ def phases(path: str) -> dict[str, float]:
     from smachac.policy import allowances, heeded, settled
     from smachac.script import resolve
 
-    import smachac.driver
-
-    assert smachac.driver is not None  # imported for the rules it files
-    found: dict[str, float] = {}
-
-    def lap(name: str) -> None:
-        nonlocal last
-        now = time.process_time()
-        found[name] = found.get(name, 0.0) + now - last
-        last = now
-
-    def timed(rule, code):  # type: ignore[no-untyped-def]
-        def run(machine):  # type: ignore[no-untyped-def]
-            findings = list(rule(machine))
-            lap(code)
-            return findings
-
-        return run
-
     warm_up()
-    for code, rule in diagnostics.RULES.items():
-        diagnostics.RULES[code] = timed(rule, code)
-    began = last = time.process_time()
-    report: diagnostics.Report = []
+    laps = Laps()
+    report: Report = []
     source = read_source(Path(path), report)
     assert source is not None
     library = disk_library(Path(path), report)
     with deep_recursion():
         tree = library.parse(source, report)
-        lap("parse")
+        laps("parse")
         resolved = resolve(source, tree, library, report)
-        assert resolved is not None
-        lap("resolve")
+        assert resolved is not None, report
+        laps("resolve")
         machine = lower(resolved)
-        lap("lower")
-        report += run_rules(machine)
+        laps("lower")
+        for code, rule in RULES.items():
+            RULES[code] = partial(timed, rule, laps, code)
+        report += check_machine(machine)
         given = [fit for text in resolved.sources for fit in allowances(text, report)]
         report = settled(in_order(heeded(report, given)[0]), library.policy)
-        lap("report")
-    found["check"] = time.process_time() - began
-    found["states"] = sum(1 for _ in walk(machine.root))
-    found["findings"] = sum(item.severity.value != "info" for item in report)
-    found["megabytes"] = resource.getrusage(resource.RUSAGE_SELF).ru_maxrss / 1024
-    return found
+        laps("report")
+    return {
+        **laps.found,
+        "check": laps.last - laps.began,
+        "states": sum(1 for _ in walk(machine.root)),
+        "findings": sum(item.severity.value != "info" for item in report),
+        "megabytes": resource.getrusage(resource.RUSAGE_SELF).ru_maxrss / 1024,
+    }
+
+
+def timed(rule: RuleFunction, laps: Laps, code: str, machine: object) -> Iterator[Finding]:
+    found = list(rule(machine))
+    laps(code)
+    return iter(found)
 
 
 def warm_up() -> None:
@@ -270,7 +281,7 @@ def main() -> None:
             for path in (*paths, deep):
                 best(path, 1, found)
     table(found)
-    for small, large in zip(sizes, sizes[1:], strict=False):
+    for small, large in pairwise(sizes):
         ratio = found[str(large)]["check"] / found[str(small)]["check"]
         print(f"{large} states / {small} states: {ratio:.1f} for {large / small:.0f} times as many")
 

@@ -5,7 +5,7 @@ every state with its type; one self-contained tree that lowering only has to rea
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import dataclass, field, replace
+from dataclasses import dataclass, field
 
 from smachac import problems, schema, shapes
 from smachac.calls import overridden, sub_script_entries
@@ -134,7 +134,7 @@ class _Resolver:
             own["params"] = self.shallow(own["params"])
         params = own.get("params")
         scope = child_scope(place.scope, params.value if params else None, self.report)
-        place = replace(place, scope=scope, depth=place.depth + 1)
+        place = _Place(place.source, scope, place.calls, place.depth + 1)
         fields = {
             key: entry if key in ("params", "states") else self.filled(key, entry, scope)
             for key, entry in own.items()

@@ -50,7 +50,7 @@ def as_name(tree: Tree, report: Report) -> Word | None:
         wrong(tree, "a name", report)
         return None
     value = tree.value
-    if isinstance(value, str) and not (tree.plain and value in _YAML_1_1_BOOLEANS):
+    if isinstance(value, str) and (value not in _YAML_1_1_BOOLEANS or not tree.plain):
         return Word(value, tree.span)
     if value is None:
         wrong(tree, "a name", report)
@@ -91,7 +91,15 @@ def as_map(tree: Tree, report: Report) -> tuple[Entry, ...]:
         nothing = isinstance(tree, Scalar) and tree.value is None
         wrong(tree, "a mapping", report, "write `{}` or leave it out" if nothing else None)
         return ()
-    return tuple(entry for entry in tree.entries if as_name(entry.key, report) is not None)
+    return tuple([entry for entry in tree.entries if _names(entry.key, report)])
+
+
+def _names(key: Scalar, report: Report) -> bool:
+    """Whether a key is a name; if not, that is reported."""
+    value = key.value
+    if isinstance(value, str) and value not in _YAML_1_1_BOOLEANS:
+        return True
+    return as_name(key, report) is not None
 
 
 def as_pairs(tree: Tree, report: Report) -> tuple[tuple[Word, Word], ...]:

@@ -43,7 +43,7 @@ def leaf_reads(leaf: Leaf, *, raw: bool = False) -> tuple[str, ...]:
     These are its declared inputs but for optional ones; callbacks say it exactly. `raw`: the leaf
     sees every key of its container, as the child of an iterator does (smach-semantics I7).
     """
-    if leaf.open:
+    if leaf.open or not (leaf.inputs or raw):
         return ()
     needed = tuple(key.name for key in leaf.inputs if key.type.name != "optional")
     functions = callbacks(leaf)
@@ -74,6 +74,8 @@ def leaf_writes(leaf: Leaf, outcome: str, *, raw: bool = False) -> Writes:
     """The keys, under the leaf's names, that it has set when it ends with an outcome."""
     if leaf.open:
         return ANYTHING
+    if not (leaf.outputs or raw):
+        return NOTHING
     outputs = frozenset(key.name for key in leaf.outputs)
     if leaf.type == "ScriptedState":
         return _scripted(leaf, outcome, outputs, raw)

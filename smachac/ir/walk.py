@@ -36,14 +36,18 @@ def walk(node: Node, path: str = "") -> Iterator[tuple[str, Node]]:
 
 
 def containers(node: Node) -> Iterator[tuple[str, Container]]:
-    """The containers among `walk(node)`."""
-    for path, current in walk(node):
-        if not isinstance(current, Leaf):
-            yield path, current
+    """The containers among `walk(node)`. Leaves, which are most of a machine, cost nothing."""
+    stack = [] if isinstance(node, Leaf) else [(node.name, node)]
+    while stack:
+        here, current = stack.pop()
+        yield here, current
+        for child in reversed(current.children):
+            if not isinstance(child, Leaf):
+                stack.append((f"{here}/{child.name}", child))
 
 
 def outcome_names(node: Node) -> tuple[str, ...]:
-    return tuple(outcome.name for outcome in node.outcomes)
+    return tuple([outcome.name for outcome in node.outcomes])
 
 
 def leads_to_child(transition: Transition, children: frozenset[str]) -> bool:
