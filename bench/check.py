@@ -202,7 +202,7 @@ def phases(path: str) -> dict[str, float]:
         for code, rule in RULES.items():
             RULES[code] = partial(timed, rule, laps, code)
         report += check_machine(machine)
-        given = [fit for text in resolved.sources for fit in allowances(text, report)]
+        given = [fit for text in resolved.sources for fit in allowances(text, report, library.parse)]
         report = settled(in_order(heeded(report, given)[0]), library.policy)
         laps("report")
     return {
