@@ -202,7 +202,8 @@ def phases(path: str) -> dict[str, float]:
         for code, rule in RULES.items():
             RULES[code] = partial(timed, rule, laps, code)
         report += check_machine(machine)
-        given = [fit for text in resolved.sources for fit in allowances(text, report, library.parse)]
+        parse, texts = library.parse, resolved.sources
+        given = [fit for text in texts for fit in allowances(text, report, parse)]
         report = settled(in_order(heeded(report, given)[0]), library.policy)
         laps("report")
     return {

@@ -113,7 +113,7 @@ def _json(found: Iterable[Failure]) -> str:
         }
         for each in found
     ]
-    return json.dumps({"failures": rows}, indent=2, ensure_ascii=False) + "\n"
+    return json.dumps({"failures": rows}, indent=2) + "\n"
 
 
 def _csv(found: Iterable[Failure]) -> str:

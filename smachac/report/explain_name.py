@@ -15,6 +15,9 @@ from smachac.report.explain_key import KeyStory, key_json, key_names, key_storie
 from smachac.report.explain_state import StateStory, state_json, state_story, state_text
 from smachac.report.paragraphs import paragraphs
 
+MOST_NAMED = 20
+"""So many states or keys are listed of those that share a name."""
+
 
 class UnclearError(Exception):
     """A name means nothing, or more than can be told; the message says what there is."""
@@ -73,14 +76,19 @@ def _several_states(
 ) -> str:
     spans = {path: node.span for path, node in reversed(list(walk(machine.root)))}
     lines = [f"there are {len(states)} states `{name}`; name one by its path:"]
-    lines += [f"  {path} ({spans[path]})" for path in states]
-    lines += [f"  {path}/{key} (a key)" for path, key in keys]
-    return "\n".join(lines)
+    named = [f"  {path} ({spans[path]})" for path in states]
+    named += [f"  {path}/{key} (a key)" for path, key in keys]
+    return "\n".join([*lines, *_few(named)])
 
 
 def _several_keys(name: str, keys: list[tuple[str, str]]) -> str:
     lines = [f"`{name}` is what states call {len(keys)} keys; name one of those:"]
-    return "\n".join([*lines, *(f"  {path}/{key}" for path, key in keys)])
+    return "\n".join([*lines, *_few([f"  {path}/{key}" for path, key in keys])])
+
+
+def _few(lines: list[str]) -> list[str]:
+    more = len(lines) - MOST_NAMED
+    return lines if more <= 0 else [*lines[:MOST_NAMED], f"  and {more} more"]
 
 
 def _text(states: list[StateStory], keys: list[KeyStory]) -> str:
@@ -91,4 +99,4 @@ def _text(states: list[StateStory], keys: list[KeyStory]) -> str:
 
 def _json(states: list[StateStory], keys: list[KeyStory]) -> str:
     found = {"states": [*map(state_json, states)], "keys": [*map(key_json, keys)]}
-    return json.dumps(found, indent=2, ensure_ascii=False) + "\n"
+    return json.dumps(found, indent=2) + "\n"

@@ -2,11 +2,23 @@
 
 from __future__ import annotations
 
+import json
 from pathlib import Path
 
 import pytest
+from data_machines import data_machines
+from hypothesis import given, settings
+from hypothesis import strategies as st
+from strategies import machines
 
+from smachac.checks.failures import failures
 from smachac.cli import main
+from smachac.ir.dataflow import data_flow
+from smachac.ir.nodes import Machine
+from smachac.ir.walk import walk
+from smachac.report.explain_failures import render_failures
+from smachac.report.explain_key import key_names
+from smachac.report.explain_name import UnclearError, explain_name
 
 ROOT = Path(__file__).parents[2]
 PICK = str(ROOT / "examples" / "08_pick_and_place" / "main.yml")
@@ -49,6 +61,24 @@ def test_a_script_with_errors_is_explained(capsys: pytest.CaptureFixture[str]) -
     assert "the script has errors" in shown.err
 
 
+def test_of_many_states_with_one_name_some_are_listed(
+    tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    inner = "[A: {T: ScriptedState, o: [ok], t: {ok: ok}}]"
+    boxes = "".join(
+        f"  - B{n}: {{T: StateMachine, o: [ok], s: {inner}, t: {{ok: B{n + 1}}}}}\n"
+        for n in range(30)
+    )
+    end = "  - B30: {T: ScriptedState, o: [ok], t: {ok: ok}}\n"
+    script = tmp_path / "main.yml"
+    script.write_text(f"name: sm\ntemplate: Base\noutcomes: [ok]\nstates:\n{boxes}{end}")
+    assert main(["explain", str(script), "A"]) == 2
+    shown = capsys.readouterr().err.splitlines()
+    assert "there are 30 states `A`" in shown[0]
+    assert len(shown) == 22
+    assert shown[-1] == "  and 10 more"
+
+
 @pytest.mark.parametrize("text", ["name: [", "- A: {}", None])
 def test_an_unreadable_script_is_reported(
     text: str | None, tmp_path: Path, capsys: pytest.CaptureFixture[str]
@@ -74,3 +104,26 @@ def test_nothing_of_a_script_steers_the_terminal(
         shown = capsys.readouterr().out
         assert "\x1b" not in shown
         assert "A\u241b" in shown
+
+
+def explained(machine: Machine, name: str, form: str) -> str:
+    try:
+        return explain_name(machine, [], name, form)
+    except UnclearError as error:
+        return str(error)
+
+
+@settings(max_examples=60)
+@given(st.one_of(machines(), data_machines()), st.data())
+def test_every_name_of_any_machine_can_be_asked_for(machine: Machine, data: st.DataObject) -> None:
+    paths = [path for path, _ in walk(machine.root)]
+    known = [*paths, *(path.rpartition("/")[2] for path in paths), *key_names(data_flow(machine))]
+    name = data.draw(st.sampled_from(known))
+    form = data.draw(st.sampled_from(["text", "json"]))
+    said = explained(machine, name, form)
+    assert "there is no" not in said  # it is the name of something
+    if said.startswith("{"):
+        found = json.loads(said)
+        assert found["states"] or found["keys"]
+    for table in ("text", "json", "md", "csv"):
+        assert render_failures("sm", list(failures(machine)), table)
