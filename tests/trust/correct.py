@@ -1,0 +1,414 @@
+"""Random projects that are correct by construction, with everything the language has.
+
+A container is built from its first state to its last. What is set when a state is entered is the
+intersection over the ways to it; only that is read. Failures lead to outcomes of failure, or to a
+recovery that does; every outcome of a container is the target of something.
+"""
+
+from __future__ import annotations
+
+import random
+from dataclasses import dataclass, field
+from typing import Any
+
+from plain import MAIN, Data, Project, Quoted
+from skills import CHANGES, CONDITIONS, LITERALS, literal, long_type
+
+Body = dict[str, Data]
+Known = dict[str, str]
+"""Keys that are set, with their types."""
+
+GOOD, BAD = "succeeded", "aborted"
+VERBS = ("LOOK", "MOVE", "GRASP", "LIFT", "PLACE", "CHECK", "OPEN", "WAIT", "ASK", "PARK")
+WORDS = ("pose", "width", "part", "goal", "speed", "level", "side", "route", "count", "found")
+
+
+@dataclass
+class State:
+    """A state to be put into a container: its body, and what is set after each of its outcomes.
+
+    The keys are those of the container. `claims` are what it holds.
+    """
+
+    name: str
+    body: Body
+    sets: dict[str, Known] = field(default_factory=dict)
+    reads: set[str] = field(default_factory=set)
+
+    def writes(self) -> set[str]:
+        return {key for known in self.sets.values() for key in known}
+
+
+class Builder:
+    """Draws a project. Names of states and keys are never used twice but where scopes meet."""
+
+    def __init__(self, seed: int) -> None:
+        self.draw = random.Random(f"correct/{seed}")
+        self.files: Project = {}
+        self.made = 0
+        self.presets: list[Body] = []
+
+    def number(self) -> int:
+        self.made += 1
+        return self.made
+
+    def state_name(self) -> str:
+        return f"{self.draw.choice(VERBS)}_{self.number()}"
+
+    def key_name(self) -> str:
+        return f"{self.draw.choice(WORDS)}_{self.number()}"
+
+    def chance(self, likely: float) -> bool:
+        return self.draw.random() < likely
+
+    def project(self) -> Project:
+        exits = [GOOD, BAD]
+        body: Body = {
+            "name": "sm",
+            "template": "Base",
+            "outcomes": exits,
+            "params": {"arm": "left"},
+        }
+        self.files[MAIN] = body
+        _, sets = self.machine(body, self.draw.choice([1, 2, 2, 3]), exits, {})
+        outputs = sorted({key for known in sets.values() for key in known})
+        if outputs:
+            body["output_keys"] = outputs
+        body["doc"] = ["The arm is ", ["params", "arm"], "."]
+        return self.files
+
+    # --- containers
+
+    def machine(
+        self, body: Body, depth: int, exits: list[str], around: Known, inside: str = ""
+    ) -> tuple[set[str], dict[str, Known]]:
+        """Give a state machine or sequence its states; what they read and have set at its outcomes.
+
+        `around` is what is set when it is entered; presets go into `body`.
+        """
+        self.presets.append(body.setdefault("userdata", {}))
+        count = self.draw.randint(2, 4)
+        names = [self.state_name() for _ in range(count)]
+        arriving: dict[str, list[Known]] = {name: [] for name in [*names, *exits]}
+        arriving[names[0]] = [around]
+        recoveries: list[str] = []
+        states: list[Data] = []
+        reads: set[str] = set()
+        queue = list(names)
+        while queue:
+            name = queue.pop(0)
+            known = common(arriving[name])
+            following = queue[0] if queue and name not in recoveries else None
+            state = self.state(name, depth, known)
+            steps: dict[str, str] = {}
+            for outcome, sets in state.sets.items():
+                if outcome == GOOD:
+                    target = following if following not in (None, *recoveries) else GOOD
+                    target = exits[1] if name in recoveries else target
+                elif outcome == "skipped":
+                    ahead = [each for each in queue if each not in recoveries]
+                    target = self.draw.choice([*ahead, GOOD])
+                elif (
+                    name not in recoveries and depth and self.chance(0.15) and inside != "Sequence"
+                ):
+                    target = self.state_name()
+                    recoveries.append(target)
+                    queue.append(target)
+                    arriving[target] = []
+                else:
+                    target = exits[1]
+                steps[outcome] = str(target)
+                arriving[str(target)].append({**known, **sets})
+            if inside == "Sequence" and steps.get(GOOD) == following:
+                del steps[GOOD]
+            state.body["transitions"] = steps
+            states.append({name: state.body})
+            reads |= state.reads
+        if not arriving[exits[1]]:
+            states.insert(0, self.failing(names[0], exits))
+            arriving[exits[1]].append(around)
+        self.close(body)
+        body["states"] = states
+        return reads, {exit: common(arriving[exit]) for exit in exits}
+
+    def may_recover(self, depth: int, inside: str) -> bool:
+        return depth > 0 and inside != "Sequence" and self.chance(0.15)
+
+    def failing(self, following: str, exits: list[str]) -> Data:
+        """A first state that can fail: somebody has to, or the outcome is impossible."""
+        body: Body = {"template": "ScriptedState", "outcomes": [GOOD, BAD]}
+        body["transitions"] = {GOOD: following, BAD: exits[1]}
+        return {self.state_name(): body}
+
+    def close(self, body: Body) -> None:
+        self.presets.pop()
+        if not body["userdata"]:
+            del body["userdata"]
+
+    def state(self, name: str, depth: int, known: Known) -> State:
+        """A state that reads some of what is set, and sets something."""
+        kinds = [
+            self.scripted,
+            self.skill,
+            self.printing,
+            self.changing,
+            self.deciding,
+            self.waiting,
+        ]
+        if depth > 0:
+            kinds += [self.nested, self.nested, self.both, self.each, self.called]
+        state = self.draw.choice(kinds)(name, depth, known)
+        if self.chance(0.1) and "script" not in state.body:
+            state.body["doc"] = "What it is for."
+        return state
+
+    def interface(self, state: State, known: Known, taken: Known, sets: dict[str, Known]) -> None:
+        """Keys of a container: those it takes in, those it hands out, some of them renamed."""
+        outputs = {key: t for each in sets.values() for key, t in each.items() if key not in known}
+        remaps = {}
+        if taken:
+            state.body["input_keys"] = self.listed(taken)
+        if outputs:
+            state.body["output_keys"] = self.listed(outputs)
+        for key in outputs:
+            if self.chance(0.3):
+                remaps[key] = self.key_name()
+        if remaps:
+            state.body["remapping"] = remaps
+        state.reads |= set(taken)
+        state.sets = {
+            outcome: {remaps.get(key, key): t for key, t in each.items() if key in outputs}
+            for outcome, each in sets.items()
+        }
+
+    def listed(self, keys: Known) -> Data:
+        """Keys as a list of names, or with their types."""
+        if self.chance(0.5):
+            return {key: long_type(type_) for key, type_ in keys.items()}
+        return list(keys)
+
+    def nested(self, name: str, depth: int, known: Known) -> State:
+        kind = self.draw.choice(["StateMachine", "StateMachine", "Sequence"])
+        body: Body = {"template": kind, "outcomes": [GOOD, BAD]}
+        if kind == "Sequence":
+            body["connector_outcome"] = GOOD
+        inner = self.some(known)
+        reads, sets = self.machine(body, depth - 1, [GOOD, BAD], inner, kind)
+        state = State(name, body)
+        self.interface(state, known, {key: inner[key] for key in inner if key in reads}, sets)
+        return state
+
+    def called(self, name: str, depth: int, known: Known) -> State:
+        """A sub-script with a param, called once or, later, again."""
+        file = f"sub_{self.number()}"
+        inside = self.nested(self.state_name(), min(depth, 2), known)
+        inside.body["doc"] = ["Works with ", [["tool"]], "."]
+        remaps = inside.body.pop("remapping", {})
+        self.files[f"{file}.yml"] = [{inside.name: inside.body}]
+        body: Body = {"script": file, "params": {"tool": "gripper"}}
+        if remaps:
+            body["remapping"] = remaps
+        return State(name, body, inside.sets, inside.reads)
+
+    def both(self, name: str, depth: int, known: Known) -> State:
+        """A concurrence: branches read what is set, and write keys of their own."""
+        body: Body = {"template": "Concurrence", "outcomes": ["ready", "failed"]}
+        self.presets.append(body.setdefault("userdata", {}))
+        branches: list[State] = []
+        for _ in range(self.draw.randint(2, 3)):
+            branch = self.state(self.state_name(), min(depth - 1, 1), known)
+            while BAD not in branch.sets and not branches:
+                branch = self.state(self.state_name(), 0, known)
+            if branch.body["template" if "template" in branch.body else "script"] in LEAVES:
+                branch.body["claims"] = [f"tool.n{self.number()}"]
+            branches.append(branch)
+        self.close(body)
+        body["default_outcome"] = "failed"
+        body["outcome_map"] = {"ready": {branch.name: GOOD for branch in branches}}
+        if self.chance(0.3) and len(branches) > 2:
+            body["outcomes"] = ["ready", "half", "failed"]
+            first, *others = branches
+            rule = {first.name: BAD, **{branch.name: GOOD for branch in others}}
+            body["outcome_map"] = {**body["outcome_map"], "half": rule}
+        body["states"] = [{branch.name: branch.body} for branch in branches]
+        state = State(name, body)
+        good: Known = {}
+        for branch in branches:
+            good |= branch.sets[GOOD]
+        sets = {"ready": good, **{outcome: {} for outcome in body["outcomes"][1:]}}
+        taken = {key: known[key] for branch in branches for key in branch.reads if key in known}
+        self.interface(state, known, taken, sets)
+        return self.as_machine(state)
+
+    def as_machine(self, state: State) -> State:
+        """A container with outcomes of its own names, in a machine with the usual ones."""
+        inner = State(self.state_name(), state.body, state.sets, state.reads)
+        good, *others = state.sets
+        inner.body["transitions"] = {good: GOOD, **dict.fromkeys(others, BAD)}
+        body: Body = {"template": "StateMachine", "outcomes": [GOOD, BAD]}
+        if state.reads:
+            body["input_keys"] = sorted(state.reads)
+        if state.writes():
+            body["output_keys"] = sorted(state.writes())
+        body["states"] = [{inner.name: inner.body}]
+        return State(state.name, body, {GOOD: state.sets[good], BAD: {}}, state.reads)
+
+    def each(self, name: str, depth: int, known: Known) -> State:
+        """An iterator over a list, or over a key that holds one."""
+        lists = [key for key, type_ in known.items() if type_ == "list[int]"]
+        item = self.key_name()
+        body: Body = {"template": "Iterator", "outcomes": ["all", BAD], "it_label": item}
+        body["it"] = self.draw.choice(lists) if lists else [1, 2, 3]
+        body |= {"exhausted_outcome": "all", "loop_outcomes": [GOOD]}
+        inside: Body = {"template": "StateMachine", "outcomes": [GOOD, BAD]}
+        reads, sets = self.machine(inside, depth - 1, [GOOD, BAD], {item: "int"})
+        if item in reads:
+            inside["input_keys"] = [item]
+        outputs = sorted({key for each in sets.values() for key in each} - {item})
+        if outputs:
+            inside["output_keys"] = body["output_keys"] = outputs
+        body["states"] = [{self.state_name(): inside}]
+        state = State(name, body, {"all": {}, BAD: {}})
+        if lists:
+            body["input_keys"] = [body["it"]]
+            state.reads = {str(body["it"])}
+        state.sets = {"all": {}, BAD: {}}
+        found = self.as_machine(state)
+        if outputs:
+            next(iter(found.body["states"][0].values()))["output_keys"] = outputs
+            found.body["output_keys"] = outputs
+        return found
+
+    # --- leaves
+
+    def some(self, known: Known) -> Known:
+        keys = self.draw.sample(sorted(known), min(len(known), self.draw.choice([0, 1, 2, 2, 3])))
+        return {key: known[key] for key in keys}
+
+    def given(self, known: Known) -> Known:
+        """Some keys that are set, and perhaps one that is a preset of the container."""
+        reads = self.some(known)
+        if self.chance(0.3):
+            key, type_ = self.reading({}, LITERALS)
+            reads[key] = type_
+        return reads
+
+    def reading(self, known: Known, types: dict[str, Any]) -> tuple[str, str]:
+        """A key of one of these types: one that is set, or a preset of the container."""
+        keys = sorted(key for key, type_ in known.items() if type_ in types)
+        if keys and self.chance(0.8):
+            key = self.draw.choice(keys)
+            return key, known[key]
+        type_ = self.draw.choice(sorted(types))
+        key = self.key_name()
+        value = literal(self.draw, type_)
+        long = type_ not in ("int", "str", "bool") or self.chance(0.5)
+        self.presets[-1][key] = {"type": long_type(type_), "value": value} if long else value
+        return key, type_
+
+    def scripted(self, name: str, depth: int, known: Known) -> State:
+        outcomes = [GOOD, *(each for each in (BAD, "skipped") if self.chance(0.5))]
+        body: Body = {"template": "ScriptedState", "outcomes": outcomes}
+        state = State(name, body, {outcome: {} for outcome in outcomes})
+        reads = self.given(known)
+        if reads:
+            body["input_keys"] = self.listed(reads)
+            state.reads = set(reads)
+        if self.chance(0.6):
+            type_ = self.draw.choice(sorted(LITERALS))
+            key, inner = self.key_name(), self.key_name()
+            body["output_keys"] = {inner: long_type(type_)}
+            body["remapping"] = {inner: key}
+            steps: list[Body] = [{"outcome": outcome} for outcome in outcomes]
+            steps[0]["set"] = {inner: literal(self.draw, type_)}
+            body["steps"] = steps
+            state.sets[GOOD] = {key: type_}
+        return state
+
+    def skill(self, name: str, depth: int, known: Known) -> State:
+        """A state type of its own, with an interface."""
+        type_name = f"Skill{self.number()}"
+        reads, remaps, inputs = {}, {}, {}
+        for key, type_ in self.given(known).items():
+            inner = self.key_name()
+            reads[key], remaps[inner], inputs[inner] = type_, key, long_type(type_)
+        type_, key, inner = self.draw.choice(sorted(LITERALS)), self.key_name(), self.key_name()
+        remaps[inner] = key
+        always = self.chance(0.3)
+        self.files[f"templates/{type_name}.yml"] = {
+            "name": type_name,
+            "input_keys": inputs,
+            "output_keys": {inner: long_type(type_)},
+            "outcomes": {GOOD: {}, BAD: {}, "preempted": {}},
+            **({} if always else {"writes": {GOOD: [inner]}}),
+            "variables": {"speed": {"type": "float", "default": 1.0}},
+            "code": {"python": f"my_robot.states:{type_name}"},
+        }
+        body: Body = {"template": type_name, "remapping": remaps}
+        if self.chance(0.5):
+            body["speed"] = 0.5
+        sets = {GOOD: {key: type_}, BAD: {key: type_} if always else {}, "preempted": {}}
+        return self.sweetened(State(name, body, sets, set(reads)))
+
+    def sweetened(self, state: State) -> State:
+        """Perhaps with a time limit, or with retries."""
+        if self.chance(0.2):
+            state.body["timeout"] = "20s"
+            state.sets["timeout"] = {}
+        if self.chance(0.2):
+            state.body["retry"] = {"on": [BAD], "max": 3, "delay": "100ms"}
+            del state.sets[BAD]
+            state.sets["exhausted"] = {}
+        if len(state.sets) > 3 or "retry" in state.body:
+            # Keys leave such a container with every outcome or not at all: judge with care.
+            state.sets = {o: known if o == GOOD else {} for o, known in state.sets.items()}
+        return state
+
+    def printing(self, name: str, depth: int, known: Known) -> State:
+        reads = self.some(known)
+        body: Body = {"template": "PrintUserdataState"}
+        if reads:
+            body["input_keys"] = list(reads)
+        return State(name, body, {GOOD: {}}, set(reads))
+
+    def changing(self, name: str, depth: int, known: Known) -> State:
+        key, type_ = self.reading(known, CHANGES)
+        new = self.key_name()
+        body: Body = {
+            "template": "CallbacksState",
+            "input_keys": [key],
+            "output_keys": [new],
+            "callbacks": {new: Quoted(CHANGES[type_].format(key))},
+        }
+        return State(name, body, {GOOD: {new: type_}}, {key})
+
+    def deciding(self, name: str, depth: int, known: Known) -> State:
+        key, type_ = self.reading(known, CONDITIONS)
+        body: Body = {
+            "template": "ConditionalOutcomeState",
+            "input_keys": [key],
+            "outcomes": [GOOD],
+            "callbacks": {GOOD: Quoted(CONDITIONS[type_].format(key))},
+            "default_outcome": BAD,
+        }
+        return State(name, body, {GOOD: {}, BAD: {}}, {key})
+
+    def waiting(self, name: str, depth: int, known: Known) -> State:
+        body: Body = {"template": "SleepState", "time": 0.01}
+        return State(name, body, {GOOD: {}, "preempted": {}})
+
+
+LEAVES = ("ScriptedState", "PrintUserdataState", "CallbacksState", "SleepState")
+
+
+def common(arriving: list[Known]) -> Known:
+    """What is set on every way."""
+    if not arriving:
+        return {}
+    first, *others = arriving
+    return {key: type_ for key, type_ in first.items() if all(key in each for each in others)}
+
+
+def correct_project(seed: int) -> Project:
+    """The project of a seed; the same each time."""
+    return Builder(seed).project()

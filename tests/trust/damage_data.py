@@ -1,0 +1,319 @@
+"""Damage to userdata, types and code: SM016, SM017, SM3xx and SM5xx."""
+
+from __future__ import annotations
+
+from typing import Any
+
+from damage import Mutant, Victim, kind
+from damage_names import renamed, swap_letters, transitions
+from plain import Data, Quoted, Site
+
+from smachac.ir.nodes import Leaf
+
+LOSS = ("SM301", "SM302", "SM303", "SM307")
+"""What it is called when a key does not arrive depends on where it was lost."""
+
+
+def without(site: Site, variable: str, key: str) -> None:
+    """Take an entry out of a list of names or a mapping."""
+    held = site.body[variable]
+    if isinstance(held, dict):
+        del held[key]
+    else:
+        held.remove(key)
+    if not held:
+        del site.body[variable]
+
+
+def keys_of(victim: Victim, variable: str, *, containers: bool) -> list[tuple[Site, str]]:
+    return [
+        (site, key)
+        for site in victim.sites()
+        if ("states" in site.body) == containers and (site.path or variable == "userdata")
+        for key in (site.keys(variable) if isinstance(site.body.get(variable), list | dict) else ())
+    ]
+
+
+def is_read_beside(site: Site, key: str) -> bool:
+    """Whether another state of the container reads what a state writes."""
+    outer = site.pairs("remapping").get(key, key)
+    for other in site.siblings():
+        remaps = other.pairs("remapping")
+        reads = {remaps.get(each, each) for each in other.keys("input_keys")}
+        if other.name != site.name and outer in reads | set(remaps.values()):
+            return True
+    return False
+
+
+@kind
+def drop_a_preset(victim: Victim) -> Mutant | None:
+    found = keys_of(victim, "userdata", containers=True)
+    found += keys_of(victim, "userdata", containers=False)
+    if not found:
+        return None
+    site, key = victim.draw.choice(found)
+    without(site, "userdata", key)
+    return Mutant(codes=LOSS, loss=True)
+
+
+@kind
+def drop_an_input_of_a_container(victim: Victim) -> Mutant | None:
+    found = keys_of(victim, "input_keys", containers=True)
+    if not found:
+        return None
+    site, key = victim.draw.choice(found)
+    without(site, "input_keys", key)
+    return Mutant(codes=LOSS, owners=(site,), loss=True)
+
+
+@kind
+def drop_an_output_of_a_container(victim: Victim) -> Mutant | None:
+    found = keys_of(victim, "output_keys", containers=True)
+    found = [(site, key) for site, key in found if is_read_beside(site, key)]
+    if not found:
+        return None
+    site, key = victim.draw.choice(found)
+    without(site, "output_keys", key)
+    return Mutant(codes=LOSS, owners=(site,), loss=True)
+
+
+@kind
+def drop_the_write_of_a_key(victim: Victim) -> Mutant | None:
+    found = keys_of(victim, "output_keys", containers=False)
+    found = [(site, key) for site, key in found if is_read_beside(site, key)]
+    if not found:
+        return None
+    site, key = victim.draw.choice(found)
+    without(site, "output_keys", key)
+    remaps = site.pairs("remapping")
+    if key in remaps:
+        del remaps[key]
+        if not remaps:
+            del site.body["remapping"]
+    for step in site.body.get("steps") or ():
+        step.get("set", {}).pop(key, None)
+    site.pairs("callbacks").pop(key, None)
+    return Mutant(codes=LOSS, loss=True)
+
+
+@kind
+def write_a_key_only_sometimes(victim: Victim) -> Mutant | None:
+    """An outcome without the key leads to where the one with it leads."""
+    found = [
+        (site, good, outcome)
+        for site, outcome in transitions(victim, "StateMachine")
+        if isinstance(victim.node(site), Leaf)
+        for good in ("succeeded", "done")
+        if good in site.pairs("transitions") and outcome not in (good, "preempted")
+        if site.body["transitions"][outcome] != site.body["transitions"][good]
+        if writes_something(victim, site)
+    ]
+    if not found:
+        return None
+    site, good, outcome = victim.draw.choice(found)
+    site.body["transitions"][outcome] = site.body["transitions"][good]
+    return Mutant(codes=LOSS, loss=True)
+
+
+def writes_something(victim: Victim, site: Site) -> bool:
+    node = victim.node(site)
+    return node is not None and bool(node.outputs)
+
+
+@kind
+def rename_a_key_in_a_remapping(victim: Victim) -> Mutant | None:
+    """Of a state whose keys are known: by its interface, or because the script lists them."""
+    found = [
+        (site, key)
+        for site in victim.sites()
+        if not getattr(victim.node(site), "open", victim.node(site) is None)
+        for key in site.pairs("remapping")
+    ]
+    if not found:
+        return None
+    site, key = victim.draw.choice(found)
+    new = swap_letters(key)
+    renamed(site.body["remapping"], key, new)
+    return Mutant(codes=("SM302",), places=((site.file, (*site.path, "remapping", new)),))
+
+
+# --- types
+
+
+FAMILIES = ("str", "bool", "Pose", "float<m>", "list[str]")
+
+
+def family(type_: str) -> str:
+    for name, words in {
+        "Pose": ("Pose",),
+        "str": ("str", "one_of"),
+        "bool": ("bool",),
+        "list": ("list", "float<rad>["),
+        "float": ("float", "int"),
+    }.items():
+        if type_.startswith(words):
+            return name
+    return type_
+
+
+def other_type(victim: Victim, type_: str) -> Quoted:
+    return Quoted(victim.draw.choice([each for each in FAMILIES if family(each) != family(type_)]))
+
+
+def typed_presets(victim: Victim) -> list[tuple[Site, str, dict[str, Data]]]:
+    """Presets in the long form that some state reads."""
+    return [
+        (site, key, value)
+        for site in victim.sites()
+        for key, value in site.pairs("userdata").items()
+        if isinstance(value, dict) and set(value) >= {"type", "value"}
+    ]
+
+
+@kind
+def swap_the_type_of_a_preset(victim: Victim) -> Mutant | None:
+    found = typed_presets(victim)
+    if not found:
+        return None
+    site, key, preset = victim.draw.choice(found)
+    preset["type"] = other_type(victim, str(preset["type"]))
+    place = (*site.path, "userdata", key)
+    places = [(site.file, steps) for steps in (place, (*place, "type"), (*place, "value"))]
+    return Mutant(codes=("SM304", "SM501"), places=tuple(places))
+
+
+@kind
+def give_a_preset_a_wrong_literal(victim: Victim) -> Mutant | None:
+    found = typed_presets(victim)
+    if not found:
+        return None
+    site, key, preset = victim.draw.choice(found)
+    literals: dict[str, Any] = {"str": Quoted("word"), "bool": True, "float": 12.5, "list": [[1]]}
+    own = family(str(preset["type"]))
+    wrong = [name for name in literals if name != own and not (own == "Pose" and name == "list")]
+    preset["value"] = literals[victim.draw.choice(wrong)]
+    place = (*site.path, "userdata", key)
+    places = [(site.file, steps) for steps in (place, (*place, "type"), (*place, "value"))]
+    return Mutant(codes=("SM304", "SM501"), places=tuple(places))
+
+
+@kind
+def change_the_length_of_a_literal(victim: Victim) -> Mutant | None:
+    found = [each for each in typed_presets(victim) if str(each[2]["type"]).endswith("]")]
+    found = [each for each in found if "[3]" in str(each[2]["type"])]
+    if not found:
+        return None
+    site, key, preset = victim.draw.choice(found)
+    value = preset["value"]
+    preset["value"] = value[:-1] if victim.draw.random() < 0.5 else [*value, 0.5]
+    place = (*site.path, "userdata", key)
+    places = [(site.file, steps) for steps in (place, (*place, "type"), (*place, "value"))]
+    return Mutant(codes=("SM501",), places=tuple(places))
+
+
+@kind
+def write_another_unit(victim: Victim) -> Mutant | None:
+    """The preset says degrees, or another unit of length, where somebody reads a unit."""
+    units = {"float<m>": "float<mm>", "float<rad>": "float<deg>"}
+    found = [each for each in typed_presets(victim) if str(each[2]["type"]) in units]
+    found = [(s, k, p) for s, k, p in found if readers_with_types(victim, s, k)]
+    if not found:
+        return None
+    site, key, preset = victim.draw.choice(found)
+    preset["type"] = Quoted(units[str(preset["type"])])
+    place = (*site.path, "userdata", key)
+    places = [(site.file, steps) for steps in (place, (*place, "type"))]
+    owners = tuple(child for child, _ in readers_with_types(victim, site, key))
+    return Mutant(codes=("SM504",), places=tuple(places), owners=owners)
+
+
+def readers_with_types(victim: Victim, site: Site, key: str) -> list[tuple[Site, str]]:
+    """The states in a container that read a key of it under a type with a unit."""
+    found = []
+    for child in site.states():
+        node = victim.node(child)
+        remaps = child.pairs("remapping")
+        for each in node.inputs if node is not None else ():
+            if (
+                remaps.get(each.name, each.name) == key
+                and each.type.args
+                and str(each.type) != "any"
+            ):
+                found.append((child, each.name))
+    return found
+
+
+@kind
+def misspell_a_type(victim: Victim) -> Mutant | None:
+    found = typed_presets(victim)
+    if not found:
+        return None
+    site, key, preset = victim.draw.choice(found)
+    preset["type"] = Quoted(f"{preset['type']}[")
+    place = (*site.path, "userdata", key, "type")
+    return Mutant(codes=("SM017",), places=((site.file, place),))
+
+
+@kind
+def swap_the_type_of_an_input(victim: Victim) -> Mutant | None:
+    """Of a leaf that reads a preset whose type is known."""
+    found = [
+        (child, key, str(site.body["userdata"][to]["type"]))
+        for site, to, _ in typed_presets(victim)
+        for child in site.states()
+        if isinstance(child.body.get("input_keys"), dict)
+        for key in child.keys("input_keys")
+        if child.pairs("remapping").get(key, key) == to
+    ]
+    if not found:
+        return None
+    child, key, type_ = victim.draw.choice(found)
+    child.body["input_keys"][key] = other_type(victim, type_)
+    place = (*child.path, "input_keys", key)
+    places = ((child.file, place),)
+    return Mutant(codes=("SM304", "SM501"), places=places, owners=(child,), ends=True)
+
+
+@kind
+def swap_the_type_of_an_output(victim: Victim) -> Mutant | None:
+    """Of a leaf that sets a literal there."""
+    found = [
+        (site, key)
+        for site in victim.sites()
+        if site.template == "ScriptedState" and isinstance(site.body.get("output_keys"), dict)
+        for key in site.keys("output_keys")
+        if any(key in step.get("set", {}) for step in site.body.get("steps") or ())
+    ]
+    if not found:
+        return None
+    site, key = victim.draw.choice(found)
+    site.body["output_keys"][key] = other_type(victim, str(site.body["output_keys"][key]))
+    return Mutant(codes=("SM304", "SM501"), owners=(site,), ends=True)
+
+
+@kind
+def bend_a_rotation(victim: Victim) -> Mutant | None:
+    found = [each for each in typed_presets(victim) if each[2]["type"] == "Pose"]
+    if not found:
+        return None
+    site, key, preset = victim.draw.choice(found)
+    preset["value"] = [preset["value"][0], [1.0, 0.0, 0.0, 1.0]]
+    place = (*site.path, "userdata", key)
+    return Mutant(codes=("SM503",), places=((site.file, place), (site.file, (*place, "value"))))
+
+
+@kind
+def break_an_expression(victim: Victim) -> Mutant | None:
+    found = [
+        (site, key)
+        for site in victim.sites()
+        for key, code in site.pairs("callbacks").items()
+        if isinstance(code, str)
+    ]
+    if not found:
+        return None
+    site, key = victim.draw.choice(found)
+    code = str(site.body["callbacks"][key])
+    broken = victim.draw.choice([f"{code} +", f"{code})", code.replace(":", "", 1)])
+    site.body["callbacks"][key] = Quoted(broken)
+    return Mutant(codes=("SM016",), places=((site.file, (*site.path, "callbacks", key)),))

@@ -1,0 +1,118 @@
+"""Damage to the flow of control: SM2xx."""
+
+from __future__ import annotations
+
+from damage import Mutant, Victim, kind
+from damage_names import MACHINES, transitions
+from plain import Site
+
+from smachac.ir.nodes import Leaf
+from smachac.ir.walk import outcome_names
+
+
+def leaves(victim: Victim) -> list[tuple[Site, Leaf]]:
+    """The leaves in machines whose every outcome has a transition in the script."""
+    found = []
+    for site in victim.sites():
+        node = victim.node(site)
+        if not isinstance(node, Leaf) or site.around is None:
+            continue
+        whole = set(site.pairs("transitions")) == set(outcome_names(node))
+        if whole and site.around.target in MACHINES:
+            found.append((site, node))
+    return found
+
+
+@kind
+def make_a_state_unreachable(victim: Victim) -> Mutant | None:
+    """Whatever led to it leads to where it leads."""
+    found = [
+        site
+        for site in victim.sites()
+        if site.around is not None and site.around.target == "StateMachine"
+        if site.pairs("transitions") and site.name != site.around.states()[0].name
+        if site.around.body.get("initial") != site.name
+        if any(to != site.name for to in site.pairs("transitions").values())
+    ]
+    site = victim.pick(found)
+    if site is None:
+        return None
+    onward = next(to for to in site.pairs("transitions").values() if to != site.name)
+    for other in site.siblings():
+        if other.name != site.name:
+            steps = other.pairs("transitions")
+            steps.update({outcome: onward for outcome, to in steps.items() if to == site.name})
+    return Mutant(codes=("SM201",), places=((site.file, site.path),))
+
+
+@kind
+def make_a_trap(victim: Victim) -> Mutant | None:
+    """All ways out of a state lead back to it."""
+    found = [
+        (site, node)
+        for site, node in leaves(victim)
+        if site.around is not None and not site.around.body.get("forever")
+    ]
+    if not found:
+        return None
+    site, _ = victim.draw.choice(found)
+    site.body["transitions"] = dict.fromkeys(site.body["transitions"], site.name)
+    return Mutant(codes=("SM202",), places=((site.file, site.path),))
+
+
+@kind
+def declare_an_outcome_that_never_comes(victim: Victim) -> Mutant | None:
+    site = victim.pick(
+        site
+        for site in victim.sites()
+        if site.target in (*MACHINES, "Concurrence") and isinstance(site.body.get("outcomes"), list)
+        if victim.node(site) is not None
+    )
+    if site is None:
+        return None
+    site.body["outcomes"].append("lost_for_ever")
+    if site.around is not None and site.around.target in MACHINES:
+        first = next(iter(site.pairs("transitions").values()), None)
+        if first is None:
+            return None
+        site.body["transitions"]["lost_for_ever"] = first
+    place = (*site.path, "outcomes", len(site.body["outcomes"]) - 1)
+    return Mutant(codes=("SM203",), places=((site.file, place),))
+
+
+@kind
+def retry_without_a_bound(victim: Victim) -> Mutant | None:
+    found = [
+        site
+        for site, node in leaves(victim)
+        if set(outcome_names(node)) == {"succeeded", "aborted"}
+        if site.pairs("transitions").get("succeeded") != site.name
+        if "retry" not in site.body and "timeout" not in site.body
+    ]
+    site = victim.pick(found)
+    if site is None:
+        return None
+    site.body["transitions"]["aborted"] = site.name
+    places = [(site.file, site.path), (site.file, (*site.path, "transitions", "aborted"))]
+    return Mutant(codes=("SM204",), places=tuple(places))
+
+
+@kind
+def end_a_failure_in_success(victim: Victim) -> Mutant | None:
+    """On the outermost level, where nothing comes after."""
+    found = [
+        (site, outcome)
+        for site, outcome in transitions(victim)
+        if outcome in ("aborted", "timeout", "failed", "exhausted")
+        if site.around is not None and site.around.path == () and site.file == "main.yml"
+        if "succeeded" in site.around.keys("outcomes") and "states" not in site.body
+        if isinstance(victim.node(site), Leaf)
+    ]
+    if not found:
+        return None
+    site, outcome = victim.draw.choice(found)
+    if site.body["transitions"][outcome] == "succeeded":
+        return None
+    site.body["transitions"][outcome] = "succeeded"
+    place = (*site.path, "transitions", outcome)
+    return Mutant(codes=("SM206",), places=((site.file, place), (site.file, site.path)))

@@ -1,0 +1,157 @@
+"""What is called clean does not fail when it runs, whatever its leaves do within their interfaces.
+
+The machines are random: projects that are correct or slightly damaged, and small graphs over a few
+keys of which most are wrong. Those without an error are run many times, with leaves, turns of
+branches and requests to stop by chance.
+"""
+
+from __future__ import annotations
+
+from dataclasses import replace
+from typing import cast
+
+import damage_kinds
+import pytest
+from correct import correct_project
+from damage import Victim
+from data_machines import data_machines
+from hypothesis import HealthCheck, Phase, event, given, settings
+from ir_vectors import machine_of
+from plain import judged
+from stand_in import contradictions, runs
+from test_ir_vectors import CASES
+
+from smachac.checks import check_machine
+from smachac.diagnostics import Report, Severity
+from smachac.ir.accesses import scripted_steps
+from smachac.ir.nodes import Iterator, Key, Leaf, Machine, Node, StateMachine
+from smachac.ir.result import Result
+from smachac.ir.walk import walk
+from smachac.source import NOWHERE
+
+PROJECTS = 24
+DAMAGED = 6
+RUNS = 9
+
+
+def fault(machine: Machine, report: Report, result: Result, asked: bool) -> str | None:
+    """How a run failed that must not fail; None where all is well.
+
+    A key that is perhaps missing has been told, as such or as a race; one that goes round is cut
+    short. An iterator that is asked to stop ends as its state does (smach-semantics P9), though
+    that outcome is meant to go on and leads nowhere: no rule tells.
+    """
+    if result.error is None or result.error.kind == "no-end":
+        return None
+    kind, path = result.error.kind, result.error.path
+    codes = {item.code.code for item in report}
+    if kind == "missing-key" and codes & {"SM301", "SM405"}:
+        return None
+    nodes = dict(walk(machine.root))
+    if asked and kind == "undeclared-outcome" and isinstance(nodes[path], Iterator):
+        return None
+    return f"{kind}: {result.error}"
+
+
+def failures(machine: Machine, report: Report, count: int) -> list[str]:
+    """What goes wrong in so many runs, and what of the report they contradict."""
+    found: list[str | None] = []
+    for result, events in runs(machine, count):
+        asked = any(each["event"] == "preempt" for each in events)
+        found.append(fault(machine, report, result, asked))
+        found += contradictions(machine, report, events)
+    return [each for each in found if each is not None]
+
+
+def told_wrong(machine: Machine, report: Report) -> list[str]:
+    """What runs contradict of the report on a machine with errors."""
+    return [
+        each
+        for _, events in runs(machine, RUNS)
+        for each in contradictions(machine, report, events)
+    ]
+
+
+@pytest.mark.parametrize("seed", range(PROJECTS))
+def test_projects_without_an_error_run_without_a_fault(seed: int) -> None:
+    victim = Victim.of(correct_project(seed))
+    assert victim is not None
+    assert failures(victim.machine, [], RUNS) == []
+    names = sorted(damage_kinds.KINDS)
+    for number in range(DAMAGED):
+        damaged = victim.copied(f"sound/{seed}/{number}")
+        for name in damaged.draw.sample(names, 2):
+            damage_kinds.KINDS[name](damaged)
+        analysis = judged(damaged.project)
+        if analysis.machine is not None and analysis.checked is not None:
+            found = failures(analysis.machine, analysis.report, RUNS)
+            assert found == [], (seed, number)
+        elif analysis.machine is not None:
+            assert told_wrong(analysis.machine, analysis.report) == [], (seed, number)
+
+
+HARMLESS = ("SM201", "SM202", "SM405")
+"""Errors that do not make a run fail, or, with a race, only perhaps."""
+
+
+def mended(machine: Machine) -> tuple[Machine, Report] | None:
+    """A machine whose states that are at fault read and hand on nothing; None where that is not
+    enough. What nobody found fault with stays."""
+    machine = replace(machine, root=cast(StateMachine, _quiet(machine.root, "sm", set())))
+    for _ in range(5):
+        report = check_machine(machine)
+        wrong = {
+            item.finding.node
+            for item in report
+            if item.severity is Severity.ERROR and item.code.code not in HARMLESS
+        }
+        if not wrong:
+            return machine, report
+        machine = replace(machine, root=cast(StateMachine, _quiet(machine.root, "sm", wrong)))
+    return None
+
+
+def _quiet(node: Node, path: str, wrong: set[str | None]) -> Node:
+    if path in wrong:
+        node = replace(node, inputs=(), remaps=())
+    if isinstance(node, Leaf):
+        # What it sets it declares: another fault, and none of these.
+        sets = {key for _, keys in scripted_steps(node) for key in keys}
+        known = {key.name for key in node.outputs}
+        extra = tuple(Key(name=key, span=NOWHERE) for key in sorted(sets - known))
+        return replace(node, outputs=(*node.outputs, *extra))
+    children = [_quiet(child, f"{path}/{child.name}", wrong) for child in node.children]
+    return replace(node, children=tuple(children))
+
+
+@settings(max_examples=120, phases=[Phase.generate], suppress_health_check=list(HealthCheck))
+@given(data_machines())
+def test_graphs_without_an_error_run_without_a_fault(machine: Machine) -> None:
+    assert told_wrong(machine, check_machine(machine)) == []
+    found = mended(machine)
+    event("error" if found is None else "clean")
+    if found is not None:
+        assert failures(*found, RUNS) == []
+
+
+@pytest.mark.parametrize("name", CASES)
+def test_errors_about_recorded_machines_are_none_that_a_run_contradicts(name: str) -> None:
+    """These machines were made to compare runs, and most have faults; what is said must be so."""
+    machine = machine_of(CASES[name])
+    machine = replace(machine, root=replace(machine.root, name="sm"))
+    assert told_wrong(machine, check_machine(machine)) == []
+
+
+def test_a_fault_would_be_found() -> None:
+    """Each kind of fault that is looked for, in a machine that is not clean."""
+    kinds = set()
+    for seed in range(40):
+        victim = Victim.of(correct_project(seed))
+        assert victim is not None
+        for name in ("drop a preset", "drop a transition", "rename a target"):
+            damaged = victim.copied(f"fault/{seed}/{name}")
+            damage_kinds.KINDS[name](damaged)
+            machine = judged(damaged.project).machine
+            if machine is not None:
+                kinds |= {each.split(":")[0] for each in failures(machine, [], 3)}
+    assert kinds >= {"missing-key", "no-transition", "no-target"}
