@@ -19,8 +19,9 @@ from smachac.source import Source, Span, Word
 
 MAX_CHARACTERS = 10_000_000
 MAX_DEPTH = 3_500
-MAX_EXPANDED = 5_000_000
-"""Limits of a script: its length, its nesting, and its nodes with every alias written out."""
+MAX_ALIASED = 100_000
+"""Limits of a script: its length, its nesting, and the nodes that its aliases stand for, or as many
+as it has characters."""
 
 MOST_REREAD, DEEPEST_REREAD = 50_000, 100
 """Characters and levels of the largest text that the pure parser reads only to word an error: it
@@ -227,6 +228,7 @@ class _Builder:
         self.root: Tree | None = None
         self.seen = False
         self.deepest = 0
+        self.aliased = 0
         self.end = 0
 
     def drive(self, events: Iterator[Any]) -> None:
@@ -306,6 +308,9 @@ class _Builder:
             name = event.anchor
             self.report.append(problems.yaml_syntax(span, f"the alias `*{name}` has no anchor"))
             raise _BeyondLimitError
+        self.aliased += known[1]
+        if self.aliased > max(MAX_ALIASED, len(self.source.text)):
+            self._stop(span.start, "aliases expand to more than the limit of nodes")
         self._add(known[0], known[1], None)
 
     def _add(self, node: Tree, size: int, anchor: str | None) -> None:
@@ -317,8 +322,6 @@ class _Builder:
         around = self.stack[-1]
         around.items.append(node)
         around.size += size
-        if around.size > MAX_EXPANDED:
-            self._stop(node.span.start, "aliases expand to more than the limit of nodes")
 
     def _stop(self, at: int, message: str) -> None:
         self.report.append(

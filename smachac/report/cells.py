@@ -64,6 +64,9 @@ def _glyph(character: str, column: int, *, alone: bool) -> tuple[str, int]:
 
 
 def _glyphs(text: str) -> tuple[list[str], list[int]]:
+    """What is printed for each character, and the columns where they start and the last ends."""
+    if text.isascii() and text.isprintable():
+        return list(text), list(range(len(text) + 1))
     printed: list[str] = []
     starts = [0]
     for character in text:

@@ -119,6 +119,16 @@ def test_bad_text_is_a_problem_with_a_place(text: str, codes: list[str]) -> None
     assert all(0 <= item.span.start <= item.span.end <= len(text) for item in report)
 
 
+def test_aliases_may_repeat_only_so_much() -> None:
+    """A short text must not become a million nodes that every rule goes through."""
+    item = f"&a [{', '.join('0' * 99)}]"
+    much = ", ".join(["*a"] * (syntax.MAX_ALIASED // 100))
+    assert read(f"[{item}, {much}]") is not None
+    assert read(f"[{item}, {much}, *a]", ["SM006"]) is None
+    longer = "#" * syntax.MAX_ALIASED * 2
+    assert read(f"[{item}, {much}, *a] {longer}") is not None
+
+
 def test_an_alias_bomb_is_defused() -> None:
     lines = ["a0: &a0 [x, x, x, x, x, x, x, x, x]"]
     lines += [f"a{n}: &a{n} [{', '.join([f'*a{n - 1}'] * 9)}]" for n in range(1, 30)]
