@@ -3,20 +3,22 @@
 from __future__ import annotations
 
 from collections.abc import Iterator
+from functools import cache
 
 from smachac.checks.cures import with_input
 from smachac.checks.hints import calls, did_you_mean, guesser, other_place
 from smachac.checks.lost import lost_outputs
 from smachac.checks.missing import Missing, missing_keys
 from smachac.checks.userdata import flow_of, unknown_remaps
-from smachac.checks.witness import Searches, Witness, reader_at
+from smachac.checks.witness import Searches, Witness, container_name, reader_at
 from smachac.diagnostics import Edit, Finding, Related, Severity, rule
 from smachac.ir.dataflow import Flow, Scope
-from smachac.ir.keyuses import place_of, uses
+from smachac.ir.keyuses import Use, place_of, uses_by_key
 from smachac.ir.nodes import Machine, Node
 from smachac.ir.walk import walk
 from smachac.problems import listed
-from smachac.spelling import Guesser
+from smachac.source import Word
+from smachac.spelling import Guesser, respelt
 
 MOST_RELATED = 3
 """More places beside the fault than these help nobody."""
@@ -69,9 +71,11 @@ def read_before_write(machine: Machine) -> Iterator[Finding]:
     flow = flow_of(machine)
     searches = Searches(flow)
     guesses = _Guesses()
+    used = cache(lambda path: uses_by_key(flow, path))
     for missing in missing_keys(flow, "unset", "nowhere"):
         for witness in searches.witnesses(missing):
-            yield _unset(flow, missing, witness, guesses)
+            users = used(missing.scope.path).get(missing.key, [])
+            yield _unset(missing, witness, users, guesses)
 
 
 class _Guesses:
@@ -86,12 +90,12 @@ class _Guesses:
         return self._known[scope.path]
 
 
-def _unset(flow: Flow, missing: Missing, witness: Witness, guesses: _Guesses) -> Finding:
+def _unset(missing: Missing, witness: Witness, users: list[Use], guesses: _Guesses) -> Finding:
     scope, reader, name = missing.scope, witness.reader, missing.scope.container.name
     why = "before anything has set it"
     help = f"set it on the way, or give `{name}` a first value: `userdata: {{{missing.key}: ...}}`"
     if missing.cause == "nowhere":
-        why = f"which nothing in `{name}` sets"
+        why = f"which nothing in {container_name(scope, reader.span)} sets"
         help = did_you_mean(guesses.of(scope)(missing.key)) or help
     elif not witness.always:
         why = "which not every way to it has set"
@@ -102,7 +106,7 @@ def _unset(flow: Flow, missing: Missing, witness: Witness, guesses: _Guesses) ->
         help=help,
         related=(
             *_readers(missing, witness),
-            *_writers(flow, scope, missing.key),
+            *_writers(users),
             *calls(reader.node, reader.span),
         ),
         path=witness.path if len(witness.path) > 1 else (),
@@ -129,9 +133,9 @@ def _readers(missing: Missing, witness: Witness) -> Iterator[Related]:
         yield from other_place(reader.span, f"{reader.words} as well")
 
 
-def _writers(flow: Flow, scope: Scope, key: str) -> Iterator[Related]:
+def _writers(users: list[Use]) -> Iterator[Related]:
     """What sets the key, only elsewhere or only sometimes."""
-    writers = [use for use in uses(flow, scope.path, key) if use.kind not in ("reads", "takes in")]
+    writers = [use for use in users if use.kind not in ("reads", "takes in")]
     for use in writers[:MOST_RELATED]:
         name = use.path.rpartition("/")[2]
         when = ""
@@ -186,7 +190,7 @@ def unknown_remap(machine: Machine) -> Iterator[Finding]:
 
 def _unknown_remaps(path: str, node: Node) -> Iterator[Finding]:
     own = list(dict.fromkeys(key.name for key in (*node.inputs, *node.outputs)))
-    for remap, meant in unknown_remaps(node):
+    for remap, meant, certain in unknown_remaps(node):
         known = f"its keys are {listed(own)}" if own else "it has no keys"
         yield Finding(
             span=remap.span,
@@ -194,6 +198,7 @@ def _unknown_remaps(path: str, node: Node) -> Iterator[Finding]:
             help=did_you_mean(meant) or known,
             related=calls(node, remap.span),
             node=path,
+            edits=respelt(Word(remap.key, remap.span), certain),
         )
 
 
@@ -209,7 +214,7 @@ def _remapped(missing: Missing, guesses: _Guesses) -> Iterator[Finding]:
             yield Finding(
                 span=remap.span,
                 message=f"`{child.name}` takes its `{remap.key}` from `{key}`, which nothing in"
-                f" `{around}` sets",
+                f" {container_name(scope, remap.span)} sets",
                 help=did_you_mean(guess)
                 or f"set `{key}` before, or give `{around}` a first value of it",
                 related=calls(child, remap.span),

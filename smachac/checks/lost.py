@@ -3,6 +3,8 @@
 from __future__ import annotations
 
 from collections.abc import Iterator
+from functools import cache, lru_cache
+from itertools import chain
 from typing import NamedTuple
 
 from smachac.checks.missing import Missing, missing_keys
@@ -29,11 +31,20 @@ class Lost(NamedTuple):
     is_missing: bool
 
 
-def lost_outputs(flow: Flow) -> Iterator[Lost]:
-    """The outputs that containers keep to themselves."""
+@lru_cache(maxsize=1)
+def lost_outputs(flow: Flow) -> tuple[Lost, ...]:
+    """The outputs that containers keep to themselves, in the order of the script."""
+    return tuple(_lost(flow))
+
+
+def _lost(flow: Flow) -> Iterator[Lost]:
+    told: set[tuple[str, str]] = set()
     for missing in missing_keys(flow, "lost"):
-        yield _missed(flow, missing)
+        lost = _missed(flow, missing)
+        told.add((lost.keeper.path, lost.own))
+        yield lost
     left = MOST_STEPS
+    read = cache(lambda path: frozenset(chain(*flow.scopes[path].reads.values())))
     for scope in flow.scopes.values():
         outer = around(flow, scope.path)
         if outer is None or scope.path not in flow.entered or scope.container.sugar:
@@ -41,8 +52,7 @@ def lost_outputs(flow: Flow) -> Iterator[Lost]:
         for writer, written, own in _kept(scope):
             around_it = flow.scopes[outer]
             key = remapping(scope.container).get(own, own)
-            readers = [place for place, keys in around_it.reads.items() if key in keys]
-            if not readers or left <= 0:
+            if key not in read(outer) or left <= 0 or (scope.path, own) in told:
                 continue
             left -= len(around_it.steps) + len(around_it.reads)
             place = _read_after(around_it, place_in(outer, scope.path), key)

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Callable, Iterator
 from collections.abc import Set as AbstractSet
 from dataclasses import dataclass
-from functools import cache
+from functools import cache, lru_cache
 from typing import Literal, NamedTuple
 
 from smachac.ir import nodes
@@ -45,7 +45,8 @@ def missing_keys(flow: Flow, *causes: Cause) -> Iterator[Missing]:
     return (each for each in _all_missing(flow) if each.cause in causes)
 
 
-def _all_missing(flow: Flow) -> Iterator[Missing]:
+@lru_cache(maxsize=1)
+def _all_missing(flow: Flow) -> tuple[Missing, ...]:
     provided = cache(lambda path: _provided(flow.scopes[path]))
     found = [
         (scope, key, tuple(places))
@@ -54,6 +55,7 @@ def _all_missing(flow: Flow) -> Iterator[Missing]:
         for key, places in _unset_reads(flow, scope).items()
     ]
     kept = _kept_inside(flow, {(scope.path, key) for scope, key, _ in found})
+    sorted_out = []
     for scope, key, places in found:
         cause: Cause = "unset"
         other = ""
@@ -66,7 +68,8 @@ def _all_missing(flow: Flow) -> Iterator[Missing]:
                 cause = "lost"
             elif any(_remapped(scope, place, key) for place in places):
                 cause = "remapped"
-        yield Missing(scope=scope, key=key, places=places, cause=cause, other=other)
+        sorted_out.append(Missing(scope=scope, key=key, places=places, cause=cause, other=other))
+    return tuple(sorted_out)
 
 
 def _unset_reads(flow: Flow, scope: Scope) -> dict[str, list[Place]]:
@@ -76,8 +79,8 @@ def _unset_reads(flow: Flow, scope: Scope) -> dict[str, list[Place]]:
     a race (SM405).
     """
     found: dict[str, list[Place]] = {}
-    for place, keys in scope.reads.items():
-        for key in scope.bits.among(keys, scope.unset.get(place, 0)):
+    for place, keys in scope.unset.items():
+        for key in keys:
             if key not in scope.inputs or key in scope.optional:
                 found.setdefault(key, []).append(place)
     if found and isinstance(scope.container, Concurrence):

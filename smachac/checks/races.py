@@ -38,6 +38,7 @@ def data_race(machine: Machine) -> Iterator[Finding]:
               template: Concurrence
               outcomes: [done]
               default_outcome: done
+              output_keys: [pose]
               states:
                 - LOOK_LEFT: {template: ScriptedState, outcomes: [ok], output_keys: [pose]}
                 - LOOK_RIGHT: {template: ScriptedState, outcomes: [ok], output_keys: [pose]}
@@ -52,6 +53,7 @@ def data_race(machine: Machine) -> Iterator[Finding]:
               template: Concurrence
               outcomes: [done]
               default_outcome: done
+              output_keys: [left_pose, right_pose]
               states:
                 - LOOK_LEFT:
                     template: ScriptedState

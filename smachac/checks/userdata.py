@@ -5,7 +5,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 from dataclasses import replace
-from typing import cast
+from typing import NamedTuple, cast
 
 from smachac.checks.hints import guesser
 from smachac.checks.outline import is_open, mended
@@ -25,8 +25,16 @@ from smachac.ir.nodes import (
 from smachac.ir.walk import containers, outcome_names
 
 
-def unknown_remaps(node: Node) -> list[tuple[Remap, str | None]]:
-    """The remaps of keys that a state does not have, with the key meant."""
+class UnknownRemap(NamedTuple):
+    """A remap of a key that the state does not have: the key meant, and that if it is certain."""
+
+    remap: Remap
+    meant: str | None
+    certain: str | None
+
+
+def unknown_remaps(node: Node) -> list[UnknownRemap]:
+    """The remaps of keys that a state does not have."""
     if is_open(node) or not node.remaps:
         return []
     own = {key.name for key in (*node.inputs, *node.outputs)}
@@ -35,7 +43,7 @@ def unknown_remaps(node: Node) -> list[tuple[Remap, str | None]]:
         return []
     taken = {remap.key for remap in node.remaps}
     guess = guesser(sorted(own - taken))
-    return [(remap, guess(remap.key)) for remap in wrong]
+    return [UnknownRemap(each, guess(each.key), guess.sure(each.key)) for each in wrong]
 
 
 def undeclared_writes(leaf: Leaf) -> tuple[str, ...]:
@@ -88,7 +96,7 @@ def _meant(node: Node, raw: bool) -> Node:
     """A state with its keys as they were meant. `raw`: it sees all keys as they are."""
     remaps = unknown_remaps(node)
     if remaps:
-        wrong = dict(remaps)
+        wrong = {each.remap: each.meant for each in remaps}
         kept = (replace(each, key=wrong.get(each) or each.key) for each in node.remaps)
         node = replace(node, remaps=tuple(kept))
     if isinstance(node, Leaf) and not raw and not node.open:

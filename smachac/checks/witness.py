@@ -15,7 +15,7 @@ from smachac.ir.nodes import Node
 from smachac.ir.userdata import remapping
 from smachac.source import Span
 
-MOST_STEPS = 1_000_000
+MOST_STEPS = 250_000
 """Steps of all searches for one rule: beyond that findings come without a path, so that ten
 thousand faults take no longer than they should."""
 
@@ -103,16 +103,23 @@ class Reader(NamedTuple):
     words: str
 
 
+def container_name(scope: Scope, span: Span) -> str:
+    """What a finding calls a container: a sub-script has another name at each call, and a fault
+    in it is one fault."""
+    is_called = scope.container.span.source is not span.source
+    return "the sub-script" if is_called else f"`{scope.container.name}`"
+
+
 def reader_at(scope: Scope, place: Place, key: str) -> Reader:
     """The state at a place of a container; the container itself where that is its start."""
     node: Node = scope.container
     if not isinstance(place, str):
         return Reader(scope.path, node, node.span, f"`{node.name}` goes through `{key}`")
-    node = next(child for child in scope.container.children if child.name == place)
+    node = scope.children[place]
     names = remapping(node)
     own = next((each for each in node.inputs if names.get(each.name, each.name) == key), None)
     span = node.span if own is None else place_of(node, own)
     called = f"`{key}`"
     if own is not None and own.name != key:
-        called = f"`{own.name}` (`{key}` of `{scope.container.name}`)"
+        called = f"`{own.name}` (`{key}` of {container_name(scope, span)})"
     return Reader(f"{scope.path}/{place}", node, span, f"`{node.name}` reads {called}")

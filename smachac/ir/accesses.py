@@ -81,7 +81,8 @@ def leaf_writes(leaf: Leaf, outcome: str, *, raw: bool = False) -> Writes:
         return _scripted(leaf, outcome, outputs, raw)
     functions = callbacks(leaf)
     if leaf.type == "CallbacksState" and functions is not None:
-        keys = frozenset(functions) if raw else outputs.intersection(functions)
+        names = callback_names(leaf)
+        keys = names if raw else outputs & names
         return Writes(keys, keys, keys)
     if not outputs:
         return NOTHING
@@ -129,6 +130,12 @@ def callbacks(leaf: Leaf) -> Mapping[str, Expression] | None:
     if not isinstance(data, Struct):
         return None
     return {key: code for key, code in data.entries if isinstance(code, Expression)}
+
+
+def callback_names(leaf: Leaf) -> frozenset[str]:
+    """The names under which a leaf has functions, or what should be some."""
+    data = variable(leaf, "callbacks")
+    return frozenset(key for key, _ in data.entries) if isinstance(data, Struct) else NONE
 
 
 class Fields(NamedTuple):

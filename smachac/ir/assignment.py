@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Mapping
+from collections.abc import Callable, Iterable, Mapping
 from heapq import heappop, heappush
 from typing import NamedTuple, TypeAlias
 
@@ -58,13 +58,45 @@ def looping(steps: Steps, order: Order) -> frozenset[Place]:
     return frozenset(p for part in parts for p in part if len(part) > 1 or graph.has_edge(p, p))
 
 
-class Bits:
+CELLS = 400_000_000
+"""Bits that are kept at a time (50 MB): more keys than fit are judged in turn."""
+
+Asked: TypeAlias = Mapping[Place, Iterable[str]]
+"""At each place the keys that are of interest there."""
+
+
+def may_be_unset(
+    asked: Asked, steps: Steps, order: Order, *, sure: bool = False
+) -> dict[Place, tuple[str, ...]]:
+    """The keys asked for that some path from the start leaves unset, by places where there are any.
+
+    By what is trusted to be written; `sure`: by what surely is.
+    """
+
+    def kept(bits: _Bits, writes: Writes) -> tuple[int, int]:
+        if sure:
+            return bits.whole & ~bits.mask(writes.sure), 0
+        return 0 if writes.anything else bits.whole & ~bits.mask(writes.trusted), 0
+
+    return _some_path(asked, steps, order, kept, from_start=True)
+
+
+def may_be_set(asked: Asked, steps: Steps, order: Order) -> dict[Place, tuple[str, ...]]:
+    """The keys asked for that some path from the start sets, by places where there are any."""
+
+    def added(bits: _Bits, writes: Writes) -> tuple[int, int]:
+        return bits.whole, bits.whole if writes.anything else bits.mask(writes.perhaps)
+
+    return _some_path(asked, steps, order, added, from_start=False)
+
+
+class _Bits:
     """Keys of one container as bits of whole numbers."""
 
     __slots__ = ("_known", "of", "whole")
 
     def __init__(self, keys: Iterable[str]) -> None:
-        self.of = {key: 1 << number for number, key in enumerate(dict.fromkeys(keys))}
+        self.of = {key: 1 << number for number, key in enumerate(keys)}
         self.whole = (1 << len(self.of)) - 1
         self._known: dict[frozenset[str], int] = {}
 
@@ -74,46 +106,38 @@ class Bits:
             self._known[keys] = sum(self.of.get(key, 0) for key in keys)
         return self._known[keys]
 
-    def among(self, keys: Iterable[str], mask: int) -> list[str]:
-        """The keys, in their order, whose bit is in the mask."""
-        return [key for key in keys if self.of.get(key, 0) & mask]
+
+def _some_path(
+    asked: Asked,
+    steps: Steps,
+    order: Order,
+    effect: Callable[[_Bits, Writes], tuple[int, int]],
+    *,
+    from_start: bool,
+) -> dict[Place, tuple[str, ...]]:
+    """The keys that arrive at places on some path, when `effect` says which bits stay on a step and
+    which are added, and all begin `from_start` or none."""
+    here = {place: tuple(dict.fromkeys(keys)) for place, keys in asked.items() if place in order}
+    keys = list(dict.fromkeys(key for several in here.values() for key in several))
+    size = max(1000, CELLS // len(order))
+    found: dict[Place, list[str]] = {}
+    for first in range(0, len(keys), size):
+        bits = _Bits(keys[first : first + size])
+        moves = {
+            place: [(step.target, *effect(bits, step.writes)) for step in leading]
+            for place, leading in steps.items()
+        }
+        arrived = _spread(bits.whole if from_start else 0, moves, order)
+        for place, several in here.items():
+            mask = arrived[place]
+            some = [key for key in several if bits.of.get(key, 0) & mask]
+            if some:
+                found.setdefault(place, []).extend(some)
+    return {place: tuple(several) for place, several in found.items()}
 
 
 Moves = Mapping[Place, list[tuple[Place, int, int]]]
 """From each place the targets, the bits that stay on the way, and those that are added."""
-
-
-def may_be_unset(
-    bits: Bits, steps: Steps, order: Order, *, sure: bool = False
-) -> Mapping[Place, int]:
-    """The keys that some path from the start leaves unset, at each place that can be reached.
-
-    By what is trusted to be written; `sure`: by what surely is.
-    """
-
-    def kept(writes: Writes) -> int:
-        if sure:
-            return bits.whole & ~bits.mask(writes.sure)
-        return 0 if writes.anything else bits.whole & ~bits.mask(writes.trusted)
-
-    moves = {
-        place: [(step.target, kept(step.writes), 0) for step in leading]
-        for place, leading in steps.items()
-    }
-    return _spread(bits.whole, moves, order)
-
-
-def may_be_set(bits: Bits, steps: Steps, order: Order) -> Mapping[Place, int]:
-    """The keys that some path from the start sets."""
-
-    def added(writes: Writes) -> int:
-        return bits.whole if writes.anything else bits.mask(writes.perhaps)
-
-    moves = {
-        place: [(step.target, bits.whole, added(step.writes)) for step in leading]
-        for place, leading in steps.items()
-    }
-    return _spread(0, moves, order)
 
 
 def _spread(start: int, moves: Moves, order: Order) -> Mapping[Place, int]:

@@ -3,20 +3,19 @@
 Keys are only ever added to a container's userdata (smach-semantics V3, V4), so a key is surely set
 at a place exactly if every path from the container's start writes it on the way. A container is
 therefore judged once, from the inside to the outside, as if nothing were handed in; an input that
-is set at its entry is set everywhere in it. What a container needs and writes is what it is
-judged by from outside. Linear in the states; keys are bits of whole numbers.
+is set at its entry is set everywhere in it. From outside a container is what it needs and what it
+writes. Linear in the states; keys are bits of whole numbers.
 """
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping
+from collections.abc import Iterable, Mapping
 from collections.abc import Set as AbstractSet
 from dataclasses import dataclass
 
 from smachac.ir import nodes
 from smachac.ir.accesses import NOTHING, Writes, leaf_reads, leaf_writes, userdata_fields
 from smachac.ir.assignment import (
-    Bits,
     Order,
     Step,
     Steps,
@@ -40,29 +39,31 @@ class Scope:
     to those of the container around it, `optional` inputs may be absent. `steps` lead on from each
     place that can be reached, `reads` are the keys that a place needs. `needed` inputs are read
     inside before they are written; `endings` are the keys around it that each outcome sets.
-    `unset` has the keys that may be unset at each place if nothing is handed in. `inner` are the
-    containers in it, `again` those of them that a path can come back to.
+    `places` are what can be reached, and `unset` the keys that may be unset where a place needs
+    them, if nothing is handed in. `inner` are the containers inside, `again` those of them that a
+    path can come back to.
     """
 
     path: str
     container: Container
+    children: Mapping[str, Node]
     held: frozenset[str]
     inputs: Mapping[str, str]
     optional: frozenset[str]
     outputs: Mapping[str, str]
     reads: Mapping[Place, tuple[str, ...]]
     steps: Steps
-    bits: Bits
-    unset: Mapping[Place, int]
+    places: AbstractSet[Place]
+    unset: Mapping[Place, tuple[str, ...]]
     needed: frozenset[str]
     endings: Mapping[str, Writes]
     inner: frozenset[str]
     again: frozenset[Place]
 
 
-@dataclass(frozen=True, slots=True, kw_only=True)
+@dataclass(frozen=True, slots=True, kw_only=True, eq=False)
 class Flow:
-    """The scopes of a machine by path, parents before children.
+    """The scopes of a machine by path, parents before children; equal to itself alone.
 
     `entered` are the paths of states and containers that can be entered, `repeated` the containers
     that can be entered more than once.
@@ -74,24 +75,22 @@ class Flow:
     repeated: frozenset[str]
 
 
-def data_flow(
-    machine: Machine, mend: Callable[[Container], Container] = lambda container: container
-) -> Flow:
-    """Judge a machine. `mend` gives a container whose transitions count in place of its own."""
+def data_flow(machine: Machine) -> Flow:
+    """The flow of userdata in a machine."""
     found: dict[str, Scope] = {}
     for path, container in reversed(list(containers(machine.root))):
-        found[path] = _scope(path, container, mend(container), found, machine.root)
+        found[path] = _scope(path, container, found, machine.root)
     entered = {machine.root.name}
     repeated: set[str] = set()
     scopes = {path: found[path] for path, _ in containers(machine.root)}
     for path, scope in scopes.items():
         if path not in entered:
             continue
-        entered.update(f"{path}/{place}" for place in scope.unset if isinstance(place, str))
+        entered.update(f"{path}/{place}" for place in scope.places if isinstance(place, str))
         repeated.update(
             f"{path}/{name}"
             for name in scope.inner
-            if name in scope.unset and (name in scope.again or path in repeated)
+            if name in scope.places and (name in scope.again or path in repeated)
         )
     return Flow(
         machine=machine,
@@ -101,9 +100,7 @@ def data_flow(
     )
 
 
-def _scope(
-    path: str, container: Container, mended: Container, inner: Mapping[str, Scope], root: Container
-) -> Scope:
+def _scope(path: str, container: Container, inner: Mapping[str, Scope], root: Container) -> Scope:
     names = remapping(container)
     inputs = {key.name: names.get(key.name, key.name) for key in container.inputs}
     held = {preset.key for preset in container.userdata}
@@ -118,59 +115,56 @@ def _scope(
     containing = frozenset(name for name, c in children.items() if not isinstance(c, Leaf))
     for child in reversed(children.values()):
         reads[child.name] = _reads(child, inner.get(f"{path}/{child.name}"), raw)
-    steps = _steps(path, mended, inner)
-    bits = Bits(key for keys in (*reads.values(), outputs) for key in keys if key not in held)
+    steps = _steps(path, container, inner)
     order = flow_order(steps)
-    unset = may_be_unset(bits, steps, order)
+    asked = {
+        place: [key for key in keys if key not in held] for place, keys in reads.items() if keys
+    }
+    unset = may_be_unset(asked, steps, order)
     needed = {
-        key
-        for place, keys in reads.items()
-        for key in bits.among(keys, unset.get(place, 0))
-        if key in inputs and key not in optional
+        key for keys in unset.values() for key in keys if key in inputs and key not in optional
     }
     return Scope(
         path=path,
         container=container,
+        children={child.name: child for child in reversed(container.children)},
         held=frozenset(held),
         inputs=inputs,
         optional=optional,
         outputs=outputs,
         reads={place: keys for place, keys in reads.items() if keys},
         steps=steps,
-        bits=bits,
+        places=order.keys(),
         unset=unset,
         needed=frozenset(needed),
-        endings=_endings(outputs, held, bits, unset, steps, order),
+        endings=_endings(outputs, held, steps, order),
         inner=containing,
         again=looping(steps, order) & containing if containing else frozenset(),
     )
 
 
 def _endings(
-    outputs: Mapping[str, str],
-    held: AbstractSet[str],
-    bits: Bits,
-    unset: Mapping[Place, int],
-    steps: Steps,
-    order: Order,
+    outputs: Mapping[str, str], held: AbstractSet[str], steps: Steps, order: Order
 ) -> Mapping[str, Writes]:
     """What each outcome that can come hands out (smach-semantics V4)."""
-    exits = [place for place in unset if isinstance(place, tuple) and place != START]
+    exits = [place for place in order if isinstance(place, tuple) and place != START]
     if not outputs:
         return {place[1]: NOTHING for place in exits}
-    few = Bits(key for key in outputs if key not in held)
-    unsure = may_be_unset(few, steps, order, sure=True)
-    possible = may_be_set(few, steps, order)
+    open_keys = [key for key in outputs if key not in held]
+    asked: dict[Place, list[str]] = dict.fromkeys(exits, open_keys)
+    unsure = may_be_unset(asked, steps, order, sure=True)
+    untrusted = may_be_unset(asked, steps, order)
+    possible = may_be_set(asked, steps, order)
 
-    def outer(missing: Bits, mask: int) -> frozenset[str]:
-        """What those outputs are called outside that are not missing."""
-        return frozenset(to for key, to in outputs.items() if not missing.of.get(key, 0) & mask)
+    def outer(missing: Iterable[str]) -> frozenset[str]:
+        """What the outputs that are not missing are called outside."""
+        return frozenset(outputs[key] for key in outputs.keys() - set(missing))
 
     return {
         place[1]: Writes(
-            outer(few, unsure[place]),
-            outer(bits, unset[place]),
-            outer(few, few.whole & ~possible[place]),
+            outer(unsure.get(place, ())),
+            outer(untrusted.get(place, ())),
+            outer(set(open_keys).difference(possible.get(place, ()))),
         )
         for place in exits
     }

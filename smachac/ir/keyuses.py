@@ -8,6 +8,7 @@ from typing import Literal
 
 from smachac.ir import nodes
 from smachac.ir.dataflow import Flow, Scope, child_writes
+from smachac.ir.graph import START
 from smachac.ir.keypaths import around
 from smachac.ir.nodes import Key, Leaf, Node
 from smachac.ir.userdata import remapping
@@ -35,50 +36,59 @@ class Use:
     span: Span = field(compare=False, repr=False)
 
 
-def uses(flow: Flow, path: str, key: str) -> Iterator[Use]:
-    """The uses of a key of the container at a path, in the order of the script."""
+def uses(flow: Flow, path: str, key: str) -> list[Use]:
+    """The uses of one key of the container at a path, in the order of the script."""
+    return uses_by_key(flow, path).get(key, [])
+
+
+def uses_by_key(flow: Flow, path: str) -> dict[str, list[Use]]:
+    """The uses of the keys of the container at a path, by key, in the order of the script."""
     scope = flow.scopes[path]
     container = scope.container
+    found: dict[str, list[Use]] = {}
     for preset in container.userdata:
-        if preset.key == key:
-            yield Use(path=path, kind="presets", key=key, span=preset.span)
+        use = Use(path=path, kind="presets", key=preset.key, span=preset.span)
+        found.setdefault(preset.key, []).append(use)
     if isinstance(container, nodes.Iterator):
-        if container.item_key == key:
-            yield Use(path=path, kind="items", key=key, span=container.span)
-        if container.items_key == key:
-            yield Use(path=path, kind="reads", key=key, span=container.span)
+        use = Use(path=path, kind="items", key=container.item_key, span=container.span)
+        found.setdefault(use.key, []).append(use)
+    for key in scope.reads.get(START, ()):
+        use = Use(path=path, kind="reads", key=key, span=container.span)
+        found.setdefault(key, []).append(use)
     for child in container.children:
-        yield from _uses_of(flow, scope, child, key)
+        for key, use in _uses_of(flow, scope, child):
+            found.setdefault(key, []).append(use)
+    return found
 
 
-def _uses_of(flow: Flow, scope: Scope, child: Node, key: str) -> Iterator[Use]:
+def _uses_of(flow: Flow, scope: Scope, child: Node) -> Iterator[tuple[str, Use]]:
+    """The uses that a child makes of the keys of its container."""
     raw = isinstance(scope.container, nodes.Iterator) and isinstance(child, Leaf)
     names = remapping(child)
     path = f"{scope.path}/{child.name}"
     is_leaf = isinstance(child, Leaf)
+    kind: Kind = "reads" if is_leaf else "takes in"
     for each in child.inputs:
-        if names.get(each.name, each.name) == key:
-            kind: Kind = "reads" if is_leaf else "takes in"
-            yield Use(path=path, kind=kind, key=each.name, span=place_of(child, each))
+        span = place_of(child, each)
+        yield (
+            names.get(each.name, each.name),
+            Use(path=path, kind=kind, key=each.name, span=span),
+        )
+    kind = "writes" if is_leaf else "hands out"
+    inner = flow.scopes.get(path)
+    known = outcome_names(child) if child.outputs else ()
+    endings = [(name, child_writes(child, inner, name, raw=raw)) for name in known]
     for each in child.outputs:
-        if names.get(each.name, each.name) == key:
-            kind = "writes" if is_leaf else "hands out"
-            known = outcome_names(child)
-            inner = flow.scopes.get(path)
-            written = tuple(
-                name
-                for name in known
-                if (writes := child_writes(child, inner, name, raw=raw)) is not None
-                and key in writes.trusted
-            )
-            yield Use(
-                path=path,
-                kind=kind,
-                key=each.name,
-                outcomes=written,
-                always=written == known,
-                span=place_of(child, each),
-            )
+        key = names.get(each.name, each.name)
+        written = tuple(
+            name for name, writes in endings if writes is not None and key in writes.trusted
+        )
+        always = written == known
+        span = place_of(child, each)
+        yield (
+            key,
+            Use(path=path, kind=kind, key=each.name, outcomes=written, always=always, span=span),
+        )
 
 
 def place_of(node: Node, key: Key) -> Span:

@@ -17,7 +17,7 @@ from smachac.diagnostics import Report
 from smachac.source import Source
 from smachac.syntax import Tree, parse
 
-HEAD = "template: Base\noutcomes: [done]\nuserdata: {block: red}\nstates:\n"
+HEAD = "template: Base\noutcomes: [done]\nuserdata: {block: red}\noutput_keys: [block]\nstates:\n"
 PICK = "  - PICK: {script: pick, transitions: {ok: done}}\n"
 SUB = """\
 - PICK:

@@ -1,0 +1,329 @@
+"""Rules over keys that are declared and not used, and used but not declared."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Iterator
+
+from smachac.checks.hints import calls
+from smachac.checks.lost import lost_outputs
+from smachac.checks.missing import missing_keys
+from smachac.checks.outline import is_open
+from smachac.checks.userdata import flow_of, undeclared_reads, undeclared_writes
+from smachac.checks.witness import container_name
+from smachac.diagnostics import Finding, Severity, rule
+from smachac.ir import nodes
+from smachac.ir.accesses import callback_names, callbacks, userdata_fields
+from smachac.ir.dataflow import Scope
+from smachac.ir.graph import START
+from smachac.ir.keyuses import place_of
+from smachac.ir.nodes import Key, Leaf, Machine, Node
+from smachac.ir.userdata import remapping
+from smachac.ir.walk import containers
+from smachac.source import Span
+
+
+@rule("SM305", "dead-key", Severity.WARNING)
+def dead_key(machine: Machine) -> Iterator[Finding]:
+    """A key is set, and nothing ever reads it.
+
+    Either it is left over, or its reader knows it by another name and works with something else.
+    Outputs that a state has by its type, and those of a sub-script, are nobody's fault. What the
+    outermost machine has set can be read after the run, so that is only noted: its `output_keys`
+    name the results.
+
+    Wrong:
+        name: sm
+        template: Base
+        outcomes: [held]
+        userdata: {pose: 0.5, old_pose: 0.4}
+        states:
+          - GRASP:
+              template: PrintUserdataState
+              input_keys: [pose]
+              transitions: {succeeded: held}
+
+    Right:
+        name: sm
+        template: Base
+        outcomes: [held]
+        userdata: {pose: 0.5}
+        states:
+          - GRASP:
+              template: PrintUserdataState
+              input_keys: [pose]
+              transitions: {succeeded: held}
+    """
+    flow = flow_of(machine)
+    told = {(each.keeper.path, each.own) for each in lost_outputs(flow)}
+    told |= {(each.other, each.key) for each in missing_keys(flow, "outside")}
+    for scope in flow.scopes.values():
+        container = scope.container
+        if container.sugar or _sees_everything(scope):
+            continue
+        read = _read_in(scope) | scope.outputs.keys()
+        for key, node, span in _set_by_the_script(scope):
+            if key in read or (scope.path, key) in told:
+                continue
+            # After the run the machine's own userdata can be read (smach-semantics M14).
+            is_result = container is flow.machine.root and node is not container
+            where = container_name(scope, span)
+            yield Finding(
+                span=span,
+                message=f"`{key}` is set here, and nothing in {where} reads it",
+                help=f"take it out, or add it to the `output_keys` of {where}",
+                related=calls(node, span),
+                severity=Severity.INFO if is_result else None,
+                node=scope.path if node is container else f"{scope.path}/{node.name}",
+            )
+
+
+def _sees_everything(scope: Scope) -> bool:
+    """Whether something in a container may read any key."""
+    raw = isinstance(scope.container, nodes.Iterator)
+    return any(
+        is_open(child) or (raw and isinstance(child, Leaf)) for child in scope.container.children
+    )
+
+
+def _read_in(scope: Scope) -> set[str]:
+    """The keys that something in a container declares as its input, or goes through."""
+    found = set(scope.reads.get(START, ()))
+    for child in scope.container.children:
+        names = remapping(child)
+        found.update(names.get(key.name, key.name) for key in child.inputs)
+    return found
+
+
+def _written_in(scope: Scope) -> set[str]:
+    """The keys that are there from the start, or that something in a container declares to set."""
+    container = scope.container
+    found = {*scope.inputs, *(preset.key for preset in container.userdata)}
+    if isinstance(container, nodes.Iterator):
+        found.add(container.item_key)
+    for child in container.children:
+        names = remapping(child)
+        found.update(names.get(key.name, key.name) for key in child.outputs)
+    return found
+
+
+def _set_by_the_script(scope: Scope) -> Iterator[tuple[str, Node, Span]]:
+    """The keys of a container that the script itself sets, each once: presets and outputs that it
+    lists, not those of a state type or sub-script."""
+    seen: set[str] = set()
+    for preset in scope.container.userdata:
+        seen.add(preset.key)
+        yield preset.key, scope.container, preset.span
+    for child in scope.container.children:
+        names = remapping(child)
+        for each in child.outputs:
+            key = names.get(each.name, each.name)
+            if key not in seen and each.span.source is child.span.source and _sets(child, each):
+                seen.add(key)
+                yield key, child, place_of(child, each)
+
+
+def _sets(node: Node, key: Key) -> bool:
+    """Whether a state can set one of its outputs (SM306 says where it cannot)."""
+    if not isinstance(node, Leaf) or node.type != "CallbacksState":
+        return True
+    return key.name in callback_names(node)
+
+
+@rule("SM306", "unused-declaration", Severity.WARNING)
+def unused_declaration(machine: Machine) -> Iterator[Finding]:
+    """A container or state declares a key that it does not use.
+
+    Who calls it has to hand in what nobody needs, or waits for a result that never comes.
+
+    Wrong:
+        name: sm
+        template: Base
+        outcomes: [held]
+        userdata: {pose: 0.5, speed: 1.0}
+        states:
+          - PICK:
+              template: StateMachine
+              outcomes: [done]
+              input_keys: [pose, speed]
+              states:
+                - GRASP:
+                    template: PrintUserdataState
+                    input_keys: [pose]
+                    transitions: {succeeded: done}
+              transitions: {done: held}
+
+    Right:
+        name: sm
+        template: Base
+        outcomes: [held]
+        userdata: {pose: 0.5}
+        states:
+          - PICK:
+              template: StateMachine
+              outcomes: [done]
+              input_keys: [pose]
+              states:
+                - GRASP:
+                    template: PrintUserdataState
+                    input_keys: [pose]
+                    transitions: {succeeded: done}
+              transitions: {done: held}
+    """
+    flow = flow_of(machine)
+    missing = {(each.scope.path, each.key) for each in missing_keys(flow, "unset", "nowhere")}
+    for scope in flow.scopes.values():
+        container = scope.container
+        for path, child in ((f"{scope.path}/{c.name}", c) for c in container.children):
+            if isinstance(child, Leaf) and not isinstance(container, nodes.Iterator):
+                yield from _unused_by_code(path, child)
+        if container.sugar or _sees_everything(scope):
+            continue
+        used = _read_in(scope) | scope.outputs.keys()
+        for key in container.inputs:
+            if key.name not in used:
+                yield _unused(scope.path, container, key, "input", "reads")
+        set_ = _written_in(scope)
+        outer = scope.path.rpartition("/")[0]
+        for key in container.outputs:
+            if key.name not in set_ and (outer, scope.outputs[key.name]) not in missing:
+                yield _unused(scope.path, container, key, "output", "sets")
+
+
+def _unused(path: str, node: Node, key: Key, what: str, use: str) -> Finding:
+    span = key.span if not isinstance(node, Leaf) else place_of(node, key)
+    return Finding(
+        span=span,
+        message=f"`{key.name}` is declared as an {what} here, and nothing inside {use} it",
+        help=f"take it out of the `{what}_keys`",
+        related=calls(node, span),
+        node=path,
+    )
+
+
+def _unused_by_code(path: str, leaf: Leaf) -> Iterator[Finding]:
+    """The keys that a leaf made of code in the script declares, and that none of it uses."""
+    functions = callbacks(leaf)
+    if leaf.type not in ("CallbacksState", "ConditionalOutcomeState") or not functions:
+        return
+    known = [userdata_fields(code.text) for code in functions.values()]
+    fields = [each for each in known if each is not None]
+    if len(fields) == len(known):
+        used = {key for each in fields for key in (*each.read, *each.tested)}
+        yield from _unused_keys(path, leaf, leaf.inputs, used, "input", "reads")
+    if leaf.type == "CallbacksState":
+        yield from _unused_keys(path, leaf, leaf.outputs, callback_names(leaf), "output", "sets")
+
+
+def _unused_keys(
+    path: str, leaf: Leaf, keys: Iterable[Key], used: Iterable[str], what: str, use: str
+) -> Iterator[Finding]:
+    names = set(used)
+    return (_unused(path, leaf, key, what, use) for key in keys if key.name not in names)
+
+
+@rule("SM308", "lossy-write", Severity.ERROR)
+def lossy_write(machine: Machine) -> Iterator[Finding]:
+    """A state sets a key that is not among its output keys.
+
+    SMACH drops the write and only logs it: the counter never counts, and the loop that it is to
+    end goes on.
+
+    Wrong:
+        name: sm
+        template: Base
+        outcomes: [counted]
+        userdata: {n: 0}
+        states:
+          - COUNT:
+              template: CallbacksState
+              input_keys: [n]
+              callbacks: {n: 'lambda ud: ud.n + 1'}
+              transitions: {succeeded: counted}
+
+    Right:
+        name: sm
+        template: Base
+        outcomes: [counted]
+        userdata: {n: 0}
+        states:
+          - COUNT:
+              template: CallbacksState
+              input_keys: [n]
+              output_keys: [n]
+              callbacks: {n: 'lambda ud: ud.n + 1'}
+              transitions: {succeeded: counted}
+    """
+    for path, leaf in _leaves_with_code(machine):
+        for key in undeclared_writes(leaf):
+            only = any(each.name == key for each in leaf.inputs)
+            what = "which is an input key only" if only else "which is none of its output keys"
+            span = _place_of_write(leaf, key)
+            yield Finding(
+                span=span,
+                message=f"`{leaf.name}` sets `{key}`, {what}: the value is dropped",
+                help=f"add `{key}` to the `output_keys` of `{leaf.name}`",
+                related=calls(leaf, span),
+                node=path,
+            )
+
+
+def _leaves_with_code(machine: Machine) -> Iterator[tuple[str, Leaf]]:
+    """The leaves but those that see every key of an iterator, as there is nothing to declare."""
+    for path, container in containers(machine.root):
+        for child in container.children if not isinstance(container, nodes.Iterator) else ():
+            if isinstance(child, Leaf) and not child.open:
+                yield f"{path}/{child.name}", child
+
+
+def _place_of_write(leaf: Leaf, key: str) -> Span:
+    code = (callbacks(leaf) or {}).get(key)
+    if code is not None:
+        return code.span
+    steps = next((each for each in leaf.variables if each.name == "steps"), None)
+    return steps.value.span if steps is not None else leaf.span
+
+
+@rule("SM310", "undeclared-access", Severity.ERROR)
+def undeclared_access(machine: Machine) -> Iterator[Finding]:
+    """Code of the script reads a userdata key that its state does not declare.
+
+    The state sees only its input keys: the read fails, and the machine stops there.
+
+    Wrong:
+        name: sm
+        template: Base
+        outcomes: [low, high]
+        userdata: {level: 7}
+        output_keys: [level]
+        states:
+          - JUDGE:
+              template: ConditionalOutcomeState
+              outcomes: [low]
+              callbacks: {low: 'lambda ud: ud.level < 10'}
+              default_outcome: high
+              transitions: {low: low, high: high}
+
+    Right:
+        name: sm
+        template: Base
+        outcomes: [low, high]
+        userdata: {level: 7}
+        output_keys: [level]
+        states:
+          - JUDGE:
+              template: ConditionalOutcomeState
+              input_keys: [level]
+              outcomes: [low]
+              callbacks: {low: 'lambda ud: ud.level < 10'}
+              default_outcome: high
+              transitions: {low: low, high: high}
+    """
+    for path, leaf in _leaves_with_code(machine):
+        for key, code in undeclared_reads(leaf):
+            yield Finding(
+                span=code.span,
+                message=f"the code of `{leaf.name}` reads `{key}`, which is none of its input keys",
+                help=f"add `{key}` to the `input_keys` of `{leaf.name}`",
+                related=calls(leaf, code.span),
+                node=path,
+            )
