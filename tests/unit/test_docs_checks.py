@@ -44,7 +44,7 @@ def test_there_are_ten_mistakes() -> None:
 
 
 @pytest.mark.parametrize(("command", "shown"), SHOWN)
-def test_a_command_prints_what_is_shown(
+def test_golden_commands_print_what_is_shown(
     command: str, shown: str, folder: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:
     main(shlex.split(command))
