@@ -53,12 +53,12 @@ def _finding(group: list[Clash], *, at_origin: bool) -> Finding:
 
     for each in group:
         if not at_origin:
-            show(each.flow.origin.span, _written(each.flow.origin))
+            show(each.flow.origin.span, written(each.flow.origin))
         for where, message in _remaps(each):
             show(where, message)
         if at_origin:
             show(each.place.span, _read(each.place))
-    first, second = _written(origin), _read(place)
+    first, second = written(origin), _read(place)
     message = f"{first}, but {second}" if at_origin else f"{second}, but {first}"
     return Finding(
         span=span,
@@ -86,7 +86,7 @@ def _read(place: Place) -> str:
     return f"{_owner(place)} holds `{place.key}` as {wanted}"
 
 
-def _written(flow: Flow) -> str:
+def written(flow: Flow) -> str:
     """What comes, and from whom, in words."""
     place = flow.place
     if flow.how == "declared":

@@ -7,6 +7,7 @@ from collections.abc import Iterator, Mapping
 
 from smachac.checks.clashes import clash_findings
 from smachac.checks.hints import calls, other_place
+from smachac.checks.operations import mixed_units
 from smachac.checks.types import clashes_of, types_of
 from smachac.diagnostics import Finding, Related, Severity, rule
 from smachac.ir.fitting import inside, present, unit_of
@@ -264,6 +265,7 @@ def unit_mismatch(machine: Machine) -> Iterator[Finding]:
               transitions: {done: done}
     """
     yield from clash_findings(clashes_of(machine, "unit"))
+    yield from mixed_units(machine)
 
 
 def _is_number(data: Data) -> bool:

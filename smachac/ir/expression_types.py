@@ -148,7 +148,7 @@ def type_of_call(expression: Expression, userdata: Names) -> Type:
     tree = parsed(expression.text)
     if tree is None:
         return ANY
-    body, parameters = _body(tree)
+    body, parameters = body_of(tree)
     keys = record(userdata.items())
     return limited(type_of(body, dict.fromkeys(parameters, keys)))
 
@@ -158,21 +158,26 @@ def keys_read(expression: Expression) -> frozenset[str]:
     tree = parsed(expression.text)
     if tree is None:
         return frozenset()
-    body, parameters = _body(tree)
-    found: set[str] = set()
-    todo = [body]
+    body, parameters = body_of(tree)
+    return frozenset(keys_named(body, parameters))
+
+
+def keys_named(expr: Expr, parameters: tuple[str, ...]) -> tuple[str, ...]:
+    """The keys that an expression reads of userdata, which has these names, each once."""
+    found: dict[str, None] = {}
+    todo = [expr]
     while todo:
         expr = todo.pop()
         match expr:
             case Attribute(Name(name), key) if name in parameters:
-                found.add(key)
+                found[key] = None
             case Index(Name(name), Constant(str(key))) if name in parameters:
-                found.add(key)
-        todo.extend(parts(expr))
-    return frozenset(found)
+                found[key] = None
+        todo.extend(reversed(parts(expr)))
+    return tuple(found)
 
 
-def _body(tree: Expr) -> tuple[Expr, tuple[str, ...]]:
+def body_of(tree: Expr) -> tuple[Expr, tuple[str, ...]]:
     """The body of a function over userdata, and the names of its parameter (see `called`)."""
     if isinstance(tree, Lambda):
         return tree.body, (tree.parameter,) if tree.parameter else ()
@@ -190,8 +195,22 @@ def limited(type_: Type, depth: int = DEEPEST) -> Type:
 def _attribute(owner: Type, name: str) -> Type:
     if owner.name == "record":
         return fields(owner).get(name, ANY)
-    return METRES if owner == POINT and name in "xyz" else ANY
+    return ATTRIBUTES.get(owner.name, {}).get(name, ANY)
 
+
+ATTRIBUTES: Mapping[str, Mapping[str, Type]] = {
+    "Point": dict.fromkeys("xyz", METRES),
+    "Quaternion": dict.fromkeys("xyzw", FLOAT),
+    "Pose": {"position": POINT, "orientation": QUATERNION},
+    "Transform": {"translation": ANY, "rotation": QUATERNION},
+    "PoseStamped": {"header": ANY, "pose": Type("Pose")},
+    "JointState": {
+        "header": ANY,
+        "name": Type("list", (STR,)),
+        **dict.fromkeys(("position", "velocity", "effort"), Type("list", (FLOAT,))),
+    },
+}
+"""The attributes of the structs, as in ROS (geometry_msgs, sensor_msgs)."""
 
 POSE = {0: POINT, 1: QUATERNION}
 

@@ -17,10 +17,11 @@ from __future__ import annotations
 
 from collections import deque
 from collections.abc import Mapping
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, field, replace
 
 from smachac.ir import nodes
 from smachac.ir.behaviours import variable
+from smachac.ir.expression_faults import always_fails
 from smachac.ir.expression_types import keys_read, type_of_call, type_of_data
 from smachac.ir.fitting import NONE, is_open, misfit
 from smachac.ir.joining import item_of, join, widened
@@ -53,7 +54,8 @@ class Types:
 
     `keys` maps the path of a container and a key of its userdata to the key's type; `inputs` and
     `outputs` do so for leaves, under their own names. `constants` are the literals that reach a
-    place with a declared type and fit it.
+    place with a declared type and fit it. `places` are the keys of containers and the inputs of
+    leaves, with what arrives there.
     """
 
     keys: Mapping[tuple[str, str], Type]
@@ -61,6 +63,7 @@ class Types:
     outputs: Mapping[tuple[str, str], Type]
     clashes: tuple[Clash, ...] = ()
     constants: tuple[Flow, ...] = ()
+    places: Mapping[tuple[str, str], Place] = field(default_factory=dict, repr=False)
 
     def names(self, path: str, leaf: Leaf) -> dict[str, Type]:
         """The types of the keys that code of a leaf reads (see `type_of_call`)."""
@@ -73,6 +76,7 @@ def infer(machine: Machine) -> Types:
     run = _Inference()
     run.read(machine)
     run.propagate()
+    run.open_up()
     return run.result()
 
 
@@ -99,6 +103,8 @@ class _Inference:
         self.places: list[Place] = []
         self.rounds: dict[int, int] = {}
         self.todo: deque[Flow] = deque()
+        self.codes: list[Code] = []
+        self.open: list[_Scope] = []
         self.clashes: dict[tuple[object, ...], Clash] = {}
         self.constants: list[Flow] = []
 
@@ -140,12 +146,18 @@ class _Inference:
     def leaf(self, path: str, leaf: Leaf, around: _Scope) -> None:
         names = remapping(leaf)
         inputs: dict[str, Place] = {}
+        if leaf.open:
+            self.open.append(around)
         for key in leaf.inputs:
             place = self.place(path, key.name, "input", leaf, place_of(leaf, key))
             self.declare(place, key.type, place.span)
             around.at(names.get(key.name, key.name)).links.append(place)
             inputs[key.name] = place
         written = _written(leaf)
+        if isinstance(around.node, nodes.Iterator):
+            # Its child writes every key as it is (smach-semantics I7).
+            for name in sorted(written.keys() - {key.name for key in leaf.outputs}):
+                self.unknown(around.at(name))
         for key in leaf.outputs:
             place = self.place(path, key.name, "output", leaf, place_of(leaf, key))
             place.links.append(around.at(names.get(key.name, key.name)))
@@ -170,6 +182,8 @@ class _Inference:
             self.declare(inner, key.type, inner.span)
             if around is not None:
                 around.at(names.get(key.name, key.name)).links.append(inner)
+            else:
+                self.unknown(inner)
         for preset in node.userdata:
             place = scope.at(preset.key, preset.span)
             self.declare(place, preset.type, preset.span)
@@ -198,14 +212,33 @@ class _Inference:
             elif isinstance(items, tuple):
                 for each in items:
                     self.literal(item, each, span)
+            else:
+                self.unknown(item)
 
     def code(self, code: Code) -> None:
+        self.codes.append(code)
         for place in code.reads.values():
             place.readers.append(code)
         if not code.reads:
             self.compute(code)
 
+    def unknown(self, place: Place) -> None:
+        """Say that a place may get what nothing is known of."""
+        if place.declared == ANY:
+            self.arrive(Flow(type=ANY, how="declared", span=place.span, place=place))
+
     # Carrying along
+
+    def open_up(self) -> None:
+        """What may come where nothing is known: from code that reads a key which nothing known
+        sets, and from states without an interface, which may write every key around them."""
+        for code in self.codes:
+            if any(place.holds is None for place in code.reads.values()):
+                self.unknown(code.place)
+        for scope in self.open:
+            for place in scope.places.values():
+                self.unknown(place)
+        self.propagate()
 
     def propagate(self) -> None:
         while self.todo:
@@ -261,6 +294,8 @@ class _Inference:
             return
         if code.expression is not None:
             type_ = type_of_call(code.expression, known)
+            if type_ == ANY and always_fails(code.expression, known):
+                return
         else:
             (type_,) = known.values()
         if code.items:
@@ -282,6 +317,11 @@ class _Inference:
             outputs=found["output"],
             clashes=tuple(self.clashes.values()),
             constants=tuple(self.constants),
+            places={
+                (place.path, place.key): place
+                for place in self.places
+                if place.role in ("scope", "input")
+            },
         )
 
 
