@@ -84,6 +84,13 @@ compiler_parts() {
 sys.exit(not pathlib.Path(sysconfig.get_path("include"), "Python.h").exists())' || echo "python$version-dev"
 }
 
+# Prints the packages with what the tests of the C++ target still need. One clang is enough, of any version.
+cpp_parts() {
+  command -v g++ >/dev/null || echo g++
+  compgen -c clang++ >/dev/null || printf '%s\n' clang libclang-rt-dev
+  compgen -c clang-format >/dev/null || echo clang-format
+}
+
 # PyPI has PyBullet ready-made for these alone.
 prepare_pybullet() {
   if [[ "$version $(uname -sm)" =~ ^3\.1[01]\ Linux\ x86_64$ ]] || pip show -qq pybullet 2>/dev/null; then return; fi
@@ -101,6 +108,8 @@ prepare_optional() {
   local parts
   mapfile -t parts < <(compiler_parts)
   ((${#parts[@]} == 0)) || install_packages "${parts[@]}" || say "going on without a compiler"
+  mapfile -t parts < <(cpp_parts)
+  ((${#parts[@]} == 0)) || install_packages "${parts[@]}" || say "going on with fewer C++ compilers"
 }
 
 # The state of .venv that a stamp stands for; the folder, because installed scripts name it.

@@ -1,0 +1,1043 @@
+// Values of userdata, and what Python computes with them, in C++17 without a dependency.
+//
+// `smachac` has the types and conversions, `smachac::py` the operations of Python: whole numbers
+// are checked where Python has no limit, `//` and `%` round down, texts are UTF-8 and counted in
+// code points. What Python raises an exception for, and what C++ cannot hold, is a smachac::Error.
+// Compile with -ffp-contract=off where the machine has fused multiply-add, and never with
+// -ffast-math: floats are those of Python to the last bit.
+#ifndef SMACHAC_VALUES_HPP
+#define SMACHAC_VALUES_HPP
+
+#include <algorithm>
+#include <any>
+#include <array>
+#include <charconv>
+#include <cmath>
+#include <cstddef>
+#include <cstdint>
+#include <cstdio>
+#include <cstdlib>
+#include <exception>
+#include <limits>
+#include <map>
+#include <optional>
+#include <string>
+#include <string_view>
+#include <type_traits>
+#include <utility>
+#include <vector>
+
+namespace smachac {
+
+/// An expression that has no value, and why.
+struct Error : std::exception {
+  explicit Error(std::string text) : message(std::move(text)) {}
+  const char *what() const noexcept override { return message.c_str(); }
+  std::string message;
+};
+
+/// Throws an Error; in a program without exceptions, prints the message and ends the program.
+[[noreturn]] inline void fail(const char *message) {
+#if defined(__cpp_exceptions)
+  throw Error(message);
+#else
+  std::fputs("smachac: ", stderr);
+  std::fputs(message, stderr);
+  std::fputs("\n", stderr);
+  std::abort();
+#endif
+}
+
+/// The type of None.
+struct None {
+  friend bool operator==(None, None) { return true; }
+  friend bool operator!=(None, None) { return false; }
+};
+
+/// A place in metres.
+struct Point {
+  double x = 0.0, y = 0.0, z = 0.0;
+  friend bool operator==(const Point &a, const Point &b) {
+    return a.x == b.x && a.y == b.y && a.z == b.z;
+  }
+  friend bool operator!=(const Point &a, const Point &b) { return !(a == b); }
+};
+
+/// A rotation.
+struct Quaternion {
+  double x = 0.0, y = 0.0, z = 0.0, w = 1.0;
+  friend bool operator==(const Quaternion &a, const Quaternion &b) {
+    return a.x == b.x && a.y == b.y && a.z == b.z && a.w == b.w;
+  }
+  friend bool operator!=(const Quaternion &a, const Quaternion &b) { return !(a == b); }
+};
+
+/// Where a thing is, and how it is turned.
+struct Pose {
+  Point position{};
+  Quaternion orientation{};
+  friend bool operator==(const Pose &a, const Pose &b) {
+    return a.position == b.position && a.orientation == b.orientation;
+  }
+  friend bool operator!=(const Pose &a, const Pose &b) { return !(a == b); }
+};
+
+/// A pose in a named frame; the stamp is in seconds.
+struct PoseStamped {
+  std::string frame_id{};
+  double stamp = 0.0;
+  Pose pose{};
+  friend bool operator==(const PoseStamped &a, const PoseStamped &b) {
+    return a.frame_id == b.frame_id && a.stamp == b.stamp && a.pose == b.pose;
+  }
+  friend bool operator!=(const PoseStamped &a, const PoseStamped &b) { return !(a == b); }
+};
+
+/// How one frame lies in another.
+struct Transform {
+  Point translation{};
+  Quaternion rotation{};
+  friend bool operator==(const Transform &a, const Transform &b) {
+    return a.translation == b.translation && a.rotation == b.rotation;
+  }
+  friend bool operator!=(const Transform &a, const Transform &b) { return !(a == b); }
+};
+
+/// Joints by name; lists that are not empty are as long as `name`.
+struct JointState {
+  std::vector<std::string> name{};
+  std::vector<double> position{}, velocity{}, effort{};
+  friend bool operator==(const JointState &a, const JointState &b) {
+    return a.name == b.name && a.position == b.position && a.velocity == b.velocity &&
+           a.effort == b.effort;
+  }
+  friend bool operator!=(const JointState &a, const JointState &b) { return !(a == b); }
+};
+
+namespace detail {
+
+template <class T> struct is_list : std::false_type {};
+template <class T> struct is_list<std::vector<T>> : std::true_type {};
+template <class T, std::size_t N> struct is_list<std::array<T, N>> : std::true_type {};
+template <class T> struct is_array : std::false_type {};
+template <class T, std::size_t N> struct is_array<std::array<T, N>> : std::true_type {};
+template <class T> struct is_dict : std::false_type {};
+template <class T> struct is_dict<std::map<std::string, T>> : std::true_type {};
+template <class T> struct is_optional : std::false_type {};
+template <class T> struct is_optional<std::optional<T>> : std::true_type {};
+
+/// The least whole number that is too large for 64 bits, as a float.
+constexpr double beyond_whole = 9223372036854775808.0;
+
+inline bool is_space(char c) { return c == ' ' || (c >= '\t' && c <= '\r'); }
+
+inline bool is_digit(char c) { return c >= '0' && c <= '9'; }
+
+/// Whether a byte starts a code point of UTF-8.
+inline bool is_start(char c) { return (static_cast<unsigned char>(c) & 0xC0U) != 0x80U; }
+
+/// The code point at a place of a text, and the place behind it. Bytes that are no UTF-8 stand for
+/// U+FFFD.
+inline std::uint32_t code_point(std::string_view text, std::size_t &place) {
+  const auto first = static_cast<unsigned char>(text[place++]);
+  if (first < 0x80U) {
+    return first;
+  }
+  const int more = first >= 0xF0U ? 3 : first >= 0xE0U ? 2 : first >= 0xC0U ? 1 : 0;
+  std::uint32_t point = first & (0x3FU >> more);
+  int found = 0;
+  for (; found < more && place < text.size() && !is_start(text[place]); ++found) {
+    point = (point << 6U) | (static_cast<unsigned char>(text[place++]) & 0x3FU);
+  }
+  return more == 0 || found < more ? 0xFFFDU : point;
+}
+
+} // namespace detail
+
+namespace py {
+
+template <class T> const T &present(const std::optional<T> &value) {
+  if (!value.has_value()) {
+    fail("None where a value is needed");
+  }
+  return *value;
+}
+
+/// A whole number as a float, as arithmetic with floats takes it.
+inline double real(std::int64_t value) { return static_cast<double>(value); }
+
+/// A whole number as a float that stands for the same number.
+inline double widen(std::int64_t value) {
+  const double result = real(value);
+  if (result >= detail::beyond_whole || static_cast<std::int64_t>(result) != value) {
+    fail("a whole number that no float holds");
+  }
+  return result;
+}
+
+} // namespace py
+
+/// A value as another type that holds it: whole numbers as floats, lists as arrays of their length,
+/// anything as an optional; an optional as what is in it, where there is something.
+template <class To, class From> To convert([[maybe_unused]] const From &from) {
+  if constexpr (std::is_same_v<To, From>) {
+    return from;
+  } else if constexpr (detail::is_optional<From>::value && !detail::is_optional<To>::value) {
+    return convert<To>(py::present(from));
+  } else if constexpr (detail::is_optional<From>::value) {
+    return from.has_value() ? To(convert<typename To::value_type>(*from)) : To();
+  } else if constexpr (detail::is_optional<To>::value && std::is_same_v<From, None>) {
+    return To();
+  } else if constexpr (detail::is_optional<To>::value) {
+    return To(convert<typename To::value_type>(from));
+  } else if constexpr (std::is_same_v<To, double> && std::is_integral_v<From>) {
+    return py::widen(from);
+  } else if constexpr (std::is_same_v<To, Point> && detail::is_list<From>::value) {
+    const auto found = convert<std::array<double, 3>>(from);
+    return Point{found[0], found[1], found[2]};
+  } else if constexpr (std::is_same_v<To, Quaternion> && detail::is_list<From>::value) {
+    const auto found = convert<std::array<double, 4>>(from);
+    return Quaternion{found[0], found[1], found[2], found[3]};
+  } else if constexpr (detail::is_array<To>::value && detail::is_list<From>::value) {
+    To result{};
+    if (from.size() != result.size()) {
+      fail("a list of another length than its type says");
+    }
+    for (std::size_t i = 0; i < result.size(); ++i) {
+      result[i] = convert<typename To::value_type, typename From::value_type>(from[i]);
+    }
+    return result;
+  } else if constexpr (detail::is_list<To>::value && detail::is_list<From>::value) {
+    To result;
+    result.reserve(from.size());
+    for (std::size_t i = 0; i < from.size(); ++i) {
+      result.push_back(convert<typename To::value_type, typename From::value_type>(from[i]));
+    }
+    return result;
+  } else if constexpr (detail::is_dict<To>::value && detail::is_dict<From>::value) {
+    To result;
+    for (const auto &entry : from) {
+      result.emplace(entry.first, convert<typename To::mapped_type>(entry.second));
+    }
+    return result;
+  } else if constexpr (std::is_integral_v<To> && std::is_integral_v<From>) {
+    return static_cast<To>(from);
+  } else {
+    // The items of an empty list are taken for numbers, and wanted as anything.
+    fail("a value of another type");
+  }
+}
+
+namespace py {
+
+/// The result of a function of a value that is computed once.
+template <class T, class F> auto with(const T &value, F function) { return function(value); }
+
+// Arithmetic
+
+inline std::int64_t add(std::int64_t a, std::int64_t b) {
+  std::int64_t result = 0;
+  if (__builtin_add_overflow(a, b, &result)) {
+    fail("a whole number too large for 64 bits");
+  }
+  return result;
+}
+
+inline std::int64_t subtract(std::int64_t a, std::int64_t b) {
+  std::int64_t result = 0;
+  if (__builtin_sub_overflow(a, b, &result)) {
+    fail("a whole number too large for 64 bits");
+  }
+  return result;
+}
+
+inline std::int64_t multiply(std::int64_t a, std::int64_t b) {
+  std::int64_t result = 0;
+  if (__builtin_mul_overflow(a, b, &result)) {
+    fail("a whole number too large for 64 bits");
+  }
+  return result;
+}
+
+inline std::int64_t negate(std::int64_t a) { return subtract(0, a); }
+inline std::int64_t absolute(std::int64_t a) { return a < 0 ? negate(a) : a; }
+inline double absolute(double a) { return std::fabs(a); }
+
+inline std::int64_t floor_divide(std::int64_t a, std::int64_t b) {
+  if (b == 0) {
+    fail("division by zero");
+  }
+  if (b == -1) {
+    return negate(a);
+  }
+  return a / b - (a % b != 0 && (a < 0) != (b < 0) ? 1 : 0);
+}
+
+inline std::int64_t modulo(std::int64_t a, std::int64_t b) {
+  if (b == 0) {
+    fail("division by zero");
+  }
+  if (b == -1) {
+    return 0;
+  }
+  const std::int64_t rest = a % b;
+  return rest != 0 && (rest < 0) != (b < 0) ? rest + b : rest;
+}
+
+inline double divide(double a, double b) {
+  if (b == 0.0) {
+    fail("division by zero");
+  }
+  return a / b;
+}
+
+/// The float next to the quotient of two whole numbers, rounded once.
+inline double divide(std::int64_t a, std::int64_t b) {
+  constexpr std::int64_t exact = std::int64_t{1} << 53U;
+  if (b == 0) {
+    fail("division by zero");
+  }
+  if (a >= -exact && a <= exact && b >= -exact && b <= exact) {
+    return real(a) / real(b);
+  }
+  const auto size = [](std::int64_t n) {
+    return n < 0 ? std::uint64_t{0} - static_cast<std::uint64_t>(n) : static_cast<std::uint64_t>(n);
+  };
+  std::uint64_t quotient = size(a) / size(b);
+  std::uint64_t rest = size(a) % size(b);
+  int exponent = 0;
+  // More binary digits than a float has; the last one stands for all that follow.
+  while (quotient >> 55U == 0 && exponent > -128) {
+    const bool carry = rest >= size(b) - rest;
+    rest = carry ? rest - (size(b) - rest) : rest + rest;
+    quotient = quotient * 2 + (carry ? 1 : 0);
+    --exponent;
+  }
+  const double result = std::ldexp(static_cast<double>(quotient | (rest != 0 ? 1U : 0U)), exponent);
+  return (a < 0) != (b < 0) ? -result : result;
+}
+
+inline double modulo(double a, double b) {
+  if (b == 0.0) {
+    fail("division by zero");
+  }
+  const double rest = std::fmod(a, b);
+  if (rest == 0.0) {
+    return std::copysign(0.0, b);
+  }
+  return (b < 0.0) != (rest < 0.0) ? rest + b : rest;
+}
+
+inline double floor_divide(double a, double b) {
+  if (b == 0.0) {
+    fail("division by zero");
+  }
+  const double rest = std::fmod(a, b);
+  double quotient = (a - rest) / b;
+  if (rest != 0.0 && (b < 0.0) != (rest < 0.0)) {
+    quotient -= 1.0;
+  }
+  if (quotient == 0.0) {
+    return std::copysign(0.0, a / b);
+  }
+  const double down = std::floor(quotient);
+  return quotient - down > 0.5 ? down + 1.0 : down;
+}
+
+/// A whole number to a power that is not negative.
+inline std::int64_t power(std::int64_t base, std::int64_t exponent) {
+  if (exponent < 0) {
+    fail("a negative power of a whole number");
+  }
+  std::int64_t result = 1;
+  for (std::int64_t square = base; exponent > 0; square = multiply(square, square)) {
+    if (exponent % 2 != 0) {
+      result = multiply(result, square);
+    }
+    exponent /= 2;
+    if (exponent == 0) {
+      break;
+    }
+  }
+  return result;
+}
+
+inline double power(double base, double exponent) {
+  const bool finite = std::isfinite(base) && std::isfinite(exponent);
+  if (finite && base == 0.0 && exponent < 0.0) {
+    fail("a negative power of zero");
+  }
+  if (finite && base < 0.0 && exponent != std::floor(exponent)) {
+    fail("a broken power of a negative number, which is complex");
+  }
+  const double result = std::pow(base, exponent);
+  if (finite && std::isinf(result)) {
+    fail("a power too large for a float");
+  }
+  return result;
+}
+
+/// A float without what is behind the point.
+inline std::int64_t whole(double value) {
+  if (!(value >= -detail::beyond_whole && value < detail::beyond_whole)) {
+    fail("a float that is no whole number of 64 bits");
+  }
+  return static_cast<std::int64_t>(value);
+}
+
+/// The next whole number; of two as near, the even one.
+inline std::int64_t round(double value) { return whole(std::nearbyint(value)); }
+
+/// The float next to the value with so many digits behind the point, not negative.
+inline double round(double value, int digits) {
+  if (!std::isfinite(value) || digits > 323) {
+    return value;
+  }
+  char buffer[700];
+  std::snprintf(buffer, sizeof buffer, "%.*f", digits, value);
+  return std::strtod(buffer, nullptr);
+}
+
+// Truth and order
+
+template <class T> bool truth(const T &value) {
+  if constexpr (std::is_arithmetic_v<T>) {
+    return value != T{};
+  } else if constexpr (detail::is_optional<T>::value) {
+    return value.has_value() && truth(*value);
+  } else if constexpr (std::is_same_v<T, None>) {
+    return false;
+  } else if constexpr (std::is_same_v<T, std::string> || detail::is_list<T>::value ||
+                       detail::is_dict<T>::value) {
+    return !value.empty();
+  } else {
+    return true;
+  }
+}
+
+enum class Order { less, equal, greater, none };
+
+namespace inner {
+
+template <class T> Order plain_order(const T &a, const T &b) {
+  return a < b ? Order::less : b < a ? Order::greater : a == b ? Order::equal : Order::none;
+}
+
+/// Exact, also where the whole number is no float.
+inline Order mixed_order(std::int64_t a, double b) {
+  if (std::isnan(b)) {
+    return Order::none;
+  }
+  if (b >= detail::beyond_whole) {
+    return Order::less;
+  }
+  if (b < -detail::beyond_whole) {
+    return Order::greater;
+  }
+  const auto cut = static_cast<std::int64_t>(b);
+  return a != cut ? plain_order(a, cut) : plain_order(0.0, b - real(cut));
+}
+
+} // namespace inner
+
+template <class A, class B> bool equal(const A &a, const B &b);
+
+/// How two values lie to each other; floats that are no numbers lie nowhere.
+template <class A, class B> Order order(const A &a, const B &b) {
+  if constexpr (std::is_arithmetic_v<A> && std::is_arithmetic_v<B>) {
+    if constexpr (std::is_integral_v<A> && std::is_integral_v<B>) {
+      return inner::plain_order<std::int64_t>(a, b);
+    } else if constexpr (std::is_integral_v<A>) {
+      return inner::mixed_order(a, b);
+    } else if constexpr (std::is_integral_v<B>) {
+      const Order found = inner::mixed_order(b, a);
+      return found == Order::less ? Order::greater : found == Order::greater ? Order::less : found;
+    } else {
+      return inner::plain_order(a, b);
+    }
+  } else if constexpr (std::is_same_v<A, std::string> && std::is_same_v<B, std::string>) {
+    return inner::plain_order(a.compare(b), 0);
+  } else {
+    const std::size_t both = std::min(a.size(), b.size());
+    for (std::size_t i = 0; i < both; ++i) {
+      if (!equal(a[i], b[i])) {
+        return order(a[i], b[i]);
+      }
+    }
+    return inner::plain_order(a.size(), b.size());
+  }
+}
+
+/// `==`. Values of types that have nothing in common are not equal.
+template <class A, class B> bool equal(const A &a, const B &b) {
+  if constexpr (std::is_arithmetic_v<A> && std::is_arithmetic_v<B>) {
+    return order(a, b) == Order::equal;
+  } else if constexpr (detail::is_optional<A>::value && detail::is_optional<B>::value) {
+    return a.has_value() && b.has_value() ? equal(*a, *b) : a.has_value() == b.has_value();
+  } else if constexpr (detail::is_optional<A>::value) {
+    return a.has_value() ? equal(*a, b) : std::is_same_v<B, None>;
+  } else if constexpr (detail::is_optional<B>::value) {
+    return equal(b, a);
+  } else if constexpr (detail::is_list<A>::value && detail::is_list<B>::value) {
+    bool same = a.size() == b.size();
+    for (std::size_t i = 0; same && i < a.size(); ++i) {
+      same = equal(a[i], b[i]);
+    }
+    return same;
+  } else if constexpr (detail::is_dict<A>::value && detail::is_dict<B>::value) {
+    bool same = a.size() == b.size();
+    for (auto one = a.begin(), end = a.end(); same && one != end; ++one) {
+      const auto other = b.find(one->first);
+      same = other != b.end() && equal(one->second, other->second);
+    }
+    return same;
+  } else if constexpr (std::is_same_v<A, B>) {
+    return a == b;
+  } else {
+    return false;
+  }
+}
+
+template <class A, class B> bool less(const A &a, const B &b) { return order(a, b) == Order::less; }
+
+template <class A, class B> bool at_most(const A &a, const B &b) {
+  const Order found = order(a, b);
+  return found == Order::less || found == Order::equal;
+}
+
+// Lists, mappings, texts
+
+/// Items and characters of the longest list and text that `range` and `*` make.
+constexpr std::int64_t largest = 100'000;
+
+inline std::int64_t length(const std::string &text) {
+  return static_cast<std::int64_t>(std::count_if(text.begin(), text.end(), detail::is_start));
+}
+
+template <class T> std::int64_t length(const T &items) {
+  return static_cast<std::int64_t>(items.size());
+}
+
+namespace inner {
+
+/// A place counted from the end where it is negative.
+inline std::size_t place(std::int64_t index, std::int64_t size) {
+  const std::int64_t found = index < 0 ? index + size : index;
+  if (found < 0 || found >= size) {
+    fail("an index out of range");
+  }
+  return static_cast<std::size_t>(found);
+}
+
+} // namespace inner
+
+inline std::vector<std::string> characters(const std::string &text) {
+  std::vector<std::string> found;
+  for (const char c : text) {
+    if (detail::is_start(c) || found.empty()) {
+      found.emplace_back();
+    }
+    found.back() += c;
+  }
+  return found;
+}
+
+/// The keys of a mapping in their order, which is not that in which Python lists them.
+template <class T> std::vector<std::string> keys(const std::map<std::string, T> &entries) {
+  std::vector<std::string> found;
+  for (const auto &entry : entries) {
+    found.push_back(entry.first);
+  }
+  return found;
+}
+
+template <class T> decltype(auto) item(const T &items, std::int64_t index) {
+  return items[inner::place(index, length(items))];
+}
+
+inline std::string item(const std::string &text, std::int64_t index) {
+  return characters(text)[inner::place(index, length(text))];
+}
+
+inline double item(const Point &point, std::int64_t index) {
+  return std::array<double, 3>{point.x, point.y, point.z}[inner::place(index, 3)];
+}
+
+inline double item(const Quaternion &q, std::int64_t index) {
+  return std::array<double, 4>{q.x, q.y, q.z, q.w}[inner::place(index, 4)];
+}
+
+template <class T> const T &item(const std::map<std::string, T> &entries, const std::string &key) {
+  const auto found = entries.find(key);
+  if (found == entries.end()) {
+    fail("a key that is not in the mapping");
+  }
+  return found->second;
+}
+
+inline bool contains(const std::string &text, const std::string &part) {
+  return text.find(part) != std::string::npos;
+}
+
+template <class T> bool contains(const std::map<std::string, T> &entries, const std::string &key) {
+  return entries.find(key) != entries.end();
+}
+
+template <class T, class U> bool contains(const T &items, const U &value) {
+  bool found = false;
+  for (std::size_t i = 0; !found && i < items.size(); ++i) {
+    found = equal(items[i], value);
+  }
+  return found;
+}
+
+/// The items of two lists, one after the other.
+template <class T, class A, class B> std::vector<T> concat(const A &a, const B &b) {
+  auto result = convert<std::vector<T>>(a);
+  for (std::size_t i = 0; i < b.size(); ++i) {
+    result.push_back(convert<T, typename B::value_type>(b[i]));
+  }
+  return result;
+}
+
+namespace inner {
+
+inline void limit(std::int64_t size, std::int64_t times) {
+  if (times > 0 && size > largest / times) {
+    fail("more than 100000 items or characters");
+  }
+}
+
+} // namespace inner
+
+inline std::string repeat(const std::string &text, std::int64_t times) {
+  inner::limit(length(text), times);
+  std::string result;
+  for (std::int64_t i = 0; i < times && !text.empty(); ++i) {
+    result += text;
+  }
+  return result;
+}
+
+template <class T> std::vector<typename T::value_type> repeat(const T &items, std::int64_t times) {
+  inner::limit(length(items), times);
+  std::vector<typename T::value_type> result;
+  for (std::int64_t i = 0; i < times && !items.empty(); ++i) {
+    result.insert(result.end(), items.begin(), items.end());
+  }
+  return result;
+}
+
+inline std::vector<std::int64_t> range(std::int64_t from, std::int64_t to, std::int64_t step = 1) {
+  if (step == 0) {
+    fail("a range with the step zero");
+  }
+  std::vector<std::int64_t> result;
+  std::int64_t next = from;
+  while (step > 0 ? next < to : next > to) {
+    if (length(result) == largest) {
+      fail("more than 100000 items or characters");
+    }
+    result.push_back(next);
+    if (__builtin_add_overflow(next, step, &next)) {
+      break;
+    }
+  }
+  return result;
+}
+
+inline std::vector<std::int64_t> range(std::int64_t to) { return range(0, to); }
+
+/// The sum of a start and all items; whole numbers as long as all are.
+template <class T, class S> auto sum(const T &items, S start) {
+  using Item = typename T::value_type;
+  if constexpr (std::is_integral_v<Item> && std::is_integral_v<S>) {
+    std::int64_t total = start;
+    for (std::size_t i = 0; i < items.size(); ++i) {
+      total = add(total, items[i]);
+    }
+    return total;
+  } else {
+    auto total = static_cast<double>(start);
+    for (std::size_t i = 0; i < items.size(); ++i) {
+      total += static_cast<double>(items[i]);
+    }
+    return total;
+  }
+}
+
+template <class T> auto sum(const T &items) { return sum(items, 0); }
+
+namespace inner {
+
+struct itself {
+  template <class T> const T &operator()(const T &value) const { return value; }
+};
+
+/// Fails where a value has no place in an order: some float in it is no number.
+template <class T> void check_order(const T &value) {
+  if constexpr (std::is_floating_point_v<T>) {
+    if (std::isnan(value)) {
+      fail("nan has no place in an order");
+    }
+  } else if constexpr (detail::is_list<T>::value) {
+    for (std::size_t i = 0; i < value.size(); ++i) {
+      check_order(value[i]);
+    }
+  }
+}
+
+} // namespace inner
+
+/// The first of the items whose keys are greatest.
+template <class T, class F = inner::itself>
+typename T::value_type max_of(const T &items, F key = {}) {
+  std::size_t best = 0;
+  if (items.size() == 0) {
+    fail("the greatest of nothing");
+  }
+  for (std::size_t i = 1; i < items.size(); ++i) {
+    best = less(key(items[best]), key(items[i])) ? i : best;
+  }
+  return items[best];
+}
+
+/// The first of the items whose keys are least.
+template <class T, class F = inner::itself>
+typename T::value_type min_of(const T &items, F key = {}) {
+  std::size_t best = 0;
+  if (items.size() == 0) {
+    fail("the least of nothing");
+  }
+  for (std::size_t i = 1; i < items.size(); ++i) {
+    best = less(key(items[i]), key(items[best])) ? i : best;
+  }
+  return items[best];
+}
+
+/// The items in the order of their keys; those with equal keys stay in theirs.
+template <class T, class F = inner::itself>
+auto sorted(const T &items, bool reverse = false, F key = {}) {
+  using Item = typename T::value_type;
+  std::vector<Item> result(items.begin(), items.end());
+  for (const Item &each : items) {
+    inner::check_order(key(each));
+  }
+  std::stable_sort(result.begin(), result.end(), [&](const Item &a, const Item &b) {
+    return reverse ? less(key(b), key(a)) : less(key(a), key(b));
+  });
+  return result;
+}
+
+// Texts and numbers
+
+inline std::string text(double value) {
+  if (!std::isfinite(value)) {
+    return std::isnan(value) ? "nan" : value < 0.0 ? "-inf" : "inf";
+  }
+  char buffer[40];
+  const auto scientific = std::chars_format::scientific;
+  const auto made = std::to_chars(buffer, buffer + sizeof buffer, value, scientific);
+  const std::string_view found(buffer, static_cast<std::size_t>(made.ptr - buffer));
+  const std::size_t letter = found.find('e');
+  const int exponent = std::atoi(std::string(found.substr(letter + 1)).c_str());
+  if (exponent < -4 || exponent >= 16) {
+    return std::string(found);
+  }
+  std::string sign = found[0] == '-' ? "-" : "";
+  std::string digits;
+  for (const char c : found.substr(0, letter)) {
+    if (detail::is_digit(c)) {
+      digits += c;
+    }
+  }
+  if (exponent < 0) {
+    return sign + "0." + std::string(static_cast<std::size_t>(-exponent - 1), '0') + digits;
+  }
+  const std::size_t point = static_cast<std::size_t>(exponent) + 1;
+  digits.resize(std::max(digits.size(), point + 1), '0');
+  return sign + digits.substr(0, point) + "." + digits.substr(point);
+}
+
+namespace inner {
+
+/// How a value is written: as `repr` does, or as JSON.
+enum class Style { python, json };
+
+/// `repr` of a text; letters beyond ASCII stand for themselves.
+inline void write_quoted(std::string &out, const std::string &value) {
+  const bool twice = contains(value, "'") && !contains(value, "\"");
+  const char quote = twice ? '"' : '\'';
+  out += quote;
+  for (const char c : value) {
+    if (c == quote || c == '\\') {
+      out += {'\\', c};
+    } else if (c == '\n' || c == '\r' || c == '\t') {
+      out += {'\\', c == '\n' ? 'n' : c == '\r' ? 'r' : 't'};
+    } else if (static_cast<unsigned char>(c) < 0x20U || c == '\x7f') {
+      char escape[8];
+      std::snprintf(escape, sizeof escape, "\\x%02x", static_cast<unsigned>(c));
+      out += escape;
+    } else {
+      out += c;
+    }
+  }
+  out += quote;
+}
+
+inline void write_unit(std::string &out, std::uint32_t unit) {
+  char escape[8];
+  std::snprintf(escape, sizeof escape, "\\u%04x", static_cast<unsigned>(unit & 0xFFFFU));
+  out += escape;
+}
+
+/// A text as JSON in ASCII.
+inline void write_json(std::string &out, const std::string &value) {
+  constexpr std::string_view special = "\"\\\n\r\t\b\f", letters = "\"\\nrtbf";
+  out += '"';
+  for (std::size_t place = 0; place < value.size();) {
+    const std::uint32_t point = detail::code_point(value, place);
+    const auto c = static_cast<char>(point & 0x7FU);
+    const auto which = point < 0x80U ? special.find(c) : std::string_view::npos;
+    if (which != std::string_view::npos) {
+      out += {'\\', letters[which]};
+    } else if (point >= 0x10000U) {
+      write_unit(out, 0xD800U + ((point - 0x10000U) >> 10U));
+      write_unit(out, 0xDC00U + ((point - 0x10000U) & 0x3FFU));
+    } else if (point < 0x20U || point > 0x7eU) {
+      write_unit(out, point);
+    } else {
+      out += c;
+    }
+  }
+  out += '"';
+}
+
+/// Writes the parts of a list one after the other, as `write` does.
+template <Style style, class... Parts> bool write_parts(std::string &out, const Parts &...parts);
+
+/// Writes one entry of a mapping, as `write` does.
+template <Style style, class T>
+bool write_entry(std::string &out, const char *before, const std::string &key, const T &value);
+
+/// Writes a value; false where a float in it is no number of JSON.
+template <Style style, class T> bool write(std::string &out, const T &value) {
+  constexpr bool python = style == Style::python;
+  bool fine = true;
+  if constexpr (std::is_same_v<T, bool>) {
+    out += value ? (python ? "True" : "true") : (python ? "False" : "false");
+  } else if constexpr (std::is_integral_v<T>) {
+    out += std::to_string(value);
+  } else if constexpr (std::is_floating_point_v<T>) {
+    out += text(value);
+    fine = std::isfinite(value);
+  } else if constexpr (std::is_same_v<T, std::string>) {
+    python ? write_quoted(out, value) : write_json(out, value);
+  } else if constexpr (std::is_same_v<T, None>) {
+    out += python ? "None" : "null";
+  } else if constexpr (detail::is_optional<T>::value) {
+    return value.has_value() ? write<style>(out, *value) : write<style>(out, None{});
+  } else if constexpr (detail::is_dict<T>::value) {
+    const char *before = "{";
+    for (const auto &entry : value) {
+      fine = write_entry<style>(out, before, entry.first, entry.second) && fine;
+      before = ", ";
+    }
+    out += value.empty() ? "{}" : "}";
+  } else if constexpr (detail::is_list<T>::value) {
+    out += '[';
+    for (std::size_t i = 0; i < value.size(); ++i) {
+      out += i == 0 ? "" : ", ";
+      fine = write<style, typename T::value_type>(out, value[i]) && fine;
+    }
+    out += ']';
+  } else if constexpr (std::is_same_v<T, Point>) {
+    return write_parts<style>(out, value.x, value.y, value.z);
+  } else if constexpr (std::is_same_v<T, Quaternion>) {
+    return write_parts<style>(out, value.x, value.y, value.z, value.w);
+  } else if constexpr (std::is_same_v<T, Pose>) {
+    return write_parts<style>(out, value.position, value.orientation);
+  } else if constexpr (std::is_same_v<T, Transform>) {
+    return write_parts<style>(out, value.translation, value.rotation);
+  } else if constexpr (std::is_same_v<T, PoseStamped>) {
+    fine = write_entry<style>(out, "{", "frame_id", value.frame_id);
+    fine = write_entry<style>(out, ", ", "pose", value.pose) && fine;
+    fine = write_entry<style>(out, ", ", "stamp", value.stamp) && fine;
+    out += '}';
+  } else if constexpr (std::is_same_v<T, JointState>) {
+    fine = write_entry<style>(out, "{", "effort", value.effort);
+    fine = write_entry<style>(out, ", ", "name", value.name) && fine;
+    fine = write_entry<style>(out, ", ", "position", value.position) && fine;
+    fine = write_entry<style>(out, ", ", "velocity", value.velocity) && fine;
+    out += '}';
+  } else {
+    static_assert(std::is_same_v<T, std::any>, "smachac cannot write values of this type");
+    out += python ? "None" : "null";
+  }
+  return fine;
+}
+
+template <Style style, class... Parts> bool write_parts(std::string &out, const Parts &...parts) {
+  const char *before = "[";
+  bool fine = true;
+  ((out += before, fine = write<style>(out, parts) && fine, before = ", "), ...);
+  out += ']';
+  return fine;
+}
+
+template <Style style, class T>
+bool write_entry(std::string &out, const char *before, const std::string &key, const T &value) {
+  out += before;
+  write<style>(out, key);
+  out += ": ";
+  return write<style>(out, value);
+}
+
+} // namespace inner
+
+/// `repr`, which `str` of anything but a text is. What is in a std::any is not shown.
+template <class T> std::string repr(const T &value) {
+  std::string out;
+  inner::write<inner::Style::python>(out, value);
+  return out;
+}
+
+/// `str`.
+template <class T> std::string text(const T &value) {
+  if constexpr (std::is_same_v<T, std::string>) {
+    return value;
+  } else if constexpr (detail::is_optional<T>::value) {
+    return value.has_value() ? text(*value) : "None";
+  } else {
+    return repr(value);
+  }
+}
+
+namespace inner {
+
+/// The text of a number without the space around it and the `_` between digits.
+inline std::string number(const std::string &given) {
+  std::size_t from = 0, to = given.size();
+  while (from < to && detail::is_space(given[from])) {
+    ++from;
+  }
+  while (to > from && detail::is_space(given[to - 1])) {
+    --to;
+  }
+  std::string result;
+  for (std::size_t i = from; i < to; ++i) {
+    const bool between =
+        i > from && i + 1 < to && detail::is_digit(given[i - 1]) && detail::is_digit(given[i + 1]);
+    if (given[i] != '_' || !between) {
+      result += given[i];
+    }
+  }
+  return result;
+}
+
+/// Steps over digits; how many there were.
+inline std::size_t digits(std::string_view text, std::size_t &place) {
+  const std::size_t from = place;
+  while (place < text.size() && detail::is_digit(text[place])) {
+    ++place;
+  }
+  return place - from;
+}
+
+/// Whether a text is a decimal number without a sign, and whether it is one or greater.
+inline bool is_decimal(std::string_view text, bool &great) {
+  std::size_t place = 0;
+  std::size_t count = digits(text, place);
+  const std::size_t point = count;
+  if (place < text.size() && text[place] == '.') {
+    ++place;
+    count += digits(text, place);
+  }
+  const std::size_t first = text.find_first_of("123456789");
+  const std::size_t end = place;
+  std::int64_t exponent = 0;
+  if (count > 0 && place < text.size() && (text[place] == 'e' || text[place] == 'E')) {
+    ++place;
+    const bool down = place < text.size() && text[place] == '-';
+    place += place < text.size() && (down || text[place] == '+') ? 1 : 0;
+    const std::size_t from = place;
+    count = digits(text, place);
+    for (std::size_t i = from; i < place && exponent < 1'000'000'000; ++i) {
+      exponent = exponent * 10 + (text[i] - '0');
+    }
+    exponent = down ? -exponent : exponent;
+  }
+  if (first < end) {
+    exponent += static_cast<std::int64_t>(point) - static_cast<std::int64_t>(first);
+    great = exponent > 0;
+  }
+  return count > 0 && place == text.size();
+}
+
+} // namespace inner
+
+/// `int` of a text; digits beyond ASCII are not read.
+inline std::int64_t whole(const std::string &given) {
+  const std::string found = inner::number(given);
+  std::size_t place = !found.empty() && (found[0] == '-' || found[0] == '+') ? 1 : 0;
+  const bool minus = place == 1 && found[0] == '-';
+  const std::size_t from = place;
+  if (inner::digits(found, place) == 0 || place != found.size()) {
+    fail("a text that is no whole number");
+  }
+  std::int64_t result = 0;
+  for (std::size_t i = from; i < found.size(); ++i) {
+    const std::int64_t digit = found[i] - '0';
+    result = add(multiply(result, 10), minus ? -digit : digit);
+  }
+  return result;
+}
+
+/// `float` of a text; digits beyond ASCII are not read.
+inline double real(const std::string &given) {
+  std::string found = inner::number(given);
+  const bool minus = !found.empty() && found[0] == '-';
+  if (minus || (!found.empty() && found[0] == '+')) {
+    found.erase(0, 1);
+  }
+  std::string lower = found;
+  for (char &c : lower) {
+    c = c >= 'A' && c <= 'Z' ? static_cast<char>(c - 'A' + 'a') : c;
+  }
+  double result = 0.0;
+  bool great = false;
+  if (lower == "inf" || lower == "infinity") {
+    result = HUGE_VAL;
+  } else if (lower == "nan") {
+    result = std::nan("");
+  } else if (!inner::is_decimal(found, great)) {
+    fail("a text that is no number");
+  } else {
+#if defined(__cpp_lib_to_chars)
+    const auto read = std::from_chars(found.data(), found.data() + found.size(), result);
+    if (read.ec != std::errc()) {
+      result = great ? HUGE_VAL : 0.0;
+    }
+#else
+    result = std::strtod(found.c_str(), nullptr);
+#endif
+  }
+  return minus ? -result : result;
+}
+
+} // namespace py
+
+/// A value as a trace shows it: JSON as Python's `json.dumps` writes it, entries by their names. A
+/// list or mapping with a float that is no number is the text that Python prints for it.
+template <class T> std::string json(const T &value) {
+  std::string out;
+  if (!py::inner::write<py::inner::Style::json>(out, value)) {
+    out = "";
+    py::inner::write_json(out, py::repr(value));
+  }
+  return out;
+}
+
+} // namespace smachac
+
+#endif

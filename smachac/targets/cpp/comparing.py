@@ -1,0 +1,166 @@
+"""Comparisons and membership as C++."""
+
+from __future__ import annotations
+
+from smachac.ir.types import Type
+from smachac.targets.cpp.terms import (
+    BOOL,
+    EQUALITY,
+    NUMBER,
+    RELATION,
+    SEQUENCES,
+    SIGNED,
+    SUM,
+    Term,
+    Text,
+    call,
+    fixed,
+    has,
+    inside,
+    join,
+    number,
+    present,
+    shown,
+    size_of,
+)
+from smachac.targets.cpp.types import (
+    EXACT,
+    FIELDS,
+    FLOAT,
+    INT,
+    LISTED,
+    NONE,
+    STR,
+    UnportableError,
+    cpp_literal,
+)
+
+DIRECT = (INT, FLOAT, NUMBER, STR)
+"""The types whose operators in C++ are those of Python."""
+
+
+def compare(word: str, left: Term, right: Term) -> Text:
+    """One comparison. Raises UnportableError where Python would raise TypeError."""
+    match word:
+        case "==":
+            return _equal(left, right)
+        case "!=":
+            found = _equal(left, right)
+            if found.binding == EQUALITY:
+                return Text(found.text.replace(" == ", " != ", 1), EQUALITY)
+            return Text(f"!{found.at(SIGNED)}", SIGNED)
+        case "in":
+            return _contains(left, right)
+        case "not in":
+            return Text(f"!{_contains(left, right).at(SIGNED)}", SIGNED)
+    return _ordered(word, left, right)
+
+
+def _direct(word: str, left: Term, right: Term) -> Text | None:
+    """The operator of C++ itself, where it means the same and no compiler warns of it."""
+    kinds = {left.type, right.type}
+    if left.constant is not None and right.constant is not None:
+        return None
+    floats = {FLOAT if kind == NUMBER else kind for kind in kinds}
+    if floats == {INT, FLOAT}:
+        whole = left if left.type == INT else right
+        if not isinstance(whole.constant, int) or abs(whole.constant) > EXACT:
+            return None
+        one, other = (_side(each, FLOAT if each is whole else each.type) for each in (left, right))
+    elif len(floats) == 1 and (kinds <= set(DIRECT) or (kinds == {BOOL} and word == "==")):
+        one, other = _side(left, left.type), _side(right, right.type)
+    else:
+        return None
+    if one == other:
+        return None
+    return Text(f"{one} {word} {other}", EQUALITY if word == "==" else RELATION)
+
+
+def _side(term: Term, as_: Type) -> str:
+    if isinstance(term.constant, str) and "\0" not in term.constant:
+        return cpp_literal(term.constant)
+    return term.spell(as_).at(SUM)
+
+
+def _ordered(word: str, left: Term, right: Term) -> Text:
+    direct = _direct(word, left, right)
+    if direct is not None:
+        return direct
+    if not _have_order(present(left.type), present(right.type)):
+        reason = f"`{shown(left.type)}` {word} `{shown(right.type)}` has no value"
+        raise UnportableError(reason)
+    left, right = there(left), there(right)
+    one, other = _side_of(left, right), _side_of(right, left)
+    if word in (">", ">="):
+        one, other = other, one
+    return call("less" if word in ("<", ">") else "at_most", one, other)
+
+
+def there(term: Term) -> Term:
+    """What is there of a term; an error where nothing is."""
+    if term.type.name != "optional":
+        return term
+    return fixed(present(term.type), Text(term.present()))
+
+
+def _have_order(one: Type, other: Type) -> bool:
+    """Whether values of two types have an order in Python, whatever they are."""
+    if "never" in (one.name, other.name):
+        return True
+    if number(one) is not None and number(other) is not None:
+        return "optional" not in (one.name, other.name)
+    kinds = {one.name, other.name}
+    if kinds <= {"list", "array"} or kinds == {"tuple"}:
+        return _have_order(inside(one), inside(other))
+    return one == other == STR
+
+
+def orderable(type_: Type) -> bool:
+    """Whether the values of a type have an order among themselves."""
+    return _have_order(type_, type_)
+
+
+def _equal(left: Term, right: Term) -> Text:
+    direct = _direct("==", left, right)
+    if direct is not None:
+        return direct
+    for one, other in ((left, right), (right, left)):
+        if other.type == NONE and one.type.name == "optional" and other.simple:
+            return Text(f"{one.text(SUM)} == std::nullopt", EQUALITY)
+        if one.type.name in LISTED and present(other.type).name in SEQUENCES:
+            if size_of(other.type) != len(FIELDS[one.type.name]):
+                raise UnportableError(f"a `{one.type}` is compared with a list of as many items")
+            return call("equal", one.text(), other.spell(one.type).text)
+    _refuse_kinds(left.type, right.type)
+    return call("equal", _side_of(left, right), _side_of(right, left))
+
+
+def _side_of(term: Term, other: Term) -> str:
+    """A side of a comparison; an empty list is one of whatever the other side has."""
+    common = join(term.type, other.type)
+    known = has(term.type, "never") and common.name != "mixed"
+    return term.spell(common if known else term.type).text
+
+
+def _refuse_kinds(one: Type, other: Type) -> None:
+    """Lists, tuples and ranges never equal each other in Python; in C++ they are alike."""
+    one, other = present(one), present(other)
+    if one.name in SEQUENCES and other.name in SEQUENCES:
+        kinds = {"list" if each.name == "array" else each.name for each in (one, other)}
+        if len(kinds) > 1:
+            raise UnportableError(f"a {' never equals a '.join(sorted(kinds))}")
+        _refuse_kinds(inside(one), inside(other))
+    elif one.name == other.name == "dict":
+        _refuse_kinds(inside(one), inside(other))
+
+
+def _contains(left: Term, right: Term) -> Text:
+    kind = present(right.type)
+    if kind == STR or kind.name == "dict":
+        if present(left.type) != STR:
+            raise UnportableError(f"a `{shown(left.type)}` is never in a `{shown(kind)}`")
+        return call("contains", right.present(), left.present())
+    if kind.name not in SEQUENCES:
+        raise UnportableError(f"nothing is in a `{shown(kind)}`")
+    _refuse_kinds(left.type, inside(kind))
+    return call("contains", right.present(), left.text())

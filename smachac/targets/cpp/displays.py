@@ -1,0 +1,92 @@
+"""Lists, tuples and mappings that an expression writes out, as C++."""
+
+from __future__ import annotations
+
+from smachac.ir.types import Type
+from smachac.targets.cpp.terms import (
+    NEVER,
+    Term,
+    Text,
+    converted,
+    cpp,
+    ground,
+    inside,
+    joined,
+    shown,
+    size_of,
+)
+from smachac.targets.cpp.types import FIELDS, LISTED, STR, UnportableError, braced
+
+
+def listed(items: list[Term], kind: str) -> Term:
+    """`[a, b]` and `(a, b)`; `kind` is `array` or `tuple`."""
+    item = joined([each.type for each in items])
+    if item.name == "mixed":
+        own = item
+    elif items:
+        own = Type(kind, (item, len(items)))
+    else:
+        own = Type("list" if kind == "array" else kind, (NEVER,))
+
+    def spell(wanted: Type) -> Text:
+        if wanted.name == "optional":
+            return converted(spell(inside(wanted)), inside(wanted), wanted)
+        if wanted.name in LISTED:
+            return _struct(wanted, items)
+        if wanted.name not in ("list", "array", "tuple"):
+            return converted(Text(""), own, wanted)
+        size = size_of(wanted)
+        if size is not None and size != len(items):
+            raise UnportableError(f"this has {len(items)} items, and {size} are wanted")
+        return Text(braced(cpp(wanted), [each.spell(inside(wanted)).text for each in items]))
+
+    return Term(type=own, spell=spell)
+
+
+def _struct(wanted: Type, items: list[Term]) -> Text:
+    """A struct that scripts write as a list."""
+    fields = FIELDS[wanted.name].values()
+    parts = [item.spell(part).text for item, part in zip(items, fields, strict=False)]
+    if len(items) == 3 and wanted.name in ("Pose", "Transform"):
+        # As in the simulation: without a rotation.
+        point = ", ".join(item.spell(Type("float")).text for item in items)
+        parts = [f"smachac::Point{{{point}}}", "smachac::Quaternion{}"]
+    elif len(items) != len(fields):
+        raise UnportableError(f"a `{wanted}` has {len(fields)} parts, and not {len(items)}")
+    return Text(f"{cpp(wanted)}{{{', '.join(parts)}}}")
+
+
+def mapped(entries: list[tuple[Term, Term]]) -> Term:
+    """`{a: b}`. Of equal keys Python takes the last, and C++ the first."""
+    item = joined([value.type for _, value in entries])
+    own = item if item.name == "mixed" else Type("dict", (item,))
+    for key, _ in entries:
+        if key.type != STR:
+            raise UnportableError(f"keys of mappings are texts, and not `{shown(key.type)}`")
+    keys = [key.constant for key, _ in entries]
+    apart = None not in keys and len(set(keys)) == len(keys)
+
+    def spell(wanted: Type) -> Text:
+        if wanted.name == "optional":
+            return converted(spell(inside(wanted)), inside(wanted), wanted)
+        if wanted.name in ("PoseStamped", "JointState"):
+            return _record(wanted, {str(key.constant): value for key, value in entries})
+        if wanted.name != "dict":
+            return converted(Text(""), own, wanted)
+        pairs = [f"{{{k.text()}, {v.spell(inside(wanted)).text}}}" for k, v in entries]
+        return Text(braced(cpp(wanted), pairs if apart else pairs[::-1]))
+
+    return Term(type=own, spell=spell)
+
+
+def _record(wanted: Type, given: dict[str, Term]) -> Text:
+    """A struct that scripts write as a mapping."""
+    fields = FIELDS[wanted.name]
+    unknown = [key for key in given if key not in fields]
+    if unknown:
+        raise UnportableError(f"a `{wanted}` has no `{unknown[0]}`: it has {', '.join(fields)}")
+    parts = [
+        given[key].spell(part).text if key in given else f"{cpp(ground(part))}{{}}"
+        for key, part in fields.items()
+    ]
+    return Text(f"{cpp(wanted)}{{{', '.join(parts)}}}")

@@ -1,0 +1,304 @@
+"""Types and constants of the script as C++.
+
+| script                | C++                           |
+| `bool` `int` `float`  | `bool` `std::int64_t` `double`|
+| `str`, `one_of` words | `std::string`, in UTF-8       |
+| `list[T]`             | `std::vector<T>`              |
+| `T[N]`                | `std::array<T, N>`            |
+| `dict[str, T]`        | `std::map<std::string, T>`    |
+| `T?`                  | `std::optional<T>`            |
+| `Pose` and its like   | structs of smachac/values.hpp |
+| `any`                 | `std::any`                    |
+| `none`                | `smachac::None`               |
+
+An enumeration is a string, not an enum class: it is compared with, joined to and printed as texts
+in expressions, fits a `str` key, and its choices need not be names of C++. Units are dropped.
+"""
+
+from __future__ import annotations
+
+import math
+import re
+from collections.abc import Mapping
+
+from smachac.ir.nodes import Data, Expression, Struct
+from smachac.ir.types import STRUCTS, Type
+
+SMALLEST, LARGEST = -(2**63), 2**63 - 1
+"""The whole numbers of `std::int64_t`."""
+
+EXACT = 2**53
+"""Up to this size every whole number is a float."""
+
+NONE, INT, FLOAT, STR, ANY = map(Type, ("none", "int", "float", "str", "any"))
+POINT, QUATERNION = Type("Point"), Type("Quaternion")
+FLOATS = Type("list", (FLOAT,))
+
+FIELDS: Mapping[str, Mapping[str, Type]] = {
+    "Point": dict.fromkeys("xyz", FLOAT),
+    "Quaternion": dict.fromkeys("xyzw", FLOAT),
+    "Pose": {"position": POINT, "orientation": QUATERNION},
+    "Transform": {"translation": POINT, "rotation": QUATERNION},
+    "PoseStamped": {"frame_id": STR, "stamp": FLOAT, "pose": Type("Pose")},
+    "JointState": {
+        "name": Type("list", (STR,)),
+        "position": FLOATS,
+        "velocity": FLOATS,
+        "effort": FLOATS,
+    },
+}
+"""The members of the structs, in their order. The first four are written as lists in scripts, the
+others as mappings."""
+
+LISTED = ("Point", "Quaternion", "Pose", "Transform")
+
+SCALARS = {
+    "bool": "bool",
+    "int": "std::int64_t",
+    "float": "double",
+    "str": "std::string",
+    "any": "std::any",
+    "none": "smachac::None",
+}
+
+
+class UnportableError(Exception):
+    """Something of the script that C++ cannot say; the message says what, and why.
+
+    `told`: it names the part of an expression that it is about.
+    """
+
+    told = False
+
+
+def cpp_type(type_: Type) -> str:
+    """The C++ type of values of a type. Raises UnportableError where C++ cannot know one."""
+    type_ = plain(type_)
+    match type_.name, type_.args:
+        case name, () if name in STRUCTS:
+            return f"smachac::{name}"
+        case name, () if name in SCALARS:
+            return SCALARS[name]
+        case "list", (Type() as item,):
+            return f"std::vector<{cpp_type(item)}>"
+        case "array", (Type() as item, int(size)):
+            return f"std::array<{cpp_type(item)}, {size}>"
+        case "dict", (Type() as item,):
+            return f"std::map<std::string, {cpp_type(item)}>"
+        case "optional", (Type() as item,):
+            return f"std::optional<{cpp_type(item)}>"
+    raise UnportableError(
+        f"of the type `{type_}` nothing but its name is known: C++ needs its members"
+    )
+
+
+def plain(type_: Type) -> Type:
+    """A type without what C++ does not tell apart: units, choices, words that name no type."""
+    match type_.name, type_.args:
+        case "int" | "float", _:
+            return Type(type_.name)
+        case "one_of" | "literal", choices:
+            kinds = {STR if isinstance(choice, str) else INT for choice in choices}
+            return kinds.pop() if len(kinds) == 1 else ANY
+        case "list" | "dict", ():
+            return Type(type_.name, (ANY,))
+        case "optional", (Type() as item,):
+            inner = plain(item)
+            return (
+                inner if inner.name in ("optional", "any", "none") else Type("optional", (inner,))
+            )
+        case name, () if (
+            name not in STRUCTS and name not in SCALARS and not re.search("[./]", name)
+        ):
+            return ANY
+    args = tuple(plain(arg) if isinstance(arg, Type) else arg for arg in type_.args)
+    return Type(type_.name, args)
+
+
+def cpp_value(data: Data, type_: Type) -> str:
+    """C++ text of a constant as a value of a type. Raises UnportableError where it is none."""
+    return _value(data, plain(type_))
+
+
+def _value(data: Data, type_: Type) -> str:
+    match type_.name, data:
+        case _, Expression():
+            return _value(_computed(data), type_)
+        case "any", _:
+            return _any(data)
+        case "optional", None:
+            return f"{cpp_type(type_)}{{}}"
+        case "optional", _:
+            return f"{cpp_type(type_)}{{{_value(data, _inside(type_))}}}"
+        case "none", None:
+            return "smachac::None{}"
+        case "bool", bool():
+            return cpp_bool(data)
+        case _, bool():
+            pass
+        case "int", int():
+            return cpp_int(data)
+        case "float", int() | float():
+            return cpp_float(data)
+        case "str", str():
+            return cpp_string(data)
+        case "list" | "array" | "dict", tuple() | Struct():
+            return _items(data, type_)
+        case name, tuple() | Struct() if name in FIELDS:
+            return f"{cpp_type(type_)}{{{', '.join(_members(data, name))}}}"
+    raise UnportableError(f"{_shown(data)} is no `{type_}`")
+
+
+def _inside(type_: Type) -> Type:
+    first = type_.args[0]
+    return first if isinstance(first, Type) else ANY
+
+
+def _any(data: Data) -> str:
+    """A constant of a key of unknown type, in the simplest type that holds it."""
+    match data:
+        case None:
+            return "std::any{}"
+        case bool() | int() | float() | str():
+            name = {bool: "bool", int: "int", float: "float", str: "str"}[type(data)]
+            return f"std::any{{{_value(data, Type(name))}}}"
+        case tuple():
+            return f"std::any{{{_value(data, Type('list', (ANY,)))}}}"
+        case Struct():
+            return f"std::any{{{_value(data, Type('dict', (ANY,)))}}}"
+    raise UnportableError(f"{_shown(data)} has no type")
+
+
+def _items(data: tuple[Data, ...] | Struct, type_: Type) -> str:
+    inner = _inside(type_)
+    match type_.args, data:
+        case (_, int(size)), tuple() if len(data) != size:
+            raise UnportableError(
+                f"{_shown(data)} has {len(data)} items, and not {size} as `{type_}`"
+            )
+        case _, tuple() if type_.name != "dict":
+            return braced(cpp_type(type_), [_value(item, inner) for item in data])
+        case _, Struct(entries=entries) if type_.name == "dict":
+            pairs = [f"{{{cpp_string(key)}, {_value(item, inner)}}}" for key, item in entries]
+            return braced(cpp_type(type_), pairs)
+    raise UnportableError(f"{_shown(data)} is no `{type_}`")
+
+
+def braced(name: str, items: list[str]) -> str:
+    """A value of a container; a std::array has one in it with braces of its own."""
+    inner = ", ".join(items)
+    return (
+        f"{name}{{{{{inner}}}}}"
+        if name.startswith("std::array") and items
+        else f"{name}{{{inner}}}"
+    )
+
+
+def _members(data: tuple[Data, ...] | Struct, name: str) -> list[str]:
+    """The members of a struct from the list or the mapping that scripts write for it."""
+    fields = FIELDS[name]
+    if isinstance(data, tuple):
+        if name not in LISTED:
+            raise UnportableError(f"a `{name}` is a mapping of {', '.join(fields)}")
+        if len(data) == 3 and name in ("Pose", "Transform"):
+            # As in the simulation: without a rotation.
+            return [_value(data, POINT), "smachac::Quaternion{}"]
+        if len(data) != len(fields):
+            raise UnportableError(f"{_shown(data)} is no `{name}`, which has {len(fields)} parts")
+        return [_value(item, part) for item, part in zip(data, fields.values(), strict=True)]
+    given = dict(data.entries)
+    unknown = [key for key in given if key not in fields]
+    if unknown:
+        raise UnportableError(f"a `{name}` has no `{unknown[0]}`: it has {', '.join(fields)}")
+    return [
+        _value(given[key], part) if key in given else f"{cpp_type(part)}{{}}"
+        for key, part in fields.items()
+    ]
+
+
+def _computed(expression: Expression) -> Data:
+    """The value of an expression over nothing. Raises UnportableError where it has none."""
+    from smachac.ir.evaluate import EvaluationError, evaluate
+    from smachac.ir.expressions import parse_expression
+
+    tree = parse_expression(expression.text)
+    if tree is None:
+        raise UnportableError(f"`{expression.text}` is Python code, not a portable expression")
+    try:
+        return script_data(evaluate(tree, {}))
+    except EvaluationError as error:
+        raise UnportableError(f"`{expression.text}` is no constant: {error}") from error
+
+
+def script_data(value: object) -> Data:
+    """A value of Python as the script would write it. Raises UnportableError where it could not."""
+    match value:
+        case None | bool() | int() | float() | str():
+            return value
+        case list() | tuple() | range():
+            return tuple(script_data(item) for item in value)
+        case dict() if all(isinstance(key, str) for key in value):
+            return Struct(entries=tuple((key, script_data(item)) for key, item in value.items()))
+    raise UnportableError(f"{value!r} is no value of C++")
+
+
+def _shown(data: Data) -> str:
+    """A constant in a message."""
+    match data:
+        case tuple():
+            return "a list"
+        case Struct():
+            return "a mapping"
+    return f"`{data!r}`"
+
+
+def cpp_bool(value: bool) -> str:
+    return "true" if value else "false"
+
+
+def cpp_int(value: int) -> str:
+    """C++ text of a whole number. Raises UnportableError beyond 64 bits, where Python goes on."""
+    if not SMALLEST <= value <= LARGEST:
+        raise UnportableError(f"{value} is too large for the 64 bits of a whole number in C++")
+    return str(value) if value != SMALLEST else f"({SMALLEST + 1} - 1)"
+
+
+def cpp_float(value: float) -> str:
+    """C++ text that reads back as the same float. Raises UnportableError where there is none."""
+    if isinstance(value, int):
+        if abs(value) > EXACT and not (abs(value) < 2**1000 and float(value) == value):
+            raise UnportableError(f"no float is the whole number {value}")
+        value = float(value)
+    if math.isnan(value):
+        return "std::numeric_limits<double>::quiet_NaN()"
+    if math.isinf(value):
+        return f"{'-' if value < 0 else ''}std::numeric_limits<double>::infinity()"
+    return repr(value)
+
+
+_ESCAPES = {"\\": "\\\\", '"': '\\"', "\n": "\\n", "\r": "\\r", "\t": "\\t"}
+
+
+def cpp_literal(value: str) -> str:
+    """A string literal of C++ in ASCII, its bytes those of UTF-8.
+
+    Raises UnportableError for halves of code points, which Python has and UTF-8 has not.
+    """
+    try:
+        data = value.encode("utf-8")
+    except UnicodeEncodeError as error:
+        raise UnportableError(f"{value!r} holds half a code point, which is no UTF-8") from error
+    text = "".join(
+        _ESCAPES.get(chr(byte)) or (chr(byte) if 32 <= byte < 127 else f"\\{byte:03o}")
+        for byte in data
+    )
+    # Two question marks start a trigraph.
+    return '"' + re.sub(r"(?<=\?)\?", r"\\?", text) + '"'
+
+
+def cpp_string(value: str) -> str:
+    """C++ text of a std::string."""
+    literal = cpp_literal(value)
+    if "\0" in value:
+        return f"std::string({literal}, {len(value.encode())})"
+    return f"std::string({literal})" if value else "std::string()"

@@ -1,0 +1,88 @@
+"""The C++ compilers of this machine: `g++`, `clang++`, else the one in the package `ziglang`."""
+
+from __future__ import annotations
+
+import functools
+import hashlib
+import importlib.util
+import os
+import shutil
+import subprocess
+import sys
+from collections.abc import Sequence
+from dataclasses import dataclass
+from pathlib import Path
+
+import smachac
+
+HEADERS = Path(smachac.__file__).parent / "runtime" / "cpp"
+"""The folder that holds smachac/*.hpp."""
+
+WARNINGS = (
+    *("-Wall", "-Wextra", "-Wpedantic", "-Wconversion", "-Wshadow", "-Werror"),
+    # Floats as Python computes them, also where the machine could fuse two operations.
+    "-ffp-contract=off",
+)
+SANITIZED = ("-fsanitize=address,undefined", "-fno-sanitize-recover=all")
+BARE = ("-fno-exceptions", "-fno-rtti")
+
+
+@dataclass(frozen=True, slots=True)
+class Compiler:
+    """A compiler by its kind, `g++` or `clang++`, and how it is called."""
+
+    name: str
+    command: tuple[str, ...]
+
+    def sanitizes(self, folder: Path) -> bool:
+        """Whether what sanitizers need is installed."""
+        try:
+            self.run("int main() {}", folder, *SANITIZED)
+        except AssertionError:
+            return False
+        return True
+
+    def compile(
+        self, text: str, folder: Path, *flags: str, standard: str = "c++17", warnings: bool = True
+    ) -> Path:
+        """The program of one translation unit, made once in a folder for a text and its flags.
+
+        Fails with what the compiler says.
+        """
+        call = [*self.command, f"-std={standard}", *(WARNINGS if warnings else ()), *flags]
+        digest = hashlib.sha256("\0".join([*call, text]).encode()).hexdigest()[:16]
+        program = folder / f"program-{digest}"
+        if not program.exists():
+            source = folder / f"{digest}.cpp"
+            source.write_text(text, "utf-8")
+            made = folder / f"{digest}-{os.getpid()}"
+            call += [f"-I{HEADERS}", str(source), "-o", str(made)]
+            run = subprocess.run(call, capture_output=True, text=True, timeout=600, check=False)
+            assert run.returncode == 0, f"{' '.join(call)}\n{run.stderr[:6000]}"
+            made.replace(program)
+        return program
+
+    def run(self, text: str, folder: Path, *flags: str, standard: str = "c++17") -> str:
+        """What the program of a text prints. Fails where it does not end well."""
+        program = self.compile(text, folder, *flags, standard=standard)
+        run = subprocess.run(
+            [str(program)], capture_output=True, text=True, timeout=600, check=False
+        )
+        assert run.returncode == 0, f"ended with {run.returncode}\n{run.stderr[:6000]}"
+        return run.stdout
+
+
+def _first(kind: str, names: Sequence[str]) -> list[Compiler]:
+    found = next(filter(None, map(shutil.which, names)), None)
+    return [Compiler(kind, (found,))] if found else []
+
+
+@functools.cache
+def compilers() -> tuple[Compiler, ...]:
+    """Those that are here, one of each kind."""
+    versions = [f"clang++-{number}" for number in range(22, 11, -1)]
+    found = [*_first("g++", ["g++"]), *_first("clang++", ["clang++", *versions])]
+    if not found and importlib.util.find_spec("ziglang"):
+        command = (sys.executable, "-m", "ziglang", "c++")
+        found = [Compiler("clang++", command)]
+    return tuple(found)
