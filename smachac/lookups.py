@@ -21,6 +21,8 @@ MAX_TEXT = 100_000
 MAX_NODES = 100_000
 """The most nodes that a param may hold once its look-ups are filled in."""
 
+MAX_FILLED, MAX_FILLED_BY_STATE = 100_000, 100
+"""The most nodes that all look-ups of a script may stand for, and as many more for each state."""
 
 MAX_LEVELS = 100
 """The most levels of a value: what reads Python or C++ allows about 200 brackets in brackets."""
@@ -122,14 +124,17 @@ def child_scope(scope: Scope, own: Tree | None, report: Report) -> Scope:
 
 
 def _size_beyond(tree: Tree, limit: int) -> bool:
+    return size_up_to(tree, limit) > limit
+
+
+def size_up_to(tree: Tree, limit: int) -> int:
+    """The nodes of a tree, counted no further than one beyond a limit."""
     stack, seen = [tree], 0
-    while stack:
+    while stack and seen <= limit:
         seen += 1
-        if seen > limit:
-            return True
         node = stack.pop()
         if isinstance(node, Seq):
             stack.extend(node.items)
         elif isinstance(node, Map):
             stack.extend(entry.value for entry in node.entries)
-    return False
+    return seen

@@ -11,7 +11,16 @@ from smachac import problems, schema, shapes
 from smachac.calls import overridden, sub_script_entries
 from smachac.diagnostics import Related, Report, did_you_mean
 from smachac.ir.nodes import Key, Outcome
-from smachac.lookups import MAX_LEVELS, Scope, child_scope, fill_in, is_too_deep
+from smachac.lookups import (
+    MAX_FILLED,
+    MAX_FILLED_BY_STATE,
+    MAX_LEVELS,
+    Scope,
+    child_scope,
+    fill_in,
+    is_too_deep,
+    size_up_to,
+)
 from smachac.source import Source, Span, Word
 from smachac.states import Library, StateType, find_state_type
 from smachac.sugar import check_sugar
@@ -102,7 +111,7 @@ class _Resolver:
         self.sources: dict[int, Source] = {}
         self.types: dict[str, StateType | None] = {}
         self.sub_scripts: dict[tuple[str, str], tuple[Source, Tree | None] | None] = {}
-        self.count = 0
+        self.count = self.looked_up = 0
 
     def script(self, source: Source, tree: Map) -> Script:
         self.sources[id(source)] = source
@@ -164,8 +173,20 @@ class _Resolver:
         names = row is not None and row.shape in ("names", "keys")
         entry = self.shallow(entry)
         new = fill_in(entry.value, scope, self.report, names=names)
-        filled = entry if new is entry.value else self.shallow(Entry(entry.key, new))
+        filled = entry if new is entry.value else self.shallow(self.small(entry, new))
         return typed(key, filled, self.aliases, self.report)
+
+    def small(self, entry: Entry, new: Tree) -> Entry:
+        """The entry with its look-ups filled in, unless all of them have become too much."""
+        room = MAX_FILLED + MAX_FILLED_BY_STATE * self.count - self.looked_up
+        own = size_up_to(entry.value, room)
+        grown = size_up_to(new, room + own) - own
+        if grown > room:
+            message = "the look-ups of this script stand for more than the limit of nodes"
+            self.report.append(problems.too_big(entry.value.span, message, None))
+            return Entry(entry.key, known_wrong(entry.value.span))
+        self.looked_up += max(0, grown)
+        return Entry(entry.key, new)
 
     def shallow(self, entry: Entry) -> Entry:
         """The entry, without a value that is nested too deep."""

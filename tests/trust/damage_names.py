@@ -318,7 +318,10 @@ def entries(victim: Victim, *names: str) -> list[tuple[Site, str]]:
 
 @kind
 def write_a_key_twice(victim: Victim) -> Mutant | None:
-    site, name = victim.draw.choice(entries(victim, "template", "doc", "outcomes", "transitions"))
+    found = entries(victim, "template", "doc", "outcomes", "transitions")
+    if not found:
+        return None
+    site, name = victim.draw.choice(found)
     value = "[a]" if name == "outcomes" else "{a: b}" if name == "transitions" else "Base"
 
     def edit(rows: list[str], at: int) -> None:
@@ -346,7 +349,10 @@ def indent_with_a_tab(victim: Victim) -> Mutant | None:
 
 @kind
 def leave_a_bracket_open(victim: Victim) -> Mutant | None:
-    site, name = victim.draw.choice(entries(victim, "template", "script"))
+    found = entries(victim, "template", "script")
+    if not found:
+        return None
+    site, name = victim.draw.choice(found)
 
     def edit(rows: list[str], at: int) -> None:
         rows[at] = rows[at].replace(": ", ": [", 1)
@@ -357,6 +363,8 @@ def leave_a_bracket_open(victim: Victim) -> Mutant | None:
 @kind
 def leave_a_block_empty(victim: Victim) -> Mutant | None:
     found = entries(victim, "outcomes", "transitions", "states", "remapping", "input_keys")
+    if not found:
+        return None
     site, name = victim.draw.choice(found)
     site.body[name] = None
     return Mutant(codes=("SM004",), places=((site.file, (*site.path, name)),))
