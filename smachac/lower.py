@@ -199,6 +199,7 @@ def _leaf(state: State) -> Leaf:
         writes=type_.writes,
         open=type_.open,
         blocking=type_.blocking,
+        body=type_.body,
     )
 
 

@@ -8,13 +8,14 @@ from __future__ import annotations
 
 import re
 from collections.abc import Callable, Mapping, Sequence
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from keyword import iskeyword
 from typing import Literal
 
 from smachac import problems, shapes
 from smachac.diagnostics import Report, did_you_mean
-from smachac.ir.nodes import Key, Outcome
+from smachac.ir.nodes import Body, Key, Outcome
+from smachac.ir.python_body import python_body
 from smachac.ir.types import ANY, Type, optional
 from smachac.policy import Policy
 from smachac.source import Source, Span, Word
@@ -61,8 +62,8 @@ class StateType:
 
     `given` names what the script itself supplies, beyond what stands here: any of
     "variables", "input_keys", "output_keys", "outcomes" (`"*": {}` in the interface).
-    `code` maps a language to a template's file name or to a reference to code. `open`: there is no
-    interface.
+    `code` maps a language to a template's file name or to a reference to code. `body` is what the
+    template of Python does. `open`: there is no interface.
     """
 
     name: str
@@ -77,6 +78,7 @@ class StateType:
     claims: tuple[str, ...] = ()
     blocking: bool = False
     code: Mapping[str, str] = field(default_factory=dict)
+    body: Body | None = None
     open: bool = False
 
 
@@ -127,6 +129,12 @@ def _read_interface(name: str, source: Source, library: Library, report: Report)
             continue
         shapes.READERS[_FIELDS[key]](entry.value, report)
         fields[key] = entry.value
+    code = _code(fields.get("code"), report)
+    given = frozenset(
+        part
+        for part in ("variables", "input_keys", "output_keys", "outcomes")
+        if isinstance(tree := fields.get(part), Map) and tree.get("*") is not None
+    )
     return StateType(
         name=name,
         kind=_kind(fields.get("kind"), report),
@@ -141,16 +149,27 @@ def _read_interface(name: str, source: Source, library: Library, report: Report)
             for key, value in _declared(fields.get("outcomes"))
         ),
         writes=_writes(fields, report),
-        given=frozenset(
-            part
-            for part in ("variables", "input_keys", "output_keys", "outcomes")
-            if isinstance(tree := fields.get(part), Map) and tree.get("*") is not None
-        ),
+        given=given,
         claims=tuple(word.text for word in shapes.as_names(fields["claims"], []))
         if "claims" in fields
         else (),
         blocking="blocking" in fields and shapes.as_flag(fields["blocking"], []),
-        code=_code(fields.get("code"), report),
+        code=code,
+        body=_body(name, code.get("python", ""), given, library),
+    )
+
+
+def _body(name: str, file: str, given: frozenset[str], library: Library) -> Body | None:
+    """What the template of Python does, without what hangs on what the script declares."""
+    template = library.template(file) if file and ":" not in file else None
+    body = python_body(template, name) if template is not None else None
+    if body is None:
+        return None
+    return replace(
+        body,
+        returns=() if "outcomes" in given else body.returns,
+        reads=() if "input_keys" in given else body.reads,
+        writes=() if {"input_keys", "output_keys"} & given else body.writes,
     )
 
 

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from smachac.checks import (
+    bodies,
     concurrence,
     coverage,
     dataflow,
@@ -22,6 +23,7 @@ from smachac.diagnostics import Report, run_rules
 from smachac.ir.nodes import Machine
 
 __all__ = [
+    "bodies",
     "check_machine",
     "concurrence",
     "coverage",

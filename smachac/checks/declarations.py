@@ -4,7 +4,8 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Iterator
 
-from smachac.checks.hints import calls
+from smachac.checks.bodies import dropped_writes, unknown_reads
+from smachac.checks.hints import calls, did_you_mean, guesser
 from smachac.checks.lost import lost_outputs
 from smachac.checks.missing import missing_keys
 from smachac.checks.outline import is_open
@@ -261,10 +262,12 @@ def lossy_write(machine: Machine) -> Iterator[Finding]:
             yield Finding(
                 span=span,
                 message=f"`{leaf.name}` sets `{key}`, {what}: the value is dropped",
-                help=f"add `{key}` to the `output_keys` of `{leaf.name}`",
+                help=_meant(key, leaf.outputs if not only else ())
+                or f"add `{key}` to the `output_keys` of `{leaf.name}`",
                 related=calls(leaf, span),
                 node=path,
             )
+    yield from dropped_writes(machine)
 
 
 def _leaves_with_code(machine: Machine) -> Iterator[tuple[str, Leaf]]:
@@ -273,6 +276,10 @@ def _leaves_with_code(machine: Machine) -> Iterator[tuple[str, Leaf]]:
         for child in container.children if not isinstance(container, nodes.Iterator) else ():
             if isinstance(child, Leaf) and not child.open:
                 yield f"{path}/{child.name}", child
+
+
+def _meant(key: str, known: Iterable[Key]) -> str | None:
+    return did_you_mean(guesser(each.name for each in known)(key))
 
 
 def _place_of_write(leaf: Leaf, key: str) -> Span:
@@ -323,7 +330,9 @@ def undeclared_access(machine: Machine) -> Iterator[Finding]:
             yield Finding(
                 span=code.span,
                 message=f"the code of `{leaf.name}` reads `{key}`, which is none of its input keys",
-                help=f"add `{key}` to the `input_keys` of `{leaf.name}`",
+                help=_meant(key, leaf.inputs)
+                or f"add `{key}` to the `input_keys` of `{leaf.name}`",
                 related=calls(leaf, code.span),
                 node=path,
             )
+    yield from unknown_reads(machine)

@@ -6,9 +6,13 @@ import ast
 import warnings
 from collections.abc import Iterator
 
+from smachac.checks.hints import calls, did_you_mean, guesser
 from smachac.diagnostics import Finding, Severity, rule
+from smachac.ir.accesses import callbacks
 from smachac.ir.nodes import Expression, Leaf, Machine, Struct
-from smachac.ir.walk import expressions, walk
+from smachac.ir.walk import expressions, outcome_names, walk
+from smachac.problems import listed
+from smachac.source import Word
 
 
 @rule("SM016", "bad-expression", Severity.ERROR, firm=True)
@@ -84,3 +88,34 @@ def _missing_code(leaf: Leaf, path: str) -> Iterator[Finding]:
                     help=f"write it as `{key}: 'lambda ud: ud.n + 1'`, or name a function",
                     node=path,
                 )
+
+
+def unknown_endings(path: str, leaf: Leaf) -> Iterator[Finding]:
+    """What the script makes a leaf end with that is none of its outcomes; SM102 says it."""
+    outcomes = outcome_names(leaf)
+    guess = guesser(outcomes)
+    known = f"its outcomes are {listed(outcomes)}"
+    for word, what in _endings(leaf) if outcomes and not leaf.open else ():
+        if word.text not in outcomes:
+            yield Finding(
+                span=word.span,
+                message=f"{what} of `{leaf.name}` is for `{word.text}`,"
+                " which is none of its outcomes",
+                help=did_you_mean(guess(word.text)) or known,
+                related=calls(leaf, word.span),
+                node=path,
+            )
+
+
+def _endings(leaf: Leaf) -> Iterator[tuple[Word, str]]:
+    """The outcomes that conditions and steps of a leaf speak of."""
+    if leaf.type == "ConditionalOutcomeState":
+        for outcome, code in (callbacks(leaf) or {}).items():
+            yield Word(outcome, code.span), "a condition"
+    elif leaf.type == "ScriptedState":
+        for held in leaf.variables:
+            steps = held.value.data if held.name == "steps" else ()
+            for step in steps if isinstance(steps, tuple) else ():
+                told = dict(step.entries).get("outcome") if isinstance(step, Struct) else None
+                if isinstance(told, str) and told:
+                    yield Word(told, held.value.span), "a step"

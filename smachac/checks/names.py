@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterator
 from typing import NamedTuple
 
+from smachac.checks.expressions import unknown_endings
 from smachac.checks.hints import calls, did_you_mean, guesser, other_place
 from smachac.checks.outline import (
     Linear,
@@ -17,7 +18,7 @@ from smachac.checks.outline import (
 )
 from smachac.diagnostics import Finding, Severity, rule
 from smachac.ir import nodes
-from smachac.ir.nodes import Concurrence, Container, Machine, Node, Transition
+from smachac.ir.nodes import Concurrence, Container, Leaf, Machine, Node, Transition
 from smachac.ir.walk import containers, outcome_names, walk
 from smachac.problems import listed
 from smachac.source import Word
@@ -135,7 +136,8 @@ def _idle_transitions(path: str, container: Container) -> Iterator[Finding]:
 def unknown_outcome(machine: Machine) -> Iterator[Finding]:
     """A transition starts from an outcome that its state does not have.
 
-    It is never taken: the recovery that somebody wrote for the robot does not exist.
+    It is never taken: the recovery that somebody wrote for the robot does not exist. Likewise the
+    condition of a ConditionalOutcomeState and the step of a ScriptedState for such an outcome.
 
     Wrong:
         name: sm
@@ -163,6 +165,9 @@ def unknown_outcome(machine: Machine) -> Iterator[Finding]:
         elif not isinstance(container, Concurrence):
             for child in container.children:
                 yield from _unknown_steps(path, child)
+        for child in container.children:
+            if isinstance(child, Leaf):
+                yield from unknown_endings(f"{path}/{child.name}", child)
 
 
 def _unknown_steps(path: str, child: Node) -> Iterator[Finding]:

@@ -11,7 +11,7 @@ from dataclasses import dataclass, field
 from typing import Literal, NewType, TypeAlias
 
 from smachac.ir.types import ANY, Type
-from smachac.source import NOWHERE, Span
+from smachac.source import NOWHERE, Span, Word
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -152,19 +152,36 @@ class _State:
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
+class Body:
+    """What the Python code of a state type does, as far as it can be told from the text.
+
+    `returns` are the constants that it returns, as text; `silent` is the function's name where some
+    way through it returns nothing, and `always_silent` where none returns anything. `reads` and
+    `writes` are keys of the userdata. What the script declares for itself is not in it.
+    """
+
+    returns: tuple[Word, ...] = ()
+    silent: Span | None = None
+    always_silent: bool = False
+    reads: tuple[Word, ...] = ()
+    writes: tuple[Word, ...] = ()
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
 class Leaf(_State):
     """One skill of a state type.
 
     `open`: the state type has no interface, so nothing is known of its keys and outcomes.
     `blocking`: it waits for the outside world (the interface says so). `writes` are pairs of an
     outcome and the outputs it comes with: an output named there is written on those outcomes
-    only, any other on all but `preempted`.
+    only, any other on all but `preempted`. `body` is the type's code, where it was read.
     """
 
     variables: tuple[Variable, ...] = ()
     writes: tuple[tuple[str, tuple[str, ...]], ...] = ()
     open: bool = False
     blocking: bool = False
+    body: Body | None = field(default=None, compare=False, repr=False)
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)

@@ -47,6 +47,9 @@ def _node(path: str, node: Node) -> dict[str, Any]:
 def _entries(value: Any) -> Iterator[tuple[str, Any]]:
     """The fields of a value of the IR; spans are places, children are names."""
     for field in fields(value):
+        if field.name == "body":
+            # Not of the script, but of code that is not printed.
+            continue
         content = getattr(value, field.name)
         if isinstance(content, Span):
             yield field.name.replace("span", "place"), _place(content)

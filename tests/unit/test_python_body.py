@@ -1,0 +1,172 @@
+"""What is told of the Python code of a state type without running it."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from textwrap import indent
+
+import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+
+from smachac.ir.nodes import Body
+from smachac.ir.python_body import python_body
+from smachac.source import Source
+
+TEMPLATE = """{{% block class_defs %}}
+class Pick(smach.State):
+    '''Größe {{{{ not_code }}}}'''
+    def __init__(self):
+        super().__init__(outcomes=["done"])
+
+    def execute(self, userdata):
+{}
+{{% endblock %}}
+"""
+
+
+def body(code: str) -> Body | None:
+    return python_body(Source("Pick.tpl.py", TEMPLATE.format(indent(code, " " * 8))), "Pick")
+
+
+def known(code: str) -> Body:
+    found = body(code)
+    assert found is not None
+    return found
+
+
+@pytest.mark.parametrize(
+    ("code", "returns"),
+    [
+        ("return 'done'", ["done"]),
+        ("return 'a' if x else 'b' if y else z", ["a", "b"]),
+        ("return", ["None"]),
+        ("return None", ["None"]),
+        ("return True", ["True"]),
+        ("return outcome_of(self)", []),
+        ("return '{{ outcome }}'", []),
+        ("return 'a' if {{ x }} else 'b'", ["a", "b"]),
+        ("def inner():\n    return 'a'\nf = lambda: 'c'\nreturn 'b'", ["b"]),
+        ("for x in y:\n    return 'a'\nwith z:\n    return 'b'", ["a", "b"]),
+        ("try:\n    pass\nexcept E:\n    return 'a'\nreturn 'b'", ["a", "b"]),
+        ("match x:\n    case 1:\n        return 'a'\nreturn 'b'", ["a", "b"]),
+    ],
+)
+def test_constants_that_are_returned(code: str, returns: list[str]) -> None:
+    found = known(code)
+    assert [word.text for word in found.returns] == returns
+    for word in found.returns:
+        assert word.span.text in (f"'{word.text}'", word.text, "return")
+
+
+@pytest.mark.parametrize(
+    ("code", "silent"),
+    [
+        ("return 'a'", False),
+        ("pass", True),
+        ("if x:\n    return 'a'", True),
+        ("if x:\n    return 'a'\nelse:\n    raise E", False),
+        ("if x:\n    return 'a'\nelif y:\n    return 'b'", True),
+        ("while True:\n    if x:\n        return 'a'", False),
+        ("while 1:\n    if x:\n        break", True),
+        ("while True:\n    for x in y:\n        break", False),
+        ("while True:\n    for x in y:\n        pass\n    else:\n        break", True),
+        ("while x:\n    return 'a'", True),
+        ("while x:\n    pass\nelse:\n    return 'a'", False),
+        ("for x in y:\n    return 'a'", True),
+        ("for x in y:\n    break\nelse:\n    return 'a'", True),
+        ("with x:\n    return 'a'", False),
+        ("try:\n    return 'a'\nexcept E:\n    pass", True),
+        ("try:\n    return 'a'\nexcept E:\n    return 'b'", False),
+        ("try:\n    x()\nexcept E:\n    return 'b'\nelse:\n    return 'a'", False),
+        ("try:\n    x()\nfinally:\n    return 'b'", False),
+        ("match x:\n    case 1:\n        return 'a'\n    case _:\n        return 'b'", False),
+        ("match x:\n    case 1:\n        return 'a'\n    case _ if y:\n        return 'b'", True),
+        ("match x:\n    case 1:\n        return 'a'", True),
+        ("sys.exit(1)", False),
+        ("assert False, 'never'", False),
+        # What Jinja fills in may be a return.
+        ("{{ body }}", False),
+    ],
+)
+def test_ways_without_an_outcome(code: str, silent: bool) -> None:
+    found = known(code)
+    assert (found.silent is not None) == silent
+    if found.silent is not None:
+        assert found.silent.text == "execute"
+        assert found.always_silent == ("return" not in code)
+
+
+@pytest.mark.parametrize(
+    ("code", "reads", "writes"),
+    [
+        ("x = userdata.a + userdata['b']", ["userdata.a", "userdata['b']"], []),
+        ("userdata.a = userdata['b'] = 1", [], ["userdata.a", "userdata['b']"]),
+        ("userdata.a += 1", ["userdata.a"], ["userdata.a"]),
+        ("userdata.a.append(userdata.b[0])", ["userdata.a", "userdata.b"], []),
+        ("f = lambda: userdata.a", ["userdata.a"], []),
+        ("f = lambda userdata: userdata.a", [], []),
+        ("userdata = {}\nuserdata['a'] = 1", [], []),
+        ("userdata[key] = userdata.keys() + optional(userdata, 'c')", [], []),
+        ("if 'a' in userdata:\n    x = userdata.a", [], []),
+        ("try:\n    x = userdata.a\nexcept KeyError:\n    userdata.b = 1", [], ["userdata.b"]),
+        ("x = userdata.{{ key }} + userdata['{{ key }}']", [], []),
+        ("x = 'ß'; y = userdata.ä", ["userdata.ä"], []),
+    ],
+)
+def test_keys(code: str, reads: list[str], writes: list[str]) -> None:
+    found = known(f"{code}\nreturn 'done'")
+    assert [word.span.text for word in found.reads] == reads
+    assert [word.span.text for word in found.writes] == writes
+
+
+@pytest.mark.parametrize(
+    "text",
+    [
+        "",
+        "def execute(self, userdata): pass",
+        "class A:\n  def execute(self): pass",
+        "class A:\n  @timed\n  def execute(self, ud): pass",
+        "class A:\n  async def execute(self, ud): pass",
+        "class A:\n  def execute(self, ud): yield 1",
+        "class A:\n  execute = other\nclass B: pass",
+        "class A:\n  def execute(self, ud): pass\nclass B:\n  def execute(self, ud): pass",
+        "class A:\n  if x:\n    def execute(self, ud): pass",
+        "class Pick:\n  def execute(self, ud):\n    {% if x %}\n    return 1\n    {% endif %}",
+        "class Pick:\n  def execute(self, ud):\n    {% raw %}\n    return '{{'\n    {% endraw %}",
+        "{% for x in y %}\nclass Pick:\n{% endfor %}\n  def execute(self, ud) return",
+        "class Pick:\r  def execute(self, ud):\r    return 1",
+        "class Pick:\n  def execute(self, ud):\n    return " + "(" * 5000,
+    ],
+)
+def test_what_cannot_be_told(text: str) -> None:
+    assert python_body(Source("Pick.tpl.py", text), "Pick") is None
+
+
+def test_one_class_of_several_is_that_of_the_name() -> None:
+    text = "".join(
+        f"class {name}:\n  def execute(self, ud):\n    return '{name}'\n" for name in ("A", "Pick")
+    )
+    found = python_body(Source("Pick.tpl.py", text), "Pick")
+    assert found is not None
+    assert [word.text for word in found.returns] == ["Pick"]
+
+
+@given(st.text(alphabet="{%}#\n\r \"'():=ü", max_size=40), st.text(max_size=10))
+def test_any_text_is_read(code: str, name: str) -> None:
+    python_body(Source("x", code), name)
+    body(code)
+
+
+def test_our_own_state_types_are_read() -> None:
+    import smachac
+
+    folder = Path(smachac.__file__).parent / "states"
+    found = {
+        path.name.removesuffix(".tpl.py"): python_body(
+            Source(path.name, path.read_text("utf-8")), path.name.removesuffix(".tpl.py")
+        )
+        for path in folder.glob("*State.tpl.py")
+    }
+    assert len(found) > 10
+    assert None not in found.values()
