@@ -130,7 +130,7 @@ def test_firm_errors_outlast_a_project(tmp_path: Path) -> None:
 @pytest.mark.parametrize(
     ("text", "place", "help"),
     [
-        ('[severity]\nSM999 = "off"', (2, 1), "known are"),
+        ('[severity]\nXY = "off"', (2, 1), "known are"),
         ('[severity]\nSM201 = "of"', (2, 1), "did you mean `off`?"),
         ('[severity]\nSM201 = 3', (2, 1), "it is one of"),
         ('severity = "off"', (1, 1), "[severity]"),

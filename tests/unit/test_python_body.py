@@ -154,8 +154,9 @@ def test_one_class_of_several_is_that_of_the_name() -> None:
 
 @given(st.text(alphabet="{%}#\n\r \"'():=ü", max_size=40), st.text(max_size=10))
 def test_any_text_is_read(code: str, name: str) -> None:
-    python_body(Source("x", code), name)
+    found = python_body(Source("x", code), name)
     body(code)
+    assert found is None or {word.span.source.name for word in found.returns} <= {"x"}
 
 
 def test_our_own_state_types_are_read() -> None:

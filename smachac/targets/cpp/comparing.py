@@ -86,7 +86,8 @@ def _ordered(word: str, left: Term, right: Term) -> Text:
     direct = _direct(word, left, right)
     if direct is not None:
         return direct
-    if not _have_order(present(left.type), present(right.type)):
+    nothing = NONE in (left.type, right.type)
+    if nothing or not _have_order(present(left.type), present(right.type)):
         reason = f"`{shown(left.type)}` {word} `{shown(right.type)}` has no value"
         raise UnportableError(reason)
     left, right = there(left), there(right)
