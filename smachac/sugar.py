@@ -23,6 +23,9 @@ NAMES = ("timeout", "retry", "for_each")
 TIMEOUT, EXHAUSTED = "timeout", "exhausted"
 """The outcomes that a time limit and retries add."""
 
+MOST_TRIES = 10_000
+"""The most tries of a `retry`: each is an item of an iterator."""
+
 SECONDS = {"": 1.0, "ms": 0.001, "s": 1.0, "min": 60.0, "h": 3600.0}
 _DURATION = re.compile(r"(\d+(?:\.\d+)?|\.\d+)\s*([a-z]*)")
 
@@ -130,8 +133,8 @@ def _retry(entry: Entry, report: Report) -> Retry | None:
     most = parts["max"]
     delay = duration(parts["delay"], report) if "delay" in parts else 0.0
     whole = isinstance(most, Scalar) and type(most.value) is int
-    if not whole or int(str(most.value)) < 1:  # type: ignore[union-attr]
-        message = "`max` is how often it is tried: a whole number from 1"
+    if not whole or not 1 <= int(str(most.value)) <= MOST_TRIES:  # type: ignore[union-attr]
+        message = f"`max` is how often it is tried: a whole number from 1 to {MOST_TRIES:,}"
         report.append(problems.wrong_shape(most.span, message, "leave `retry` out for one try"))
         return None
     number = int(str(most.value))  # type: ignore[union-attr]

@@ -146,6 +146,14 @@ def test_durations(text: str, seconds: float) -> None:
     assert duration(tree, []) == seconds
 
 
+@pytest.mark.parametrize("tries", [0, 10_001, 10**12, -1, "many", 1.5, True])
+def test_no_number_of_tries(tries: object, tmp_path: Path) -> None:
+    sugar = f"retry: {{on: [aborted], max: {tries}}}".replace("True", "true")
+    (tmp_path / "main.yml").write_text(SCRIPT.replace("SUGAR", sugar), encoding="utf-8")
+    found = smachac.check(tmp_path / "main.yml")
+    assert [item.code.code for item in found if item.severity.value == "error"] == ["SM004"]
+
+
 @pytest.mark.parametrize(
     "text", ["-1s", "1 week", "soon", "true", "null", "[1]", "1e3s", "s", "1S"]
 )
