@@ -82,7 +82,17 @@ def expression(text: str) -> Doc:
     from smachac.ir.expressions import parse_expression
 
     tree = parse_expression(text)
-    return " ".join(text.split("\n")) if tree is None else _expression(tree)
+    return _one_line(text) if tree is None else _expression(tree)
+
+
+def _one_line(text: str) -> str:
+    """Code on one line: a comment in it would swallow what is printed behind."""
+    if "#" not in text and "\n" not in text:
+        return text
+    try:
+        return ast.unparse(ast.parse(f"({text}\n)", mode="eval"))
+    except (SyntaxError, ValueError, RecursionError):
+        return " ".join(text.split("\n"))
 
 
 def _expression(tree: Expr) -> Doc:

@@ -1,0 +1,76 @@
+# Made by smachac 0.1.0 from main.yml (sha256 365a40ec96868634).
+"""A comment in code must not swallow what is printed behind it."""
+
+try:
+    import smach
+except ImportError:  # no ROS on this machine: the same names without it
+    from smachac.runtime import smach
+
+
+class CallbacksState(smach.State):
+    """Calls functions of the userdata, keeps what each returns under its own name."""
+
+    def __init__(self, callbacks, input_keys=(), output_keys=()):
+        super().__init__(
+            outcomes=["succeeded"],
+            input_keys=list(input_keys),
+            output_keys=list(output_keys),
+        )
+        self.callbacks = callbacks
+
+    def execute(self, userdata):
+        for key in sorted(self.callbacks):
+            userdata[key] = self.callbacks[key](userdata)
+        return "succeeded"
+
+
+class PrintUserdataState(smach.State):
+    """Prints its input keys, one a line."""
+
+    def __init__(self, input_keys=()):
+        super().__init__(outcomes=["succeeded"], input_keys=list(input_keys))
+        self.printed_keys = sorted(input_keys)
+
+    def execute(self, userdata):
+        for key in self.printed_keys:
+            print(f"{key}: {userdata[key]}")
+        return "succeeded"
+
+
+def build():
+    """Build the state machine `count`."""
+    # main.yml:1
+    count = smach.StateMachine(outcomes=["succeeded"])
+    count.userdata.n = 0
+    with count:
+        # main.yml:7
+        smach.StateMachine.add(
+            "COUNT",
+            CallbacksState(
+                callbacks={
+                    "n": lambda ud: ud.n + len('#') + (lambda a, b: a + b)(1, 2),
+                },
+                input_keys=["n"],
+                output_keys=["n"],
+            ),
+            transitions={"succeeded": "SHOW"},
+        )
+
+        # main.yml:14
+        smach.StateMachine.add(
+            "SHOW",
+            PrintUserdataState(input_keys=["n"]),
+            transitions={"succeeded": "succeeded"},
+        )
+    return count
+
+
+def main():
+    """Run the state machine once and return its outcome."""
+    return build().execute()
+
+
+if __name__ == "__main__":
+    outcome = main()
+    print(f"outcome: {outcome}")
+    raise SystemExit(outcome is None)
