@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections import Counter
 from collections.abc import Callable, Iterable, Iterator, Mapping
 
-from smachac.ir.accesses import NONE, NOTHING, Writes
+from smachac.ir.accesses import ANYTHING, NONE, NOTHING, Writes
 from smachac.ir.graph import Place, exit_place
 from smachac.ir.nodes import Concurrence, Leaf, Node, OutcomeRule
 from smachac.ir.walk import outcome_names
@@ -48,7 +48,7 @@ def _endings(child: Node, writes: Callable[[str, str], Writes | None]) -> Ending
     is_open = isinstance(child, Leaf) and child.open
     found = ((name, writes(child.name, name)) for name in outcome_names(child) or (ANY,) * is_open)
     endings = {name: written for name, written in found if written is not None}
-    return {ANY: next(iter(endings.values()))} if is_open else endings
+    return {ANY: next(iter(endings.values()), ANYTHING)} if is_open else endings
 
 
 def _either(several: Iterable[Writes]) -> Writes:
