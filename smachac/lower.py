@@ -10,6 +10,7 @@ from pathlib import PurePath
 from typing import Any
 
 from smachac import schema, shapes
+from smachac.catching import if_asked, with_way_out
 from smachac.desugar import desugared
 from smachac.ir.nodes import (
     Concurrence,
@@ -224,6 +225,9 @@ def _container(state: State, owner: str) -> Container:
             connector = _word(state, "connector_outcome")
             children = _linked(children, connector.text)
             fields["connector_outcome"] = connector.text
+    if "on_error" in state.fields:
+        target = _word(state, "on_error")
+        children = tuple([with_way_out(child, target) for child in children])
     fields["children"] = tuple(_with_implicit(child, outcomes) for child in children)
     first = children[0].name if children else ""
     initial = _word(state, "initial", first)
@@ -238,9 +242,13 @@ def _container(state: State, owner: str) -> Container:
 
 def _node(state: State) -> Node:
     node = _leaf(state) if state.owner == "state" else _container(state, state.owner)
+    words = [key for key, _ in _pairs(state, "transitions")]
     if not has_sugar(state.fields, state.type):
-        return node
-    return desugared(node, read_sugar(state.fields, state.type, []))
+        return if_asked(node, words)
+    sugar = read_sugar(state.fields, state.type, [])
+    for part in (sugar.retry, sugar.for_each):
+        words += part.on if part is not None else ()
+    return desugared(if_asked(node, words), sugar)
 
 
 def _linked(children: tuple[Node, ...], connector: str) -> tuple[Node, ...]:
@@ -275,6 +283,11 @@ def _concurrence(state: State, fields: dict[str, Any], children: tuple[Node, ...
     default = _word(state, "default_outcome")
     tree = _tree(state, "outcome_map")
     rules = shapes.as_rules(tree, []) if tree is not None else ()
+    pairs = [pair for _, conditions in rules for pair in conditions]
+    children = tuple(
+        if_asked(child, [ending for name, ending in pairs if name.text == child.name])
+        for child in children
+    )
     return Concurrence(
         **fields,
         children=children,
@@ -298,6 +311,10 @@ def _concurrence(state: State, fields: dict[str, Any], children: tuple[Node, ...
 def _iterator(state: State, fields: dict[str, Any], children: tuple[Node, ...]) -> Iterator:
     """An iterator with its looping outcomes spelt out (smach-semantics I1, I3)."""
     items, items_key = _items(_tree(state, "it"))
+    lists = (_words(state, name) for name in ("loop_outcomes", "break_outcomes"))
+    words = [word for words in lists for word in words]
+    words += [key for key, _ in _pairs(state, "final_outcome_map")]
+    children = tuple(if_asked(child, words) for child in children)
     own = [outcome.name for child in children[:1] for outcome in child.outcomes]
     breaks = [word.text for word in _words(state, "break_outcomes")]
     loops = [word.text for word in _words(state, "loop_outcomes")]

@@ -52,6 +52,7 @@ VARIABLES: dict[str, Variable] = {
         _row("join", "", "name", "Concurrence"),
         _row("initial", "", "name", "base StateMachine Sequence"),
         _row("forever", "", "flag", "base StateMachine"),
+        _row("on_error", "", "name", "base StateMachine Sequence"),
         _row("connector_outcome", "", "name", "Sequence"),
         _row("it", "", "value", "Iterator"),
         _row("it_label", "", "name", "Iterator"),

@@ -23,6 +23,9 @@ NAMES = ("timeout", "retry", "for_each")
 TIMEOUT, EXHAUSTED = "timeout", "exhausted"
 """The outcomes that a time limit and retries add."""
 
+ERROR = "error"
+"""The outcome that stands for an exception, where a state has no such outcome itself."""
+
 MOST_TRIES = 10_000
 """The most tries of a `retry`: each is an item of an iterator."""
 
@@ -164,7 +167,7 @@ def check_sugar(fields: Mapping[str, Entry], type_: StateType, report: Report) -
     second = (*first, EXHAUSTED) if sugar.retry else first
     for part, outcomes in ((sugar.retry, first), (sugar.for_each, second)):
         for word in part.on if part is not None else ():
-            if word.text not in outcomes:
+            if word.text not in (*outcomes, ERROR):
                 message = f"this state has no outcome `{word.text}`"
                 help = did_you_mean(word.text, outcomes)
                 help = help or f"its outcomes are {problems.listed(outcomes)}"

@@ -178,8 +178,20 @@ class _Busy(Building):
                     transition(edge.outcome, self.draw(onward), "written") for edge in others
                 ]
                 child = dataclasses.replace(child, transitions=(first, *redrawn))
-            found.append(child)
+            found.append(self.caught(child, [*names[at + 1 :], *exits]))
         return found
+
+    def caught(self, child: Node, targets: list[str]) -> Node:
+        """The child, in one of three cases with an outcome for its exceptions."""
+        if self.draw(st.integers(0, 2)):
+            return child
+        step = transition("error", self.draw(st.sampled_from(targets)), "written")
+        return dataclasses.replace(
+            child,
+            catches="error",
+            outcomes=(*child.outcomes, *outcomes_of(["error"])),
+            transitions=(*child.transitions, step),
+        )
 
     def concurrence(self, depth: int, exits: list[str]) -> Concurrence:
         outer, self.calm = self.calm, True
@@ -230,8 +242,14 @@ class _Busy(Building):
         items = Preset(key="todo", value=Value(data=self.draw(ITEMS), span=NOWHERE), span=NOWHERE)
         if keyed and (self.calm or self.draw(SMALL)):
             common["userdata"] += (items,)
+        loops = made.loop_outcomes
+        child = self.caught(made.children[0], exits)
+        if child.catches and self.draw(BOOLEANS):
+            loops += ("error",)
         return dataclasses.replace(
             made,
+            children=(dataclasses.replace(child, transitions=()),),
+            loop_outcomes=loops,
             items=None if keyed else made.items,
             items_key="todo" if keyed else "",
             item_key=self.draw(st.sampled_from(["item", "a"])),

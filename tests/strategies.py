@@ -140,6 +140,7 @@ class _Drawing:
             "transitions": self.some(self.transition),
             "remaps": self.some(self.remap),
             "claims": self.some(self.name),
+            "catches": self.draw(st.sampled_from(["", "error"])),
             "span": NOWHERE,
         }
 

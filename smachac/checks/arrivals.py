@@ -122,6 +122,8 @@ def replaces(child: Node, key: str, outcome: str) -> bool:
     """Whether a state that ends with an outcome has written a key of its container."""
     names = remapping(child)
     own = [output.name for output in child.outputs if names.get(output.name, output.name) == key]
+    if outcome == child.catches and outcome:
+        return False
     if not isinstance(child, Leaf):
         return bool(own)
     if child.open and not child.outputs:

@@ -90,7 +90,7 @@ def _of_container(
 
 
 def _declared(node: Node, results: Iterable[str]) -> tuple[str, ...]:
-    possible = frozenset(results)
+    possible = frozenset([*results, node.catches])
     return tuple(name for name in outcome_names(node) if name in possible)
 
 

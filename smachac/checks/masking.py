@@ -251,6 +251,8 @@ def unhandled_failure(machine: Machine) -> Iterator[Finding]:
 
 def starts_failure(node: Node, outcome: str) -> bool:
     """Whether a failure begins here: with a leaf, tries that are used up, or a time limit."""
+    if node.catches == outcome:
+        return True
     match node:
         case Leaf():
             return is_failure(outcome)

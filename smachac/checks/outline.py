@@ -143,6 +143,8 @@ def endless_states(machine: Machine) -> frozenset[int]:
 
 
 def _never_ends(node: Node, inner: set[int]) -> bool:
+    if node.catches:
+        return False
     match node:
         case Leaf():
             return not node.open and not node.outcomes and not node.transitions

@@ -117,6 +117,8 @@ class Routes:
             yield from ((path, name) for name in dict.fromkeys(known))
             return
         yield from (_step(path, edge.target) for edge in edges(node) if edge.source == START)
+        if node.catches:
+            yield path, node.catches
 
     def ways(self) -> Mapping[Step, Step | None]:
         """Every step that the machine can come to, with the one before it on a shortest way."""

@@ -124,7 +124,7 @@ def impossible_outcome(machine: Machine) -> Iterator[Finding]:
     for path, container in containers(machine.root):
         possible = _possible_outcomes(container)
         for outcome in container.outcomes:
-            if possible is not None and outcome.name not in possible:
+            if possible is not None and outcome.name not in (*possible, container.catches):
                 yield _impossible(path, container, outcome)
 
 

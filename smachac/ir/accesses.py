@@ -71,11 +71,19 @@ def leaf_reads(leaf: Leaf, *, raw: bool = False) -> tuple[str, ...]:
 
 
 def leaf_writes(leaf: Leaf, outcome: str, *, raw: bool = False) -> Writes:
-    """The keys, under the leaf's names, that it has set when it ends with an outcome."""
+    """The keys, under the leaf's names, that it has set when it ends with an outcome.
+
+    An exception may come before any of them is written, or after.
+    """
     if leaf.open:
         return ANYTHING
     if not (leaf.outputs or raw):
         return NOTHING
+    if outcome == leaf.catches:
+        begun = {key.name for key in leaf.outputs}
+        if raw:
+            begun.update(callback_names(leaf), *(keys for _, keys in scripted_steps(leaf)))
+        return Writes(perhaps=frozenset(begun))
     outputs = frozenset(key.name for key in leaf.outputs)
     if leaf.type == "ScriptedState":
         return _scripted(leaf, outcome, outputs, raw)

@@ -8,7 +8,7 @@ from collections.abc import Callable
 from smachac.ir.nodes import Data, Expression, Leaf, Struct
 from smachac.ir.result import Behaviour
 from smachac.ir.userdata import BehaviourError, Userdata, called, python_data
-from smachac.ir.walk import GOOD_OUTCOMES, PREEMPTED, outcome_names
+from smachac.ir.walk import GOOD_OUTCOMES, PREEMPTED, outcome_names, own_outcomes
 
 
 def built_in(seed: int = 0) -> Behaviour:
@@ -41,7 +41,7 @@ def stopping_when_asked(behaviour: Behaviour) -> Behaviour:
 
 def default_outcome(leaf: Leaf) -> str:
     """The declared outcome by which a state usually ends: a good one, else the first."""
-    declared = outcome_names(leaf) or tuple(edge.outcome for edge in leaf.transitions)
+    declared = own_outcomes(leaf) or tuple(edge.outcome for edge in leaf.transitions)
     good = [name for name in declared if name in GOOD_OUTCOMES]
     return [*good, *declared, GOOD_OUTCOMES[0]][0]
 
@@ -61,7 +61,7 @@ def _default(path: str, leaf: Leaf, visit: int, userdata: Userdata) -> str:
 def _scripted(path: str, leaf: Leaf, visit: int, userdata: Userdata) -> str:
     steps = python_data(variable(leaf, "steps"))
     if not isinstance(steps, list) or not steps:
-        return next(iter(outcome_names(leaf)), default_outcome(leaf))
+        return next(iter(own_outcomes(leaf)), default_outcome(leaf))
     step = steps[min(visit, len(steps)) - 1]
     if not isinstance(step, dict):
         raise BehaviourError(f"step {visit} is no mapping of `outcome` and `set`")
@@ -93,7 +93,7 @@ def _run_callbacks(path: str, leaf: Leaf, visit: int, userdata: Userdata) -> str
 
 def _first_true(path: str, leaf: Leaf, visit: int, userdata: Userdata) -> str:
     callbacks = _callbacks(leaf)
-    for outcome in outcome_names(leaf):
+    for outcome in own_outcomes(leaf):
         if outcome in callbacks and called(callbacks[outcome], userdata):
             return outcome
     otherwise = variable(leaf, "default_outcome")
@@ -109,7 +109,7 @@ def _draws(seed: int) -> Behaviour:
         if path not in sources:
             own = variable(leaf, "seed")
             sources[path] = random.Random(own if isinstance(own, int) else seed)
-        return sources[path].choice(outcome_names(leaf) or (default_outcome(leaf),))
+        return sources[path].choice(own_outcomes(leaf) or (default_outcome(leaf),))
 
     return draw
 

@@ -137,7 +137,7 @@ def _scope(path: str, container: Container, inner: Mapping[str, Scope], root: Co
         places=order.keys(),
         unset=unset,
         needed=frozenset(needed),
-        endings=_endings(outputs, held, steps, order),
+        endings=_with_caught(container, _endings(outputs, held, steps, order)),
         inner=containing,
         again=looping(steps, order) & containing if containing else frozenset(),
     )
@@ -168,6 +168,14 @@ def _endings(
         )
         for place in exits
     }
+
+
+def _with_caught(container: Container, found: Mapping[str, Writes]) -> Mapping[str, Writes]:
+    """The endings of a container, also that of an exception, which hands nothing out."""
+    if not container.catches:
+        return found
+    known = found.get(container.catches, NOTHING)
+    return {**found, container.catches: Writes(perhaps=known.perhaps)}
 
 
 def _items_read(container: Container) -> tuple[str, ...]:

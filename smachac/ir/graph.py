@@ -6,6 +6,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterable, Iterator
+from itertools import chain
 from typing import TYPE_CHECKING, Literal, NamedTuple, TypeAlias
 
 from smachac.ir import nodes
@@ -22,10 +23,20 @@ Place: TypeAlias = "str | tuple[str, ...]"
 START: Place = ("start",)
 
 Kind = Literal[
-    "enter", "written", "implicit", "connector", "rule", "default", "loop", "exhausted", "break"
+    "enter",
+    "written",
+    "implicit",
+    "connector",
+    "rule",
+    "default",
+    "loop",
+    "exhausted",
+    "break",
+    "caught",
 ]
 """Why control passes: the container starts; a transition (its origin); a rule of a concurrence or
-its default; an iterator goes on, has no more items, or is ended by its child."""
+its default; an iterator goes on, has no more items, or is ended by its child; an exception ends the
+container."""
 
 
 class Edge(NamedTuple):
@@ -62,6 +73,15 @@ def edges(container: Container) -> Iterator[Edge]:
             yield from _iterator_edges(container)
         case _:
             assert_never(container)
+
+
+def caught_edges(container: Container) -> Iterator[Edge]:
+    """How a container is left when something in it raises an exception that it catches.
+
+    Not among `edges`: no state leads there, and nothing is handed out.
+    """
+    if container.catches:
+        yield Edge(START, exit_place(container.catches), container.catches, "caught")
 
 
 def _live_transitions(child: Node) -> Iterator[Transition]:
@@ -215,7 +235,7 @@ def container_graph(container: Container) -> nx.MultiDiGraph:
     for child in container.children:
         graph.add_node(child.name, node=child)
     graph.add_nodes_from(map(exit_place, outcome_names(container)))
-    for edge in edges(container):
+    for edge in chain(edges(container), caught_edges(container)):
         graph.add_edge(edge.source, edge.target, edge=edge, kind=edge.kind, outcome=edge.outcome)
     return graph
 
@@ -237,7 +257,7 @@ def flat_graph(machine: Machine) -> nx.MultiDiGraph:
         for name, child in inside.items():
             graph.add_node(f"{path}/{name}", node=child)
         graph.add_nodes_from(("outcome", path, name) for name in outcome_names(container))
-        for edge in edges(container):
+        for edge in chain(edges(container), caught_edges(container)):
             source = _flat_source(edge, path, inside)
             target = _flat_target(edge.target, path)
             graph.add_edge(source, target, edge=edge, kind=edge.kind, outcome=edge.outcome)

@@ -135,7 +135,9 @@ class _State:
     """What every node has: its interface and its place in the container around it.
 
     `type` is the state type (the template's name). `via` are the calls of sub-scripts that led
-    here, outermost first. `in`/`out` keys are `inputs`/`outputs`.
+    here, outermost first. `in`/`out` keys are `inputs`/`outputs`. `catches` names the outcome that
+    an exception in the state becomes; it is one of `outcomes`, never one of the state's own, and
+    empty where exceptions go on.
     """
 
     name: str
@@ -147,6 +149,7 @@ class _State:
     transitions: tuple[Transition, ...] = ()
     remaps: tuple[Remap, ...] = ()
     claims: tuple[str, ...] = ()
+    catches: str = ""
     span: Span = field(compare=False, repr=False)
     via: tuple[Span, ...] = field(default=(), compare=False, repr=False)
 

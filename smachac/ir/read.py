@@ -314,6 +314,7 @@ SINGLE: Mapping[str, Callable[[_Reader, Any], Any]] = {
     "connector_outcome": _Reader.name,
     "default_outcome": _Reader.name,
     "join": _Reader.name,
+    "catches": _Reader.name,
     "sugar": _Reader.name,
     "items": _Reader.items,
     "items_key": _Reader.name,

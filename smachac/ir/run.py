@@ -165,11 +165,17 @@ class Interpreter:
         self._steps += 1
         self.emit("enter", path)
         own = self._scopes.get(path, {})
-        if isinstance(node, Leaf):
-            outcome = yield from self._leaf(node, path, around, loose or node.open)
-        else:
-            copy_in(node, around, own)
-            outcome = yield from body(self, node, path, own)
+        try:
+            if isinstance(node, Leaf):
+                outcome = yield from self._leaf(node, path, around, loose or node.open)
+            else:
+                copy_in(node, around, own)
+                outcome = yield from body(self, node, path, own)
+        except RunError as failed:
+            if not node.catches or failed.failure.kind == "no-end":
+                raise
+            self.emit("exit", path, outcome=node.catches)
+            return node.catches
         if outcome is not None:
             self.emit("exit", path, outcome=outcome)
         elif isinstance(node, Leaf):

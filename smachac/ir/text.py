@@ -132,6 +132,7 @@ def _statements(node: Node) -> Iterator[str]:
         yield f"output {_key(key)}"
     if node.claims:
         yield f"claims {_names(node.claims)}"
+    yield from _optional("catches", node.catches)
     if not isinstance(node, Leaf):
         yield from _line("sugar", node.sugar)
     match node:

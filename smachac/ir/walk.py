@@ -50,6 +50,11 @@ def outcome_names(node: Node) -> tuple[str, ...]:
     return tuple([outcome.name for outcome in node.outcomes])
 
 
+def own_outcomes(node: Node) -> tuple[str, ...]:
+    """The outcomes that the state's own code may give: without the one that exceptions become."""
+    return tuple([outcome.name for outcome in node.outcomes if outcome.name != node.catches])
+
+
 def leads_to_child(transition: Transition, children: frozenset[str]) -> bool:
     """Whether a transition goes to a sibling, not out of the container (see Transition)."""
     return transition.origin != "implicit" and transition.target in children

@@ -48,6 +48,7 @@ class Watch:
         self._is_container = is_container(state)
         self._is_iterator = _is_a(state, "Iterator")
         self._is_concurrence = _is_a(state, "Concurrence")
+        self._catches = hasattr(state, "caught")  # a state of ours that ends with its exceptions
         self._stays: dict[str, Stay] = {}
         self._only: Stay | None = None
         self._exits: dict[tuple[str, str], str | None] | None = None
@@ -78,6 +79,9 @@ class Watch:
         except BaseException as error:
             self._fail(parent, _message(error))
             raise
+        if self._catches and self.state.caught is not None:
+            self._tell_error(_message(self.state.caught))
+            self.state.caught = None
         if outcome is None:
             self._fail(parent, "ended without an outcome")
             return outcome
@@ -156,11 +160,15 @@ class Watch:
         return "/".join(reversed(labels))
 
     def _fail(self, parent: Watch | None, message: str) -> None:
+        """Tell of an error that goes on."""
+        self._tell_error(message)
+        if parent is not None:
+            parent.failed = True
+
+    def _tell_error(self, message: str) -> None:
         """Tell of an error, unless a state inside has done so."""
         if not self.failed:
             self.recorder.emit("error", self.path, message=message)
-        if parent is not None:
-            parent.failed = True
 
     def looping(self) -> None:
         """The child of an iterator starts again: its last outcome has led to itself."""

@@ -14,7 +14,7 @@ LAYERS = (
     ("diagnostics", "problems", "spelling", "grammars"),
     ("syntax", "ir", "shapes", "policy"),
     ("states", "script", "schema", "lookups", "calls", "typed", "sugar"),
-    ("lower", "desugar", "values", "checks", "targets"),
+    ("lower", "desugar", "catching", "values", "checks", "targets"),
     ("driver", "report", "refactor", "project", "files", "execute"),
     ("__init__", "runs", "streams", "survey", "discover", "baseline"),
     ("fixes",),
@@ -41,6 +41,7 @@ WITHIN = {
     ("sugar", "states"),
     ("lower", "values"),
     ("lower", "desugar"),
+    ("lower", "catching"),
     ("desugar", "values"),
     ("files", "project"),
 }

@@ -94,6 +94,7 @@ def test_a_leaf_in_full() -> None:
         ],
         "remaps": [{"key": "q", "to": "home", "place": None}],
         "claims": [],
+        "catches": "",
         "place": "main.yml:2:1",
         "via": ["main.yml:1:1"],
         "variables": [

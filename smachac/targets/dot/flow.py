@@ -118,6 +118,8 @@ def edges(container: Container, start: str, exits: dict[str, str], drawn: Drawn)
         case _:
             assert_never(container)
     yield from found
+    if container.catches in exits:
+        yield Edge(start, Spot(exits[container.catches]), container.catches, dashed=True)
     exit = next(iter(exits.values()), None)
     if exit is not None:
         yield from _hidden(found, Spot(exit), drawn)

@@ -15,7 +15,7 @@ from smachac.ir.walk import walk
 from smachac.source import NOWHERE, Span
 from smachac.targets import Context, Files, Target, made_by, stem
 
-VERSION = 1
+VERSION = 2
 """Of the schema; it grows with every change."""
 
 

@@ -43,7 +43,7 @@ Arguments = list[tuple[str, Doc]]
 
 def variable_names() -> Callable[[str, bool], str]:
     """A function that makes a fresh variable name for a container, as SMACHA named them."""
-    taken: dict[str, int] = {"smach": 1, "build": 1, "main": 1}
+    taken: dict[str, int] = dict.fromkeys(["smach", "build", "main", "error_as_outcome"], 1)
 
     def fresh(name: str, root: bool) -> str:
         word = re.sub(r"\W+", "_", name.lower()).strip("_")
@@ -142,6 +142,13 @@ def initial(node: Container, variable: str) -> list[str]:
     if node.initial == node.children[0].name:
         return []
     return [f"{variable}.set_initial_state({flat(names([node.initial]))})"]
+
+
+def made(node: Node, state: Doc) -> Doc:
+    """What makes a state, which catches its exceptions where the script says so."""
+    if not node.catches:
+        return state
+    return call("error_as_outcome", [("", state), ("", string(node.catches))])
 
 
 def add(node: Node, parent: Container, made: Doc, depth: int) -> str:

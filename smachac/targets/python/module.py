@@ -10,6 +10,7 @@ from textwrap import indent
 
 from smachac import problems
 from smachac.ir.nodes import Container, Leaf, Machine
+from smachac.ir.walk import own_outcomes, walk
 from smachac.states import StateType, find_state_type
 from smachac.targets import Context, made_by
 from smachac.targets.blocks import BlockError, Blocks
@@ -20,6 +21,24 @@ from smachac.targets.python.smacha import plain, state_variables
 
 APPENDED = ("base_header", "imports", "defs", "class_defs", "cb_defs", "main_def")
 """Blocks that come out in the order of the states."""
+
+CATCHING = '''def error_as_outcome(state, outcome):
+    """Let a state end with an outcome where it would raise an exception, which is logged."""
+    execute = state.execute
+
+    def attempt(*userdata):
+        try:
+            return execute(*userdata)
+        except Exception as error:
+            smach.logerr(traceback.format_exc(chain=False))
+            state.caught = error
+            return outcome
+
+    state.caught = None
+    state.execute = attempt
+    state.register_outcomes([outcome])
+    return state'''
+"""What stands in a module in which a state catches. Traces look at `caught`."""
 
 PREPENDED = ("footer", "execute", "base_footer", "main")
 """Blocks that come out in reverse order, so that what was opened last is closed first."""
@@ -62,6 +81,9 @@ def module_text(machine: Machine, context: Context) -> str:
     gathered = _Gathered(Blocks(context.library.template), context)
     root = gathered.fresh(machine.root.name, True)
     lines = _container(machine.root, None, root, 1, machine.root.name, gathered)
+    if any(node.catches for _, node in walk(machine.root)):
+        gathered.buffers["imports"].append("import traceback")
+        gathered.buffers["defs"].append(CATCHING)
     buffers = {name: "\n\n\n".join(texts) for name, texts in gathered.buffers.items()}
     buffers["imports"] = _imports([*gathered.buffers["imports"], *standard_imports(machine)])
     variables = {
@@ -127,7 +149,9 @@ def _container(
         "userdata": [*body.userdata(node, variable, depth), *header],
         "children": indent("\n\n".join(states) or "pass", "    "),
         "after": body.initial(node, variable),
-        "add": body.add(node, parent, variable, depth) if parent is not None else "",
+        "add": body.add(node, parent, body.made(node, variable), depth)
+        if parent is not None
+        else "",
     }
     return gathered.blocks.render(f"{body.kind(node)}.tpl.py", "body", variables)
 
@@ -145,7 +169,7 @@ def _function(
     text = f'def _{variable}():\n    """The container `{path}`."""\n{indent(inner, "    ")}'
     gathered.functions.append(f"{text}\n    return {variable}")
     assert parent is not None
-    return body.add(node, parent, f"_{variable}()", depth)
+    return body.add(node, parent, body.made(node, f"_{variable}()"), depth)
 
 
 def _leaf(
@@ -162,7 +186,7 @@ def _leaf(
         return _whole(leaf, parent, variable, path, used, header, gathered)
     arguments: body.Arguments = []
     if "outcomes" in used.type.given:
-        arguments.append(("outcomes=", names(outcome.name for outcome in leaf.outcomes)))
+        arguments.append(("outcomes=", names(own_outcomes(leaf))))
     arguments += [(f"{one.name}=", literal(one.value.data)) for one in leaf.variables]
     given = used.type.given
     arguments += body.key_arguments(
@@ -172,7 +196,7 @@ def _leaf(
     variables = {
         "place": body.place(leaf),
         "name": leaf.name,
-        "add": body.add(leaf, parent, call(used.class_name, arguments), depth),
+        "add": body.add(leaf, parent, body.made(leaf, call(used.class_name, arguments)), depth),
     }
     return gathered.blocks.render("State.tpl.py", "body", variables)
 
@@ -228,6 +252,11 @@ def _whole(
     gathered: _Gathered,
 ) -> str:
     """A state whose template prints itself, with the variables SMACHA gave it."""
+    if leaf.catches:
+        message = f"the template of `{leaf.type}` prints its states itself, so that `{leaf.name}`"
+        help = "take the block `body` out of the template, or put the state into a StateMachine"
+        message += " cannot end with its exceptions"
+        raise BlockError(problems.template_error(leaf.span, message, help))
     variables = state_variables(leaf, parent, variable)
     variables["uuid"] = hashlib.sha256(path.encode()).hexdigest()[:32]
     variables["defined_headers"] = gathered.defined_headers

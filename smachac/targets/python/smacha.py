@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from smachac.ir.nodes import Container, Data, Expression, Leaf, Struct
+from smachac.ir.walk import own_outcomes
 
 
 def plain(data: Data) -> object:
@@ -23,7 +24,7 @@ def state_variables(leaf: Leaf, parent: Container, parent_sm_name: str) -> dict[
         variable.name: plain(variable.value.data) for variable in leaf.variables
     }
     optional: dict[str, object] = {
-        "outcomes": [outcome.name for outcome in leaf.outcomes],
+        "outcomes": list(own_outcomes(leaf)),
         "input_keys": [key.name for key in leaf.inputs],
         "output_keys": [key.name for key in leaf.outputs],
         "transitions": {edge.outcome: edge.target for edge in leaf.transitions},

@@ -1,0 +1,275 @@
+# Made by smachac 0.1.0 from main.yml (sha256 a418811d56b433b3).
+"""The state machine `fetch`."""
+
+import threading
+import traceback
+
+try:
+    import smach
+except ImportError:  # no ROS on this machine: the same names without it
+    from smachac.runtime import smach
+
+
+def error_as_outcome(state, outcome):
+    """Let a state end with an outcome where it would raise an exception, which is logged."""
+    execute = state.execute
+
+    def attempt(*userdata):
+        try:
+            return execute(*userdata)
+        except Exception as error:
+            smach.logerr(traceback.format_exc(chain=False))
+            state.caught = error
+            return outcome
+
+    state.caught = None
+    state.execute = attempt
+    state.register_outcomes([outcome])
+    return state
+
+
+class ScriptedState(smach.State):
+    """Ends as it is told: visit n does step n, the last step is repeated.
+
+    Asked to stop, it ends as `preempted` where it has that outcome.
+    """
+
+    def __init__(self, outcomes, steps=(), input_keys=(), output_keys=()):
+        super().__init__(
+            outcomes=outcomes,
+            input_keys=list(input_keys),
+            output_keys=list(output_keys),
+        )
+        self.steps = list(steps) or [{"outcome": outcomes[0]}]
+        self.visits = 0
+
+    def execute(self, userdata):
+        step = self.steps[min(self.visits, len(self.steps) - 1)]
+        self.visits += 1
+        if self.preempt_requested() and "preempted" in self.get_registered_outcomes():
+            self.service_preempt()
+            return "preempted"
+        for key, value in step.get("set", {}).items():
+            userdata[key] = value
+        return step["outcome"]
+
+
+class CallbacksState(smach.State):
+    """Calls functions of the userdata, keeps what each returns under its own name."""
+
+    def __init__(self, callbacks, input_keys=(), output_keys=()):
+        super().__init__(
+            outcomes=["succeeded"],
+            input_keys=list(input_keys),
+            output_keys=list(output_keys),
+        )
+        self.callbacks = callbacks
+
+    def execute(self, userdata):
+        for key in sorted(self.callbacks):
+            userdata[key] = self.callbacks[key](userdata)
+        return "succeeded"
+
+
+class ConditionalOutcomeState(smach.State):
+    """Ends with the first of its outcomes whose condition holds, else the default."""
+
+    def __init__(self, outcomes, callbacks, default_outcome, input_keys=()):
+        super().__init__(outcomes=outcomes, input_keys=list(input_keys))
+        self.conditions = [
+            (name, callbacks[name]) for name in outcomes if name in callbacks
+        ]
+        self.default_outcome = default_outcome
+
+    def execute(self, userdata):
+        for outcome, holds in self.conditions:
+            if holds(userdata):
+                return outcome
+        return self.default_outcome
+
+
+class SleepState(smach.State):
+    """Waits for `time` seconds, a number or a function of userdata; a preempt request ends it."""
+
+    def __init__(self, time, input_keys=()):
+        super().__init__(
+            outcomes=["succeeded", "preempted"],
+            input_keys=list(input_keys),
+        )
+        self.time = time
+        self.woken = threading.Event()
+
+    def request_preempt(self):
+        super().request_preempt()
+        self.woken.set()
+
+    def execute(self, userdata):
+        self.woken.wait(self.time(userdata) if callable(self.time) else self.time)
+        self.woken.clear()
+        if self.preempt_requested():
+            self.service_preempt()
+            return "preempted"
+        return "succeeded"
+
+
+def build():
+    """Build the state machine `fetch`."""
+    # main.yml:2
+    fetch = smach.StateMachine(outcomes=["succeeded", "aborted"])
+    fetch.userdata.n = 0
+    fetch.userdata.parts = [1, 2]
+    with fetch:
+        # main.yml:7
+        smach.StateMachine.add(
+            "FIND",
+            error_as_outcome(ScriptedState(outcomes=["found", "nothing"]), "error"),
+            transitions={"found": "PICK", "nothing": "aborted", "error": "aborted"},
+        )
+
+        # main.yml:11
+        sm_pick = smach.StateMachine(
+            outcomes=["succeeded", "error"],
+            input_keys=["n"],
+            output_keys=["width"],
+        )
+        with sm_pick:
+            # main.yml:18
+            smach.StateMachine.add(
+                "DIVIDE",
+                CallbacksState(
+                    callbacks={"width": lambda ud: 1 / ud.n},
+                    input_keys=["n"],
+                    output_keys=["width"],
+                ),
+                transitions={"succeeded": "succeeded"},
+            )
+
+        smach.StateMachine.add(
+            "PICK",
+            error_as_outcome(sm_pick, "error"),
+            transitions={"succeeded": "OWN", "error": "LET_GO"},
+        )
+
+        # main.yml:24
+        smach.StateMachine.add(
+            "OWN",
+            error_as_outcome(
+                ScriptedState(outcomes=["succeeded", "error"]),
+                "caught_error",
+            ),
+            transitions={
+                "succeeded": "CARRY",
+                "error": "aborted",
+                "caught_error": "LET_GO",
+            },
+        )
+
+        # main.yml:28
+        sm_carry = smach.Iterator(
+            outcomes=["succeeded", "exhausted", "error"],
+            it=[1, 2, 3],
+            it_label="attempt",
+            exhausted_outcome="exhausted",
+            input_keys=["n"],
+            output_keys=["width"],
+        )
+        with sm_carry:
+            # main.yml:28
+            smach.Iterator.set_contained_state(
+                "CARRY",
+                error_as_outcome(
+                    CallbacksState(
+                        callbacks={"width": lambda ud: 1 / ud.n},
+                        input_keys=["n"],
+                        output_keys=["width"],
+                    ),
+                    "error",
+                ),
+                loop_outcomes=["error"],
+                final_outcome_map={"error": "exhausted"},
+            )
+
+        smach.StateMachine.add(
+            "CARRY",
+            error_as_outcome(sm_carry, "error"),
+            transitions={"succeeded": "BOTH", "exhausted": "BOTH", "error": "LET_GO"},
+        )
+
+        # main.yml:35
+        sm_both = smach.Concurrence(
+            outcomes=["succeeded", "failed", "error"],
+            default_outcome="succeeded",
+            input_keys=["n"],
+            outcome_map={"failed": {"LEFT": "error"}},
+        )
+        with sm_both:
+            # main.yml:43
+            smach.Concurrence.add(
+                "LEFT",
+                error_as_outcome(
+                    ConditionalOutcomeState(
+                        outcomes=["big", "small"],
+                        default_outcome="small",
+                        callbacks={"big": lambda ud: 1 / ud.n > 2},
+                        input_keys=["n"],
+                    ),
+                    "error",
+                ),
+            )
+
+            # main.yml:49
+            smach.Concurrence.add("RIGHT", SleepState(time=0.01))
+
+        smach.StateMachine.add(
+            "BOTH",
+            error_as_outcome(sm_both, "error"),
+            transitions={"succeeded": "EACH", "failed": "aborted", "error": "LET_GO"},
+        )
+
+        # main.yml:50
+        sm_each = smach.Iterator(
+            outcomes=["succeeded", "error"],
+            it=lambda: sm_each.userdata["parts"],
+            it_label="part",
+            exhausted_outcome="succeeded",
+            input_keys=["parts"],
+        )
+        with sm_each:
+            # main.yml:60
+            smach.Iterator.set_contained_state(
+                "HALVE",
+                error_as_outcome(
+                    CallbacksState(
+                        callbacks={"half": lambda ud: ud.part / (ud.part - 1)},
+                        input_keys=["part"],
+                        output_keys=["half"],
+                    ),
+                    "error",
+                ),
+                loop_outcomes=["succeeded", "error"],
+            )
+
+        smach.StateMachine.add(
+            "EACH",
+            error_as_outcome(sm_each, "error"),
+            transitions={"succeeded": "succeeded", "error": "LET_GO"},
+        )
+
+        # main.yml:65
+        smach.StateMachine.add(
+            "LET_GO",
+            CallbacksState(callbacks={"n": lambda ud: 1}, output_keys=["n"]),
+            transitions={"succeeded": "OWN"},
+        )
+    return fetch
+
+
+def main():
+    """Run the state machine once and return its outcome."""
+    return build().execute()
+
+
+if __name__ == "__main__":
+    outcome = main()
+    print(f"outcome: {outcome}")
+    raise SystemExit(outcome is None)
