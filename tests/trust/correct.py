@@ -27,16 +27,21 @@ WORDS = ("pose", "width", "part", "goal", "speed", "level", "side", "route", "co
 class State:
     """A state to be put into a container: its body, and what is set after each of its outcomes.
 
-    The keys are those of the container. `claims` are what it holds.
+    The keys are those of the container. `perhaps` may be set as well.
     """
 
     name: str
     body: Body
     sets: dict[str, Known] = field(default_factory=dict)
     reads: set[str] = field(default_factory=set)
+    perhaps: Known = field(default_factory=dict)
 
-    def writes(self) -> set[str]:
-        return {key for known in self.sets.values() for key in known}
+    def writes(self) -> Known:
+        """Whatever it may set."""
+        found = dict(self.perhaps)
+        for known in self.sets.values():
+            found |= known
+        return found
 
 
 class Builder:
@@ -70,8 +75,8 @@ class Builder:
             "params": {"arm": "left"},
         }
         self.files[MAIN] = body
-        _, sets = self.machine(body, self.draw.choice([1, 2, 2, 3]), exits, {})
-        outputs = sorted({key for known in sets.values() for key in known})
+        inside = self.machine(body, self.draw.choice([1, 2, 2, 3]), exits, {})
+        outputs = sorted(inside.writes())
         if outputs:
             body["output_keys"] = outputs
         body["doc"] = ["The arm is ", ["params", "arm"], "."]
@@ -81,8 +86,8 @@ class Builder:
 
     def machine(
         self, body: Body, depth: int, exits: list[str], around: Known, inside: str = ""
-    ) -> tuple[set[str], dict[str, Known]]:
-        """Give a state machine or sequence its states; what they read and have set at its outcomes.
+    ) -> State:
+        """Give a container its states; what they read, and have set at its outcomes.
 
         `around` is what is set when it is entered; presets go into `body`.
         """
@@ -93,7 +98,7 @@ class Builder:
         arriving[names[0]] = [around]
         recoveries: list[str] = []
         states: list[Data] = []
-        reads: set[str] = set()
+        whole = State("", body)
         queue = list(names)
         while queue:
             name = queue.pop(0)
@@ -123,13 +128,17 @@ class Builder:
                 del steps[GOOD]
             state.body["transitions"] = steps
             states.append({name: state.body})
-            reads |= state.reads
+            whole.reads |= state.reads
+            whole.perhaps |= state.writes()
         if not arriving[exits[1]]:
             states.insert(0, self.failing(names[0], exits))
             arriving[exits[1]].append(around)
         self.close(body)
         body["states"] = states
-        return reads, {exit: common(arriving[exit]) for exit in exits}
+        whole.sets = {exit: common(arriving[exit]) for exit in exits}
+        for key in around:
+            whole.perhaps.pop(key, None)
+        return whole
 
     def may_recover(self, depth: int, inside: str) -> bool:
         return depth > 0 and inside != "Sequence" and self.chance(0.15)
@@ -162,9 +171,9 @@ class Builder:
             state.body["doc"] = "What it is for."
         return state
 
-    def interface(self, state: State, known: Known, taken: Known, sets: dict[str, Known]) -> None:
+    def interface(self, state: State, known: Known, taken: Known, inside: State) -> None:
         """Keys of a container: those it takes in, those it hands out, some of them renamed."""
-        outputs = {key: t for each in sets.values() for key, t in each.items() if key not in known}
+        outputs = {key: type_ for key, type_ in inside.writes().items() if key not in known}
         remaps = {}
         if taken:
             state.body["input_keys"] = self.listed(taken)
@@ -176,9 +185,10 @@ class Builder:
         if remaps:
             state.body["remapping"] = remaps
         state.reads |= set(taken)
+        state.perhaps = {remaps.get(key, key): type_ for key, type_ in outputs.items()}
         state.sets = {
             outcome: {remaps.get(key, key): t for key, t in each.items() if key in outputs}
-            for outcome, each in sets.items()
+            for outcome, each in inside.sets.items()
         }
 
     def listed(self, keys: Known) -> Data:
@@ -193,9 +203,10 @@ class Builder:
         if kind == "Sequence":
             body["connector_outcome"] = GOOD
         inner = self.some(known)
-        reads, sets = self.machine(body, depth - 1, [GOOD, BAD], inner, kind)
+        inside = self.machine(body, depth - 1, [GOOD, BAD], inner, kind)
         state = State(name, body)
-        self.interface(state, known, {key: inner[key] for key in inner if key in reads}, sets)
+        taken = {key: type_ for key, type_ in inner.items() if key in inside.reads}
+        self.interface(state, known, taken, inside)
         return state
 
     def called(self, name: str, depth: int, known: Known) -> State:
@@ -208,7 +219,7 @@ class Builder:
         body: Body = {"script": file, "params": {"tool": "gripper"}}
         if remaps:
             body["remapping"] = remaps
-        return State(name, body, inside.sets, inside.reads)
+        return State(name, body, inside.sets, inside.reads, inside.perhaps)
 
     def both(self, name: str, depth: int, known: Known) -> State:
         """A concurrence: branches read what is set, and write keys of their own."""
@@ -216,9 +227,8 @@ class Builder:
         self.presets.append(body.setdefault("userdata", {}))
         branches: list[State] = []
         for _ in range(self.draw.randint(2, 3)):
-            branch = self.state(self.state_name(), min(depth - 1, 1), known)
-            while BAD not in branch.sets and not branches:
-                branch = self.state(self.state_name(), 0, known)
+            make = self.state if branches else self.deciding
+            branch = make(self.state_name(), min(depth - 1, 1), known)
             if branch.body["template" if "template" in branch.body else "script"] in LEAVES:
                 branch.body["claims"] = [f"tool.n{self.number()}"]
             branches.append(branch)
@@ -231,13 +241,13 @@ class Builder:
             rule = {first.name: BAD, **{branch.name: GOOD for branch in others}}
             body["outcome_map"] = {**body["outcome_map"], "half": rule}
         body["states"] = [{branch.name: branch.body} for branch in branches]
-        state = State(name, body)
-        good: Known = {}
+        state, inside = State(name, body), State(name, body)
+        inside.sets = {outcome: {} for outcome in body["outcomes"]}
         for branch in branches:
-            good |= branch.sets[GOOD]
-        sets = {"ready": good, **{outcome: {} for outcome in body["outcomes"][1:]}}
+            inside.sets["ready"] |= branch.sets[GOOD]
+            inside.perhaps |= branch.writes()
         taken = {key: known[key] for branch in branches for key in branch.reads if key in known}
-        self.interface(state, known, taken, sets)
+        self.interface(state, known, taken, inside)
         return self.as_machine(state)
 
     def as_machine(self, state: State) -> State:
@@ -251,7 +261,8 @@ class Builder:
         if state.writes():
             body["output_keys"] = sorted(state.writes())
         body["states"] = [{inner.name: inner.body}]
-        return State(state.name, body, {GOOD: state.sets[good], BAD: {}}, state.reads)
+        sets = {GOOD: state.sets[good], BAD: {}}
+        return State(state.name, body, sets, state.reads, state.perhaps)
 
     def each(self, name: str, depth: int, known: Known) -> State:
         """An iterator over a list, or over a key that holds one."""
@@ -261,23 +272,17 @@ class Builder:
         body["it"] = self.draw.choice(lists) if lists else [1, 2, 3]
         body |= {"exhausted_outcome": "all", "loop_outcomes": [GOOD]}
         inside: Body = {"template": "StateMachine", "outcomes": [GOOD, BAD]}
-        reads, sets = self.machine(inside, depth - 1, [GOOD, BAD], {item: "int"})
-        if item in reads:
+        within = self.machine(inside, depth - 1, [GOOD, BAD], {item: "int"})
+        if item in within.reads:
             inside["input_keys"] = [item]
-        outputs = sorted({key for each in sets.values() for key in each} - {item})
+        outputs = {key: type_ for key, type_ in within.writes().items() if key != item}
         if outputs:
-            inside["output_keys"] = body["output_keys"] = outputs
+            inside["output_keys"] = body["output_keys"] = sorted(outputs)
         body["states"] = [{self.state_name(): inside}]
-        state = State(name, body, {"all": {}, BAD: {}})
+        reads = {str(body["it"])} if lists else set()
         if lists:
-            body["input_keys"] = [body["it"]]
-            state.reads = {str(body["it"])}
-        state.sets = {"all": {}, BAD: {}}
-        found = self.as_machine(state)
-        if outputs:
-            next(iter(found.body["states"][0].values()))["output_keys"] = outputs
-            found.body["output_keys"] = outputs
-        return found
+            body["input_keys"] = sorted(reads)
+        return self.as_machine(State(name, body, {"all": {}, BAD: {}}, reads, outputs))
 
     # --- leaves
 

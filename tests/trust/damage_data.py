@@ -317,3 +317,78 @@ def break_an_expression(victim: Victim) -> Mutant | None:
     broken = victim.draw.choice([f"{code} +", f"{code})", code.replace(":", "", 1)])
     site.body["callbacks"][key] = Quoted(broken)
     return Mutant(codes=("SM016",), places=((site.file, (*site.path, "callbacks", key)),))
+
+
+@kind
+def hold_a_key_that_nobody_reads(victim: Victim) -> Mutant | None:
+    found = [site for site in victim.sites() if "states" in site.body and site.path]
+    site = victim.pick(site for site in found if victim.node(site) is not None)
+    if site is None:
+        return None
+    site.body.setdefault("userdata", {})["left_over"] = 1
+    place = (*site.path, "userdata", "left_over")
+    return Mutant(codes=("SM305",), places=((site.file, place),))
+
+
+@kind
+def take_in_a_key_that_nobody_needs(victim: Victim) -> Mutant | None:
+    found = [site for site in victim.sites() if site.target in ("StateMachine", "Sequence")]
+    site = victim.pick(site for site in found if site.path and victim.node(site) is not None)
+    if site is None:
+        return None
+    held = site.body.setdefault("input_keys", [])
+    if isinstance(held, dict):
+        held["unneeded"] = "any"
+    else:
+        held.append("unneeded")
+    last = "unneeded" if isinstance(held, dict) else len(held) - 1
+    place = (*site.path, "input_keys", last)
+    return Mutant(codes=("SM306",), places=((site.file, place),))
+
+
+def with_functions(victim: Victim) -> list[tuple[Site, str, str]]:
+    """States whose code reads a key: the key of the function, and that key."""
+    return [
+        (site, name, key)
+        for site in victim.sites()
+        for name, code in site.pairs("callbacks").items()
+        for key in site.keys("input_keys")
+        if f"ud.{key}" in str(code)
+    ]
+
+
+@kind
+def read_a_key_that_is_no_input(victim: Victim) -> Mutant | None:
+    """The code of a callback misspells it."""
+    found = with_functions(victim)
+    if not found:
+        return None
+    site, name, key = victim.draw.choice(found)
+    code = str(site.body["callbacks"][name]).replace(f"ud.{key}", f"ud.{swap_letters(key)}")
+    site.body["callbacks"][name] = Quoted(code)
+    # What an iterator runs sees every key (smach-semantics I7): there it is just not set.
+    codes = ("SM301",) if in_iterator(site) else ("SM310",)
+    return Mutant(codes=codes, owners=(site,))
+
+
+def in_iterator(site: Site) -> bool:
+    """Whether a state is run by an iterator, of the script or made of sugar."""
+    made = {"retry", "for_each"} & set(site.body)
+    return bool(made) or (site.around is not None and site.around.target == "Iterator")
+
+
+@kind
+def set_a_key_that_is_no_output(victim: Victim) -> Mutant | None:
+    found = [
+        (site, key)
+        for site in victim.sites()
+        if site.template in ("CallbacksState", "ScriptedState") and not in_iterator(site)
+        for key in site.keys("output_keys")
+        if key in site.pairs("callbacks")
+        or any(key in step.get("set", {}) for step in site.body.get("steps") or ())
+    ]
+    if not found:
+        return None
+    site, key = victim.draw.choice(found)
+    without(site, "output_keys", key)
+    return Mutant(codes=("SM308",), owners=(site,))
