@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from bisect import bisect_left, bisect_right
+from functools import lru_cache
 from typing import NamedTuple
 from unicodedata import category, combining, east_asian_width
 
@@ -14,19 +16,22 @@ LEAD = 8
 
 
 class Line(NamedTuple):
-    """A line as printed: its text, and the column of each character of the original.
+    """A stretch of a line as printed: its text, and where the characters of the original are in it.
 
-    `columns` has one entry more than there are characters: the end. Characters that were cut off
-    stand at the edge.
+    `starts` are the columns of those from `first` on, before the stretch from `left` to `right` was
+    cut out; one more than there are characters: the end.
     """
 
     text: str
-    columns: tuple[int, ...]
     first: int
+    starts: list[int]
+    left: int
+    right: int
 
     def column(self, index: int) -> int:
-        """The column of a character of the original line, wherever it is."""
-        return self.columns[min(max(index - self.first, 0), len(self.columns) - 1)]
+        """The column of a character of the original line; one that was cut off is at the edge."""
+        start = self.starts[min(max(index - self.first, 0), len(self.starts) - 1)]
+        return min(max(start, self.left), self.right) - self.left
 
 
 def _joins(character: str) -> bool:
@@ -38,17 +43,15 @@ def _joins(character: str) -> bool:
     )
 
 
-def _glyph(character: str, column: int, *, alone: bool) -> tuple[str, int]:
-    """What is printed for a character that starts at `column`, and how many columns it takes.
+@lru_cache(maxsize=4096)
+def _glyph(character: str, *, alone: bool) -> tuple[str, int]:
+    """What is printed for a character that is no tab, and how many columns it takes.
 
     Nothing a text holds may steer the terminal or hide: controls have pictures (Unicode block
     2400), other invisible characters appear as `<U+202E>`.
     """
     if " " <= character <= "~":
         return character, 1
-    if character == "\t":
-        size = TAB - column % TAB
-        return " " * size, size
     if character < " ":
         return chr(0x2400 + ord(character)), 1
     if character == "\x7f":
@@ -70,7 +73,11 @@ def _glyphs(text: str) -> tuple[list[str], list[int]]:
     printed: list[str] = []
     starts = [0]
     for character in text:
-        glyph, size = _glyph(character, starts[-1], alone=not printed)
+        if character == "\t":
+            size = TAB - starts[-1] % TAB
+            glyph = " " * size
+        else:
+            glyph, size = _glyph(character, alone=not printed)
         printed.append(glyph)
         starts.append(starts[-1] + size)
     return printed, starts
@@ -100,23 +107,20 @@ def lay_out(text: str, start: int, end: int, room: int) -> Line:
     one that fills the screen.
     """
     room = max(room, 20)
-    low, high = max(0, start - 4 * room), min(len(text), start + 4 * room)
+    low, high = max(0, start - room), min(len(text), start + room)
     printed, starts = _glyphs(text[low:high])
     total = starts[-1]
     if low == 0 and high == len(text) and total <= room:
-        return Line("".join(printed), tuple(starts), 0)
+        return Line("".join(printed), 0, starts, 0, total)
     from_column = starts[min(start, high) - low]
     to_column = starts[min(max(end, start), high) - low]
     left = 0
     if low > 0 or (to_column >= room and from_column > room // 3):
         left = _left_edge(from_column, to_column, total, room)
     cut_left = low > 0 or left > 0
-    first = next(i for i, at in enumerate(starts) if at >= left + cut_left or i == len(printed))
+    first = bisect_left(starts, left + cut_left, hi=len(printed))
     limit = left + room
     cut_right = high < len(text) or total > limit
-    last = max(i for i, at in enumerate(starts) if at <= limit - cut_right or i == first)
-    body = "".join(printed[first:last])
-    shown = ELLIPSIS * cut_left + body + ELLIPSIS * cut_right
-    edge = starts[first] - cut_left
-    placed = tuple(min(max(at, starts[first] - cut_left), starts[last]) - edge for at in starts)
-    return Line(shown, placed, low)
+    last = max(first, bisect_right(starts, limit - cut_right) - 1)
+    shown = ELLIPSIS * cut_left + "".join(printed[first:last]) + ELLIPSIS * cut_right
+    return Line(shown, low, starts, starts[first] - cut_left, starts[last])

@@ -3,6 +3,8 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Iterator
+from itertools import groupby
+from operator import itemgetter
 from typing import NamedTuple
 
 from smachac.report.cells import Line, columns, lay_out, visible
@@ -43,8 +45,10 @@ def mark(source: Source, start: int, end: int, label: str, style: str) -> Mark:
         end = start + len(source.text[start:end].rstrip())
     line, column = source.position(start)
     last_line, last_column = source.position(max(end - 1, start))
-    start_index = min(column - 1, len(source.line(line)))
-    end_index = min(last_column, len(source.line(last_line))) if end > start else start_index
+    first = source.line(line)
+    last = first if last_line == line else source.line(last_line)
+    start_index = min(column - 1, len(first))
+    end_index = min(last_column, len(last)) if end > start else start_index
     return Mark(source, line, start_index, last_line, end_index, visible(label), style)
 
 
@@ -138,15 +142,13 @@ def _beneath(marks: list[Mark], line: Line, room: int, paint: Paint) -> Iterator
 
 def _drawn(row: dict[int, tuple[str, str]], paint: Paint, upto: int = 0) -> str:
     """A row of signs at columns; runs of one style are painted together."""
-    text = ""
-    run_style, run = "", ""
-    for column in range(max([upto, *(at + 1 for at in row)])):
-        style, sign = row.get(column, ("", " "))
-        if style != run_style:
-            text += paint(run_style, run) if run_style else run
-            run_style, run = style, ""
-        run += sign
-    return text + (paint(run_style, run) if run_style else run)
+    width = max([upto, *(at + 1 for at in row)])
+    cells = (row.get(column, ("", " ")) for column in range(width))
+    runs = ((style, "".join(map(_SIGN, run))) for style, run in groupby(cells, key=_STYLE))
+    return "".join(paint(style, text) if style else text for style, text in runs)
+
+
+_STYLE, _SIGN = itemgetter(0), itemgetter(1)
 
 
 def _tall(m: Mark, room: int, paint: Paint) -> Iterator[Row]:

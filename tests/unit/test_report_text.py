@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import sys
 from textwrap import dedent
 
 import pytest
@@ -198,6 +199,34 @@ def test_a_long_line_is_cut_around_the_span() -> None:
     assert lines[4] == "  | " + "^" * 35
 
 
+@pytest.mark.parametrize("word", ["a, bc: [d], ", "\ta: 日本, "])
+def test_findings_on_one_long_line_cost_no_more_than_on_short_ones(word: str) -> None:
+    """In calls, counted by the profiler: thousands of findings on such a line took seconds."""
+    source = Source("t.yml", word * 10_000)
+    step = len(word) * 100
+    report = [finding(Span(source, at, at + 2)) for at in range(0, len(source.text), step)]
+    calls = 0
+
+    def count(*_: object) -> None:
+        nonlocal calls
+        calls += 1
+
+    sys.setprofile(count)
+    try:
+        text = render_text(report)
+    finally:
+        sys.setprofile(None)
+    assert calls < 1500 * len(report)
+    assert len(text) < 600 * len(report)
+
+
+def test_a_cut_line_of_wide_letters_and_tabs_has_its_mark_below_the_right_one() -> None:
+    source = Source("t.yml", "日" * 50 + "\tHERE\t" + "本" * 60)
+    code, carets = shown(finding(place("HERE", source)), width=40).splitlines()[3:]
+    assert code == "1 | …" + "日" * 6 + " " * 2 + "HERE" + " " * 4 + "本" * 5 + "…"
+    assert carets == "  | " + " " * 15 + "^^^^"
+
+
 def test_witness_paths_show_outcomes_on_arrows_and_break() -> None:
     assert steps(("sm", "PICK", "(aborted)", "PLACE")) == [
         "sm",
@@ -279,6 +308,7 @@ def test_a_laid_out_line_fits_and_keeps_the_span_in_view(
     end = min(start + max(size, 0), len(text))
     line = lay_out(text, start, end, room)
     assert columns(line.text) <= room
-    assert list(line.columns) == sorted(line.columns)
+    places = [line.column(index) for index in range(len(text) + 1)]
+    assert places == sorted(places)
     assert 0 <= line.column(start) <= line.column(end) <= room
     assert visible(line.text) == line.text
