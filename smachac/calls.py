@@ -8,8 +8,10 @@ from smachac.source import Span, Word
 from smachac.syntax import Entry, Map, Scalar, Seq, Tree
 
 
-def sub_script_entries(tree: Tree, call: Word, report: Report) -> tuple[Entry, ...] | None:
-    """The variables of the one state that a sub-script holds, as written (SM014)."""
+def sub_script_state(
+    tree: Tree, call: Word, report: Report
+) -> tuple[Word, tuple[Entry, ...]] | None:
+    """The name and the variables of the one state that a sub-script holds, as written (SM014)."""
     start = Span(tree.span.source, tree.span.start, tree.span.start + 1)
     if isinstance(tree, Map):
         message = "a sub-script is a list with one state; this is a mapping"
@@ -27,10 +29,11 @@ def sub_script_entries(tree: Tree, call: Word, report: Report) -> tuple[Entry, .
         )
         return None
     first, rest = item.entries[0], item.entries[1:]
+    name = Word(str(first.key.value), first.key.span)
     if isinstance(first.value, Map) and not rest:
-        return first.value.entries
+        return name, first.value.entries
     if isinstance(first.value, Scalar) and first.value.value is None and rest:
-        return rest
+        return name, rest
     message = "a sub-script is a list with one state that has one key: its name"
     report.append(problems.bad_sub_script(first.key.span, message, call.span))
     return None

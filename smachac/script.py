@@ -8,7 +8,7 @@ from collections.abc import Mapping
 from dataclasses import dataclass, field
 
 from smachac import problems, schema, shapes
-from smachac.calls import overridden, sub_script_entries
+from smachac.calls import overridden, sub_script_state
 from smachac.diagnostics import Related, Report, did_you_mean
 from smachac.ir.nodes import Key, Outcome
 from smachac.lookups import (
@@ -68,6 +68,8 @@ class _Place:
     scope: Scope = field(default_factory=dict)
     calls: tuple[tuple[str, Span], ...] = ()
     depth: int = 0
+    inner: Word | None = None
+    """The state of the sub-script, where one is called."""
 
     @property
     def via(self) -> tuple[Span, ...]:
@@ -143,12 +145,13 @@ class _Resolver:
             own["params"] = self.shallow(own["params"])
         params = own.get("params")
         scope = child_scope(place.scope, params.value if params else None, self.report)
+        holder = place.inner or name
         place = _Place(place.source, scope, place.calls, place.depth + 1)
         fields = {
             key: entry if key in ("params", "states") else self.filled(key, entry, scope)
             for key, entry in own.items()
         }
-        type_, owner = self.type_of(name, fields, role)
+        type_, owner = self.type_of(holder, fields, role)
         if role != "base":
             self.count += 1
         self.check_variables(name, fields, owner, type_)
@@ -266,13 +269,17 @@ class _Resolver:
             found = self.sub_script(word, place) if word is not None and word.text else None
             if found is None:
                 return _unknown(name, own, place)
-            source, inner = found
+            source, inner, entries = found
             call = Span(place.source, entry.key.span.start, entry.value.span.end)
-            place = _Place(source, place.scope, (*place.calls, (source.name, call)), place.depth)
-            own = overridden(inner, own)
+            calls = (*place.calls, (source.name, call))
+            place = _Place(source, place.scope, calls, place.depth, inner)
+            own = overridden(self.expand(entries), own)
         return self.state(name, own, place)
 
-    def sub_script(self, word: Word, place: _Place) -> tuple[Source, dict[str, Entry]] | None:
+    def sub_script(
+        self, word: Word, place: _Place
+    ) -> tuple[Source, Word, tuple[Entry, ...]] | None:
+        """The file of a sub-script, the name of its state, and the variables of that."""
         key = (word.text, place.source.name)
         if key not in self.sub_scripts:
             source = self.library.script(word.text, place.source.name)
@@ -297,8 +304,8 @@ class _Resolver:
                 message = "the sub-script is empty"
                 self.report.append(problems.bad_sub_script(span, message, word.span))
             return None
-        entries = sub_script_entries(tree, word, self.report)
-        return None if entries is None else (source, self.expand(entries))
+        found_state = sub_script_state(tree, word, self.report)
+        return None if found_state is None else (source, *found_state)
 
     def type_of(self, name: Word, fields: Fields, role: str) -> tuple[StateType, str]:
         """The state type a state names, and which variables of the schema are its own."""
@@ -307,7 +314,7 @@ class _Resolver:
         if entry is None and role == "base":
             word = Word("Base", name.span)
         if entry is None and role != "base":
-            self.report.append(problems.missing_variable(name.span, "template", name.text))
+            self.report.append(problems.missing_variable(name.span, "template", f"`{name.text}`"))
         nested = "StateMachine" if "states" in fields else "state"
         if word is None or not word.text:
             return StateType(name="", open=True), role or nested

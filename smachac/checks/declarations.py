@@ -172,16 +172,16 @@ def unused_declaration(machine: Machine) -> Iterator[Finding]:
     """
     flow = flow_of(machine)
     missing = {(each.scope.path, each.key) for each in missing_keys(flow, "unset", "nowhere")}
+    kept = {(each.other, each.key) for each in missing_keys(flow, "outside")}
+    for path, leaf in _leaves_with_code(machine):
+        yield from _unused_by_code(path, leaf)
     for scope in flow.scopes.values():
         container = scope.container
-        for path, child in ((f"{scope.path}/{c.name}", c) for c in container.children):
-            if isinstance(child, Leaf) and not isinstance(container, nodes.Iterator):
-                yield from _unused_by_code(path, child)
         if container.sugar or _sees_everything(scope):
             continue
         used = _read_in(scope) | scope.outputs.keys()
         for key in container.inputs:
-            if key.name not in used:
+            if key.name not in used and (scope.path, key.name) not in kept:
                 yield _unused(scope.path, container, key, "input", "reads")
         set_ = _written_in(scope)
         outer = scope.path.rpartition("/")[0]
@@ -210,9 +210,11 @@ def _unused_by_code(path: str, leaf: Leaf) -> Iterator[Finding]:
     fields = [each for each in known if each is not None]
     if len(fields) == len(known):
         used = {key for each in fields for key in (*each.read, *each.tested)}
+        used |= _meant_keys((key for key, _ in undeclared_reads(leaf)), leaf.inputs)
         yield from _unused_keys(path, leaf, leaf.inputs, used, "input", "reads")
     if leaf.type == "CallbacksState":
-        yield from _unused_keys(path, leaf, leaf.outputs, callback_names(leaf), "output", "sets")
+        made = callback_names(leaf) | _meant_keys(undeclared_writes(leaf), leaf.outputs)
+        yield from _unused_keys(path, leaf, leaf.outputs, made, "output", "sets")
 
 
 def _unused_keys(
@@ -276,6 +278,12 @@ def _leaves_with_code(machine: Machine) -> Iterator[tuple[str, Leaf]]:
         for child in container.children if not isinstance(container, nodes.Iterator) else ():
             if isinstance(child, Leaf) and not child.open:
                 yield f"{path}/{child.name}", child
+
+
+def _meant_keys(wrong: Iterable[str], known: Iterable[Key]) -> set[str]:
+    """The keys that were meant by names of none (SM308, SM310)."""
+    guess = guesser(each.name for each in known)
+    return {name for key in wrong if (name := guess(key)) is not None}
 
 
 def _meant(key: str, known: Iterable[Key]) -> str | None:

@@ -22,6 +22,7 @@ from smachac.ir.nodes import (
     Sequence,
     StateMachine,
 )
+from smachac.ir.types import ANY, Type
 from smachac.ir.walk import containers, outcome_names
 
 
@@ -71,6 +72,10 @@ def undeclared_reads(leaf: Leaf) -> Iterator[tuple[str, nodes.Expression]]:
                 yield key, code
 
 
+PERHAPS = Type("optional", (ANY,))
+"""What code reads without declaring it counts as used, but is not asked for: SM310 has said it."""
+
+
 def mended_machine(machine: Machine) -> Machine:
     """The machine as it was meant: misspelt targets, outcomes and remaps put right, and what the
     code of the script reads and writes declared. Iterative, so that deep nesting costs nothing."""
@@ -100,7 +105,9 @@ def _meant(node: Node, raw: bool) -> Node:
         kept = (replace(each, key=wrong.get(each) or each.key) for each in node.remaps)
         node = replace(node, remaps=tuple(kept))
     if isinstance(node, Leaf) and not raw and not node.open:
-        reads = tuple(Key(name=key, span=code.span) for key, code in undeclared_reads(node))
+        reads = tuple(
+            Key(name=key, span=code.span, type=PERHAPS) for key, code in undeclared_reads(node)
+        )
         writes = tuple(Key(name=key, span=node.span) for key in undeclared_writes(node))
         if reads or writes:
             node = replace(node, inputs=(*node.inputs, *reads), outputs=(*node.outputs, *writes))

@@ -72,7 +72,7 @@ class Mutant:
     `edit` changes the text of `file` in the end, from the line of its place. `loss`: it is a fault
     only if some run finds a key missing, and then the state that does is a right place too.
     `ends`: what is wrong has two ends, as writer and reader of a type; either may be blamed, if
-    the other is shown as a related place.
+    the other is shown as a related place. So are all who read a key that gets lost.
     """
 
     codes: tuple[str, ...]
@@ -131,11 +131,12 @@ def judge(victim: Victim, mutant: Mutant) -> Verdict:
     said = tuple(
         f"{item.code.code} {item.span.source.name}:{item.span.line}" for item in analysis.report
     )
+    others = mutant.ends or mutant.loss
     caught = any(
         line_of(span) in right
         for item in analysis.report
         if item.code.code in mutant.codes
-        for span in (item.span, *(each.span for each in item.finding.related[: 9 * mutant.ends]))
+        for span in (item.span, *(each.span for each in item.finding.related if others))
     )
     judgement: Judgement = "caught" if caught else "missed"
     reason = ""

@@ -46,12 +46,13 @@ def anything(seed: int) -> Behaviour:
 
 
 def reads(leaf: Leaf) -> Iterator[str]:
-    """The inputs that have to be there; functions say themselves which those are."""
+    """The inputs that have to be there; functions say themselves which keys those are."""
     functions = variable(leaf, "callbacks")
-    named = re.findall(r"\bud\.(\w+)", str(functions)) if isinstance(functions, Struct) else None
-    for key in leaf.inputs:
-        if key.type.name != "optional" and (named is None or key.name in named):
-            yield key.name
+    optional = {key.name for key in leaf.inputs if key.type.name == "optional"}
+    named = [key.name for key in leaf.inputs]
+    if isinstance(functions, Struct):
+        named = re.findall(r"\bud\.(\w+)", str(functions))
+    return (key for key in named if key not in optional)
 
 
 def writes(leaf: Leaf, outcome: str, draw: random.Random) -> list[str]:

@@ -293,6 +293,31 @@ def test_a_declaration_without_use() -> None:
     assert found(root(inner, held={"k": 1}), "SM305") == []
 
 
+def test_an_input_that_a_container_inside_does_not_take_in_is_one_fault() -> None:
+    """Not also one that nothing reads."""
+    inner = machine("I", "out", reader("R", {"ok": "out"}), to={"out": "out"})
+    outer = machine("O", "out", inner, ins="k", to={"out": "done"})
+    assert found(root(outer, held={"k": 1})) == ["SM303 sm/O/I/R"]
+
+
+def test_a_misspelt_key_in_code_is_one_fault() -> None:
+    """Not also a key that nothing sets, nor an input that nothing reads."""
+    judge = leaf("J", {"ok": "done"}, type="ConditionalOutcomeState", ins="level",
+                 callbacks={"ok": "`lambda ud: ud.leevl < 3`"}, default_outcome="ok")  # fmt: skip
+    assert found(root(judge, held={"level": 1})) == ["SM310 sm/J"]
+    count = leaf("C", {"succeeded": "done"}, type="CallbacksState", ins="count", outs="count",
+                 callbacks={"conut": "`lambda ud: ud.count + 1`"})  # fmt: skip
+    assert found(root(count, held={"count": 1}, outs="count")) == ["SM308 sm/C"]
+
+
+def test_code_that_reads_what_is_not_declared_is_one_fault() -> None:
+    """Not also a key that nothing sets; and where something does, it is not dead."""
+    count = leaf("C", {"succeeded": "done"}, type="CallbacksState", ins="n", outs="n",
+                 callbacks={"n": "`lambda ud: ud.n + ud.step`"})  # fmt: skip
+    assert found(root(count, held={"n": 1})) == ["SM310 sm/C"]
+    assert found(root(count, held={"n": 1, "step": 1})) == ["SM310 sm/C"]
+
+
 def test_a_sequence_is_judged_along_its_links() -> None:
     node = sequence("S", "ok", "ok", writer("W", {"ok": "R"}), reader("R", {"ok": "=ok"}),
                     to={"ok": "done"})  # fmt: skip
