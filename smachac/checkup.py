@@ -119,7 +119,7 @@ def _counted(
 def _put_diff(cured: Mended) -> None:
     from smachac.fixes import differences
 
-    sys.stdout.writelines(differences(cured))
+    sys.stdout.writelines(differences(cured.texts, cured.sources))
     print(f"--fix would mend {cured.count} findings in {len(cured.texts)} files", file=sys.stderr)
 
 

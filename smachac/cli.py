@@ -41,6 +41,16 @@ examples:
 exit codes: 0 explained, 1 unreadable script, 2 wrong usage or no such name, 70 a bug in smachac
 """
 
+FMT_EXAMPLES = """\
+examples:
+  smachac fmt                        lay out every script below this folder
+  smachac fmt main.yml --diff        what it would change, as a patch
+  smachac fmt --check                fail if a script is not laid out (CI)
+  smachac fmt main.yml --shorthand   T, o, t, [[x]] instead of template, outcomes, transitions, ...
+
+exit codes: 0 done, 1 something to lay out (--check, --diff) or unreadable, 2 wrong usage, 70 a bug
+"""
+
 FORMATS = ("text", "json", "sarif", "github", "junit")
 
 EPILOG = """\
@@ -51,6 +61,7 @@ examples:
   smachac run main.yml --mock scenario.yml   run it without robot or simulation
   smachac explain SM201                      what a code means, with examples
   smachac explain main.yml --failures        what becomes of every failure
+  smachac fmt                                lay out every script here
 
 exit codes: 0 clean, 1 findings, 2 wrong usage, 70 a bug in smachac
 """
@@ -175,6 +186,23 @@ def _explain(verb: argparse.ArgumentParser) -> None:
     _colour(verb)
 
 
+def _fmt(verb: argparse.ArgumentParser) -> None:
+    verb.epilog = FMT_EXAMPLES
+    verb.add_argument("script", nargs="*", type=_path, default=None,
+                      help="scripts, folders, patterns (default: this folder)")  # fmt: skip
+    _dry_run(verb)
+    spelling = verb.add_mutually_exclusive_group()
+    for name in ("short", "long"):
+        spelling.add_argument(f"--{name}hand", dest="spelling", action="store_const", const=name,
+                              default="kept", help=f"{name} names of variables")  # fmt: skip
+    _colour(verb)
+
+
+def _dry_run(verb: argparse.ArgumentParser) -> None:
+    verb.add_argument("--check", action="store_true", help="write nothing; 1 if it would")
+    verb.add_argument("--diff", action="store_true", help="write nothing; print it as a patch")
+
+
 def _targets(verb: argparse.ArgumentParser) -> None:
     """It has no arguments."""
 
@@ -184,6 +212,7 @@ COMMANDS = {
     "build": ("print a script for a target", _build),
     "run": ("run a script: on the simulated arm, or with mock states", _run),
     "explain": ("what a code means, or a state, key or failure of a script", _explain),
+    "fmt": ("lay out scripts, with their comments", _fmt),
     "targets": ("list what can be built", _targets),
 }
 """Command to what it does and what adds its arguments; verbs.py holds what it does."""

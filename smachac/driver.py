@@ -63,11 +63,9 @@ def analyse(source: Source, library: Library, report: Report) -> Analysis:
         ]
         found, used = heeded(report, given)
         unused = [fit for fit in given if fit not in used]
-        found += [
-            problems.unused_allowance(Word(fit.code, fit.span))
-            for fit in unused
-            if fit.span.source is source
-        ]
+        found += problems.unused_allowances(
+            Word(fit.code, fit.span) for fit in unused if fit.span.source is source
+        )
         found = settled(in_order(found), library.policy)
         if machine is not None:
             found = with_places(found, machine)

@@ -247,15 +247,19 @@ def rewrite_files(texts: Mapping[str, str], before: Mapping[str, Source]) -> Non
     """Give files, named by real path, new texts: all of them or none, in the encoding and with the
     permissions they have.
 
-    Raises OSError, and ChangedError where somebody else has written since `before` was read.
+    Raises OSError, also for a file that nobody may write, and ChangedError where somebody else has
+    written since `before` was read.
     """
     contents: dict[Path, tuple[bytes, int]] = {}
     for name, text in texts.items():
         path = Path(name)
         data = path.read_bytes()
+        mode = path.stat().st_mode & 0o7777
         if _decoded(data) != before[name].text:
             raise ChangedError(f"{before[name].name} was changed by somebody else meanwhile")
-        contents[path] = (_encoded(text, data), path.stat().st_mode & 0o7777)
+        if not mode & 0o222:
+            raise PermissionError(errno.EACCES, os.strerror(errno.EACCES), before[name].name)
+        contents[path] = (_encoded(text, data), mode)
     _put_all(contents)
 
 

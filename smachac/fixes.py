@@ -11,6 +11,7 @@ from pathlib import Path
 
 from smachac.diagnostics import Diagnostic, Edit, Report, Severity, fingerprint
 from smachac.files import BUILT_IN
+from smachac.refactor.layout import laid_out
 from smachac.source import Source
 from smachac.survey import Survey
 
@@ -40,7 +41,8 @@ def mended(
 
     `again` looks at the same scripts with other texts. Edits that overlap are left out unless they
     are the same, so are those of files that come with smachac. If all together do not do, halves
-    are tried: each finding kept is gone afterwards, and no error is new.
+    are tried: each finding kept is gone afterwards, and no error is new. The files that this
+    changes come out in the layout of `smachac fmt`.
     """
     count = 0
     survey = before
@@ -54,6 +56,11 @@ def mended(
             texts[path] = text
             sources.setdefault(path, source)
         count += len(kept)
+        survey = after
+    laid = {path: laid_out(Source(sources[path].name, text)) for path, text in texts.items()}
+    new = {path: text for path, text in laid.items() if text is not None and text != texts[path]}
+    if new and _better(survey, after := again({**texts, **new}), ()):
+        texts.update(new)
         survey = after
     return Mended(count=count, texts=texts, sources=sources, survey=survey)
 
@@ -143,12 +150,12 @@ def _better(before: Survey, after: Survey, kept: Sequence[Diagnostic]) -> bool:
     )
 
 
-def differences(found: Mended) -> Iterator[str]:
-    """The new texts as a unified diff, by file in the order of their names, a line at a time."""
-    for path in sorted(found.texts, key=lambda path: found.sources[path].name):
-        source = found.sources[path]
+def differences(texts: Texts, sources: Mapping[str, Source]) -> Iterator[str]:
+    """New texts as a unified diff, by file in the order of their names, a line at a time."""
+    for path in sorted(texts, key=lambda path: sources[path].name):
+        source = sources[path]
         name = Path(source.name).as_posix()
-        old, new = (_lines(text) for text in (source.text, found.texts[path]))
+        old, new = (_lines(text) for text in (source.text, texts[path]))
         for line in difflib.unified_diff(old, new, name, name):
             yield line if line.endswith("\n") else f"{line}\n\\ No newline at end of file\n"
 

@@ -101,8 +101,7 @@ def _tell_unused(analyses: Mapping[str, Analysis], reports: dict[str, Report]) -
         needed |= set(analysis.given) - set(analysis.unused)
     told = set(needed)
     for name in reports:
-        for fit in analyses[name].unused:
-            if fit not in told:
-                told.add(fit)
-                found = problems.unused_allowance(Word(fit.code, fit.span))
-                reports[name] = [*reports[name], found]
+        new = [fit for fit in dict.fromkeys(analyses[name].unused) if fit not in told]
+        told.update(new)
+        words = (Word(fit.code, fit.span) for fit in new)
+        reports[name] = [*reports[name], *problems.unused_allowances(words)]

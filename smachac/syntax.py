@@ -159,6 +159,17 @@ def _c_events(text: str) -> Iterator[Any]:
     return iter(CParser(text).get_event, None)
 
 
+def events(text: str) -> Iterator[Any]:
+    """The events of a text that `parse` has made a tree of."""
+    from ruamel.yaml.error import YAMLError
+
+    try:
+        found = list(_c_events(text))
+    except YAMLError:  # there are texts that the pure parser alone can read
+        found = []
+    return iter(found) if found else _pure_events(text)
+
+
 def _build(source: Source, report: Report) -> Tree | None:
     from ruamel.yaml.error import YAMLError
 

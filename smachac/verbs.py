@@ -31,6 +31,12 @@ def _check(arguments: argparse.Namespace) -> int:
     return check(arguments)
 
 
+def _fmt(arguments: argparse.Namespace) -> int:
+    from smachac.rewriting import fmt
+
+    return fmt(arguments)
+
+
 def _build(arguments: argparse.Namespace) -> int:
     from smachac.targets import OptionError, load_target, target_names
 
@@ -236,6 +242,7 @@ VERBS: dict[str, Callable[[argparse.Namespace], int]] = {
     "build": _build,
     "run": _run,
     "explain": _explain,
+    "fmt": _fmt,
     "targets": _targets,
 }
 """Command to function."""

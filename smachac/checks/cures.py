@@ -3,9 +3,10 @@
 from __future__ import annotations
 
 import re
+from collections.abc import Iterable
 
 from smachac.diagnostics import Edit
-from smachac.ir.nodes import Container
+from smachac.ir.nodes import Container, Key, Node
 from smachac.source import NOWHERE, Span
 from smachac.spelling import is_plain
 
@@ -17,12 +18,20 @@ _BODY = re.compile(
 
 def with_input(container: Container, key: str) -> tuple[Edit, ...]:
     """The edit that adds a key to the `input_keys` of a container; none if that is not plain."""
+    return _with_key(container, container.inputs, "input_keys", key)
+
+
+def with_output(node: Node, key: str) -> tuple[Edit, ...]:
+    """The edit that adds a key to the `output_keys` of a state; none if that is not plain."""
+    return _with_key(node, node.outputs, "output_keys", key)
+
+
+def _with_key(node: Node, known: Iterable[Key], part: str, key: str) -> tuple[Edit, ...]:
     if not is_plain(key):
         return ()
-    last = max(
-        (known.span for known in container.inputs), key=lambda span: span.start, default=None
-    )
-    return _listed(last, key) if last is not None else _begun(container.span, key)
+    spans = (each.span for each in known if each.span.source is node.span.source)
+    last = max(spans, key=lambda span: span.start, default=None)
+    return _listed(last, key) if last is not None else _begun(node.span, part, key)
 
 
 def _listed(last: Span, key: str) -> tuple[Edit, ...]:
@@ -39,7 +48,7 @@ def _listed(last: Span, key: str) -> tuple[Edit, ...]:
     return (Edit(span=Span(last.source, end, end), text=new),)
 
 
-def _begun(name: Span, key: str) -> tuple[Edit, ...]:
+def _begun(name: Span, part: str, key: str) -> tuple[Edit, ...]:
     """A list with one item, as the first variable of a state."""
     text = name.source.text
     body = _BODY.match(text, name.end)
@@ -47,12 +56,13 @@ def _begun(name: Span, key: str) -> tuple[Edit, ...]:
         return ()
     if body["flow"]:
         place = Span(name.source, body.end(), body.end())
-        return (Edit(span=place, text=f"input_keys: [{key}], "),)
-    at = body.start("block")
-    indent = text[text.rfind("\n", 0, at) + 1 : at]
-    if indent.strip() or at <= name.end:
+        return (Edit(span=place, text=f"{part}: [{key}], "),)
+    first = body.start("block")
+    indent = text[text.rfind("\n", 0, first) + 1 : first]
+    at = text.find("\n", name.end) + 1
+    if indent.strip() or not name.end < at <= first:
         return ()
-    new = f"input_keys: [{key}]{_line_end(text, name.end)}{indent}"
+    new = f"{indent}{part}: [{key}]{_line_end(text, name.end)}"
     return (Edit(span=Span(name.source, at, at), text=new),)
 
 

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterator
 from functools import cache
 
-from smachac.checks.cures import with_input
+from smachac.checks.cures import with_input, with_output
 from smachac.checks.hints import calls, did_you_mean, guesser, other_place
 from smachac.checks.lost import lost_outputs
 from smachac.checks.missing import Missing, missing_keys
@@ -374,4 +374,5 @@ def lost_output(machine: Machine) -> Iterator[Finding]:
             ),
             severity=Severity.ERROR if lost.is_missing else None,
             node=lost.keeper.path,
+            edits=with_output(keeper, lost.own) if lost.is_missing else (),
         )

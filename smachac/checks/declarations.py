@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterable, Iterator
 
 from smachac.checks.bodies import dropped_writes, unknown_reads
+from smachac.checks.cures import with_output
 from smachac.checks.hints import calls, did_you_mean, guesser
 from smachac.checks.lost import lost_outputs
 from smachac.checks.missing import missing_keys
@@ -261,13 +262,14 @@ def lossy_write(machine: Machine) -> Iterator[Finding]:
             only = any(each.name == key for each in leaf.inputs)
             what = "which is an input key only" if only else "which is none of its output keys"
             span = _place_of_write(leaf, key)
+            meant = _meant(key, leaf.outputs if not only else ())
             yield Finding(
                 span=span,
                 message=f"`{leaf.name}` sets `{key}`, {what}: the value is dropped",
-                help=_meant(key, leaf.outputs if not only else ())
-                or f"add `{key}` to the `output_keys` of `{leaf.name}`",
+                help=meant or f"add `{key}` to the `output_keys` of `{leaf.name}`",
                 related=calls(leaf, span),
                 node=path,
+                edits=with_output(leaf, key) if not meant else (),
             )
     yield from dropped_writes(machine)
 

@@ -5,7 +5,7 @@ from smachac.problems.allowances import (
     bad_comment,
     unfounded_allowance,
     unknown_code,
-    unused_allowance,
+    unused_allowances,
     vain_allowance,
 )
 from smachac.problems.calls import (
@@ -46,7 +46,7 @@ __all__ = [
     "unknown_variable",
     "unreadable_file",
     "unresolved_look_up",
-    "unused_allowance",
+    "unused_allowances",
     "vain_allowance",
     "wrong_shape",
     "yaml_syntax",

@@ -2,14 +2,19 @@
 
 from __future__ import annotations
 
+import re
 from collections.abc import Iterable
 
-from smachac.diagnostics import Diagnostic, Finding, Severity, did_you_mean, problem
+from smachac.diagnostics import Diagnostic, Edit, Finding, Severity, did_you_mean, problem
 from smachac.source import Span, Word
+
+_CODE = re.compile(r"[A-Za-z]{2}\d+")
+_COMMENT = re.compile(r"#[^\S\n]*smachac:\s*allow(?P<codes>(?:[^\S\n]+[A-Za-z]{2}\d+\b[,:]?)+)")
+_BEHIND = re.compile(r"[,:]?[^\S\n]*")
 
 
 @problem("SM021", "unused-allowance", Severity.WARNING)
-def unused_allowance(code: Word) -> Finding:
+def unused_allowance(code: Word, edits: tuple[Edit, ...] = ()) -> Finding:
     """A comment allows what is not found on its line.
 
     The fault it was written for is mended, or never was there; left alone, the comment would hide
@@ -36,7 +41,42 @@ def unused_allowance(code: Word) -> Finding:
         span=code.span,
         message=f"{code.text} is allowed here, and not found here",
         help="remove it, or put it behind the line that it is meant for",
+        edits=edits,
     )
+
+
+def unused_allowances(codes: Iterable[Word]) -> list[Diagnostic]:
+    """SM021 for each of these, with the edits that remove all of its comment's."""
+    lines: dict[tuple[int, int], list[Span]] = {}
+    known = [(code, (id(code.span.source), code.span.line)) for code in codes]
+    for code, line in known:
+        lines.setdefault(line, []).append(code.span)
+    cures = {line: _without(spans) for line, spans in lines.items()}
+    return [unused_allowance(code, cures[line]) for code, line in known]
+
+
+def _without(codes: list[Span]) -> tuple[Edit, ...]:
+    """The edits that remove codes of one comment; the comment, if that has no other; and the
+    line, if that holds nothing else."""
+    source = codes[0].source
+    text = source.text
+    start = text.rfind("\n", 0, codes[0].start) + 1
+    end = text.find("\n", codes[0].end)
+    end = len(text) if end < 0 else end
+    every = _COMMENT.finditer(text, start, end)
+    found = next((each for each in every if codes[0].start < each.end()), None)
+    if found is None:
+        return ()
+    if len(_CODE.findall(found["codes"])) > len(codes):
+        behind = [_BEHIND.match(text, code.end, end) for code in codes]
+        ends = [each.end() for each in behind if each is not None]
+        pairs = zip(codes, ends, strict=True)
+        return tuple(Edit(span=Span(source, code.start, to), text="") for code, to in pairs)
+    begin = start + len(text[start : found.start()].rstrip(" \t"))
+    if begin == start:
+        return (Edit(span=Span(source, start, min(end + 1, len(text))), text=""),)
+    end -= text[end - 1] == "\r"
+    return (Edit(span=Span(source, begin, end), text=""),)
 
 
 @problem("SM022", "bad-allowance", Severity.WARNING)

@@ -119,7 +119,7 @@ def test_the_script_of_gitlab(tmp_path: Path) -> None:
 
 
 def test_the_hook_runs_when_it_has_to(tmp_path: Path) -> None:
-    (hook,) = load((ROOT / ".pre-commit-hooks.yaml").read_text("utf-8"))
+    hook, _ = load((ROOT / ".pre-commit-hooks.yaml").read_text("utf-8"))
     home = {"PRE_COMMIT_HOME": str(tmp_path / "home"), "HOME": str(tmp_path)}
     environment = {**commands(tmp_path), **home}
     environment |= {

@@ -15,6 +15,7 @@ from smachac.cli import main
 from smachac.diagnostics import Diagnostic, Edit, Finding, Severity, fingerprint, has_errors
 from smachac.files import ChangedError, Disk, rewrite_files
 from smachac.fixes import Mended, mended
+from smachac.refactor.layout import laid_out
 from smachac.source import Source, Span, Word
 from smachac.spelling import Guesser, respelt
 from smachac.survey import Survey, survey
@@ -231,13 +232,112 @@ def test_keys_are_taken_in_by_every_container_between(end: str, tmp_path: Path) 
     assert main(["check", str(path), "--fix"]) == 0
     text = path.read_bytes().decode()
     assert text.replace("\r\n", "\n").count("\r") == 0
-    assert text.count("\n") == KEYS.count("\n") + 2
-    lines = text.split(end)
-    at = lines.index("  - PICK:  # a container")
-    assert lines[at + 2].startswith("      input_keys: [")
-    assert {"pose", "speed", "name"} == set(lines[at + 2].partition("[")[2][:-1].split(", "))
-    assert "REACH: {input_keys: [" in text
+    lines = [line.strip() for line in text.split(end)]
+    at = lines.index("- PICK:  # a container")
+    assert lines[at + 1 : at + 3] == ["# that takes nothing in", "template: StateMachine"]
+    assert lines[at + 4].startswith("input_keys: [")
+    assert {"pose", "speed", "name"} == set(lines[at + 4].partition("[")[2][:-1].split(", "))
+    at = lines.index("- REACH:")
+    assert {lines[at + 3][:12]} == {"input_keys: "}
     assert f"              - name  # of the block{end}              - pose{end}" in text
+    assert lay_out(text) == text
+
+
+def lay_out(text: str) -> str | None:
+    return laid_out(Source("x.yml", text))
+
+
+COMMENTS = """\
+name: sm
+template: Base
+outcomes: [done]
+states:
+  # smachac: allow SM201 it was not reached once
+  - A: {template: ScriptedState, outcomes: [ok], transitions: {ok: B}}  # smachac: allow SM101 so
+  # kept
+  - B:  # smachac: allow SM201, SM999 both of no use
+      template: ScriptedState
+      # smachac: allow SM105, SM201: one of use
+      outcomes: [ok, bad]
+      transitions: {ok: done}
+"""
+
+
+@pytest.mark.parametrize("end", ["\n", "\r\n"])
+def test_comments_of_no_use_are_removed(end: str, tmp_path: Path) -> None:
+    path = tmp_path / "main.yml"
+    text = COMMENTS.replace(", SM999", ", SM202").replace("      # smachac: allow SM105, SM201", "")
+    text = text.replace("ok, bad", "ok").replace(": one of use\n", "")
+    path.write_bytes(text.replace("\n", end).encode())
+    assert main(["check", str(path), "--fix"]) == 0
+    assert path.read_bytes().decode().replace(end, "\n") == (
+        "name: sm\ntemplate: Base\noutcomes: [done]\nstates:\n"
+        "  - A: {template: ScriptedState, outcomes: [ok], transitions: {ok: B}}\n  # kept\n"
+        "  - B:\n      template: ScriptedState\n      outcomes: [ok]\n"
+        "      transitions: {ok: done}\n"
+    )
+
+
+def test_of_a_comment_with_two_codes_the_useless_one_goes(tmp_path: Path) -> None:
+    path = tmp_path / "main.yml"
+    text = "name: sm\ntemplate: Base\noutcomes: [done]\nstates:\n" + (
+        "  - A: {template: ScriptedState, outcomes: [ok], transitions: {ok: done}}\n"
+        "  # smachac: allow SM201, SM202: an operator starts it\n"
+        "  - B: {template: ScriptedState, outcomes: [ok], transitions: {ok: done}}\n"
+    )
+    path.write_text(text)
+    assert main(["check", str(path), "--fix"]) == 0
+    assert "  # smachac: allow SM201, an operator starts it\n" in path.read_text()
+
+
+OUTPUTS = """\
+name: sm
+template: Base
+outcomes: [held]
+userdata: {tries: 0}
+states:
+  - FIND:
+      template: StateMachine
+      outcomes: [found]
+      transitions: {found: COUNT}
+      states:
+        - LOOK:
+            template: ScriptedState
+            outcomes: [seen]
+            output_keys: [pose]
+            steps: [{outcome: seen, set: {pose: 0.5}}]
+            transitions: {seen: found}
+  - COUNT:
+      template: CallbacksState
+      input_keys: [tries]
+      callbacks: {tries: 'lambda ud: ud.tries + 1'}
+      transitions: {succeeded: GRASP}
+  - GRASP:
+      template: PrintUserdataState
+      input_keys: [pose, tries]
+      transitions: {succeeded: held}
+"""
+
+
+def test_outputs_that_are_kept_or_dropped_are_handed_out(tmp_path: Path) -> None:
+    path = tmp_path / "main.yml"
+    path.write_text(OUTPUTS)
+    assert main(["check", str(path)]) == 1
+    assert main(["check", str(path), "--fix"]) == 0
+    found = OUTPUTS.replace("[found]\n", "[found]\n      output_keys: [pose]\n", 1)
+    assert path.read_text() == found.replace(
+        "[tries]\n", "[tries]\n      output_keys: [tries]\n", 1
+    )
+
+
+def test_an_output_that_was_misspelt_is_not_added(tmp_path: Path) -> None:
+    path = tmp_path / "main.yml"
+    text = OUTPUTS.replace(
+        "callbacks: {tries:", "output_keys: [counted]\n      callbacks: {counter:"
+    )
+    path.write_text(text)
+    assert main(["check", str(path), "--fix"]) == 1
+    assert "output_keys: [counted]\n" in path.read_text()
 
 
 LETTERS = st.sampled_from("abdefgilnoprstuPLACEKX_:{, ")

@@ -18,7 +18,7 @@ LAYERS = (
     ("driver", "report", "refactor", "project", "files", "execute"),
     ("__init__", "runs", "streams", "survey", "discover", "baseline"),
     ("fixes",),
-    ("checkup",),
+    ("checkup", "rewriting"),
     ("verbs",),
     ("cli",),
     ("__main__",),

@@ -24,6 +24,7 @@ TOUCHES = {
     "smachac/cli.py": "arguments and exit codes",
     "smachac/verbs.py": "prints what the commands say",
     "smachac/checkup.py": "prints reports",
+    "smachac/rewriting.py": "prints diffs and what was written",
     "smachac/streams.py": "prints reports",
     "smachac/runs.py": "opens the trace, shows progress",
     "smachac/execute.py": "runs what was built, and keeps its output",

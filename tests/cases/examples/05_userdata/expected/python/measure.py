@@ -1,4 +1,4 @@
-# Made by smachac 0.1.0 from main.yml (sha256 39e4d17307bc8414).
+# Made by smachac 0.1.0 from main.yml (sha256 151be300629b9acd).
 """The state machine `measure`."""
 
 try:

@@ -1,4 +1,4 @@
-# Made by smachac 0.1.0 from main.yml (sha256 f5631cd15a9f3c17).
+# Made by smachac 0.1.0 from main.yml (sha256 b628bda36d0008e8).
 """The state machine `three_tries`."""
 
 try:

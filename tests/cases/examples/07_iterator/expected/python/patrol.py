@@ -1,4 +1,4 @@
-# Made by smachac 0.1.0 from main.yml (sha256 52904cf8701ba475).
+# Made by smachac 0.1.0 from main.yml (sha256 f8d621b3fa0c5f75).
 """The state machine `patrol`."""
 
 try:

@@ -1,0 +1,1 @@
+"""Scripts rewritten: laid out anew, or with their states elsewhere. Text in, text out."""

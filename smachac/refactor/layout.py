@@ -1,0 +1,228 @@
+"""The one layout of a script: `smachac fmt`.
+
+Mappings are indented by two, lists under their key by two; collections in brackets stay so, on one
+line where that has room; variables stand in the order of order.py. Scalars, comments and anchors
+stay as they are written, and what was block or flow stays so. That the new text says the same is
+proven before it is handed out: the trees are equal but for the order of variables.
+"""
+
+from __future__ import annotations
+
+from collections import Counter
+from collections.abc import Iterator
+
+from smachac.ir.depth import deep_recursion
+from smachac.refactor.concrete import Atom, Group, Item, UnusualError, take_apart
+from smachac.refactor.likeness import same_meaning
+from smachac.refactor.order import Spelling, put_in_order
+from smachac.source import Source
+from smachac.syntax import parse
+
+WIDTH = 100
+"""The length of a line that collections in brackets are broken at, in characters."""
+
+
+def laid_out(source: Source, spelling: Spelling = "kept") -> str | None:
+    """A script in its layout, or None where it cannot be laid out without a change of meaning.
+
+    The text has to be one that `parse` makes a tree of. Ends of lines are kept: CRLF where the
+    first line ends so. Laid out twice is laid out once.
+    """
+    crlf = "\r\n" in source.text[: source.text.find("\n") + 1]
+    plain = Source(source.name, source.text.replace("\r\n", "\n").replace("\r", "\n"))
+    with deep_recursion():
+        for ordered in (True, False):  # an alias must not come to stand before its anchor
+            found = _laid_out(plain, spelling, ordered)
+            if found is not None:
+                return found.replace("\n", "\r\n") if crlf else found
+    return None
+
+
+def _laid_out(source: Source, spelling: Spelling, ordered: bool) -> str | None:
+    before = parse(source, [])
+    if before is None:
+        return None
+    try:
+        text = take_apart(source)
+    except UnusualError:
+        return None
+    put_in_order(text.root, spelling, ordered=ordered)
+    printer = _Printer()
+    printer.lines += printer.trivia(text.head, "", first=True)
+    printer.root(text.root)
+    made = Source(source.name, "\n".join(printer.lines).rstrip("\n") + "\n")
+    after = parse(made, [])
+    if after is None or not same_meaning(before, after):
+        return None
+    try:
+        comments = take_apart(made).comments
+    except UnusualError:
+        return None
+    return made.text if Counter(comments) == Counter(text.comments) else None
+
+
+class _Printer:
+    """Prints parts as lines."""
+
+    def __init__(self) -> None:
+        self.lines: list[str] = []
+
+    @staticmethod
+    def trivia(lines: list[str], margin: str, *, first: bool = False) -> Iterator[str]:
+        """Comments at a margin, with at most one empty line in a row, none where a block begins."""
+        blank = first
+        for line in lines:
+            if line or not blank:
+                yield f"{margin}{line}" if line else ""
+            blank = not line
+
+    def root(self, group: Group) -> None:
+        if group.properties and not group.flow:
+            self.lines.append(group.properties)
+        if group.flow and group.is_state and group.raw is None:
+            _to_block(group)
+        if group.flow:
+            self.lines += [*self.flow_lines(group, "", "  "), *group.tail]
+            return
+        self.block(group, 0)
+
+    def block(self, group: Group, indent: int, prefix: str | None = None) -> None:
+        """A block collection; `prefix` is what its first line begins with, after a dash."""
+        margin = " " * indent
+        for number, item in enumerate(group.items):
+            begin = prefix if prefix is not None and number == 0 else margin
+            above = begin[: len(begin) - len(begin.lstrip(" "))]
+            self.lines += self.trivia(item.lead, above, first=number == 0)
+            if group.mapping:
+                self.entry(item, begin, indent)
+            else:
+                self.item(item, begin + "- ", indent)
+        self.lines += self.trivia(group.tail, margin)
+
+    def entry(self, item: Item, begin: str, indent: int) -> None:
+        assert item.key is not None
+        colon = " :" if item.key.text.startswith("*") else ":"
+        head = f"{begin}{item.key.text}{colon}"
+        value = item.value
+        if isinstance(value, Group) and value.flow and _wants_block(value, head):
+            _to_block(value)
+        if isinstance(value, Group) and not value.flow:
+            words = f" {value.properties}" if value.properties else ""
+            self.lines.append(f"{head}{words}{item.aside}")
+            self.block(value, indent + 2)
+            return
+        self.value(item, head, indent)
+
+    def item(self, item: Item, begin: str, indent: int) -> None:
+        value = item.value
+        if isinstance(value, Group) and not value.flow:
+            if value.properties or item.aside:
+                self.lines.append(f"{begin}{value.properties}".rstrip() + item.aside)
+                self.block(value, indent + 2)
+            else:
+                self.block(value, indent + 2, begin)
+            return
+        self.value(item, begin.rstrip(" "), indent)
+
+    def value(self, item: Item, head: str, indent: int) -> None:
+        """A scalar or flow collection behind its key or dash."""
+        value = item.value
+        if isinstance(value, Group):
+            margin = " " * (indent + 2)
+            lines = list(self.flow_lines(value, f"{head} ", margin, item.aside))
+        elif not value.text:
+            lines = [head]
+        elif value.is_block:
+            lines = [f"{head} {line}" if not number else line
+                     for number, line in enumerate(_block_lines(value, indent))]  # fmt: skip
+        else:
+            first, *others = value.text.split("\n")
+            margin = " " * (indent + 2)
+            lines = [f"{head} {first}"]
+            lines += [f"{margin}{line.lstrip()}" if line.strip() else "" for line in others]
+        lines[-1] += item.aside
+        self.lines += lines
+
+    def flow_lines(self, group: Group, head: str, margin: str, aside: str = "") -> Iterator[str]:
+        """A collection in brackets: on one line or, where that is too long, item by item."""
+        if group.raw is not None:
+            first, *others = group.raw.split("\n")
+            yield f"{head}{first.rstrip()}" if others else f"{head}{first}"
+            least = min((len(line) - len(line.lstrip()) for line in others if line.strip()),
+                        default=0)  # fmt: skip
+            yield from (f"{margin}{line[least:]}".rstrip() if line.strip() else ""
+                        for line in others)  # fmt: skip
+            return
+        flat = _flat(group)
+        if len(head) + len(flat) <= WIDTH or "smachac:" in aside or len(group.items) < 2:
+            yield f"{head}{flat}"
+            return
+        opening, closing = ("{", "}") if group.mapping else ("[", "]")
+        words = f"{group.properties} " if group.properties else ""
+        line = f"{head}{words}{opening}"
+        for number, item in enumerate(group.items):
+            end = closing if number == len(group.items) - 1 else ","
+            text = _flat_item(item) + end
+            if number and len(line) + len(text) + 1 > WIDTH:
+                yield line
+                line = margin + text
+            else:
+                line += f" {text}" if number else text
+        yield line
+
+
+def _flat(group: Group) -> str:
+    """A flow collection on one line."""
+    if not group.flat:
+        opening, closing = ("{", "}") if group.mapping else ("[", "]")
+        words = f"{group.properties} " if group.properties else ""
+        inside = ", ".join(map(_flat_item, group.items))
+        group.flat = f"{words}{opening}{inside}{closing}"
+    return group.flat
+
+
+def _flat_item(item: Item) -> str:
+    value = _flat(item.value) if isinstance(item.value, Group) else item.value.text
+    if item.key is None:
+        return value
+    colon = " :" if item.key.text.startswith("*") else ":"
+    return f"{item.key.text}{colon} {value}"
+
+
+def _wants_block(group: Group, head: str) -> bool:
+    """Whether a flow mapping is a state that has no room on its line, or holds states."""
+    return (
+        group.is_state
+        and group.raw is None
+        and (
+            len(head) + 1 + len(_flat(group)) > WIDTH
+            or any(_is_states(item) for item in group.items)
+        )
+    )
+
+
+def _is_states(item: Item) -> bool:
+    return item.key is not None and item.key.text in ("states", "s")
+
+
+def _to_block(group: Group) -> None:
+    """Write a state, and the states in it, in lines instead of brackets."""
+    group.flow = not group.items
+    for item in group.items:
+        if _is_states(item) and isinstance(item.value, Group) and item.value.items:
+            item.value.flow = False
+            for state in item.value.items:
+                if isinstance(state.value, Group) and state.value.items:
+                    state.value.flow = False
+
+
+def _block_lines(atom: Atom, indent: int) -> Iterator[str]:
+    """A block scalar with its lines two columns further in than its key or dash."""
+    first, *lines = atom.text.split("\n")
+    yield first.rstrip()
+    digits = next((char for char in first.split("#")[0] if char.isdigit()), "")
+    full = [len(line) - len(line.lstrip(" ")) for line in lines if line.strip(" ")]
+    least = atom.column + int(digits) if digits else full[0] if full else 0
+    margin = " " * (indent + int(digits or 2))
+    for line in lines:
+        yield margin + line[least:] if line[least:] else ""

@@ -1,0 +1,71 @@
+"""The commands that rewrite scripts: what they make of the texts is shown, or written."""
+
+from __future__ import annotations
+
+import os
+import sys
+from argparse import Namespace
+from collections.abc import Mapping
+from pathlib import Path
+
+from smachac.diagnostics import Report
+from smachac.discover import NothingFoundError, scripts_of
+from smachac.files import ChangedError, Disk, rewrite_files
+from smachac.fixes import Texts, differences
+from smachac.refactor.layout import laid_out
+from smachac.source import Source
+from smachac.streams import print_report, usage
+
+OK, FINDINGS = 0, 1
+
+
+def fmt(arguments: Namespace) -> int:
+    """Lay out scripts; what is not YAML is reported and left alone."""
+    disk = Disk()
+    report: Report = []
+    texts: dict[str, str] = {}
+    sources: dict[str, Source] = {}
+    left = 0
+    try:
+        paths = scripts_of(arguments.script or [Path()], disk)
+    except NothingFoundError as error:
+        return usage(str(error))
+    for path in paths:
+        found: Report = []
+        source = disk.read(path, found)
+        if source is None or disk.parse(source, found) is None:
+            report += found
+            left += bool(found)
+            continue
+        new = laid_out(source, arguments.spelling)
+        if new is None:
+            print(f"{path} is left as it is: its YAML is too unusual", file=sys.stderr)
+            left += 1
+        elif new != source.text:
+            name = os.path.realpath(path)
+            texts[name], sources[name] = new, source
+    print_report(report, arguments, sys.stderr)
+    code = put(texts, sources, arguments, "laid out")
+    return FINDINGS if left else code
+
+
+def put(texts: Texts, sources: Mapping[str, Source], arguments: Namespace, done: str) -> int:
+    """Write new texts, or show what would be written, as `--check` and `--diff` say."""
+    names = sorted(source.name for source in sources.values())
+    if arguments.diff:
+        sys.stdout.writelines(differences(texts, sources))
+        return FINDINGS if texts else OK
+    if arguments.check:
+        for name in names:
+            print(f"{name} would be {done}")
+        return FINDINGS if texts else OK
+    try:
+        rewrite_files(texts, sources)
+    except (OSError, ChangedError) as error:
+        words = getattr(error, "strerror", None) or str(error)
+        where = getattr(error, "filename", None)
+        print(f"nothing was written: {f'{where}: ' if where else ''}{words}", file=sys.stderr)
+        return FINDINGS
+    for name in names:
+        print(f"{done} {name}")
+    return OK
