@@ -64,6 +64,7 @@ def lower(script: Script) -> Machine:
         variables=tuple(_variable(base, name) for name in names if name in base.fields),
         source=PurePath(script.sources[0].name).name,
         digest=digest.hexdigest(),
+        robot=script.robot,
     )
 
 

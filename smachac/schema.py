@@ -32,6 +32,8 @@ VARIABLES: dict[str, Variable] = {
         _row("node_name", "nn", "text", "base"),
         _row("function_name", "", "text", "base"),
         _row("types", "", "map", "base"),
+        _row("robot", "", "name", "base"),
+        _row("frames", "", "names", "base"),
         _row("template", "T", "name", _ALL),
         _row("doc", "", "text", _ALL),
         _row("params", "p", "map", _ALL),

@@ -11,6 +11,7 @@ from smachac import problems, schema, shapes
 from smachac.calls import overridden, sub_script_state
 from smachac.diagnostics import Related, Report, did_you_mean
 from smachac.ir.nodes import Key, Outcome
+from smachac.ir.robots import Robot
 from smachac.lookups import (
     MAX_FILLED,
     MAX_FILLED_BY_STATE,
@@ -21,6 +22,7 @@ from smachac.lookups import (
     is_too_deep,
     size_up_to,
 )
+from smachac.robots import robot_of
 from smachac.source import Source, Span, Word
 from smachac.states import Library, StateType, find_state_type
 from smachac.sugar import check_sugar
@@ -58,6 +60,7 @@ class Script:
 
     base: State
     sources: tuple[Source, ...]
+    robot: Robot | None = None
 
 
 @dataclass(frozen=True, slots=True)
@@ -124,7 +127,8 @@ class _Resolver:
         name = shapes.as_name(fields["name"].value, []) if "name" in fields else None
         start = tree.entries[0].key.span if tree.entries else tree.span
         base = self.state(name or Word("sm", start), fields, _Place(source), "base")
-        return Script(base=base, sources=tuple(self.sources.values()))
+        robot = robot_of(base.fields, base.type, source, self.library, self.report)
+        return Script(base=base, sources=tuple(self.sources.values()), robot=robot)
 
     def expand(self, entries: tuple[Entry, ...]) -> dict[str, Entry]:
         """Entries by long name."""

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterator
 
 from smachac.checks.clashes import clash_findings
 from smachac.checks.hints import calls, other_place
@@ -13,37 +13,8 @@ from smachac.diagnostics import Finding, Related, Severity, rule
 from smachac.ir.fitting import inside, present, unit_of
 from smachac.ir.nodes import Data, Leaf, Machine, Struct
 from smachac.ir.places import Flow
+from smachac.ir.robots import BUILT_IN, DEFAULTS, Joint, Robot
 from smachac.ir.types import Type
-
-Limits = tuple[tuple[float, float], ...]
-
-BAXTER: Limits = (
-    (-1.70168, 1.70168),
-    (-2.147, 1.047),
-    (-3.05418, 3.05418),
-    (-0.05, 2.618),
-    (-3.059, 3.059),
-    (-1.5708, 2.094),
-    (-3.059, 3.059),
-)
-"""Of either arm, s0 to w2: baxter_common (Rethink Robotics), baxter_base.urdf.xacro."""
-
-PANDA: Limits = (
-    (-2.9671, 2.9671),
-    (-1.8326, 1.8326),
-    (-2.9671, 2.9671),
-    (-3.1416, 0.0),
-    (-2.9671, 2.9671),
-    (-0.0873, 3.8223),
-    (-2.9671, 2.9671),
-)
-"""franka_panda/panda.urdf of PyBullet's data, the limits of the joints."""
-
-ARMS: Mapping[str, Limits] = {"baxter": BAXTER, "panda": PANDA}
-"""The lower and upper limit (rad) of each joint of the built-in arms, from the base to the hand."""
-
-DEFAULT_ARMS = {"PyBulletBase": "panda"}
-"""The robot of a base template where the script names none."""
 
 ROTATION_TOLERANCE = 1e-3
 """How far the length of a quaternion may be from 1: what three decimals leave open."""
@@ -86,13 +57,16 @@ def wrong_length(machine: Machine) -> Iterator[Finding]:
               transitions: {done: done}
     """
     yield from clash_findings(clashes_of(machine, "length"))
-    limits = limits_of(machine)
-    for flow in types_of(machine).constants if limits else ():
-        if _moves_arm(flow) and flow.place.node and flow.place.node.type in ARM_STATES:
+    robot = robot_of(machine)
+    limbs = robot.limbs if robot is not None else ()
+    lengths = sorted({len(limb) for limb in limbs})
+    for flow in types_of(machine).constants if lengths else ():
+        if moves_arm(flow) and flow.place.node and flow.place.node.type in ARM_STATES:
             assert isinstance(flow.value, tuple)
-            if len(flow.value) != len(limits):
-                message = f"the arm has {len(limits)} joints, and `{flow.origin.place.key}` has"
-                yield _at(flow, f"{message} {len(flow.value)} numbers", "give one for each joint")
+            if len(flow.value) not in lengths:
+                have = " or ".join(map(str, lengths))
+                message = f"the arm has {have} joints, and `{flow.origin.place.key}` has"
+                yield at(flow, f"{message} {len(flow.value)} numbers", "give one for each joint")
 
 
 ARM_STATES = frozenset(["MoveToJointPositionsState"])
@@ -103,8 +77,9 @@ ARM_STATES = frozenset(["MoveToJointPositionsState"])
 def joint_limit(machine: Machine) -> Iterator[Finding]:
     """A joint position is beyond what the joint of the robot can reach.
 
-    The arm stops at its limit and the skill fails. Known are the joints of the built-in arms; they
-    are asked of lists of angles that a state which claims an arm reads, one for each joint.
+    The arm stops at its limit and the skill fails. `robot:` names a built-in arm (panda, baxter) or
+    a URDF file. Its limits are asked of the literals that a state which claims an arm reads: lists
+    of angles, one for each joint of a limb, and mappings of joint names to angles.
 
     Wrong:
         name: sm
@@ -130,40 +105,68 @@ def joint_limit(machine: Machine) -> Iterator[Finding]:
               remapping: {positions: home}
               transitions: {succeeded: done, aborted: failed, preempted: failed}
     """
-    limits = limits_of(machine)
-    for flow in types_of(machine).constants if limits else ():
-        if not _moves_arm(flow) or not isinstance(flow.value, tuple):
+    robot = robot_of(machine)
+    for flow in types_of(machine).constants if robot is not None else ():
+        assert robot is not None
+        if not moves_arm(flow):
             continue
-        if len(flow.value) != len(limits):
-            continue
-        for number, (angle, (low, high)) in enumerate(zip(flow.value, limits, strict=True), 1):
-            inside_limits = low - JOINT_TOLERANCE <= _as_float(angle) <= high + JOINT_TOLERANCE
-            if _is_number(angle) and not inside_limits:
-                yield _at(
-                    flow,
-                    f"joint {number} of `{flow.origin.place.key}` is {angle} rad, beyond its limits"
-                    f" {low} to {high}",
-                    "are these degrees?" if abs(_as_float(angle)) > 2 * math.pi else None,
-                )
+        given = _angles(flow.value, robot)
+        wrong = [
+            (number, joint, angle)
+            for number, (joint, angle) in enumerate(given, 1)
+            if _is_number(angle) and not _within(joint, _as_float(angle))
+        ]
+        for number, joint, angle in wrong:
+            what = f"joint {number}" if isinstance(flow.value, tuple) else f"`{joint.name}`"
+            yield at(
+                flow,
+                f"{what} of `{flow.origin.place.key}` is {angle} rad, beyond its limits"
+                f" {joint.lower:g} to {joint.upper:g}",
+                "are these degrees?" if abs(_as_float(angle)) > 2 * math.pi else None,
+                other_place(joint.span, f"the limits of `{joint.name}`"),
+            )
 
 
-def limits_of(machine: Machine) -> Limits:
-    """The limits of the machine's robot; nothing where it is not known."""
-    name: Data = DEFAULT_ARMS.get(machine.base)
+def robot_of(machine: Machine) -> Robot | None:
+    """The robot of a machine: as its script was read with, else by its name."""
+    name: Data = DEFAULTS.get(machine.base)
     for held in machine.variables:
         if held.name == "robot":
             name = held.value.data
-    return ARMS.get(name, ()) if isinstance(name, str) else ()
+    return machine.robot or (BUILT_IN.get(name) if isinstance(name, str) else None)
 
 
-def _moves_arm(flow: Flow) -> bool:
-    """Whether a literal is a list of angles that a state which holds an arm reads."""
+def _within(joint: Joint, angle: float) -> bool:
+    return joint.lower - JOINT_TOLERANCE <= angle <= joint.upper + JOINT_TOLERANCE
+
+
+def _angles(value: Data, robot: Robot) -> list[tuple[Joint, Data]]:
+    """The angles of a literal by their joints: of the limb that they suit best, where they are of
+    any limb of that many joints."""
+    if isinstance(value, Struct):
+        joints = {joint.name: joint for joint in robot.joints}
+        return [(joints[name], angle) for name, angle in value.entries if name in joints]
+    assert isinstance(value, tuple)
+    limbs = [limb for limb in robot.limbs if len(limb) == len(value)]
+    pairs = [list(zip(limb, value, strict=True)) for limb in limbs]
+    return min(pairs, key=_misses, default=[])
+
+
+def _misses(pairs: list[tuple[Joint, Data]]) -> int:
+    return sum(not _within(joint, _as_float(angle)) for joint, angle in pairs)
+
+
+def moves_arm(flow: Flow) -> bool:
+    """Whether a literal holds angles, in a list or by name, that a state which holds an arm
+    reads."""
     node, wanted = flow.place.node, present(flow.place.declared)
     if flow.place.role != "input" or not isinstance(node, Leaf):
         return False
     held = any(claim == "arm" or claim.startswith("arm.") for claim in node.claims)
-    angles = wanted.name in ("list", "array") and unit_of(inside(wanted)) == "rad"
-    return held and angles and isinstance(flow.value, tuple)
+    if not held or unit_of(inside(wanted)) != "rad":
+        return False
+    shape = {"list": tuple, "array": tuple, "dict": Struct}.get(wanted.name)
+    return shape is not None and isinstance(flow.value, shape)
 
 
 @rule("SM503", "not-a-rotation", Severity.WARNING)
@@ -209,7 +212,7 @@ def not_a_rotation(machine: Machine) -> Iterator[Finding]:
             if length > 0.0 and math.isfinite(length):
                 nearest = ", ".join(f"{number / length:.4f}" for number in numbers)
                 help = f"the nearest rotation is `[{nearest}]`"
-            yield _at(flow, f"the quaternion {list(rotation)} has the length {length:.4g}", help)
+            yield at(flow, f"the quaternion {list(rotation)} has the length {length:.4g}", help)
 
 
 def _rotations(data: Data, wanted: Type) -> Iterator[tuple[Data, ...]]:
@@ -280,7 +283,7 @@ def _as_float(data: Data) -> float:
         return math.inf
 
 
-def _at(flow: Flow, message: str, help: str | None) -> Finding:
+def at(flow: Flow, message: str, help: str | None, more: tuple[Related, ...] = ()) -> Finding:
     """A finding at a literal, with where it is read."""
     origin, place = flow.origin, flow.place
     reader = place.node.name if place.node is not None else "the base"
@@ -292,6 +295,6 @@ def _at(flow: Flow, message: str, help: str | None) -> Finding:
         span=origin.span,
         message=message,
         help=help,
-        related=(*related, *(calls(node, origin.span) if node is not None else ())),
+        related=(*related, *more, *(calls(node, origin.span) if node is not None else ())),
         node=origin.place.path,
     )

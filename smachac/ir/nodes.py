@@ -10,6 +10,7 @@ from __future__ import annotations
 from dataclasses import dataclass, field
 from typing import Literal, NewType, TypeAlias
 
+from smachac.ir.robots import Robot
 from smachac.ir.types import ANY, Type
 from smachac.source import NOWHERE, Span, Word
 
@@ -262,6 +263,7 @@ class Machine:
     `base` is the base template; `variables` are the base's own variables (`node_name`,
     `function_name`, `manifest`, those of the base's interface). `source` is the name of the script
     without its folder and `digest` a SHA-256 over the texts of the script and its sub-scripts.
+    `robot` is what rules know of the robot; no target prints it.
     """
 
     root: StateMachine
@@ -269,6 +271,7 @@ class Machine:
     variables: tuple[Variable, ...] = ()
     source: str = ""
     digest: str = field(default="", compare=False)
+    robot: Robot | None = field(default=None, compare=False, repr=False)
 
 
 Checked = NewType("Checked", Machine)

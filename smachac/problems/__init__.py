@@ -9,6 +9,7 @@ from smachac.problems.allowances import (
     vain_allowance,
 )
 from smachac.problems.calls import (
+    bad_robot,
     bad_sub_script,
     recursive_include,
     script_not_found,
@@ -31,6 +32,7 @@ from smachac.problems.wording import listed
 __all__ = [
     "bad_allowance",
     "bad_comment",
+    "bad_robot",
     "bad_sub_script",
     "bad_type",
     "duplicate_key",

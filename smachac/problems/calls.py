@@ -205,6 +205,50 @@ def unresolved_look_up(word: Word, scope: Iterable[str]) -> Finding:
     )
 
 
+@problem("SM018", "bad-robot", Severity.ERROR)
+def bad_robot(
+    word: Word, message: str, help: str | None = None, related: tuple[Related, ...] = ()
+) -> Finding:
+    """The robot that a script names is not known, or its description cannot be read.
+
+    Nothing that reaches the robot could be held against it: joint limits, lengths, frames. A
+    description is a URDF file below the script's folder, without macros and without a document
+    type.
+
+    Wrong:
+        name: sm
+        template: Base
+        robot: arm.urdf
+        outcomes: [done]
+        states:
+          - MOVE: {template: ScriptedState, outcomes: [done], transitions: {done: done}}
+        == arm.urdf ==
+        <robot name="arm">
+          <link name="base"/><link name="hand"/>
+          <joint name="elbow" type="revolute">
+            <parent link="base"/><child link="hand"/>
+          </joint>
+        </robot>
+
+    Right:
+        name: sm
+        template: Base
+        robot: arm.urdf
+        outcomes: [done]
+        states:
+          - MOVE: {template: ScriptedState, outcomes: [done], transitions: {done: done}}
+        == arm.urdf ==
+        <robot name="arm">
+          <link name="base"/><link name="hand"/>
+          <joint name="elbow" type="revolute">
+            <parent link="base"/><child link="hand"/>
+            <limit lower="-1.5" upper="1.5" effort="10" velocity="1"/>
+          </joint>
+        </robot>
+    """
+    return Finding(span=word.span, message=message, help=help, related=related)
+
+
 @problem("SM605", "template-error", Severity.ERROR)
 def template_error(span: Span, message: str, help: str | None = None) -> Finding:
     """A template does not parse or render.

@@ -5,8 +5,8 @@ from xml.etree import ElementTree
 import pytest
 
 from smachac.checks import check_machine
-from smachac.checks.robot import ARMS, PANDA
 from smachac.diagnostics import Diagnostic
+from smachac.ir.robots import BUILT_IN
 from smachac.ir.text import parse_machine
 
 
@@ -83,11 +83,14 @@ def test_limits_are_those_of_the_simulated_arm() -> None:
 
     robot = ElementTree.parse(Path(data.getDataPath()) / "franka_panda" / "panda.urdf")
     limits = {joint.get("name"): joint.find("limit") for joint in robot.iter("joint")}
-    for number, (low, high) in enumerate(PANDA, 1):
-        limit = limits[f"panda_joint{number}"]
+    for joint in BUILT_IN["panda"].joints:
+        limit = limits[joint.name]
         assert limit is not None
-        assert (float(limit.get("lower", "")), float(limit.get("upper", ""))) == (low, high)
-    assert {len(arm) for arm in ARMS.values()} == {7}
+        given = float(limit.get("lower", "")), float(limit.get("upper", ""))
+        assert given == (joint.lower, joint.upper)
+    links = {link.get("name") for link in robot.iter("link")}
+    assert links == BUILT_IN["panda"].frames
+    assert {len(limb) for each in BUILT_IN.values() for limb in each.limbs} == {7}
 
 
 READ = """

@@ -1,0 +1,213 @@
+"""Robot descriptions: what is read of them, what is refused, and that nothing else ever happens."""
+
+from __future__ import annotations
+
+import math
+from pathlib import Path
+
+import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+
+import smachac
+from smachac.ir.robots import Robot
+from smachac.source import Source
+from smachac.urdf import UrdfError, read_urdf
+
+
+def joint(name: str, parent: str, child: str, kind: str = "revolute", more: str = "") -> str:
+    limit = '<limit lower="-1" upper="2" effort="1" velocity="1"/>' if kind == "revolute" else ""
+    ends = f'<parent link="{parent}"/><child link="{child}"/>'
+    return f'<joint name="{name}" type="{kind}">{ends}{limit}{more}</joint>'
+
+
+def robot(links: str, *joints: str) -> Robot:
+    names = "".join(f'<link name="{link}"/>' for link in links.split())
+    return read_urdf(Source("arm.urdf", f'<robot name="arm">{names}{"".join(joints)}</robot>'))
+
+
+def limbs(found: Robot) -> list[list[str]]:
+    return [[each.name for each in limb] for limb in found.limbs]
+
+
+def test_joints_limits_and_links() -> None:
+    found = robot("a b c d", joint("x", "a", "b"), joint("y", "b", "c", "continuous"))
+    assert found.name == "arm"
+    assert [(each.lower, each.upper) for each in found.joints] == [(-1, 2), (-math.inf, math.inf)]
+    assert [each.span.text for each in found.joints] == ["x", "y"]
+    assert found.frames == frozenset("abcd")
+    assert limbs(found) == [["x", "y"]]
+
+
+MIMIC = '<mimic joint="f"/>'
+
+
+@pytest.mark.parametrize(
+    ("links", "joints", "expected"),
+    [
+        ("a b", [], []),
+        ("a b", [joint("x", "a", "b", "fixed")], []),
+        ("a b c", [joint("x", "a", "b"), joint("f", "b", "c", "fixed")], [["x"]]),
+        # Fingers that slide end the arm; they are not of it.
+        (
+            "a b l r",
+            [
+                joint("x", "a", "b"),
+                joint("l", "b", "l", "prismatic"),
+                joint("r", "b", "r", "prismatic"),
+            ],
+            [["x"]],
+        ),
+        # One that turns, and one that follows it: the fork ends the arm as well.
+        (
+            "a b l r",
+            [joint("x", "a", "b"), joint("f", "b", "l"), joint("g", "b", "r", more=MIMIC)],
+            [["x"], ["f"], ["x", "f"]],
+        ),
+        # Two arms on a torso: each alone, or the torso with one of them.
+        (
+            "a t l m r s",
+            [
+                joint("turn", "a", "t"),
+                joint("l1", "t", "l"),
+                joint("l2", "l", "m"),
+                joint("r1", "t", "r"),
+                joint("r2", "r", "s"),
+            ],
+            [["turn"], ["l1", "l2"], ["turn", "l1", "l2"], ["r1", "r2"], ["turn", "r1", "r2"]],
+        ),
+        # A circle is no robot, but it must have an end.
+        ("a b", [joint("x", "a", "b"), joint("y", "b", "a")], []),
+        ("a b c", [joint("x", "a", "b"), joint("y", "a", "c"), joint("z", "b", "c")], [["x", "z"]]),
+    ],
+)
+def test_limbs(links: str, joints: list[str], expected: list[list[str]]) -> None:
+    assert limbs(robot(links, *joints)) == expected
+
+
+BILLION = '<!DOCTYPE robot [<!ENTITY a "aaaaaaaaaa"><!ENTITY b "&a;&a;&a;">]><robot name="&b;"/>'
+OUTSIDE = '<!DOCTYPE robot SYSTEM "file:///etc/passwd"><robot name="x"/>'
+
+
+@pytest.mark.parametrize(
+    ("text", "message"),
+    [
+        ("", "no element found"),
+        ("hello", "no XML"),
+        ("<robot>", "no element found"),
+        ("<sdf/>", "the outermost element is `<sdf>`"),
+        (BILLION, "a document type is not read"),
+        (OUTSIDE, "a document type is not read"),
+        ("<robot>&lol;</robot>", "undefined entity"),
+        ("<robot>" + "<a>" * 200 + "</a>" * 200 + "</robot>", "larger, or deeper"),
+        ("<robot>" + "<a/>" * 100_001 + "</robot>", "larger, or deeper"),
+        (f"<robot>{' ' * 5_000_000}</robot>", "characters"),
+        ("<robot><link/></robot>", "has no name"),
+        ('<robot><link name="a"/><link name="a"/></robot>', "two links `a`"),
+        ('<robot><joint name="x" type="turning"/></robot>', "of type `turning`"),
+        ('<robot><joint name="x" type="fixed"/></robot>', "a link `` that is not there"),
+        ("<robot><xacro:macro name='x'/></robot>", "not part of a robot"),
+        ("<robot>\ud800</robot>", "describes"),
+    ],
+)
+def test_what_is_refused(text: str, message: str) -> None:
+    if message == "describes":
+        read_urdf(Source("arm.urdf", text))
+        return
+    with pytest.raises(UrdfError) as error:
+        read_urdf(Source("arm.urdf", text))
+    assert message in error.value.message
+
+
+@pytest.mark.parametrize(
+    ("limit", "message"),
+    [
+        ("", "has no `<limit>`"),
+        ('<limit lower="low" upper="1"/>', "is `low`, which is no number"),
+        ('<limit lower="nan" upper="1"/>', "is `nan`, which is no number"),
+        ('<limit lower="${-pi}" upper="1"/>', "no number"),
+        ('<limit lower="2" upper="1"/>', "the first is larger"),
+    ],
+)
+def test_limits_that_are_none(limit: str, message: str) -> None:
+    text = joint("x", "a", "b").replace(
+        '<limit lower="-1" upper="2" effort="1" velocity="1"/>', limit
+    )
+    with pytest.raises(UrdfError, match=message.replace("$", r"\$")) as error:
+        robot("a b", text)
+    assert error.value.span.text == "x"
+
+
+PIECES = st.sampled_from(
+    "<robot> </robot> <link_name='a'/> <joint_name='x'_type='revolute'> </joint> <parent_link='a'/>"
+    " <child_link='a'/> <limit_lower='0'/> <!-- & < \r é".replace("_", "\0").split(" ")
+).map(lambda piece: piece.replace("\0", " "))
+
+
+def refusal(source: Source) -> UrdfError | None:
+    try:
+        read_urdf(source)
+    except UrdfError as error:
+        return error
+    return None
+
+
+@given(st.lists(PIECES, max_size=12).map("".join) | st.text(max_size=30))
+def test_any_text_is_a_robot_or_refused_with_its_place(text: str) -> None:
+    error = refusal(Source("arm.urdf", text))
+    assert error is None or 0 <= error.span.start <= error.span.end <= len(text)
+
+
+def test_what_pybullet_ships() -> None:
+    data = pytest.importorskip("pybullet_data")
+    folder = Path(data.getDataPath())
+
+    def read(name: str) -> Robot:
+        return read_urdf(Source(name, (folder / name).read_text(encoding="utf-8")))
+
+    assert [len(limb) for limb in read("franka_panda/panda.urdf").limbs] == [7]
+    assert [len(limb) for limb in read("kuka_iiwa/model.urdf").limbs] == [7]
+    assert read("r2d2.urdf").joints
+
+
+SCRIPT = """
+name: sm
+template: Base
+robot: {robot}
+outcomes: [done]
+states:
+  - MOVE: {{template: ScriptedState, outcomes: [done], transitions: {{done: done}}}}
+"""
+
+
+@pytest.mark.parametrize(
+    ("name", "expected"),
+    [
+        ("panda", []),
+        ("baxter", []),
+        ("pnada", ["there is no robot `pnada`"]),
+        ("sub/arm.urdf", []),
+        (
+            "sub/broken.urdf",
+            ["`sub/broken.urdf` describes no robot: this is no XML: mismatched tag"],
+        ),
+        ("sub/none.urdf", ["there is no file `sub/none.urdf`"]),
+        ("../arm.urdf", ["there is no file `../arm.urdf`"]),
+        ("/etc/passwd.urdf", ["there is no file `/etc/passwd.urdf`"]),
+        ("package://my_robot/arm.urdf", ["there is no file `package://my_robot/arm.urdf`"]),
+        ("arm.urdf.xacro", ["`arm.urdf.xacro` describes no robot yet"]),
+        ("sub/odd.urdf", ["byte 0xff is not UTF-8: is it a text file?"]),
+    ],
+)
+def test_the_robot_of_a_script(tmp_path: Path, name: str, expected: list[str]) -> None:
+    folder = tmp_path / "project"
+    (folder / "sub").mkdir(parents=True)
+    (tmp_path / "arm.urdf").write_text("<robot/>")
+    (folder / "sub" / "arm.urdf").write_text("<robot/>")
+    (folder / "sub" / "broken.urdf").write_text("<robot>\n</a>")
+    (folder / "sub" / "odd.urdf").write_bytes(b"\xff\xfe\xff")
+    (folder / "main.yml").write_text(SCRIPT.format(robot=name))
+    report = smachac.check(folder / "main.yml")
+    assert [
+        item.finding.message for item in report if item.code.code in ("SM018", "SM007")
+    ] == expected
