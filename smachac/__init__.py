@@ -77,12 +77,14 @@ def build(
     scripts: Folders = (),
     templates: Folders = (),
 ) -> dict[str, str]:
-    """The files that a target prints for the script at `path`: name to text, not yet written.
+    """The files that a target prints for the script at `path`, with those that they stand on: name
+    to text, not yet written.
 
     Raises ScriptError, LookupError for an unknown target, ValueError for a bad option.
     """
     from smachac import driver
     from smachac.diagnostics import has_errors
+    from smachac.files import runtime_files
     from smachac.targets import load_target
 
     found = load_target(target)
@@ -95,7 +97,7 @@ def build(
     files = driver.build(analysis.checked, found, library, report, options)
     if has_errors(report):
         raise ScriptError([*analysis.report, *report])
-    return files
+    return {**files, **runtime_files(found.runtime)}
 
 
 def run(

@@ -62,8 +62,9 @@ class StateType:
 
     `given` names what the script itself supplies, beyond what stands here: any of
     "variables", "input_keys", "output_keys", "outcomes" (`"*": {}` in the interface).
-    `code` maps a language to a template's file name or to a reference to code. `body` is what the
-    template of Python does. `open`: there is no interface.
+    `code` maps a language to a template's file name or to a reference to code, `classes` a language
+    to a class of it, in words: `header`, `class`, `with`. `body` is what the template of Python
+    does. `open`: there is no interface.
     """
 
     name: str
@@ -78,12 +79,16 @@ class StateType:
     claims: tuple[str, ...] = ()
     blocking: bool = False
     code: Mapping[str, str] = field(default_factory=dict)
+    classes: Mapping[str, Mapping[str, str]] = field(default_factory=dict)
     body: Body | None = None
     open: bool = False
 
 
 TEMPLATE_FILES = ("{}.tpl.py", "{}.tpl")
 """Names under which the template of a state type may be found, for targets that print Python."""
+
+CLASS_FIELDS = ("header", "class", "with")
+"""What is said of code that is a class: where it is, its name, what it is made with."""
 
 _META = re.compile(r"\{%-?\s*block\s+meta\s*-?%\}(.*?)\{%-?\s*endblock", re.DOTALL)
 
@@ -155,6 +160,7 @@ def _read_interface(name: str, source: Source, library: Library, report: Report)
         else (),
         blocking="blocking" in fields and shapes.as_flag(fields["blocking"], []),
         code=code,
+        classes=_classes(fields.get("code"), report),
         body=_body(name, code.get("python", ""), given, library),
     )
 
@@ -184,6 +190,30 @@ def _code(tree: Tree | None, report: Report) -> dict[str, str]:
                 message = f"`{value.value}` names no class of a module"
                 help = "write it as `my_robot.states:Grasp`, or name the file of a template"
                 report.append(problems.wrong_shape(value.span, message, help))
+    return found
+
+
+def _classes(tree: Tree | None, report: Report) -> dict[str, dict[str, str]]:
+    """The classes by language, where the code is said by a mapping."""
+    found = {}
+    for language, value in _declared(tree):
+        if not isinstance(value, Map):
+            continue
+        given: dict[str, str] = {}
+        for entry in value.entries:
+            name = str(entry.key.value)
+            if name not in CLASS_FIELDS:
+                word = Word(name, entry.key.span)
+                report.append(problems.unknown_variable(word, "the code of a state", CLASS_FIELDS))
+            elif isinstance(entry.value, Scalar):
+                given[name] = str(entry.value.value)
+        missing = [name for name in CLASS_FIELDS[:2] if name not in given]
+        if missing:
+            message = f"the code for `{language}` names no `{missing[0]}`"
+            help = "write it as `{header: my_robot/grasp.hpp, class: my_robot::Grasp}`"
+            report.append(problems.wrong_shape(value.span, message, help))
+        else:
+            found[language] = given
     return found
 
 

@@ -56,7 +56,7 @@ def _build(arguments: argparse.Namespace) -> int:
         _, files = _compile(arguments, target, options)
     except OptionError as error:
         return usage(f"--option {error}")
-    return FINDINGS if files is None else _put(files, arguments)
+    return FINDINGS if files is None else _put(files, target, arguments)
 
 
 def _compile(
@@ -77,13 +77,14 @@ def _compile(
     return analysis, files
 
 
-def _put(files: dict[str, str], arguments: argparse.Namespace) -> int:
-    from smachac.files import changed_files, foreign_files, write_files
+def _put(files: dict[str, str], target: Target, arguments: argparse.Namespace) -> int:
+    from smachac.files import changed_files, foreign_files, runtime_files, write_files
 
     folder: Path = arguments.output
     if str(folder) == "-":
         sys.stdout.write("".join(files.values()))
         return OK
+    files = {**files, **runtime_files(target.runtime)}
     if arguments.check:
         changed = changed_files(folder, files)
         for path in changed:

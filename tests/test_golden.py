@@ -34,17 +34,17 @@ def outputs() -> dict[str, str]:
     assert source is not None
     library = disk_library(Path("main.yml"), report)
     analysis = analyse(source, library, report)
-    found = analysis.report
-    files: dict[str, str] = {}
+    files = {"report.txt": render_text(analysis.report)}
     for name in target_names() if analysis.checked is not None else []:
         target = load_target(name)
         assert target is not None
         problems: Report = []
         assert analysis.checked is not None
         made = build(analysis.checked, target, library, problems)
-        found = [*found, *problems]
         files.update({f"{name}/{file}": text for file, text in made.items()})
-    return {"report.txt": render_text(found), **files}
+        if problems:
+            files[f"{name}/report.txt"] = render_text(problems)
+    return files
 
 
 @pytest.mark.parametrize("case", [*CASES, *EXAMPLES], ids=lambda case: case.name)

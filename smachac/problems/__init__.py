@@ -17,6 +17,7 @@ from smachac.problems.calls import (
     template_not_found,
     unresolved_look_up,
 )
+from smachac.problems.targets import no_code_for_target, unsupported_by_target
 from smachac.problems.text import (
     bad_type,
     duplicate_key,
@@ -38,6 +39,7 @@ __all__ = [
     "duplicate_key",
     "listed",
     "missing_variable",
+    "no_code_for_target",
     "recursive_include",
     "script_not_found",
     "template_error",
@@ -48,6 +50,7 @@ __all__ = [
     "unknown_variable",
     "unreadable_file",
     "unresolved_look_up",
+    "unsupported_by_target",
     "unused_allowances",
     "vain_allowance",
     "wrong_shape",

@@ -45,14 +45,17 @@ Emit = Callable[[Checked, Context, Report], Files]
 class Target:
     """A target: its name, a line about it, and the function that prints.
 
-    `options` names the options it knows, each with a line of help. An emitter reports only what
-    is wrong in templates of the user; then it returns no files. It raises OptionError.
+    `options` names the options it knows, each with a line of help. An emitter reports what is
+    wrong in templates of the user and what its language cannot say; then it returns no files. It
+    raises OptionError. `runtime` is a folder under smachac/runtime whose files are written beside
+    the output.
     """
 
     name: str
     description: str
     emit: Emit
     options: Mapping[str, str] = field(default_factory=dict)
+    runtime: str = ""
 
 
 def made_by(machine: Machine) -> str:

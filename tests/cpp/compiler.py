@@ -9,6 +9,7 @@ import os
 import shutil
 import subprocess
 import sys
+import tempfile
 from collections.abc import Sequence
 from dataclasses import dataclass
 from pathlib import Path
@@ -24,6 +25,7 @@ WARNINGS = (
     "-ffp-contract=off",
 )
 SANITIZED = ("-fsanitize=address,undefined", "-fno-sanitize-recover=all")
+THREADED = ("-fsanitize=thread", "-O1")
 BARE = ("-fno-exceptions", "-fno-rtti")
 
 
@@ -34,12 +36,13 @@ class Compiler:
     name: str
     command: tuple[str, ...]
 
-    def sanitizes(self, folder: Path) -> bool:
-        """Whether what sanitizers need is installed."""
-        try:
-            self.run("int main() {}", folder, *SANITIZED)
-        except AssertionError:
-            return False
+    def runs_with(self, *flags: str) -> bool:
+        """Whether what some flags need is installed."""
+        with tempfile.TemporaryDirectory() as folder:
+            try:
+                self.run("int main() {}", Path(folder), *flags)
+            except AssertionError:
+                return False
         return True
 
     def compile(

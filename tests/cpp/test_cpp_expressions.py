@@ -249,7 +249,7 @@ def test_random_expressions_have_the_value_of_python(
 ) -> None:
     tally = Tally()
     seed += 10 * len(compiler.name)
-    flags = SANITIZED if compiler.sanitizes(folder) else ()
+    flags = SANITIZED if compiler.runs_with(*SANITIZED) else ()
     assert compare(compiler, folder, list(cases(260, seed)), seed, tally, "-O0", *flags) == []
     # Most have a value, some have none, few are beyond 64 bits.
     assert tally.equal > 700

@@ -43,6 +43,7 @@ WITHIN = {
     ("robots", "urdf"),
     ("sugar", "states"),
     ("lower", "values"),
+    ("targets", "values"),
     ("lower", "desugar"),
     ("lower", "catching"),
     ("desugar", "values"),

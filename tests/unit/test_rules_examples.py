@@ -16,8 +16,12 @@ from smachac.targets import load_target
 EVERY = [pytest.param(CODES[name], id=name) for name in sorted(CODES)]
 
 
-def judged(files: Mapping[str, str], folder: Path) -> Report:
-    """What check and then build for Python say of a script with the files around it."""
+TARGETS = {"SM601": "cpp", "SM602": "cpp"}
+"""What the examples of a code are built for, where that is not Python."""
+
+
+def judged(files: Mapping[str, str], folder: Path, target_name: str = "python") -> Report:
+    """What check and then build say of a script with the files around it."""
     for name, text in files.items():
         path = folder / name
         path.parent.mkdir(parents=True, exist_ok=True)
@@ -28,7 +32,7 @@ def judged(files: Mapping[str, str], folder: Path) -> Report:
     source = read_source(main, report)
     assert source is not None
     analysis = analyse(source, library, report)
-    target = load_target("python")
+    target = load_target(target_name)
     assert target is not None
     found = analysis.report
     if analysis.checked is not None:
@@ -46,13 +50,13 @@ def shown(report: Report) -> list[str]:
 
 @pytest.mark.parametrize("code", EVERY)
 def test_wrong_gives_exactly_its_code(code: Code, tmp_path: Path) -> None:
-    report = above_info(judged(explanation(code).wrong, tmp_path))
+    report = above_info(judged(explanation(code).wrong, tmp_path, TARGETS.get(code.code, "python")))
     assert {item.code.code for item in report} == {code.code}, shown(report)
 
 
 @pytest.mark.parametrize("code", EVERY)
 def test_right_gives_nothing_above_an_info(code: Code, tmp_path: Path) -> None:
-    report = above_info(judged(explanation(code).right, tmp_path))
+    report = above_info(judged(explanation(code).right, tmp_path, TARGETS.get(code.code, "python")))
     assert shown(report) == []
 
 

@@ -161,7 +161,8 @@ def _any(data: Data) -> str:
             return "std::any{}"
         case bool() | int() | float() | str():
             name = {bool: "bool", int: "int", float: "float", str: "str"}[type(data)]
-            return f"std::any{{{_value(data, Type(name))}}}"
+            text = _value(data, Type(name))
+            return f"std::any{{{f'std::int64_t{{{text}}}' if name == 'int' else text}}}"
         case tuple():
             return f"std::any{{{_value(data, Type('list', (ANY,)))}}}"
         case Struct():

@@ -1,3 +1,5 @@
+// Made by smachac, as it is for every machine: do not edit.
+//
 // Values of userdata, and what Python computes with them, in C++17 without a dependency.
 //
 // `smachac` has the types and conversions, `smachac::py` the operations of Python: whole numbers
@@ -177,11 +179,36 @@ inline double widen(std::int64_t value) {
 
 } // namespace py
 
+template <class To, class From> To convert(const From &from);
+
+namespace detail {
+
+/// A value as a std::any that holds it as scripts would say it: lists and mappings of anything.
+template <class From> std::any anything([[maybe_unused]] const From &from) {
+  if constexpr (std::is_same_v<From, None>) {
+    return std::any();
+  } else if constexpr (is_optional<From>::value) {
+    return from.has_value() ? anything(*from) : std::any();
+  } else if constexpr (std::is_integral_v<From> && !std::is_same_v<From, bool>) {
+    return std::any(static_cast<std::int64_t>(from));
+  } else if constexpr (is_list<From>::value) {
+    return std::any(convert<std::vector<std::any>>(from));
+  } else if constexpr (is_dict<From>::value) {
+    return std::any(convert<std::map<std::string, std::any>>(from));
+  } else {
+    return std::any(from);
+  }
+}
+
+} // namespace detail
+
 /// A value as another type that holds it: whole numbers as floats, lists as arrays of their length,
 /// anything as an optional; an optional as what is in it, where there is something.
 template <class To, class From> To convert([[maybe_unused]] const From &from) {
   if constexpr (std::is_same_v<To, From>) {
     return from;
+  } else if constexpr (std::is_same_v<To, std::any>) {
+    return detail::anything(from);
   } else if constexpr (detail::is_optional<From>::value && !detail::is_optional<To>::value) {
     return convert<To>(py::present(from));
   } else if constexpr (detail::is_optional<From>::value) {
@@ -820,6 +847,9 @@ template <Style style, class... Parts> bool write_parts(std::string &out, const 
 template <Style style, class T>
 bool write_entry(std::string &out, const char *before, const std::string &key, const T &value);
 
+/// Writes what is in a std::any, as `write` does; None where that is nothing a script can say.
+template <Style style> bool write_any(std::string &out, const std::any &value);
+
 /// Writes a value; false where a float in it is no number of JSON.
 template <Style style, class T> bool write(std::string &out, const T &value) {
   constexpr bool python = style == Style::python;
@@ -872,7 +902,7 @@ template <Style style, class T> bool write(std::string &out, const T &value) {
     out += '}';
   } else {
     static_assert(std::is_same_v<T, std::any>, "smachac cannot write values of this type");
-    out += python ? "None" : "null";
+    fine = write_any<style>(out, value);
   }
   return fine;
 }
@@ -893,9 +923,29 @@ bool write_entry(std::string &out, const char *before, const std::string &key, c
   return write<style>(out, value);
 }
 
+template <Style style> bool write_any(std::string &out, const std::any &value) {
+  bool fine = true;
+  const auto write_as = [&](const auto *found) {
+    if (found != nullptr) {
+      fine = write<style>(out, *found);
+    }
+    return found != nullptr;
+  };
+  if (!write_as(std::any_cast<bool>(&value)) && !write_as(std::any_cast<std::int64_t>(&value)) &&
+      !write_as(std::any_cast<double>(&value)) && !write_as(std::any_cast<std::string>(&value)) &&
+      !write_as(std::any_cast<std::vector<std::any>>(&value)) &&
+      !write_as(std::any_cast<std::map<std::string, std::any>>(&value)) &&
+      !write_as(std::any_cast<Point>(&value)) && !write_as(std::any_cast<Quaternion>(&value)) &&
+      !write_as(std::any_cast<Pose>(&value)) && !write_as(std::any_cast<PoseStamped>(&value)) &&
+      !write_as(std::any_cast<Transform>(&value)) && !write_as(std::any_cast<JointState>(&value))) {
+    write<style>(out, None{});
+  }
+  return fine;
+}
+
 } // namespace inner
 
-/// `repr`, which `str` of anything but a text is. What is in a std::any is not shown.
+/// `repr`, which `str` of anything but a text is.
 template <class T> std::string repr(const T &value) {
   std::string out;
   inner::write<inner::Style::python>(out, value);

@@ -1,0 +1,727 @@
+// Made by smachac, as it is for every machine: do not edit.
+//
+// What generated state machines stand on. C++17, header only, no dependency.
+//
+// Userdata keys (Key), requests to stop (Stop), who hears what a run does (Observer, TraceWriter),
+// the threads of a concurrence (Branches). A machine runs with a Run, or with a WatchedRun where
+// somebody listens; the hooks of a Run are empty, so they cost nothing. Builds with -fno-exceptions
+// and -fno-rtti: then a failure ends the program.
+#ifndef SMACHAC_SMACHAC_HPP
+#define SMACHAC_SMACHAC_HPP
+
+#include <algorithm>
+#include <array>
+#include <atomic>
+#include <chrono>
+#include <condition_variable>
+#include <cstddef>
+#include <cstdint>
+#include <cstdio>
+#include <cstring>
+#include <exception>
+#include <initializer_list>
+#include <mutex>
+#include <random>
+#include <stdexcept>
+#include <string>
+#include <thread>
+#include <type_traits>
+#include <utility>
+#include <vector>
+
+#include "smachac/values.hpp"
+
+#if defined(__cpp_exceptions)
+#define SMACHAC_TRY try
+#define SMACHAC_CATCH catch (...)
+#else
+#define SMACHAC_TRY
+#define SMACHAC_CATCH if constexpr (false)
+#endif
+
+namespace smachac {
+
+/// A userdata key: a value, once somebody has put one there.
+template <class T> class Key {
+public:
+  Key() = default;
+  Key(T value) : value_(std::move(value)), state_(held) {} // NOLINT: `Key<int> tries{0}`
+
+  Key &operator=(T value) {
+    value_ = std::move(value);
+    state_ = written;
+    return *this;
+  }
+  operator const T &() const { return value_; } // NOLINT: `in.tries + 1`
+  const T &get() const { return value_; }
+  bool set() const { return state_ != unset; }
+
+  /// What containers do at their borders: no state has written it, so no trace tells of it.
+  template <class U> void hold(const U &value) {
+    value_ = convert<T>(value);
+    state_ = held;
+  }
+  /// Hold what another key holds, if it does.
+  template <class U> void take(const Key<U> &other) {
+    if (other.set()) {
+      hold(other.get());
+    }
+  }
+  /// Whether a state has written it since it was last looked at.
+  bool fresh() {
+    const bool found = state_ == written;
+    if (found) {
+      state_ = held;
+    }
+    return found;
+  }
+
+private:
+  enum : std::uint8_t { unset, held, written };
+
+  T value_{};
+  std::uint8_t state_ = unset;
+};
+
+/// A key was read that holds nothing.
+struct MissingKey : Error {
+  explicit MissingKey(const char *key)
+      : Error(std::string("reads `") + key + "`, which holds nothing") {}
+};
+
+/// The value of a key that has to hold one. Throws MissingKey.
+template <class T> const T &need(const Key<T> &key, const char *name) {
+  if (!key.set()) {
+#if defined(__cpp_exceptions)
+    throw MissingKey(name);
+#else
+    fail(MissingKey(name).what());
+#endif
+  }
+  return key.get();
+}
+
+/// The value of a key that may hold none.
+template <class Optional, class T> Optional maybe(const Key<T> &key) {
+  return key.set() ? convert<Optional>(key.get()) : Optional();
+}
+
+/// A state in the script: its path, `sm/PICK/OPEN`, and where it stands, `main.yml:12`.
+struct Place {
+  const char *path;
+  const char *src;
+};
+
+/// One thing that happened. What an event does not have is null.
+struct Event {
+  const char *event; ///< start enter exit transition write preempt error finish
+  Place place;
+  const char *outcome = nullptr; ///< of exit, transition and finish
+  const char *to = nullptr;      ///< of transition: the path of a state, or `path:outcome`
+  const char *key = nullptr;     ///< of write
+  const char *value = nullptr;   ///< of write: JSON
+  const char *message = nullptr; ///< of error
+};
+
+/// Hears what a machine does. Branches of a concurrence and whoever asks it to stop call from
+/// their threads, one at a time.
+class Observer {
+public:
+  Observer() = default;
+  Observer(const Observer &) = delete;
+  Observer &operator=(const Observer &) = delete;
+  virtual ~Observer() = default;
+
+  /// What to do with an event, which is gone after the call.
+  virtual void on(const Event &event) = 0;
+
+  void tell(const Event &event) {
+    const std::lock_guard<std::recursive_mutex> hold(lock_);
+    on(event);
+  }
+
+private:
+  std::recursive_mutex lock_;
+};
+
+/// Writes each event as a line of JSON, at once: what has happened is in the file.
+class TraceWriter : public Observer {
+public:
+  explicit TraceWriter(std::FILE *file) : file_(file) {}
+
+  void on(const Event &event) override {
+    if (std::strcmp(event.event, "start") == 0) {
+      began_ = std::chrono::steady_clock::now();
+    }
+    line_ = "{\"seq\": " + std::to_string(++count_);
+    add("event", event.event);
+    add("path", event.place.path);
+    add("outcome", event.outcome);
+    add("to", event.to);
+    add("key", event.key);
+    if (event.value != nullptr) {
+      line_ += std::string(", \"value\": ") + event.value;
+    }
+    add("message", event.message);
+    const std::chrono::duration<double> passed = std::chrono::steady_clock::now() - began_;
+    char seconds[32];
+    std::snprintf(seconds, sizeof seconds, ", \"t\": %.6f", passed.count());
+    line_ += seconds;
+    if (*event.place.src != '\0') {
+      add("src", event.place.src);
+    }
+    line_ += "}\n";
+    std::fwrite(line_.data(), 1, line_.size(), file_);
+    std::fflush(file_);
+  }
+
+private:
+  void add(const char *name, const char *text) {
+    if (text != nullptr) {
+      line_ += std::string(", \"") + name + "\": " + json(std::string(text));
+    }
+  }
+
+  std::FILE *file_;
+  std::string line_;
+  std::uint64_t count_ = 0;
+  std::chrono::steady_clock::time_point began_ = std::chrono::steady_clock::now();
+};
+
+/// Requests to stop, as one thread of control sees them: that of the machine, or of a branch.
+///
+/// Any thread may request. A signal handler may not: let it set a flag that a thread looks at.
+class Stop {
+public:
+  Stop() = default;
+  Stop(const Stop &) = delete;
+  Stop &operator=(const Stop &) = delete;
+
+  /// Ask what runs to stop. It goes on until a state answers; until then each next state is asked.
+  void request() {
+    std::vector<std::pair<Observer *, Place>> told;
+    ask(told);
+    for (const auto &[observer, place] : told) {
+      observer->tell({"preempt", place});
+    }
+  }
+  /// Whether a request waits for an answer.
+  bool requested() const { return asked_.load(std::memory_order_relaxed); }
+  /// Answer it: what comes next runs on.
+  void service() { asked_.store(false, std::memory_order_relaxed); }
+  /// How many requests there were.
+  std::uint64_t requests() const { return requests_.load(std::memory_order_relaxed); }
+
+  /// Wait for so many seconds, or for a request; whether one has come.
+  bool wait(double seconds) {
+    const std::chrono::duration<double> most(std::min(seconds, longest));
+    std::unique_lock<std::mutex> hold(lock_);
+    return wake_.wait_for(hold, most, [this] { return asked_.load(); });
+  }
+
+private:
+  template <class Run, std::size_t N> friend class Branches;
+  friend class WatchedRun;
+
+  static constexpr double longest = 1e9;
+
+  void ask(std::vector<std::pair<Observer *, Place>> &told) {
+    const std::lock_guard<std::mutex> hold(lock_);
+    if (ended_) {
+      return;
+    }
+    asked_.store(true);
+    requests_.fetch_add(1);
+    wake_.notify_all();
+    for (const Place &place : running_) {
+      told.emplace_back(observer_, place);
+    }
+    for (Stop *branch = branches_; branch != nullptr; branch = branch->next_) {
+      branch->ask(told);
+    }
+  }
+
+  std::atomic<bool> asked_{false};
+  std::atomic<std::uint64_t> requests_{0};
+  std::mutex lock_;
+  std::condition_variable wake_;
+  // Under the lock: the branches of the concurrence that runs, and what an observer is told of.
+  Stop *branches_ = nullptr;
+  Stop *next_ = nullptr;
+  bool ended_ = false;
+  Observer *observer_ = nullptr;
+  std::vector<Place> running_;
+};
+
+/// The items of an iterator that are left, and requests to stop: it ends after the item that runs
+/// then, even if its state has answered. A request from before is served as the first item starts.
+class Round {
+public:
+  Round(Stop &stop, std::size_t items)
+      : stop_(stop), before_(stop.requests()), left_(items), early_(stop.requested()) {
+    if (early_) {
+      stop_.service();
+    }
+  }
+  /// An item is done: whether a request ends the iterator.
+  bool over() {
+    --left_;
+    if (!early_ && stop_.requests() == before_) {
+      return false;
+    }
+    stop_.service();
+    return true;
+  }
+  /// Whether that was the last item.
+  bool last() const { return left_ == 0; }
+
+private:
+  Stop &stop_;
+  std::uint64_t before_;
+  std::size_t left_;
+  bool early_;
+};
+
+/// An output of a state, by its own name for it.
+template <class T> struct Output {
+  const char *name;
+  Key<T> &key;
+};
+template <class T> Output(const char *, Key<T> &) -> Output<T>;
+
+#if defined(__cpp_exceptions)
+/// What a state threw, with the path of the state and its place in the script. The cause is nested
+/// in it, see std::rethrow_if_nested.
+class StateError : public std::runtime_error {
+public:
+  StateError(const Place &state, const char *what)
+      : std::runtime_error(std::string(state.path) + " (" + state.src + "): " + what),
+        place(state) {}
+  Place place;
+};
+#endif
+
+namespace detail {
+
+/// The message of what is being thrown; empty for a StateError, which was told of before.
+inline std::string message_of_current() {
+#if defined(__cpp_exceptions)
+  try {
+    throw;
+  } catch (const StateError &) {
+    return {};
+  } catch (const std::exception &error) {
+    return *error.what() != '\0' ? error.what() : "an exception without a message";
+  } catch (...) {
+    return "an exception of an unknown type";
+  }
+#else
+  return {};
+#endif
+}
+
+[[noreturn]] inline void throw_on(const Place &place, const std::string &message) {
+#if defined(__cpp_exceptions)
+  if (message.empty()) {
+    throw;
+  }
+  std::throw_with_nested(StateError(place, message.c_str()));
+#else
+  static_cast<void>(place);
+  fail(message.c_str());
+#endif
+}
+
+/// A state ended with an outcome that its container knows nothing of: the container's failure, so
+/// it is no outcome of the state.
+struct Undeclared : Error {
+  using Error::Error;
+};
+
+[[noreturn]] inline void undeclared(const char *outcome) {
+  const std::string text = std::string("ended with `") + outcome + "`, which leads nowhere";
+#if defined(__cpp_exceptions)
+  throw Undeclared(text);
+#else
+  fail(text.c_str());
+#endif
+}
+
+inline bool current_is_undeclared() {
+#if defined(__cpp_exceptions)
+  try {
+    throw;
+  } catch (const Undeclared &) {
+    return true;
+  } catch (...) {
+    return false;
+  }
+#else
+  return false;
+#endif
+}
+
+} // namespace detail
+
+/// Where no machine can come.
+[[noreturn]] inline void never() { __builtin_unreachable(); }
+
+/// Prints a key as PrintUserdataState does.
+template <class T> void print(const char *key, const T &value) {
+  const std::string line = std::string(key) + ": " + py::text(value) + "\n";
+  std::fwrite(line.data(), 1, line.size(), stdout);
+}
+
+/// Sleep so many seconds, whoever asks to stop.
+inline void sleep(double seconds) { Stop().wait(seconds); }
+
+/// What a machine runs with where nobody watches. `places` are those of a container's states.
+struct Run {
+  Stop &stop;
+
+  template <class State> void enter(const Place *, State) {}
+  template <class State> void go(const Place *, State &state, const char *, State next) {
+    state = next;
+  }
+  template <class State> void again(const Place *, State, const char *) {}
+  template <class State, class Outcome>
+  Outcome end(const Place *, State, const char *, Outcome outcome) {
+    return outcome;
+  }
+  template <class State> void exit(const Place *, State, const char *) {}
+  template <class T> Key<T> &out(Key<T> &key) { return key; }
+  template <class Outcome, class... T> Outcome wrote(Outcome outcome, Output<T>...) {
+    return outcome;
+  }
+  template <class T, class U> void write(const char *, Key<T> &key, U &&value) {
+    key = convert<T>(std::forward<U>(value));
+  }
+  /// To be called in SMACHAC_CATCH: what the state threw is its outcome.
+  template <class State> void caught(const Place *places, State state) {
+    if (detail::current_is_undeclared()) {
+      failed(places, state);
+    }
+  }
+  /// The state ended as it should not: with an outcome that its container knows nothing of.
+  template <class State> [[noreturn]] void undeclared(const Place *, State, const char *outcome) {
+    detail::undeclared(outcome);
+  }
+  /// To be called in SMACHAC_CATCH: what was thrown goes on as a StateError.
+  template <class State> [[noreturn]] void failed(const Place *places, State state) {
+    detail::throw_on(places[static_cast<std::size_t>(state)], detail::message_of_current());
+  }
+};
+
+/// What a machine runs with where an observer hears of all that it does.
+class WatchedRun {
+public:
+  Stop &stop;
+
+  WatchedRun(Observer &observer, Stop &own) : stop(own), observer_(observer) {
+    const std::lock_guard<std::mutex> hold(stop.lock_);
+    stop.observer_ = &observer_;
+  }
+  WatchedRun(const WatchedRun &) = delete;
+  WatchedRun &operator=(const WatchedRun &) = delete;
+  ~WatchedRun() {
+    const std::lock_guard<std::mutex> hold(stop.lock_);
+    stop.observer_ = nullptr;
+    stop.running_.clear();
+  }
+
+  Observer &observer() { return observer_; }
+
+  void start(const Place &machine) {
+    observer_.tell({"start", machine});
+    push(machine);
+  }
+  template <class Outcome> Outcome finish(Outcome outcome) {
+    const Place machine = pop();
+    observer_.tell({"finish", machine, name(outcome)});
+    return outcome;
+  }
+
+  template <class State> void enter(const Place *places, State state) {
+    const Place &place = places[static_cast<std::size_t>(state)];
+    push(place);
+    observer_.tell({"enter", place});
+  }
+  template <class State>
+  void go(const Place *places, State &state, const char *outcome, State next) {
+    const Place place = pop();
+    observer_.tell({"exit", place, outcome});
+    state = next;
+    const char *to = places[static_cast<std::size_t>(next)].path;
+    observer_.tell({"transition", place, outcome, to});
+  }
+  template <class State> void again(const Place *places, State state, const char *outcome) {
+    go(places, state, outcome, state);
+  }
+  template <class State, class Outcome>
+  Outcome end(const Place *places, State state, const char *outcome, Outcome with) {
+    exit(places, state, outcome);
+    const Place &place = places[static_cast<std::size_t>(state)];
+    std::string to(place.path,
+                   static_cast<std::size_t>(std::strrchr(place.path, '/') - place.path));
+    to += std::string(":") + name(with);
+    observer_.tell({"transition", place, outcome, to.c_str()});
+    return with;
+  }
+  template <class State> void exit(const Place *, State, const char *outcome) {
+    const Place place = pop();
+    observer_.tell({"exit", place, outcome});
+  }
+
+  /// A key that a state may write: what it writes there is told when it has ended.
+  template <class T> Key<T> &out(Key<T> &key) {
+    key.fresh();
+    return key;
+  }
+  template <class Outcome, class... T> Outcome wrote(Outcome outcome, Output<T>... outputs) {
+    (wrote_one(outputs), ...);
+    return outcome;
+  }
+  template <class T, class U> void write(const char *name, Key<T> &key, U &&value) {
+    key = convert<T>(std::forward<U>(value));
+    wrote_one(Output<T>{name, key});
+  }
+  template <class State> void caught(const Place *places, State state) {
+    if (detail::current_is_undeclared()) {
+      failed(places, state);
+    }
+    tell_error(places[static_cast<std::size_t>(state)], detail::message_of_current());
+  }
+  template <class State>
+  [[noreturn]] void undeclared(const Place *places, State state, const char *outcome) {
+    observer_.tell({"exit", places[static_cast<std::size_t>(state)], outcome});
+    detail::undeclared(outcome);
+  }
+  template <class State> [[noreturn]] void failed(const Place *places, State state) {
+    pop();
+    const Place &place = places[static_cast<std::size_t>(state)];
+    const std::string message = detail::message_of_current();
+    tell_error(place, message);
+    detail::throw_on(place, message);
+  }
+
+private:
+  void push(const Place &place) {
+    bool asked = false;
+    {
+      const std::lock_guard<std::mutex> hold(stop.lock_);
+      stop.running_.push_back(place);
+      asked = stop.requested();
+    }
+    if (asked) {
+      observer_.tell({"preempt", place});
+    }
+  }
+  Place pop() {
+    const std::lock_guard<std::mutex> hold(stop.lock_);
+    const Place place = stop.running_.back();
+    stop.running_.pop_back();
+    return place;
+  }
+  void tell_error(const Place &place, const std::string &message) {
+    if (!message.empty()) {
+      observer_.tell({"error", place, nullptr, nullptr, nullptr, nullptr, message.c_str()});
+    }
+  }
+  template <class T> void wrote_one(Output<T> output) {
+    if (output.key.fresh()) {
+      const std::string value = json(output.key.get());
+      const Place place = stop.running_.back(); // only this thread changes it
+      observer_.tell({"write", place, nullptr, nullptr, output.name, value.c_str()});
+    }
+  }
+
+  Observer &observer_;
+};
+
+/// The branches of a concurrence: a thread and a Stop for each of `N`.
+template <class Run, std::size_t N> class Branches {
+public:
+  explicit Branches(Run &around) : around_(around) {
+    const std::lock_guard<std::mutex> hold(around_.stop.lock_);
+    for (std::size_t i = 0; i < N; ++i) {
+      stops_[i].next_ = i + 1 < N ? &stops_[i + 1] : nullptr;
+      stops_[i].asked_.store(around_.stop.requested());
+    }
+    around_.stop.branches_ = stops_.data();
+  }
+  Branches(const Branches &) = delete;
+  Branches &operator=(const Branches &) = delete;
+  ~Branches() { leave(); }
+
+  /// Run every branch, `branch(i, run)`, and wait for all. When the first ends (`any`), or one
+  /// fails, the others are asked to stop. What failed first goes on outwards.
+  template <class Branch> void run(bool any, Branch branch) {
+    {
+      Threads threads;
+      SMACHAC_TRY {
+        for (std::size_t i = 0; i + 1 < N; ++i) {
+          threads.all[i] = std::thread([this, i, any, &branch] { one(i, any, branch); });
+        }
+        one(N - 1, any, branch);
+      }
+      SMACHAC_CATCH {
+        // No thread was to be had.
+        failure_.keep();
+        ask_others();
+      }
+    }
+    leave();
+    failure_.go_on();
+  }
+
+private:
+  struct Threads {
+    std::array<std::thread, N - 1> all;
+    ~Threads() {
+      for (std::thread &each : all) {
+        if (each.joinable()) {
+          each.join();
+        }
+      }
+    }
+  };
+
+  /// The first failure of several threads.
+  class Failure {
+  public:
+#if defined(__cpp_exceptions)
+    void keep() {
+      const std::lock_guard<std::mutex> hold(lock_);
+      if (!first_) {
+        first_ = std::current_exception();
+      }
+    }
+    void go_on() const {
+      if (first_) {
+        std::rethrow_exception(first_);
+      }
+    }
+
+  private:
+    std::mutex lock_;
+    std::exception_ptr first_;
+#else
+    void keep() {}
+    void go_on() const {}
+#endif
+  };
+
+  template <class Branch> void one(std::size_t i, bool any, Branch &branch) {
+    bool ask = any;
+    SMACHAC_TRY {
+      if constexpr (std::is_same_v<Run, WatchedRun>) {
+        WatchedRun own(around_.observer(), stops_[i]);
+        branch(i, own);
+      } else {
+        Run own{stops_[i]};
+        branch(i, own);
+      }
+    }
+    SMACHAC_CATCH {
+      ask = true;
+      failure_.keep();
+    }
+    {
+      const std::lock_guard<std::mutex> hold(stops_[i].lock_);
+      stops_[i].ended_ = true;
+    }
+    if (ask && !asked_.exchange(true)) {
+      ask_others();
+    }
+  }
+  void ask_others() {
+    for (Stop &each : stops_) {
+      each.request();
+    }
+  }
+  /// A request to the concurrence is served unless a branch has left one open.
+  void leave() {
+    const std::lock_guard<std::mutex> hold(around_.stop.lock_);
+    if (around_.stop.branches_ == nullptr) {
+      return;
+    }
+    around_.stop.branches_ = nullptr;
+    const auto open = [](const Stop &each) { return each.requested(); };
+    if (std::none_of(stops_.begin(), stops_.end(), open)) {
+      around_.stop.service();
+    }
+  }
+
+  Run &around_;
+  std::array<Stop, N> stops_;
+  std::atomic<bool> asked_{false};
+  Failure failure_;
+};
+
+/// Random numbers as Python draws them: the same seed gives the same row.
+class Draws {
+public:
+  /// The seed in words of 32 bits, the lowest first.
+  Draws(std::initializer_list<std::uint32_t> seed) : words_(Words{seed}) {}
+
+  /// A whole number from 0 up to `count`, without it.
+  std::size_t below(std::size_t count) {
+    unsigned bits = 0;
+    for (std::size_t rest = count; rest != 0; rest >>= 1U) {
+      ++bits;
+    }
+    std::size_t drawn = count;
+    while (drawn >= count) {
+      drawn = words_() >> (32U - bits);
+    }
+    return drawn;
+  }
+
+private:
+  /// Fills the state of the generator as Python's `random.seed` does (`init_by_array` of the
+  /// authors of the Mersenne Twister, M. Matsumoto and T. Nishimura).
+  struct Words {
+    using result_type = std::uint32_t;
+    std::initializer_list<std::uint32_t> seed;
+
+    template <class Iterator> void generate(Iterator state, Iterator end) const {
+      const auto size = static_cast<std::uint32_t>(end - state);
+      const auto length = static_cast<std::uint32_t>(seed.size());
+      std::vector<std::uint32_t> mt(size);
+      mt[0] = 19650218U;
+      for (std::uint32_t i = 1; i < size; ++i) {
+        mt[i] = 1812433253U * (mt[i - 1] ^ (mt[i - 1] >> 30U)) + i;
+      }
+      std::uint32_t i = 1;
+      std::uint32_t j = 0;
+      const auto next = [&] {
+        if (++i >= size) {
+          mt[0] = mt[size - 1];
+          i = 1;
+        }
+      };
+      for (std::uint32_t k = std::max(size, length); k != 0; --k) {
+        const std::uint32_t mixed = (mt[i - 1] ^ (mt[i - 1] >> 30U)) * 1664525U;
+        mt[i] = (mt[i] ^ mixed) + seed.begin()[j] + j;
+        next();
+        j = j + 1 < length ? j + 1 : 0;
+      }
+      for (std::uint32_t k = size - 1; k != 0; --k) {
+        mt[i] = (mt[i] ^ ((mt[i - 1] ^ (mt[i - 1] >> 30U)) * 1566083941U)) - i;
+        next();
+      }
+      mt[0] = 0x80000000U;
+      std::copy(mt.begin(), mt.end(), state);
+    }
+  };
+
+  struct Seeded : std::mt19937 {
+    explicit Seeded(Words words) : std::mt19937(words) {}
+  };
+
+  Seeded words_;
+};
+
+} // namespace smachac
+
+#endif // SMACHAC_SMACHAC_HPP

@@ -1,0 +1,214 @@
+"""The header of a machine: for each container its outcomes, userdata, states and function."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from collections.abc import Set as AbstractSet
+from dataclasses import dataclass, field
+
+from smachac import problems
+from smachac.ir.nodes import Leaf, Machine
+from smachac.ir.walk import walk
+from smachac.states import Library, find_state_type
+from smachac.targets import made_by
+from smachac.targets.cpp.classes import ClassCode, argument, assertions, class_code, class_leaf
+from smachac.targets.cpp.containers import execute
+from smachac.targets.cpp.inside import Inside, results
+from smachac.targets.cpp.leaves import LeafCode, built_in, enumeration
+from smachac.targets.cpp.machines import parts as parts_of
+from smachac.targets.cpp.plan import Plan, Scope, member, place, scope_name
+from smachac.targets.cpp.types import UnportableError, cpp_literal, cpp_type, cpp_value
+from smachac.targets.cpp.words import identifier
+
+Lines = list[str]
+
+
+def header_text(plan: Plan, library: Library) -> str:
+    """The text of the header. What C++ cannot say is in the plan's report afterwards, all of it."""
+    printing = _Printing(plan=plan, library=library)
+    blocks = [
+        "\n".join(_container(printing, scope)) for scope in reversed(list(plan.scopes.values()))
+    ]
+    _refuse_missing(plan, printing.missing)
+    codes = [code for code in printing.classes.values() if code is not None]
+    headers = sorted({"smachac/smachac.hpp", *(code.header for code in codes)})
+    made = f"// {made_by(plan.machine)}\n#pragma once"
+    includes = "\n".join(f'#include "{header}"' for header in headers)
+    checks = ["\n".join(assertions(code)) for code in codes]
+    return "\n\n".join([made, includes, *checks, *blocks]) + "\n"
+
+
+@dataclass(slots=True, kw_only=True)
+class _Printing:
+    """What the containers of one header share: the classes of state types by name, and the
+    parameters that the `States` of each container printed so far are made with, by path. `missing`
+    are the state types that have no code."""
+
+    plan: Plan
+    library: Library
+    classes: dict[str, ClassCode | None] = field(default_factory=dict)
+    parameters: dict[str, tuple[str, ...]] = field(default_factory=dict)
+    missing: set[str] = field(default_factory=set)
+
+    def code_of(self, leaf: Leaf, scope: Scope) -> LeafCode | None:
+        """The code of a leaf; None where it has none. Raises UnportableError."""
+        if leaf.type not in self.classes:
+            type_ = find_state_type(leaf.type, self.library, [])
+            self.classes[leaf.type] = class_code(type_) if type_ is not None else None
+        code = self.classes[leaf.type]
+        return built_in(leaf, scope) if code is None else class_leaf(code, leaf, scope)
+
+
+def _refuse_missing(plan: Plan, types: AbstractSet[str]) -> None:
+    """State types without code, each once, at the first of its states."""
+    leaves: dict[str, list[Leaf]] = {}
+    for _, node in walk(plan.machine.root):
+        if isinstance(node, Leaf) and node.type in types:
+            leaves.setdefault(node.type, []).append(node)
+    for name, states in leaves.items():
+        place = states[0].span
+        plan.report.append(problems.no_code_for_target(place, "C++", name, len(states)))
+
+
+def _container(printing: _Printing, scope: Scope) -> Lines:
+    plan, node, name = printing.plan, scope.node, scope_name(scope.path)
+    leaves = _leaves(printing, scope)
+    if leaves is None:
+        return []
+    parts = [
+        enumeration(results(node)),
+        _names(results(node)),
+        _userdata(plan, scope),
+        _types(leaves),
+        _states(printing, scope, leaves),
+        _places(scope),
+    ]
+    names = frozenset(child.name for child in node.children)
+    inside = Inside(scope=scope, leaves=leaves, names=names, scopes=plan.scopes)
+    try:
+        parts += [parts_of(inside), execute(inside)]
+    except UnportableError as error:
+        plan.refuse(node.span, error)
+    if node is plan.machine.root:
+        parts.append(_root(plan.machine))
+    inner = "\n\n".join("\n".join(part) for part in parts if part)
+    where = f" // {place(node)}" if place(node) else ""
+    doc = [f"// {line}" for line in node.doc.splitlines()]
+    return [*doc, f"namespace {name} {{{where}", "", inner, "", f"}} // namespace {name}"]
+
+
+def _leaves(printing: _Printing, scope: Scope) -> Mapping[str, LeafCode] | None:
+    """The code of the leaves by name; None where some have none."""
+    plan = printing.plan
+    found: dict[str, LeafCode] = {}
+    leaves = [child for child in scope.node.children if isinstance(child, Leaf)]
+    for leaf in leaves:
+        try:
+            code = printing.code_of(leaf, scope)
+        except UnportableError as error:
+            plan.refuse(leaf.span, error)
+            continue
+        if code is None:
+            printing.missing.add(leaf.type)
+        else:
+            found[leaf.name] = code
+    if not scope.node.children:
+        plan.refuse(scope.node.span, UnportableError("it has no states"))
+        return None
+    return found if len(found) == len(leaves) else None
+
+
+def _names(outcomes: tuple[str, ...]) -> Lines:
+    texts = ", ".join(map(cpp_literal, outcomes))
+    return [
+        "constexpr const char *name(Outcome outcome) {",
+        f"  constexpr const char *names[] = {{{texts}}};",
+        "  return names[static_cast<std::size_t>(outcome)];",
+        "}",
+    ]
+
+
+def _userdata(plan: Plan, scope: Scope) -> Lines:
+    presets = {preset.key: preset for preset in scope.node.userdata}
+    lines = []
+    for key, type_ in scope.keys.items():
+        value = ""
+        if key in presets:
+            try:
+                value = f"{{{cpp_value(presets[key].value.data, type_)}}}"
+            except UnportableError as error:
+                plan.refuse(presets[key].value.span, error)
+        try:
+            lines.append(f"  smachac::Key<{cpp_type(type_)}> {identifier(key)}{value};")
+        except UnportableError:
+            continue  # told already
+    for child in scope.node.children:
+        if not isinstance(child, Leaf):
+            lines.append(f"  {identifier(child.name)}::Userdata {member(child)};")
+    return ["struct Userdata {", *lines, "};"] if lines else ["struct Userdata {};"]
+
+
+def _types(leaves: Mapping[str, LeafCode]) -> Lines:
+    found = ["\n".join(code.definition) for code in leaves.values() if code.definition]
+    if not found:
+        return []
+    return ["namespace types {", "", "\n\n".join(found), "", "} // namespace types"]
+
+
+def _states(printing: _Printing, scope: Scope, leaves: Mapping[str, LeafCode]) -> Lines:
+    """The objects of the states; what they are made with is handed to all that want it."""
+    lines, made = [], []
+    parameters: dict[str, None] = {}
+    for child in scope.node.children:
+        if isinstance(child, Leaf):
+            code = leaves[child.name]
+            type_, given = code.type, code.made_with
+            wanted: tuple[str, ...] = (code.parameter,) if code.parameter else ()
+        else:
+            type_ = f"{identifier(child.name)}::States"
+            wanted = printing.parameters.get(f"{scope.path}/{child.name}", ())
+            given = ", ".join(map(argument, wanted))
+        parameters |= dict.fromkeys(wanted)
+        lines.append(f"  {type_} {member(child)};")
+        if given:
+            made.append(f"{member(child)}({given})")
+    printing.parameters[scope.path] = tuple(parameters)
+    if not made:
+        return ["struct States {", *lines, "};"]
+    explicit = "explicit " if len(parameters) == 1 else ""
+    head = f"  {explicit}States({', '.join(parameters)})"
+    return ["struct States {", head, f"      : {', '.join(made)} {{}}", "", *lines, "};"]
+
+
+def _places(scope: Scope) -> Lines:
+    children = scope.node.children
+    return [
+        "enum class State : std::size_t {",
+        *(f"  {identifier(child.name)}," for child in children),
+        "};",
+        "",
+        "inline constexpr smachac::Place places[] = {",
+        *(
+            f"    {{{cpp_literal(f'{scope.path}/{child.name}')}, {cpp_literal(place(child))}}},"
+            for child in children
+        ),
+        "};",
+    ]
+
+
+def _root(machine: Machine) -> Lines:
+    root = machine.root
+    here = f"{{{cpp_literal(root.name)}, {cpp_literal(place(root))}}}"
+    return [
+        "/// Run the machine once. An observer hears of all that it does; there may be none.",
+        "inline Outcome run(States &states, Userdata &ud, smachac::Observer *observer,",
+        "                   smachac::Stop &stop) {",
+        "  if (observer == nullptr) {",
+        "    smachac::Run alone{stop};",
+        "    return execute(states, ud, alone);",
+        "  }",
+        "  smachac::WatchedRun watched(*observer, stop);",
+        f"  watched.start({here});",
+        "  return watched.finish(execute(states, ud, watched));",
+        "}",
+    ]

@@ -1,0 +1,184 @@
+"""What the header is printed from: the containers with their keys in C++, and what is refused."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass, field
+from pathlib import PurePath
+
+from smachac import problems
+from smachac.diagnostics import Report
+from smachac.ir.inference import infer
+from smachac.ir.nodes import Container, Iterator, Leaf, Machine, Node
+from smachac.ir.types import ANY, Type
+from smachac.ir.userdata import remapping
+from smachac.ir.walk import containers, outcome_names
+from smachac.source import NOWHERE, Span
+from smachac.targets.cpp.expressions import Spelling
+from smachac.targets.cpp.types import UnportableError, cpp_literal, cpp_type, plain
+from smachac.targets.cpp.words import clashes, identifier
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Scope:
+    """A container and its userdata: the types of its keys by name, and those keys that surely hold
+    a value whenever a state of it starts, whatever its states do."""
+
+    path: str
+    node: Container
+    keys: Mapping[str, Type]
+    sure: frozenset[str]
+
+    def key(self, name: str) -> Type:
+        """The type of a key. Raises UnportableError where the container cannot have it."""
+        if name not in self.keys:
+            raise UnportableError(f"`{name}` is no key that `{self.path}` declares")
+        return self.keys[name]
+
+    def read(self, name: str, called: str) -> Spelling:
+        """How C++ reads a key that an expression calls `called`."""
+        spelt = f"ud.{identifier(name)}"
+        if name in self.sure:
+            return Spelling(text=f"{spelt}.get()", type=self.key(name))
+        return Spelling(text=f"smachac::need({spelt}, {cpp_literal(called)})", type=self.key(name))
+
+    def names(self, child: Node) -> dict[str, str]:
+        """The container's keys by those of a child, where they differ. The child of an iterator
+        sees them as they are (smach-semantics I7)."""
+        return {} if isinstance(self.node, Iterator) else remapping(child)
+
+
+@dataclass(slots=True, kw_only=True)
+class Plan:
+    """A machine with its scopes by path, parents before children; `report` gathers refusals."""
+
+    machine: Machine
+    scopes: Mapping[str, Scope]
+    report: Report = field(default_factory=list)
+
+    def refuse(self, span: Span, error: UnportableError) -> None:
+        self.report.append(problems.unsupported_by_target(span, "C++", str(error)))
+
+
+def plan(machine: Machine) -> Plan:
+    """The scopes of a machine; names and types that C++ cannot have are refused."""
+    types = infer(machine).keys
+    keys: dict[str, dict[str, Type]] = {}
+    for (path, key), type_ in sorted(types.items(), key=lambda item: item[0]):
+        keys.setdefault(path, {})[key] = plain(type_)
+    scopes: dict[str, Scope] = {}
+    found = Plan(machine=machine, scopes=scopes)
+    for path, node in containers(machine.root):
+        around = scopes.get(path.rpartition("/")[0])
+        scope = Scope(path=path, node=node, keys=keys.get(path, {}), sure=_sure(node, around))
+        scopes[path] = scope
+        _check(found, scope, around)
+    return found
+
+
+def _sure(node: Container, around: Scope | None) -> frozenset[str]:
+    held = {preset.key for preset in node.userdata}
+    if isinstance(node, Iterator):
+        held.add(node.item_key)
+    if around is not None:
+        names = around.names(node)
+        held |= {key.name for key in node.inputs if names.get(key.name, key.name) in around.sure}
+    return frozenset(held)
+
+
+def _check(plan: Plan, scope: Scope, around: Scope | None) -> None:
+    node = scope.node
+    for key, type_ in scope.keys.items():
+        try:
+            cpp_type(type_)
+        except UnportableError as error:
+            plan.refuse(_place_of(node, key), UnportableError(f"the key `{key}`: {error}"))
+    names = [
+        *(("state", child.name) for child in node.children),
+        *(("key", key) for key in scope.keys),
+    ]
+    for kind in ("state", "key"):
+        for name, other in clashes(name for what, name in names if what == kind):
+            text = f"the {kind}s `{other}` and `{name}` would both be `{identifier(name)}`"
+            plan.refuse(_named(node, name), UnportableError(text))
+    for each in (node, *(child for child in node.children if isinstance(child, Leaf))):
+        for name, other in clashes(outcome_names(each)):
+            text = f"the outcomes `{other}` and `{name}` would both be `{identifier(name)}`"
+            plan.refuse(each.span, UnportableError(text))
+    if around is not None:
+        _check_borders(plan, scope, around)
+
+
+def _check_borders(plan: Plan, scope: Scope, around: Scope) -> None:
+    """What is copied in and out has to convert."""
+    names = around.names(scope.node)
+    pairs = [(key, around, scope) for key in scope.node.inputs]
+    pairs += [(key, scope, around) for key in scope.node.outputs]
+    for key, source, target in pairs:
+        outer = names.get(key.name, key.name)
+        ends = {id(around): outer, id(scope): key.name}
+        try:
+            given, wanted = source.key(ends[id(source)]), target.key(ends[id(target)])
+            if not converts(given, wanted):
+                raise UnportableError(f"the key `{key.name}` is `{given}` and becomes `{wanted}`")
+        except UnportableError as error:
+            plan.refuse(_place_of(scope.node, key.name), error)
+
+
+def converts(given: Type, wanted: Type) -> bool:
+    """Whether `smachac::convert` makes one type of the other, both plain."""
+    if given == wanted or wanted == ANY:
+        return True
+    inner, outer = _inside(given), _inside(wanted)
+    match given.name, wanted.name:
+        case "optional", "optional":
+            return converts(inner, outer)
+        case "optional", _:
+            return converts(inner, wanted)
+        case "none", "optional":
+            return True
+        case _, "optional":
+            return converts(given, outer)
+        case "int", "float":
+            return True
+        case (("list" | "array"), ("list" | "array")):
+            return converts(inner, outer)
+        case (("list" | "array"), ("Point" | "Quaternion")):
+            return converts(inner, Type("float"))
+        case "dict", "dict":
+            return converts(inner, outer)
+    return False
+
+
+def _inside(type_: Type) -> Type:
+    first = type_.args[0] if type_.args else ANY
+    return first if isinstance(first, Type) else ANY
+
+
+def _place_of(node: Node, name: str) -> Span:
+    for key in (*node.inputs, *node.outputs):
+        if key.name == name and key.span.source is node.span.source is not NOWHERE.source:
+            return key.span
+    return node.span
+
+
+def _named(node: Container, name: str) -> Span:
+    return next((child.span for child in node.children if child.name == name), node.span)
+
+
+def place(node: Node) -> str:
+    """Where a state stands in the script: file name without folder, and line."""
+    if node.span.source is NOWHERE.source:
+        return ""
+    return f"{PurePath(node.span.source.name).name}:{node.span.line}"
+
+
+def scope_name(path: str) -> str:
+    """The namespace of a container: `pick::LIFT`."""
+    return "::".join(identifier(name) for name in path.split("/"))
+
+
+def member(child: Node) -> str:
+    """What the States and Userdata of a container call a child."""
+    name = identifier(child.name)
+    return name if isinstance(child, Leaf) else f"{name.rstrip('_')}_"

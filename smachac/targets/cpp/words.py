@@ -1,0 +1,57 @@
+"""Names of a script as identifiers of C++."""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Iterable
+
+_KEYWORDS = """
+    alignas alignof and and_eq asm auto bitand bitor bool break case catch char char8_t char16_t
+    char32_t class compl concept const consteval constexpr constinit const_cast continue co_await
+    co_return co_yield decltype default delete do double dynamic_cast else enum explicit export
+    extern false float for friend goto if inline int long mutable namespace new noexcept not not_eq
+    nullptr operator or or_eq private protected public register reinterpret_cast requires return
+    short signed sizeof static static_assert static_cast struct switch template this thread_local
+    throw true try typedef typeid typename union unsigned using virtual void volatile wchar_t while
+    xor xor_eq"""
+KEYWORDS = frozenset(_KEYWORDS.split())
+"""The words of C++20."""
+
+MACROS = re.compile(
+    r"NULL|EOF|errno|assert|std(in|out|err)|unix|linux|i386|offsetof|va_\w+|BUFSIZ|NAN|INFINITY"
+    r"|EXIT_(SUCCESS|FAILURE)|RAND_MAX|FILENAME_MAX|FOPEN_MAX|TMP_MAX|SEEK_\w+|L_tmpnam|HUGE_VAL\w*"
+    r"|CLOCKS_PER_SEC|TIME_UTC|TIMER_ABSTIME|(CLOCK|PTHREAD|FP|LC|SCHED|CLONE|ADJ|STA|MOD)_\w+"
+    r"|MB_\w+|W(EXIT|TERM|STOP)\w*|WNOHANG|WUNTRACED|WNOWAIT|M_\w+|MATH_\w+|MAXFLOAT|major|minor"
+    r"|makedev|alloca|strdupa|EPERM|ENOENT|EINTR|EIO|EBUSY|EEXIST|EINVAL|EDOM|ERANGE|EAGAIN|ENOMEM"
+    r"|EACCES|EFAULT|EPIPE|ETIME|ETIMEDOUT|ECANCELED|EDEADLK|EALREADY|EINPROGRESS|ECONNREFUSED"
+    r"|(U?(CHAR|SHRT|INT|LONG|LLONG)|SIZE|PTRDIFF|INTMAX|WCHAR|FLT|DBL|LDBL)_(MIN|MAX|EPSILON)"
+)
+"""Names that are macros where the headers of ours are included, so far as anybody may use them."""
+
+_OURS = "Userdata States Outcome State In Out Run execute run name places types main std smachac"
+OURS = frozenset(_OURS.split())
+"""What the header itself calls things that stand beside names of the script."""
+
+
+def identifier(name: str) -> str:
+    """A name as near to that of the script as C++ allows: letters, digits, single underscores.
+
+    Two names may become one; `clashes` finds them.
+    """
+    word = re.sub(r"[^0-9A-Za-z]+", "_", name.encode("ascii", "namereplace").decode())
+    word = word.strip("_") or "_"
+    if word[0].isdigit():
+        word = f"n{word}"
+    taken = word in KEYWORDS or word in OURS or MACROS.fullmatch(word)
+    return f"{word}_" if taken else word
+
+
+def clashes(names: Iterable[str]) -> list[tuple[str, str]]:
+    """The names, with the earlier one, that become the same identifier as an earlier one."""
+    first: dict[str, str] = {}
+    found = []
+    for name in dict.fromkeys(names):
+        other = first.setdefault(identifier(name), name)
+        if other != name:
+            found.append((name, other))
+    return found

@@ -1,0 +1,125 @@
+// Made by smachac 0.1.0 from main.yml (sha256 1b5bcabdfa18b5b7).
+#pragma once
+
+#include "smachac/smachac.hpp"
+
+namespace sm { // main.yml:2
+
+enum class Outcome : std::uint8_t {
+  succeeded,
+  aborted,
+};
+
+constexpr const char *name(Outcome outcome) {
+  constexpr const char *names[] = {"succeeded", "aborted"};
+  return names[static_cast<std::size_t>(outcome)];
+}
+
+struct Userdata {};
+
+namespace types {
+
+/// main.yml:6
+struct FOO {
+  enum class Outcome : std::uint8_t {
+    done,
+  };
+
+  Outcome execute() {
+    return Outcome::done;
+  }
+};
+
+/// main.yml:11
+struct BAR {
+  enum class Outcome : std::uint8_t {
+    done,
+  };
+
+  Outcome execute() {
+    return Outcome::done;
+  }
+};
+
+/// main.yml:16
+struct BAZ {
+  enum class Outcome : std::uint8_t {
+    done,
+    failed,
+  };
+
+  Outcome execute() {
+    return Outcome::done;
+  }
+};
+
+} // namespace types
+
+struct States {
+  types::FOO FOO;
+  types::BAR BAR;
+  types::BAZ BAZ;
+};
+
+enum class State : std::size_t {
+  FOO,
+  BAR,
+  BAZ,
+};
+
+inline constexpr smachac::Place places[] = {
+    {"sm/FOO", "main.yml:6"},
+    {"sm/BAR", "main.yml:11"},
+    {"sm/BAZ", "main.yml:16"},
+};
+
+template <class Run>
+Outcome execute(States &states, Userdata &, Run &run) {
+  State state = State::FOO;
+  SMACHAC_TRY {
+    for (;;) {
+      run.enter(places, state);
+      switch (state) {
+      case State::FOO: // main.yml:6
+        switch (states.FOO.execute()) {
+        case types::FOO::Outcome::done:
+          run.go(places, state, "done", State::BAR);
+          break;
+        }
+        break;
+      case State::BAR: // main.yml:11
+        switch (states.BAR.execute()) {
+        case types::BAR::Outcome::done:
+          run.go(places, state, "done", State::BAZ);
+          break;
+        }
+        break;
+      case State::BAZ: // main.yml:16
+        switch (states.BAZ.execute()) {
+        case types::BAZ::Outcome::done:
+          return run.end(places, state, "done", Outcome::succeeded);
+        case types::BAZ::Outcome::failed:
+          return run.end(places, state, "failed", Outcome::aborted);
+        }
+        break;
+      default:
+        smachac::never();
+      }
+    }
+  }
+  SMACHAC_CATCH { run.failed(places, state); }
+}
+
+/// Run the machine once. An observer hears of all that it does; there may be none.
+inline Outcome run(States &states, Userdata &ud, smachac::Observer *observer,
+                   smachac::Stop &stop) {
+  if (observer == nullptr) {
+    smachac::Run alone{stop};
+    return execute(states, ud, alone);
+  }
+  smachac::WatchedRun watched(*observer, stop);
+  watched.start({"sm", "main.yml:2"});
+  return watched.finish(execute(states, ud, watched));
+}
+
+} // namespace sm

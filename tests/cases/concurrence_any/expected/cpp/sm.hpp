@@ -1,0 +1,174 @@
+// Made by smachac 0.1.0 from main.yml (sha256 44e17fb39b6fd463).
+#pragma once
+
+#include "smachac/smachac.hpp"
+
+namespace sm::RACE { // main.yml:6
+
+enum class Outcome : std::uint8_t {
+  succeeded,
+  aborted,
+};
+
+constexpr const char *name(Outcome outcome) {
+  constexpr const char *names[] = {"succeeded", "aborted"};
+  return names[static_cast<std::size_t>(outcome)];
+}
+
+struct Userdata {};
+
+namespace types {
+
+/// main.yml:14
+struct WORK {
+  enum class Outcome : std::uint8_t {
+    done,
+  };
+
+  Outcome execute() {
+    return Outcome::done;
+  }
+};
+
+/// main.yml:15
+struct WATCH {
+  enum class Outcome : std::uint8_t {
+    succeeded,
+    preempted,
+  };
+
+  Outcome execute(smachac::Stop &stop) {
+    if (stop.wait(60.0)) {
+      stop.service();
+      return Outcome::preempted;
+    }
+    return Outcome::succeeded;
+  }
+};
+
+} // namespace types
+
+struct States {
+  types::WORK WORK;
+  types::WATCH WATCH;
+};
+
+enum class State : std::size_t {
+  WORK,
+  WATCH,
+};
+
+inline constexpr smachac::Place places[] = {
+    {"sm/RACE/WORK", "main.yml:14"},
+    {"sm/RACE/WATCH", "main.yml:15"},
+};
+
+template <class Run>
+Outcome execute(States &states, Userdata &, Run &around) {
+  struct {
+    types::WORK::Outcome WORK;
+    types::WATCH::Outcome WATCH;
+  } ended{};
+  smachac::Branches<Run, 2> branches(around);
+  branches.run(true, [&](std::size_t branch, Run &run) {
+    const auto state = static_cast<State>(branch);
+    SMACHAC_TRY {
+      run.enter(places, state);
+      switch (state) {
+      case State::WORK: // main.yml:14
+        ended.WORK = states.WORK.execute();
+        switch (ended.WORK) {
+        case types::WORK::Outcome::done:
+          run.exit(places, state, "done");
+          break;
+        }
+        break;
+      case State::WATCH: // main.yml:15
+        ended.WATCH = states.WATCH.execute(run.stop);
+        switch (ended.WATCH) {
+        case types::WATCH::Outcome::succeeded:
+          run.exit(places, state, "succeeded");
+          break;
+        case types::WATCH::Outcome::preempted:
+          run.exit(places, state, "preempted");
+          break;
+        }
+        break;
+      default:
+        smachac::never();
+      }
+    }
+    SMACHAC_CATCH { run.failed(places, state); }
+  });
+  if (ended.WORK == types::WORK::Outcome::done) {
+    return Outcome::succeeded;
+  }
+  return Outcome::aborted;
+}
+
+} // namespace sm::RACE
+
+namespace sm { // main.yml:2
+
+enum class Outcome : std::uint8_t {
+  succeeded,
+  aborted,
+};
+
+constexpr const char *name(Outcome outcome) {
+  constexpr const char *names[] = {"succeeded", "aborted"};
+  return names[static_cast<std::size_t>(outcome)];
+}
+
+struct Userdata {
+  RACE::Userdata RACE_;
+};
+
+struct States {
+  RACE::States RACE_;
+};
+
+enum class State : std::size_t {
+  RACE,
+};
+
+inline constexpr smachac::Place places[] = {
+    {"sm/RACE", "main.yml:6"},
+};
+
+template <class Run>
+Outcome execute(States &states, Userdata &ud, Run &run) {
+  State state = State::RACE;
+  SMACHAC_TRY {
+    for (;;) {
+      run.enter(places, state);
+      switch (state) {
+      case State::RACE: // main.yml:6
+        switch (RACE::execute(states.RACE_, ud.RACE_, run)) {
+        case RACE::Outcome::succeeded:
+          return run.end(places, state, "succeeded", Outcome::succeeded);
+        case RACE::Outcome::aborted:
+          return run.end(places, state, "aborted", Outcome::aborted);
+        }
+        break;
+      default:
+        smachac::never();
+      }
+    }
+  }
+  SMACHAC_CATCH { run.failed(places, state); }
+}
+
+/// Run the machine once. An observer hears of all that it does; there may be none.
+inline Outcome run(States &states, Userdata &ud, smachac::Observer *observer,
+                   smachac::Stop &stop) {
+  if (observer == nullptr) {
+    smachac::Run alone{stop};
+    return execute(states, ud, alone);
+  }
+  smachac::WatchedRun watched(*observer, stop);
+  watched.start({"sm", "main.yml:2"});
+  return watched.finish(execute(states, ud, watched));
+}
+
+} // namespace sm

@@ -1,0 +1,207 @@
+// Made by smachac 0.1.0 from main.yml (sha256 599aef45d8faa625).
+#pragma once
+
+#include "smachac/smachac.hpp"
+
+namespace prepare::FIND_AND_WARM_UP { // main.yml:7
+
+enum class Outcome : std::uint8_t {
+  ready,
+  not_ready,
+};
+
+constexpr const char *name(Outcome outcome) {
+  constexpr const char *names[] = {"ready", "not_ready"};
+  return names[static_cast<std::size_t>(outcome)];
+}
+
+struct Userdata {};
+
+namespace types {
+
+/// main.yml:15
+struct FIND_PART {
+  enum class Outcome : std::uint8_t {
+    found,
+    nothing,
+  };
+
+  Outcome execute() {
+    return Outcome::found;
+  }
+};
+
+/// main.yml:18
+struct WARM_UP {
+  enum class Outcome : std::uint8_t {
+    succeeded,
+    preempted,
+  };
+
+  Outcome execute(smachac::Stop &stop) {
+    if (stop.wait(0.05)) {
+      stop.service();
+      return Outcome::preempted;
+    }
+    return Outcome::succeeded;
+  }
+};
+
+} // namespace types
+
+struct States {
+  types::FIND_PART FIND_PART;
+  types::WARM_UP WARM_UP;
+};
+
+enum class State : std::size_t {
+  FIND_PART,
+  WARM_UP,
+};
+
+inline constexpr smachac::Place places[] = {
+    {"prepare/FIND_AND_WARM_UP/FIND_PART", "main.yml:15"},
+    {"prepare/FIND_AND_WARM_UP/WARM_UP", "main.yml:18"},
+};
+
+template <class Run>
+Outcome execute(States &states, Userdata &, Run &around) {
+  struct {
+    types::FIND_PART::Outcome FIND_PART;
+    types::WARM_UP::Outcome WARM_UP;
+  } ended{};
+  smachac::Branches<Run, 2> branches(around);
+  branches.run(false, [&](std::size_t branch, Run &run) {
+    const auto state = static_cast<State>(branch);
+    SMACHAC_TRY {
+      run.enter(places, state);
+      switch (state) {
+      case State::FIND_PART: // main.yml:15
+        ended.FIND_PART = states.FIND_PART.execute();
+        switch (ended.FIND_PART) {
+        case types::FIND_PART::Outcome::found:
+          run.exit(places, state, "found");
+          break;
+        case types::FIND_PART::Outcome::nothing:
+          run.exit(places, state, "nothing");
+          break;
+        }
+        break;
+      case State::WARM_UP: // main.yml:18
+        ended.WARM_UP = states.WARM_UP.execute(run.stop);
+        switch (ended.WARM_UP) {
+        case types::WARM_UP::Outcome::succeeded:
+          run.exit(places, state, "succeeded");
+          break;
+        case types::WARM_UP::Outcome::preempted:
+          run.exit(places, state, "preempted");
+          break;
+        }
+        break;
+      default:
+        smachac::never();
+      }
+    }
+    SMACHAC_CATCH { run.failed(places, state); }
+  });
+  if (ended.FIND_PART == types::FIND_PART::Outcome::found &&
+      ended.WARM_UP == types::WARM_UP::Outcome::succeeded) {
+    return Outcome::ready;
+  }
+  return Outcome::not_ready;
+}
+
+} // namespace prepare::FIND_AND_WARM_UP
+
+namespace prepare { // main.yml:2
+
+enum class Outcome : std::uint8_t {
+  succeeded,
+  aborted,
+};
+
+constexpr const char *name(Outcome outcome) {
+  constexpr const char *names[] = {"succeeded", "aborted"};
+  return names[static_cast<std::size_t>(outcome)];
+}
+
+struct Userdata {
+  FIND_AND_WARM_UP::Userdata FIND_AND_WARM_UP_;
+};
+
+namespace types {
+
+/// main.yml:22
+struct PICK {
+  enum class Outcome : std::uint8_t {
+    succeeded,
+    aborted,
+  };
+
+  Outcome execute() {
+    return Outcome::succeeded;
+  }
+};
+
+} // namespace types
+
+struct States {
+  FIND_AND_WARM_UP::States FIND_AND_WARM_UP_;
+  types::PICK PICK;
+};
+
+enum class State : std::size_t {
+  FIND_AND_WARM_UP,
+  PICK,
+};
+
+inline constexpr smachac::Place places[] = {
+    {"prepare/FIND_AND_WARM_UP", "main.yml:7"},
+    {"prepare/PICK", "main.yml:22"},
+};
+
+template <class Run>
+Outcome execute(States &states, Userdata &ud, Run &run) {
+  State state = State::FIND_AND_WARM_UP;
+  SMACHAC_TRY {
+    for (;;) {
+      run.enter(places, state);
+      switch (state) {
+      case State::FIND_AND_WARM_UP: // main.yml:7
+        switch (FIND_AND_WARM_UP::execute(states.FIND_AND_WARM_UP_, ud.FIND_AND_WARM_UP_, run)) {
+        case FIND_AND_WARM_UP::Outcome::ready:
+          run.go(places, state, "ready", State::PICK);
+          break;
+        case FIND_AND_WARM_UP::Outcome::not_ready:
+          return run.end(places, state, "not_ready", Outcome::aborted);
+        }
+        break;
+      case State::PICK: // main.yml:22
+        switch (states.PICK.execute()) {
+        case types::PICK::Outcome::succeeded:
+          return run.end(places, state, "succeeded", Outcome::succeeded);
+        case types::PICK::Outcome::aborted:
+          return run.end(places, state, "aborted", Outcome::aborted);
+        }
+        break;
+      default:
+        smachac::never();
+      }
+    }
+  }
+  SMACHAC_CATCH { run.failed(places, state); }
+}
+
+/// Run the machine once. An observer hears of all that it does; there may be none.
+inline Outcome run(States &states, Userdata &ud, smachac::Observer *observer,
+                   smachac::Stop &stop) {
+  if (observer == nullptr) {
+    smachac::Run alone{stop};
+    return execute(states, ud, alone);
+  }
+  smachac::WatchedRun watched(*observer, stop);
+  watched.start({"prepare", "main.yml:2"});
+  return watched.finish(execute(states, ud, watched));
+}
+
+} // namespace prepare

@@ -1,0 +1,196 @@
+// Made by smachac 0.1.0 from main.yml (sha256 151be300629b9acd).
+#pragma once
+
+#include "smachac/smachac.hpp"
+
+namespace measure::JUDGE { // main.yml:17
+
+enum class Outcome : std::uint8_t {
+  fits,
+  too_wide,
+};
+
+constexpr const char *name(Outcome outcome) {
+  constexpr const char *names[] = {"fits", "too_wide"};
+  return names[static_cast<std::size_t>(outcome)];
+}
+
+struct Userdata {
+  smachac::Key<double> limit;
+  smachac::Key<double> width;
+};
+
+namespace types {
+
+/// main.yml:24
+struct COMPARE {
+  enum class Outcome : std::uint8_t {
+    fits,
+    too_wide,
+  };
+
+  Outcome execute(Userdata &ud) {
+    if (smachac::need(ud.width, "width") <= ud.limit.get()) {
+      return Outcome::fits;
+    }
+    return Outcome::too_wide;
+  }
+};
+
+} // namespace types
+
+struct States {
+  types::COMPARE COMPARE;
+};
+
+enum class State : std::size_t {
+  COMPARE,
+};
+
+inline constexpr smachac::Place places[] = {
+    {"measure/JUDGE/COMPARE", "main.yml:24"},
+};
+
+template <class Run>
+Outcome execute(States &states, Userdata &ud, Run &run) {
+  State state = State::COMPARE;
+  SMACHAC_TRY {
+    for (;;) {
+      run.enter(places, state);
+      switch (state) {
+      case State::COMPARE: // main.yml:24
+        switch (states.COMPARE.execute(ud)) {
+        case types::COMPARE::Outcome::fits:
+          return run.end(places, state, "fits", Outcome::fits);
+        case types::COMPARE::Outcome::too_wide:
+          return run.end(places, state, "too_wide", Outcome::too_wide);
+        }
+        break;
+      default:
+        smachac::never();
+      }
+    }
+  }
+  SMACHAC_CATCH { run.failed(places, state); }
+}
+
+} // namespace measure::JUDGE
+
+namespace measure { // main.yml:2
+
+enum class Outcome : std::uint8_t {
+  succeeded,
+};
+
+constexpr const char *name(Outcome outcome) {
+  constexpr const char *names[] = {"succeeded"};
+  return names[static_cast<std::size_t>(outcome)];
+}
+
+struct Userdata {
+  smachac::Key<double> limit{0.08};
+  smachac::Key<double> part_width;
+  JUDGE::Userdata JUDGE_;
+};
+
+namespace types {
+
+/// main.yml:9
+struct MEASURE_WIDTH {
+  enum class Outcome : std::uint8_t {
+    measured,
+  };
+
+  template <class Run>
+  Outcome execute(Userdata &ud, Run &run) {
+    run.write("width", ud.part_width, 0.05);
+    return Outcome::measured;
+  }
+};
+
+/// main.yml:32
+struct TELL {
+  enum class Outcome : std::uint8_t {
+    succeeded,
+  };
+
+  Outcome execute(Userdata &ud) {
+    smachac::print("limit", ud.limit.get());
+    smachac::print("part_width", smachac::need(ud.part_width, "part_width"));
+    return Outcome::succeeded;
+  }
+};
+
+} // namespace types
+
+struct States {
+  types::MEASURE_WIDTH MEASURE_WIDTH;
+  JUDGE::States JUDGE_;
+  types::TELL TELL;
+};
+
+enum class State : std::size_t {
+  MEASURE_WIDTH,
+  JUDGE,
+  TELL,
+};
+
+inline constexpr smachac::Place places[] = {
+    {"measure/MEASURE_WIDTH", "main.yml:9"},
+    {"measure/JUDGE", "main.yml:17"},
+    {"measure/TELL", "main.yml:32"},
+};
+
+template <class Run>
+Outcome execute(States &states, Userdata &ud, Run &run) {
+  State state = State::MEASURE_WIDTH;
+  SMACHAC_TRY {
+    for (;;) {
+      run.enter(places, state);
+      switch (state) {
+      case State::MEASURE_WIDTH: // main.yml:9
+        switch (states.MEASURE_WIDTH.execute(ud, run)) {
+        case types::MEASURE_WIDTH::Outcome::measured:
+          run.go(places, state, "measured", State::JUDGE);
+          break;
+        }
+        break;
+      case State::JUDGE: // main.yml:17
+        ud.JUDGE_.width.take(ud.part_width);
+        ud.JUDGE_.limit.hold(ud.limit.get());
+        switch (JUDGE::execute(states.JUDGE_, ud.JUDGE_, run)) {
+        case JUDGE::Outcome::fits:
+          run.go(places, state, "fits", State::TELL);
+          break;
+        case JUDGE::Outcome::too_wide:
+          run.go(places, state, "too_wide", State::TELL);
+          break;
+        }
+        break;
+      case State::TELL: // main.yml:32
+        switch (states.TELL.execute(ud)) {
+        case types::TELL::Outcome::succeeded:
+          return run.end(places, state, "succeeded", Outcome::succeeded);
+        }
+        break;
+      default:
+        smachac::never();
+      }
+    }
+  }
+  SMACHAC_CATCH { run.failed(places, state); }
+}
+
+/// Run the machine once. An observer hears of all that it does; there may be none.
+inline Outcome run(States &states, Userdata &ud, smachac::Observer *observer,
+                   smachac::Stop &stop) {
+  if (observer == nullptr) {
+    smachac::Run alone{stop};
+    return execute(states, ud, alone);
+  }
+  smachac::WatchedRun watched(*observer, stop);
+  watched.start({"measure", "main.yml:2"});
+  return watched.finish(execute(states, ud, watched));
+}
+
+} // namespace measure

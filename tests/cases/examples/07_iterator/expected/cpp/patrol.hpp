@@ -1,0 +1,232 @@
+// Made by smachac 0.1.0 from main.yml (sha256 f8d621b3fa0c5f75).
+#pragma once
+
+#include "smachac/smachac.hpp"
+
+namespace patrol::VISIT_ALL::VISIT { // main.yml:19
+
+enum class Outcome : std::uint8_t {
+  seen,
+  blocked,
+};
+
+constexpr const char *name(Outcome outcome) {
+  constexpr const char *names[] = {"seen", "blocked"};
+  return names[static_cast<std::size_t>(outcome)];
+}
+
+struct Userdata {
+  smachac::Key<std::string> waypoint;
+};
+
+namespace types {
+
+/// main.yml:24
+struct DRIVE {
+  enum class Outcome : std::uint8_t {
+    arrived,
+    blocked,
+  };
+
+  Outcome execute() {
+    return Outcome::arrived;
+  }
+};
+
+/// main.yml:28
+struct LOOK {
+  enum class Outcome : std::uint8_t {
+    succeeded,
+  };
+
+  Outcome execute(Userdata &ud) {
+    smachac::print("waypoint", ud.waypoint.get());
+    return Outcome::succeeded;
+  }
+};
+
+} // namespace types
+
+struct States {
+  types::DRIVE DRIVE;
+  types::LOOK LOOK;
+};
+
+enum class State : std::size_t {
+  DRIVE,
+  LOOK,
+};
+
+inline constexpr smachac::Place places[] = {
+    {"patrol/VISIT_ALL/VISIT/DRIVE", "main.yml:24"},
+    {"patrol/VISIT_ALL/VISIT/LOOK", "main.yml:28"},
+};
+
+template <class Run>
+Outcome execute(States &states, Userdata &ud, Run &run) {
+  State state = State::DRIVE;
+  SMACHAC_TRY {
+    for (;;) {
+      run.enter(places, state);
+      switch (state) {
+      case State::DRIVE: // main.yml:24
+        switch (states.DRIVE.execute()) {
+        case types::DRIVE::Outcome::arrived:
+          run.go(places, state, "arrived", State::LOOK);
+          break;
+        case types::DRIVE::Outcome::blocked:
+          return run.end(places, state, "blocked", Outcome::blocked);
+        }
+        break;
+      case State::LOOK: // main.yml:28
+        switch (states.LOOK.execute(ud)) {
+        case types::LOOK::Outcome::succeeded:
+          return run.end(places, state, "succeeded", Outcome::seen);
+        }
+        break;
+      default:
+        smachac::never();
+      }
+    }
+  }
+  SMACHAC_CATCH { run.failed(places, state); }
+}
+
+} // namespace patrol::VISIT_ALL::VISIT
+
+namespace patrol::VISIT_ALL { // main.yml:9
+
+enum class Outcome : std::uint8_t {
+  all_seen,
+  blocked,
+  seen,
+};
+
+constexpr const char *name(Outcome outcome) {
+  constexpr const char *names[] = {"all_seen", "blocked", "seen"};
+  return names[static_cast<std::size_t>(outcome)];
+}
+
+struct Userdata {
+  smachac::Key<std::string> waypoint;
+  smachac::Key<std::array<std::string, 3>> waypoints;
+  VISIT::Userdata VISIT_;
+};
+
+struct States {
+  VISIT::States VISIT_;
+};
+
+enum class State : std::size_t {
+  VISIT,
+};
+
+inline constexpr smachac::Place places[] = {
+    {"patrol/VISIT_ALL/VISIT", "main.yml:19"},
+};
+
+template <class Run>
+Outcome execute(States &states, Userdata &ud, Run &run) {
+  const auto items = smachac::need(ud.waypoints, "waypoints");
+  if (items.empty()) {
+    return Outcome::all_seen;
+  }
+  const auto state = State::VISIT;
+  smachac::Round round(run.stop, items.size());
+  for (const auto &item : items) {
+    ud.waypoint.hold(item);
+    // main.yml:19
+    SMACHAC_TRY {
+      run.enter(places, state);
+      ud.VISIT_.waypoint.hold(ud.waypoint.get());
+      const auto outcome = VISIT::execute(states.VISIT_, ud.VISIT_, run);
+      const bool over = round.over();
+      switch (outcome) {
+      case VISIT::Outcome::seen:
+        if (over) {
+          return run.end(places, state, "seen", Outcome::seen);
+        }
+        if (round.last()) {
+          return run.end(places, state, "seen", Outcome::all_seen);
+        }
+        run.again(places, state, "seen");
+        break;
+      case VISIT::Outcome::blocked:
+        return run.end(places, state, "blocked", Outcome::blocked);
+      }
+    }
+    SMACHAC_CATCH { run.failed(places, state); }
+  }
+  return Outcome::all_seen;
+}
+
+} // namespace patrol::VISIT_ALL
+
+namespace patrol { // main.yml:2
+
+enum class Outcome : std::uint8_t {
+  succeeded,
+  aborted,
+};
+
+constexpr const char *name(Outcome outcome) {
+  constexpr const char *names[] = {"succeeded", "aborted"};
+  return names[static_cast<std::size_t>(outcome)];
+}
+
+struct Userdata {
+  smachac::Key<std::array<std::string, 3>> waypoints{std::array<std::string, 3>{{std::string("door"), std::string("window"), std::string("shelf")}}};
+  VISIT_ALL::Userdata VISIT_ALL_;
+};
+
+struct States {
+  VISIT_ALL::States VISIT_ALL_;
+};
+
+enum class State : std::size_t {
+  VISIT_ALL,
+};
+
+inline constexpr smachac::Place places[] = {
+    {"patrol/VISIT_ALL", "main.yml:9"},
+};
+
+template <class Run>
+Outcome execute(States &states, Userdata &ud, Run &run) {
+  State state = State::VISIT_ALL;
+  SMACHAC_TRY {
+    for (;;) {
+      run.enter(places, state);
+      switch (state) {
+      case State::VISIT_ALL: // main.yml:9
+        ud.VISIT_ALL_.waypoints.hold(ud.waypoints.get());
+        switch (VISIT_ALL::execute(states.VISIT_ALL_, ud.VISIT_ALL_, run)) {
+        case VISIT_ALL::Outcome::all_seen:
+          return run.end(places, state, "all_seen", Outcome::succeeded);
+        case VISIT_ALL::Outcome::blocked:
+          return run.end(places, state, "blocked", Outcome::aborted);
+        case VISIT_ALL::Outcome::seen:
+          run.undeclared(places, state, "seen");
+        }
+        break;
+      default:
+        smachac::never();
+      }
+    }
+  }
+  SMACHAC_CATCH { run.failed(places, state); }
+}
+
+/// Run the machine once. An observer hears of all that it does; there may be none.
+inline Outcome run(States &states, Userdata &ud, smachac::Observer *observer,
+                   smachac::Stop &stop) {
+  if (observer == nullptr) {
+    smachac::Run alone{stop};
+    return execute(states, ud, alone);
+  }
+  smachac::WatchedRun watched(*observer, stop);
+  watched.start({"patrol", "main.yml:2"});
+  return watched.finish(execute(states, ud, watched));
+}
+
+} // namespace patrol

@@ -1,0 +1,88 @@
+// Made by smachac 0.1.0 from main.yml (sha256 17f6c8bbb589f3bd).
+#pragma once
+
+#include "smachac/smachac.hpp"
+
+namespace sm { // main.yml:3
+
+enum class Outcome : std::uint8_t {
+  succeeded,
+  o,
+};
+
+constexpr const char *name(Outcome outcome) {
+  constexpr const char *names[] = {"succeeded", "o"};
+  return names[static_cast<std::size_t>(outcome)];
+}
+
+struct Userdata {
+  smachac::Key<std::int64_t> p{1};
+  smachac::Key<std::any> s{std::any{std::map<std::string, std::any>{{std::string("t"), std::any{std::string("x")}}}}};
+};
+
+namespace types {
+
+/// main.yml:9
+struct T {
+  enum class Outcome : std::uint8_t {
+    done,
+    s,
+  };
+
+  template <class Run>
+  Outcome execute(Userdata &ud, Run &run) {
+    run.write("t", ud.s, std::any{std::int64_t{3}});
+    return Outcome::done;
+  }
+};
+
+} // namespace types
+
+struct States {
+  types::T T;
+};
+
+enum class State : std::size_t {
+  T,
+};
+
+inline constexpr smachac::Place places[] = {
+    {"sm/T", "main.yml:9"},
+};
+
+template <class Run>
+Outcome execute(States &states, Userdata &ud, Run &run) {
+  State state = State::T;
+  SMACHAC_TRY {
+    for (;;) {
+      run.enter(places, state);
+      switch (state) {
+      case State::T: // main.yml:9
+        switch (states.T.execute(ud, run)) {
+        case types::T::Outcome::done:
+          return run.end(places, state, "done", Outcome::succeeded);
+        case types::T::Outcome::s:
+          return run.end(places, state, "s", Outcome::o);
+        }
+        break;
+      default:
+        smachac::never();
+      }
+    }
+  }
+  SMACHAC_CATCH { run.failed(places, state); }
+}
+
+/// Run the machine once. An observer hears of all that it does; there may be none.
+inline Outcome run(States &states, Userdata &ud, smachac::Observer *observer,
+                   smachac::Stop &stop) {
+  if (observer == nullptr) {
+    smachac::Run alone{stop};
+    return execute(states, ud, alone);
+  }
+  smachac::WatchedRun watched(*observer, stop);
+  watched.start({"sm", "main.yml:3"});
+  return watched.finish(execute(states, ud, watched));
+}
+
+} // namespace sm

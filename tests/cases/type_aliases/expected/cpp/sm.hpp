@@ -1,0 +1,84 @@
+// Made by smachac 0.1.0 from main.yml (sha256 72bced4d2696d3a8).
+#pragma once
+
+#include "smachac/smachac.hpp"
+
+namespace sm { // main.yml:2
+
+enum class Outcome : std::uint8_t {
+  succeeded,
+};
+
+constexpr const char *name(Outcome outcome) {
+  constexpr const char *names[] = {"succeeded"};
+  return names[static_cast<std::size_t>(outcome)];
+}
+
+struct Userdata {
+  smachac::Key<double> angle;
+  smachac::Key<std::array<double, 7>> home{std::array<double, 7>{{0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0}}};
+  smachac::Key<std::array<double, 7>> other;
+  smachac::Key<std::optional<std::vector<std::array<double, 7>>>> path;
+};
+
+namespace types {
+
+/// main.yml:10
+struct A {
+  enum class Outcome : std::uint8_t {
+    done,
+  };
+
+  Outcome execute() {
+    return Outcome::done;
+  }
+};
+
+} // namespace types
+
+struct States {
+  types::A A;
+};
+
+enum class State : std::size_t {
+  A,
+};
+
+inline constexpr smachac::Place places[] = {
+    {"sm/A", "main.yml:10"},
+};
+
+template <class Run>
+Outcome execute(States &states, Userdata &, Run &run) {
+  State state = State::A;
+  SMACHAC_TRY {
+    for (;;) {
+      run.enter(places, state);
+      switch (state) {
+      case State::A: // main.yml:10
+        switch (states.A.execute()) {
+        case types::A::Outcome::done:
+          return run.end(places, state, "done", Outcome::succeeded);
+        }
+        break;
+      default:
+        smachac::never();
+      }
+    }
+  }
+  SMACHAC_CATCH { run.failed(places, state); }
+}
+
+/// Run the machine once. An observer hears of all that it does; there may be none.
+inline Outcome run(States &states, Userdata &ud, smachac::Observer *observer,
+                   smachac::Stop &stop) {
+  if (observer == nullptr) {
+    smachac::Run alone{stop};
+    return execute(states, ud, alone);
+  }
+  smachac::WatchedRun watched(*observer, stop);
+  watched.start({"sm", "main.yml:2"});
+  return watched.finish(execute(states, ud, watched));
+}
+
+} // namespace sm

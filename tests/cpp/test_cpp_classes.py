@@ -1,0 +1,141 @@
+"""State types that are classes of C++: called, made, checked against their interfaces."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from pathlib import Path
+
+import pytest
+from compiler import Compiler, compilers
+
+from smachac.diagnostics import Report
+from smachac.driver import analyse, build, memory_library
+from smachac.files import disk_library
+from smachac.source import Source
+from smachac.states import find_state_type
+from smachac.targets.cpp import TARGET
+from smachac.targets.cpp.classes import interface_hash
+
+COMPILERS = pytest.mark.parametrize("compiler", compilers(), ids=lambda each: each.name)
+
+PING = """
+name: ping
+outcomes: [done]
+userdata: {count: 0}
+states:
+  - PING: {template: Hit, by: 2, remapping: {total: count}, transitions: {again: PONG}}
+  - PONG: {template: Hit, remapping: {total: count}, transitions: {again: PING}}
+"""
+HIT = """
+name: Hit
+variables: {by: {type: int, default: 1}}
+input_keys: {total: int}
+output_keys: {total: int}
+outcomes: {again: {}, done: {}}
+code: {cpp: {header: game/hit.hpp, class: game::Hit, with: "const game::Rules& rules"}}
+"""
+HEADER = """
+#include "smachac/smachac.hpp"
+namespace game {
+struct Rules { std::int64_t most; };
+class Hit {
+public:
+  enum class Outcome { again, done };
+  struct In { std::int64_t total; };
+  struct Out { smachac::Key<std::int64_t> &total; };
+  static constexpr std::uint32_t smachac_interface = HASH;
+
+  Hit(const Rules &rules, std::int64_t by) : rules_(rules), by_(by) {}
+  Outcome execute(In in, Out out) {
+    out.total = in.total + by_;
+    return out.total.get() < rules_.most ? Outcome::again : Outcome::done;
+  }
+private:
+  const Rules &rules_;
+  std::int64_t by_;
+};
+}
+"""
+MAIN = """
+#include "ping.hpp"
+int main() {
+  const game::Rules rules{5};
+  ping::States states(rules);
+  ping::Userdata userdata;
+  smachac::Stop stop;
+  smachac::TraceWriter trace(stdout);
+  const ping::Outcome outcome = ping::run(states, userdata, &trace, stop);
+  return outcome == ping::Outcome::done && userdata.count.get() == 5 ? 0 : 1;
+}
+"""
+
+
+def made(files: Mapping[str, str]) -> tuple[Report, str]:
+    """The report of building `main.yml`, and the header."""
+    library = memory_library(files, disk_library(Path("main.yml"), []))
+    report: Report = []
+    analysis = analyse(Source("main.yml", files["main.yml"]), library, report)
+    assert analysis.checked is not None, analysis.report
+    built: Report = []
+    printed = build(analysis.checked, TARGET, library, built)
+    return built, next(iter(printed.values()), "")
+
+
+def number(interface: str) -> str:
+    library = memory_library({"templates/Hit.yml": interface}, disk_library(Path("main.yml"), []))
+    type_ = find_state_type("Hit", library, [])
+    assert type_ is not None
+    return interface_hash(type_)
+
+
+def prepared(folder: Path, header: str, hit: str = HIT) -> list[str]:
+    """A folder with the machine and the class; the flags to find them."""
+    report, text = made({"main.yml": PING, "templates/Hit.yml": hit})
+    assert report == []
+    (folder / "game").mkdir()
+    (folder / "game" / "hit.hpp").write_text(header)
+    (folder / "ping.hpp").write_text(text)
+    return [f"-I{folder}", "-pthread"]
+
+
+@COMPILERS
+def test_a_class_is_made_and_called(compiler: Compiler, tmp_path: Path) -> None:
+    flags = prepared(tmp_path, HEADER.replace("HASH", number(HIT)))
+    told = compiler.run(MAIN, tmp_path, *flags)
+    assert [line for line in told.splitlines() if '"write"' in line][-1].count('"value": 5') == 1
+    assert told.count('"event": "enter"') == 3
+
+
+@COMPILERS
+@pytest.mark.parametrize(
+    ("wrong", "message"),
+    [
+        (("HASH", "1U"), "game::Hit was written for another Hit.yml"),
+        (("std::int64_t total;", "double total;"), "game::Hit::In::total must be std::int64_t"),
+        (("Key<std::int64_t>", "Key<double>"), "game::Hit::Out::total must be"),
+    ],
+)
+def test_a_class_for_another_interface_does_not_compile(
+    compiler: Compiler, wrong: tuple[str, str], message: str, tmp_path: Path
+) -> None:
+    header = HEADER.replace(*wrong).replace("HASH", number(HIT))
+    flags = prepared(tmp_path, header)
+    with pytest.raises(AssertionError, match=message):
+        compiler.compile(MAIN, tmp_path, *flags)
+
+
+@pytest.mark.parametrize(
+    "other",
+    [
+        HIT.replace("total: int", "total: float"),
+        HIT.replace("done: {}", "over: {}"),
+        HIT.replace("by: {type: int", "step: {type: int"),
+        HIT.replace("outcomes: {", "blocking: true\noutcomes: {"),
+    ],
+)
+def test_the_number_of_an_interface_is_its_own(other: str) -> None:
+    assert number(other) != number(HIT)
+
+
+def test_docs_and_claims_do_not_change_the_number() -> None:
+    assert number(HIT + "doc: Hits it.\nclaims: [bat]\n") == number(HIT)

@@ -1,0 +1,133 @@
+"""What the interpreter does, the compiled C++ does: event by event."""
+
+from __future__ import annotations
+
+import functools
+from pathlib import Path
+
+import pytest
+from busy_strategies import busy_machines
+from compiler import BARE, SANITIZED, THREADED, Compiler, compilers
+from hypothesis import HealthCheck, given, seed, settings
+from test_differential import Event, differ, of_interpreter
+from traces import NOBODY, ROOT, Asked, Part, header, named, traces
+
+from smachac.diagnostics import Report
+from smachac.driver import analyse
+from smachac.files import disk_library, read_source
+from smachac.ir.nodes import Concurrence, Machine
+from smachac.ir.walk import walk
+
+COMPILERS = pytest.mark.parametrize(
+    "compiler",
+    [pytest.param(each, id=each.name) for each in compilers()]
+    or [pytest.param(None, marks=pytest.mark.skip("no C++ compiler"))],
+)
+STANDARDS = {"g++": "c++17", "clang++": "c++20"}
+RANDOM = {"g++": 60, "clang++": 20}
+"""How many random machines each compiler gets: clang is the second opinion."""
+
+SCRIPTS = [
+    *sorted((ROOT / "examples").glob("0[1-7]*/main.yml")),
+    ROOT / "tests" / "cases" / "containers" / "main.yml",
+    ROOT / "tests" / "cases" / "concurrence_any" / "main.yml",
+    ROOT / "tests" / "cases" / "deep_nesting" / "main.yml",
+    ROOT / "tests" / "cases" / "on_error" / "main.yml",
+    ROOT / "tests" / "cases" / "sugar" / "main.yml",
+]
+
+Expected = tuple[Part, list[Event]]
+
+
+@functools.cache
+def of_scripts() -> list[Expected]:
+    """The examples, with the traces of the interpreter."""
+    found: list[Expected] = []
+    for script in SCRIPTS:
+        report: Report = []
+        source = read_source(script, report)
+        assert source is not None
+        library = disk_library(script, report)
+        checked = analyse(source, library, report).checked
+        assert checked is not None, script
+        machine = named(checked, f"m{len(found)}_{checked.root.name}")
+        text, ours = header(machine, library), of_interpreter(machine)
+        assert text is not None, script
+        assert ours is not None, script
+        found.append(((machine, text, NOBODY), ours))
+    return found
+
+
+@functools.cache
+def drawn(number: int, count: int) -> list[Expected]:
+    """Random machines that C++ can say, with the traces of the interpreter."""
+    found: list[Expected] = []
+
+    @seed(number)
+    @settings(
+        max_examples=count,
+        database=None,
+        deadline=None,
+        suppress_health_check=list(HealthCheck),
+    )
+    @given(busy_machines())
+    def draw(given: tuple[Machine, Asked]) -> None:
+        machine, (path, visit) = given
+        name = f"m{len(found)}"
+        machine = named(machine, name)
+        asked = (name + path.removeprefix("sm"), visit) if path else NOBODY
+        ours, text = of_interpreter(machine, asked), header(machine)
+        if ours is not None and text is not None:
+            found.append(((machine, text, asked), ours))
+
+    draw()
+    assert len(found) > count / 2
+    return found
+
+
+def agree(expected: list[Expected], compiler: Compiler, folder: Path, *flags: str) -> None:
+    """Compare the traces of the compiled machines with those of the interpreter."""
+    parts = [part for part, _ in expected]
+    told = traces(parts, compiler, folder, *flags, standard=STANDARDS[compiler.name])
+    for ((machine, _, _), ours), theirs in zip(expected, told, strict=True):
+        difference = differ(ours, theirs)
+        assert difference is None, f"{machine.root.name}: {difference}"
+
+
+def last_with(*flags: str) -> Compiler:
+    """The last of our compilers, the quickest, that can build with such flags."""
+    found = [each for each in compilers() if each.runs_with(*flags)]
+    if not found:
+        pytest.skip(f"no compiler has what {' '.join(flags)} needs")
+    return found[-1]
+
+
+@COMPILERS
+def test_machines_do_what_the_interpreter_does(compiler: Compiler, tmp_path: Path) -> None:
+    agree([*of_scripts(), *drawn(1, RANDOM[compiler.name])], compiler, tmp_path)
+
+
+def test_sanitizers_find_nothing(tmp_path: Path) -> None:
+    agree([*of_scripts(), *drawn(2, 15)], last_with(*SANITIZED), tmp_path, *SANITIZED)
+
+
+def test_threads_do_not_race(tmp_path: Path) -> None:
+    parallel = [
+        each
+        for each in [*of_scripts(), *drawn(3, 15)]
+        if any(isinstance(node, Concurrence) for _, node in walk(each[0][0].root))
+    ]
+    assert len(parallel) > 3
+    agree(parallel, last_with(*THREADED), tmp_path, *THREADED)
+
+
+@COMPILERS
+def test_machines_run_without_exceptions_and_type_information(
+    compiler: Compiler, tmp_path: Path
+) -> None:
+    unfailing = [
+        each
+        for each in [*of_scripts(), *drawn(4, 10)]
+        if all(event["event"] != "error" for event in each[1])
+    ]
+    agree(unfailing, compiler, tmp_path, *BARE)
