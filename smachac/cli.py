@@ -51,6 +51,17 @@ examples:
 exit codes: 0 done, 1 something to lay out (--check, --diff) or unreadable, 2 wrong usage, 70 a bug
 """
 
+VERIFY_EXAMPLES = """\
+examples:
+  smachac verify main.yml                        does the generated Python do what the script says?
+  smachac verify main.yml --paths 2000           on more paths
+  smachac verify main.yml --seed 7               on other random paths
+  smachac verify main.yml --format json          for programs, with every transition not taken
+
+exit codes: 0 the same, 1 something differs, the script has an error or a target cannot be played,
+2 wrong usage, 70 a bug in smachac, 130 interrupted
+"""
+
 FORMATS = ("text", "json", "sarif", "github", "junit")
 
 EPILOG = """\
@@ -59,6 +70,7 @@ examples:
   smachac build main.yml --target python     print it as Python for SMACH
   smachac run main.yml --record film.gif     run it on the simulated arm
   smachac run main.yml --mock scenario.yml   run it without robot or simulation
+  smachac verify main.yml                    does the program do what the script says?
   smachac explain SM201                      what a code means, with examples
   smachac explain main.yml --failures        what becomes of every failure
   smachac fmt                                lay out every script here
@@ -203,6 +215,19 @@ def _dry_run(verb: argparse.ArgumentParser) -> None:
     verb.add_argument("--diff", action="store_true", help="write nothing; print it as a patch")
 
 
+def _verify(verb: argparse.ArgumentParser) -> None:
+    verb.epilog = VERIFY_EXAMPLES
+    verb.add_argument("script", type=_path, help="a script (.yml, .yaml)")
+    verb.add_argument("--targets", type=_names, default=["python"], metavar="A,B,...",
+                      help="what to compare with the interpreter (default: python)")  # fmt: skip
+    verb.add_argument("--paths", type=_count, metavar="N",
+                      help="at most (default: 200, or what all transitions take)")  # fmt: skip
+    verb.add_argument("--seed", type=int, default=0, help="of the random paths (default 0)")
+    verb.add_argument("--format", choices=("text", "json"), default="text", help="of the report")
+    _search_folders(verb)
+    _colour(verb)
+
+
 def _targets(verb: argparse.ArgumentParser) -> None:
     """It has no arguments."""
 
@@ -211,6 +236,7 @@ COMMANDS = {
     "check": ("judge scripts by every rule", _check),
     "build": ("print a script for a target", _build),
     "run": ("run a script: on the simulated arm, or with mock states", _run),
+    "verify": ("compare what targets make of a script, path by path", _verify),
     "explain": ("what a code means, or a state, key or failure of a script", _explain),
     "fmt": ("lay out scripts, with their comments", _fmt),
     "targets": ("list what can be built", _targets),

@@ -48,17 +48,12 @@ def execute(
     from smachac.runtime import trace
 
     random.seed(seed)
-    module = ModuleType(name.removesuffix(".py"))
-    module.__file__ = name
-    linecache.cache[name] = (len(text), None, text.splitlines(keepends=True), name)
-    sys.path.insert(0, str(folder.resolve()))
-    try:
-        exec(compile(text, name, "exec"), module.__dict__)
+    with loaded(name, text, folder) as module:
         if record is not None or gui or "smachac.sim" in sys.modules:
             from smachac import sim
 
             sim.configure(seed=seed, gui=gui, record=record)
-        build = module.__dict__["build"]
+        build = module["build"]
         built: list[Any] = []
 
         def watched_build() -> Any:
@@ -68,10 +63,23 @@ def execute(
             built.append(root)
             return root
 
-        module.__dict__["build"] = watched_build
-        with _quiet(module.__dict__["smach"]), _preempting(built, on_preempt):
-            outcome: str | None = module.__dict__[main_function(machine)]()
+        module["build"] = watched_build
+        with _quiet(module["smach"]), _preempting(built, on_preempt):
+            outcome: str | None = module[main_function(machine)]()
         return outcome
+
+
+@contextmanager
+def loaded(name: str, text: str, folder: Path) -> Iterator[dict[str, Any]]:
+    """The names of the module `text`; while it is used it may import modules of the user from
+    `folder`. What loading it raises passes through."""
+    module = ModuleType(name.removesuffix(".py"))
+    module.__file__ = name
+    linecache.cache[name] = (len(text), None, text.splitlines(keepends=True), name)
+    sys.path.insert(0, str(folder.resolve()))
+    try:
+        exec(compile(text, name, "exec"), module.__dict__)
+        yield module.__dict__
     finally:
         sys.path.remove(str(folder.resolve()))
 

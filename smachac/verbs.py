@@ -177,6 +177,44 @@ def _where(errors: list[dict[str, Any]]) -> str:
     return f" in {errors[0]['path']}{source}"
 
 
+PLAYED = ("python",)
+"""The targets whose programs `verify` can play."""
+
+
+def _verify(arguments: argparse.Namespace) -> int:
+    """Ends with 0 when every target does what the interpreter does."""
+    import gc
+
+    from smachac.targets import load_target
+    from smachac.verify import verify
+    from smachac.verify.python import player
+    from smachac.verify.scenes import UnplayableError
+    from smachac.verify.verdict import render_json, render_text
+
+    for name in arguments.targets or [""]:
+        if name not in PLAYED:
+            return usage(f"`verify` cannot play the target `{name}`", name, list(PLAYED))
+    target = load_target("python")
+    assert target is not None
+    analysis, files = _compile(arguments, target, {})
+    machine = analysis.checked
+    if machine is None or files is None:
+        return FINDINGS
+    ((name, text),) = files.items()
+    gc.enable()  # from here on it is the user's program that is loaded
+    players = {"python": player(name, text, machine, folder=arguments.script.parent)}
+    try:
+        verdict = verify(
+            machine, players, script=machine.source, most=arguments.paths, seed=arguments.seed
+        )
+    except UnplayableError as error:
+        print(error, file=sys.stderr)
+        return FINDINGS
+    render = render_json if arguments.format == "json" else render_text
+    sys.stdout.write(render(verdict))
+    return FINDINGS if verdict.disagreements else OK
+
+
 def _explain(arguments: argparse.Namespace) -> int:
     words, form = arguments.words, arguments.format
     if form in ("md", "csv") and not arguments.failures:
@@ -242,6 +280,7 @@ VERBS: dict[str, Callable[[argparse.Namespace], int]] = {
     "check": _check,
     "build": _build,
     "run": _run,
+    "verify": _verify,
     "explain": _explain,
     "fmt": _fmt,
     "targets": _targets,

@@ -9,6 +9,7 @@ virtual. Every state is a generator that yields the time at which it can go on.
 from __future__ import annotations
 
 from collections.abc import Callable, Collection, Generator, Mapping, Sequence
+from functools import lru_cache
 from pathlib import PurePath
 from typing import NoReturn
 
@@ -114,7 +115,7 @@ class Interpreter:
         self.schedule.choices = []
         self.emit("start", path)
         if 0 in self._preempt_at:
-            self.preemption.request(path)
+            self._stop_machine()
         if parent is not None:
             copy_in(root, parent, own)
         outcome, failure = None, None
@@ -188,7 +189,7 @@ class Interpreter:
         visit = self._visits[path] = self._visits.get(path, 0) + 1
         self._leaves += 1
         if self._leaves in self._preempt_at:
-            self.preemption.request(self._root.name)
+            self._stop_machine()
         yield self.clock
         asked = self.preemption.asked
 
@@ -196,7 +197,9 @@ class Interpreter:
             if self._observe is not None:
                 self.emit("write", path, key=key, value=trace_value(value))
 
-        view = Userdata(leaf, path, around, asked, written, loose=loose)
+        view = Userdata(
+            leaf, path, around, asked, written, loose=loose, stop_machine=self._stop_machine
+        )
         try:
             outcome = self._behaviour(path, leaf, visit, view)
         except UserdataError as error:
@@ -209,6 +212,9 @@ class Interpreter:
             asked.discard(path)
             return PREEMPTED
         return outcome
+
+    def _stop_machine(self) -> None:
+        self.preemption.request(self._root.name)
 
     def _sleep(self, leaf: Leaf, path: str, seconds: float) -> Generator[float, None, bool]:
         """Wait; whether a request to stop, which the leaf can answer, cut that short."""
@@ -225,4 +231,9 @@ def _place(span: Span) -> str:
     """A place as a trace shows it: file name without folder, and line."""
     if span.source is NOWHERE.source:
         return ""
-    return f"{PurePath(span.source.name).name}:{span.line}"
+    return f"{_file_name(span.source.name)}:{span.line}"
+
+
+@lru_cache(maxsize=1000)
+def _file_name(name: str) -> str:
+    return PurePath(name).name

@@ -5,24 +5,37 @@ from __future__ import annotations
 import copy
 from collections.abc import Iterable, Mapping
 from dataclasses import dataclass
+from typing import NamedTuple
 
 from smachac.diagnostics import did_you_mean
 from smachac.ir.behaviours import default_outcome, stopping_when_asked
 from smachac.ir.nodes import Iterator, Leaf, Machine, Node
 from smachac.ir.result import Behaviour
-from smachac.ir.userdata import Userdata
-from smachac.ir.walk import outcome_names, walk
+from smachac.ir.userdata import BehaviourError, Userdata
+from smachac.ir.walk import PREEMPTED, outcome_names, walk
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Step:
     """One visit of a leaf: the keys it writes, in order, and its outcome.
 
-    No outcome: the one by which such a state usually ends.
+    No outcome: the one by which such a state usually ends. `stop`: as it begins the whole machine
+    is asked to stop. `wait`: it first waits until it is asked to. `error`: it fails with these
+    words instead.
     """
 
     outcome: str | None = None
     writes: tuple[tuple[str, object], ...] = ()
+    wait: bool = False
+    error: str = ""
+    stop: bool = False
+
+
+LONG = 1e9
+"""Seconds of virtual time: longer than anything else in a run."""
+
+
+STEP_KEYS = ("outcome", "set", "wait", "error", "stop")
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -41,34 +54,61 @@ def acted(scenario: Scenario, machine: Machine, otherwise: Behaviour) -> Behavio
     Raises ValueError for a path that names no leaf, or several.
     """
     by_path = _by_path(scenario, machine)
+    others = stopping_when_asked(otherwise)
 
     def behave(path: str, leaf: Leaf, visit: int, userdata: Userdata) -> str:
         steps = by_path.get(path)
         if not steps:
-            return otherwise(path, leaf, visit, userdata)
+            return others(path, leaf, visit, userdata)
         step = steps[min(visit, len(steps)) - 1]
-        for key, value in step.writes:
-            userdata[key] = copy.deepcopy(value)
-        return step.outcome if step.outcome is not None else default_outcome(leaf)
+        if step.stop:
+            userdata.stop_machine()
+        return follow(step, leaf, userdata)
 
-    return stopping_when_asked(behave)
+    return behave
 
 
-def plain_steps(
-    scenario: Scenario, machine: Machine
-) -> dict[str, list[tuple[str, dict[str, object]]]]:
-    """A scenario as rows of (outcome, keys to write) by full path, for programs that are run.
+def follow(step: Step, leaf: Leaf, userdata: Userdata) -> str:
+    """What a leaf does at a step, once the machine was asked to stop where it is to be."""
+    able = PREEMPTED in outcome_names(leaf)
+    if userdata.preempted and able:
+        userdata.service_preempt()
+        return PREEMPTED
+    if step.wait and not userdata.preempted:
+        userdata.sleep(LONG)
+        if able:
+            return PREEMPTED
+    if step.error:
+        raise BehaviourError(step.error)
+    for key, value in step.writes:
+        userdata[key] = copy.deepcopy(value)
+    return step.outcome if step.outcome is not None else default_outcome(leaf)
+
+
+class Row(NamedTuple):
+    """A step as plain data, for programs that are run."""
+
+    outcome: str
+    writes: dict[str, object]
+    wait: bool
+    error: str
+    stop: bool
+
+
+def plain_steps(scenario: Scenario, machine: Machine) -> dict[str, list[Row]]:
+    """A scenario as rows by full path.
 
     Raises ValueError for a path that names no leaf, or several.
     """
     nodes = dict(walk(machine.root))
-    rows: dict[str, list[tuple[str, dict[str, object]]]] = {}
+    rows: dict[str, list[Row]] = {}
     for path, steps in _by_path(scenario, machine).items():
         leaf = nodes[path]
         assert isinstance(leaf, Leaf)
         usual = default_outcome(leaf)
         rows[path] = [
-            (usual if step.outcome is None else step.outcome, dict(step.writes)) for step in steps
+            Row(step.outcome or usual, dict(step.writes), step.wait, step.error, step.stop)
+            for step in steps
         ]
     return rows
 
@@ -92,7 +132,10 @@ def read_scenario(data: object, machine: Machine) -> tuple[Scenario, list[str]]:
       sm/PICK/GRASP:
         - {outcome: aborted}
         - {outcome: succeeded, set: {width: 0.05}}
+        - {error: the gripper does not answer}
       CHECK: succeeded
+      TIMER: {wait: true}
+      WALK: [succeeded, {outcome: preempted, stop: true}]
     ```
     """
     problems: list[str] = []
@@ -141,8 +184,8 @@ class _Reader:
             self.problem(number, "a step is an outcome, or a mapping with `outcome` and `set`")
             return Step()
         for key in entry:
-            if key not in ("outcome", "set"):
-                help_ = did_you_mean(str(key), ("outcome", "set"))
+            if key not in STEP_KEYS:
+                help_ = did_you_mean(str(key), STEP_KEYS)
                 self.problem(number, f"unknown key `{key}`", help_)
         writes = entry.get("set") or {}
         if not isinstance(writes, dict):
@@ -153,8 +196,17 @@ class _Reader:
             if not self.place.loose and key not in declared:
                 help_ = did_you_mean(str(key), declared)
                 self.problem(number, f"`{key}` is not one of its output keys", help_)
+        for key in ("wait", "stop"):
+            if not isinstance(entry.get(key, False), bool):
+                self.problem(number, f"`{key}` is true or false")
         outcome = self.outcome(entry["outcome"], number) if "outcome" in entry else None
-        return Step(outcome=outcome, writes=tuple((str(key), writes[key]) for key in writes))
+        return Step(
+            outcome=outcome,
+            writes=tuple((str(key), writes[key]) for key in writes),
+            wait=entry.get("wait") is True,
+            error=str(entry.get("error", "")),
+            stop=entry.get("stop") is True,
+        )
 
     def outcome(self, given: object, number: int) -> str:
         """YAML reads the outcomes `true` and `false` as booleans."""

@@ -133,10 +133,14 @@ class Userdata:
 
     An undeclared or absent key cannot be read (UserdataError); writing an undeclared one does
     nothing (R4). `loose` leaves see every key: those of an open type, and the child of an
-    iterator (I7). `asked` holds the paths of states that are asked to stop.
+    iterator (I7). `asked` holds the paths of states that are asked to stop; `stop_machine` asks
+    the whole machine to.
     """
 
-    __slots__ = ("_around", "_asked", "_names", "_path", "_reads", "_writes", "_written", "slept")
+    __slots__ = (
+        *("_around", "_asked", "_names", "_path", "_reads", "_writes", "_written"),
+        *("slept", "stop_machine"),
+    )
 
     def __init__(
         self,
@@ -147,6 +151,7 @@ class Userdata:
         written: Callable[[str, object], None],
         *,
         loose: bool = False,
+        stop_machine: Callable[[], None] = lambda: None,
     ) -> None:
         self._path = path
         self._around = around
@@ -155,6 +160,7 @@ class Userdata:
         self._reads = None if loose else {key.name for key in leaf.inputs}
         self._writes = None if loose else {key.name for key in leaf.outputs}
         self._written = written
+        self.stop_machine = stop_machine
         self.slept = 0.0
 
     def __getitem__(self, key: str) -> object:

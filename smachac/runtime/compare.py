@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterable, Mapping, Sequence
-from typing import Any
+from typing import Any, NamedTuple
 
 Event = Mapping[str, Any]
 
@@ -11,30 +11,49 @@ COMPARED = ("event", "path", "outcome", "to", "key", "value")
 """What counts of an event. Messages of errors are worded by whoever ran the machine."""
 
 
-def compare(first: Iterable[Event], second: Iterable[Event]) -> str | None:
-    """The first difference between two traces, or None.
+class Difference(NamedTuple):
+    """Two traces in comparable order, and the number, from 0, of the first event that differs."""
+
+    first: list[Event]
+    second: list[Event]
+    at: int
+
+
+def difference(first: Iterable[Event], second: Iterable[Event]) -> Difference | None:
+    """Where two traces begin to differ, or None.
 
     Times, places, numbers of events and the order between branches of a concurrence do not count.
     """
     one, other = list(first), list(second)
     concurrences = _concurrences(one) | _concurrences(other)
     ours, theirs = _in_order(one, concurrences), _in_order(other, concurrences)
-    for number, (mine, yours) in enumerate(zip(ours, theirs, strict=False), 1):
-        if _core(mine) != _core(yours):
-            return f"event {number}: {_words(mine)}, but then {_words(yours)}"
+    for at, (mine, yours) in enumerate(zip(ours, theirs, strict=False)):
+        if core(mine) != core(yours):
+            return Difference(ours, theirs, at)
     if len(ours) == len(theirs):
         return None
-    number = min(len(ours), len(theirs))
-    longer, which = (ours, "first") if len(ours) > len(theirs) else (theirs, "second")
-    return f"event {number + 1}: only the {which} trace has {_words(longer[number])}"
+    return Difference(ours, theirs, min(len(ours), len(theirs)))
 
 
-def _core(event: Event) -> dict[str, Any]:
+def compare(first: Iterable[Event], second: Iterable[Event]) -> str | None:
+    """The first difference between two traces (see `difference`) in words, or None."""
+    found = difference(first, second)
+    if found is None:
+        return None
+    ours, theirs, at = found
+    if at < min(len(ours), len(theirs)):
+        return f"event {at + 1}: {_words(ours[at])}, but then {_words(theirs[at])}"
+    longer, which = (ours, "first") if at < len(ours) else (theirs, "second")
+    return f"event {at + 1}: only the {which} trace has {_words(longer[at])}"
+
+
+def core(event: Event) -> dict[str, Any]:
+    """What counts of an event."""
     return {name: event[name] for name in COMPARED if name in event}
 
 
 def _words(event: Event) -> str:
-    return "`" + " ".join(str(value) for value in _core(event).values()) + "`"
+    return "`" + " ".join(str(value) for value in core(event).values()) + "`"
 
 
 def _concurrences(events: Sequence[Event]) -> set[str]:

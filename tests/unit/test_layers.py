@@ -17,7 +17,7 @@ LAYERS = (
     ("lower", "desugar", "catching", "values", "checks", "targets"),
     ("driver", "report", "refactor", "project", "files", "execute"),
     ("__init__", "runs", "streams", "survey", "discover", "baseline"),
-    ("fixes",),
+    ("fixes", "verify"),
     ("checkup", "rewriting"),
     ("verbs",),
     ("cli",),
@@ -57,7 +57,7 @@ ASIDE: Mapping[str, frozenset[str]] = {
 }
 """What generated code stands on, with the packages it may import; no other part of ours."""
 
-USES_ASIDE = {"execute", "runs"}
+USES_ASIDE = {"execute", "runs", "verify"}
 """The parts of the compiler that run what it made, and so may import the parts above."""
 
 FACTS = {"smachac.__version__"}

@@ -9,7 +9,7 @@ from ir_machines import iterator, leaf, machine, ran, short
 
 from smachac.ir.behaviours import built_in
 from smachac.ir.nodes import Machine
-from smachac.ir.scenario import Scenario, Step, acted, plain_steps, read_scenario
+from smachac.ir.scenario import Row, Scenario, Step, acted, plain_steps, read_scenario
 
 
 def picking() -> Machine:
@@ -141,7 +141,10 @@ def test_a_scenario_as_plain_rows() -> None:
         steps={"PICK/GRASP": (Step(writes=(("width", 5),)), Step(outcome="aborted")), "CHECK": ()}
     )
     assert plain_steps(scenario, picking()) == {
-        "sm/PICK/GRASP": [("succeeded", {"width": 5}), ("aborted", {})],
+        "sm/PICK/GRASP": [
+            Row("succeeded", {"width": 5}, False, "", False),
+            Row("aborted", {}, False, "", False),
+        ],
         "sm/CHECK": [],
     }
 

@@ -24,21 +24,21 @@ APPENDED = ("base_header", "imports", "defs", "class_defs", "cb_defs", "main_def
 
 CATCHING = '''def error_as_outcome(state, outcome):
     """Let a state end with an outcome where it would raise an exception, which is logged."""
-    execute = state.execute
 
     def attempt(*userdata):
         try:
-            return execute(*userdata)
+            return state.attempted(*userdata)
         except Exception as error:
             smach.logerr(traceback.format_exc(chain=False))
             state.caught = error
             return outcome
 
+    state.attempted, state.execute = state.execute, attempt
     state.caught = None
-    state.execute = attempt
     state.register_outcomes([outcome])
     return state'''
-"""What stands in a module in which a state catches. Traces look at `caught`."""
+"""What stands in a module in which a state catches. Traces look at `caught`; `attempted` is what
+a scenario replaces."""
 
 PREPENDED = ("footer", "execute", "base_footer", "main")
 """Blocks that come out in reverse order, so that what was opened last is closed first."""

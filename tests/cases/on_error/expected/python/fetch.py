@@ -12,18 +12,17 @@ except ImportError:  # no ROS on this machine: the same names without it
 
 def error_as_outcome(state, outcome):
     """Let a state end with an outcome where it would raise an exception, which is logged."""
-    execute = state.execute
 
     def attempt(*userdata):
         try:
-            return execute(*userdata)
+            return state.attempted(*userdata)
         except Exception as error:
             smach.logerr(traceback.format_exc(chain=False))
             state.caught = error
             return outcome
 
+    state.attempted, state.execute = state.execute, attempt
     state.caught = None
-    state.execute = attempt
     state.register_outcomes([outcome])
     return state
 
