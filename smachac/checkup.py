@@ -23,6 +23,7 @@ from smachac.files import (
     write_files,
 )
 from smachac.policy import chosen
+from smachac.reach import NoSimulationError, unreachable
 from smachac.streams import print_report, shown, usage
 from smachac.survey import Survey, survey
 
@@ -33,7 +34,7 @@ assert checks is not None  # imported for the codes it files
 
 OK, FINDINGS = 0, 1
 
-WRONG_USAGE = (NothingFoundError, GitError, baseline.BaselineError)
+WRONG_USAGE = (NothingFoundError, GitError, baseline.BaselineError, NoSimulationError)
 
 PAUSE = 0.3
 """Seconds between two looks at the files that are watched."""
@@ -63,7 +64,8 @@ def _once(arguments: Namespace, used: set[str]) -> int:
     started = time.perf_counter()
     disk = Disk()
     paths = scripts_of(arguments.script, disk)
-    whole = survey(paths, disk, arguments.scripts, arguments.templates)
+    more = unreachable if arguments.sim else None
+    whole = survey(paths, disk, arguments.scripts, arguments.templates, more)
     used.update(*whole.uses.values())
     changed = changed_since(arguments.changed_since) if arguments.changed_since else None
     found, notes = _counted(whole, changed, arguments)
@@ -74,7 +76,7 @@ def _once(arguments: Namespace, used: set[str]) -> int:
         from smachac.fixes import Texts, mended
 
         def again(texts: Texts) -> Survey:
-            return survey(paths, Disk(texts), arguments.scripts, arguments.templates)
+            return survey(paths, Disk(texts), arguments.scripts, arguments.templates, more)
 
         def counted(survey: Survey) -> Report:
             return _counted(survey, changed, arguments)[0].report

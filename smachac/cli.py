@@ -25,6 +25,7 @@ examples:
   smachac check . --changed-since origin/main    what a pull request touches
   smachac check . --baseline known.json --write-baseline   begin in an old code base
   smachac check . --fix --diff                   what --fix would write, as a patch
+  smachac check main.yml --sim                   ask the simulated arm what it can reach
   smachac check main.yml --watch                 again at every change
 
 exit codes: 0 clean, 1 findings, 2 wrong usage, 70 a bug in smachac
@@ -141,6 +142,7 @@ def _check(verb: argparse.ArgumentParser) -> None:
                       help="only scripts made of files that changed since then (git)")  # fmt: skip
     verb.add_argument("--fix", action="store_true", help="mend what has one sure cure")
     verb.add_argument("--diff", action="store_true", help="show what --fix would do, write nothing")
+    verb.add_argument("--sim", action="store_true", help="ask the simulated arm what it can reach")
     verb.add_argument("--watch", action="store_true", help="check again when a file changes")
     _colour(verb)
 

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import json
-from collections.abc import Iterable, Iterator, Mapping
+from collections.abc import Callable, Iterable, Iterator, Mapping
 from dataclasses import dataclass, replace
 
 from smachac import problems
@@ -48,14 +48,22 @@ class Analysis:
     unused: tuple[Allowance, ...] = ()
 
 
-def analyse(source: Source, library: Library, report: Report) -> Analysis:
-    """Read a script and judge it by every rule; findings already in `report` count as well."""
+Judge = Callable[[Machine], Iterable[Diagnostic]]
+"""A judgement that is not made of every machine, because it takes long or needs more than us."""
+
+
+def analyse(
+    source: Source, library: Library, report: Report, more: Judge | None = None
+) -> Analysis:
+    """Read a script and judge it by every rule, and by `more`; findings already in `report` count
+    as well."""
     with deep_recursion():
         tree = library.parse(source, report)
         script = resolve(source, tree, library, report)
         machine = lower(script) if script is not None else None
         if machine is not None:
             report.extend(check_machine(machine))
+            report.extend(more(machine) if more is not None else ())
         sources = {id(text): text for text in (script.sources if script is not None else (source,))}
         sources |= {id(item.span.source): item.span.source for item in report}
         given = [

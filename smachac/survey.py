@@ -9,7 +9,7 @@ from pathlib import Path
 
 from smachac import problems
 from smachac.diagnostics import Report, identity, in_order
-from smachac.driver import Analysis, analyse, analyse_alone
+from smachac.driver import Analysis, Judge, analyse, analyse_alone
 from smachac.files import Disk, disk_library
 from smachac.policy import Allowance
 from smachac.source import Source, Word
@@ -55,8 +55,10 @@ def survey(
     disk: Disk,
     scripts: Sequence[Path] = (),
     templates: Sequence[Path] = (),
+    more: Judge | None = None,
 ) -> Survey:
-    """Judge scripts by every rule; sub-scripts through their callers, alone if they have none."""
+    """Judge scripts by every rule, and by `more`; sub-scripts through their callers, alone if they
+    have none."""
     analyses: dict[str, Analysis] = {}
     uses: dict[str, frozenset[str]] = {}
     alone: list[Path] = []
@@ -66,8 +68,10 @@ def survey(
             analyses[str(path)] = Analysis(report=report)
         else:
             library = disk_library(path, report, scripts=scripts, templates=templates, disk=disk)
-            found = (analyse if called else analyse_alone)(source, library, report)
-            analyses[str(path)] = found
+            if called:
+                analyses[str(path)] = analyse(source, library, report, more)
+            else:
+                analyses[str(path)] = analyse_alone(source, library, report)
         uses[str(path)] = frozenset(disk.asked)
 
     for path in paths:

@@ -15,7 +15,7 @@ LAYERS = (
     ("syntax", "ir", "shapes", "policy"),
     ("states", "script", "schema", "lookups", "calls", "typed", "sugar", "robots", "urdf"),
     ("lower", "desugar", "catching", "values", "checks", "targets"),
-    ("driver", "report", "refactor", "project", "files", "execute"),
+    ("driver", "report", "refactor", "project", "files", "execute", "reach"),
     ("__init__", "runs", "streams", "survey", "discover", "baseline"),
     ("fixes", "verify"),
     ("checkup", "rewriting"),
@@ -57,7 +57,7 @@ ASIDE: Mapping[str, frozenset[str]] = {
 }
 """What generated code stands on, with the packages it may import; no other part of ours."""
 
-USES_ASIDE = {"execute", "runs", "verify"}
+USES_ASIDE = {"execute", "reach", "runs", "verify"}
 """The parts of the compiler that run what it made, and so may import the parts above."""
 
 FACTS = {"smachac.__version__"}

@@ -10,6 +10,7 @@ import pytest
 from smachac.diagnostics import CODES, Code, Diagnostic, Report, Severity
 from smachac.driver import analyse, build
 from smachac.files import disk_library, read_source
+from smachac.reach import unreachable
 from smachac.report.explain import MAIN, explanation
 from smachac.targets import load_target
 
@@ -31,7 +32,7 @@ def judged(files: Mapping[str, str], folder: Path, target_name: str = "python") 
     library = disk_library(main, report)
     source = read_source(main, report)
     assert source is not None
-    analysis = analyse(source, library, report)
+    analysis = analyse(source, library, report, unreachable)
     target = load_target(target_name)
     assert target is not None
     found = analysis.report
