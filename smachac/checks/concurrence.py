@@ -134,21 +134,20 @@ def _shadowed_rules(each: Judged) -> Iterator[Finding]:
 
 
 def _dead_renames(path: str, container: nodes.Iterator) -> Iterator[Finding]:
-    """The entries of an iterator's final map that rename what never comes."""
+    """The entries of an iterator's final map that rename what never comes. Outcomes on which it
+    goes on do come, when it is asked to stop (smach-semantics P9)."""
     if any(is_open(child) for child in container.children):
         return
-    endings = {name for child in container.children for name in outcome_names(child)}
+    endings = [name for child in container.children for name in outcome_names(child)]
     for name, _ in container.final_map if endings else ():
-        loops = name in container.loop_outcomes
-        if name == container.exhausted_outcome or (name in endings and not loops):
+        if name == container.exhausted_outcome or name in endings:
             continue
-        why = "on which it goes on" if loops else "with which its child never ends"
         yield Finding(
             span=container.span,
-            message=f"the final outcome map of `{container.name}` renames `{name}`, {why}",
+            message=f"the final outcome map of `{container.name}` renames `{name}`,"
+            " with which its child never ends",
             help=f"its child ends with {listed(endings)}",
             related=calls(container, container.span),
-            severity=Severity.WARNING if loops else None,
             node=path,
         )
 

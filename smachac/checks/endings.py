@@ -19,7 +19,7 @@ from smachac.checks.combinations import UndecidedError
 from smachac.checks.hints import PREEMPTED
 from smachac.checks.outline import Linear, children_names, is_open, leads_somewhere, mended
 from smachac.ir import nodes
-from smachac.ir.graph import edges, is_unread
+from smachac.ir.graph import edges, is_unread, stopped_endings
 from smachac.ir.nodes import Concurrence, Leaf, Machine, Node, StateMachine
 from smachac.ir.walk import containers, leads_to_child, outcome_names, walk
 from smachac.source import assert_never
@@ -139,9 +139,7 @@ def _iterator(container: nodes.Iterator, known: Known, *, asked: bool) -> set[st
     shown = replace(container, children=children)
     found = {edge.target[1] for edge in edges(shown) if isinstance(edge.target, tuple)}
     if asked:
-        renamed = dict(container.final_map)
-        loops = (name for name in container.loop_outcomes)
-        found.update(renamed.get(name, name) for name in loops)
+        found.update(stopped_endings(shown).values())
     return found
 
 

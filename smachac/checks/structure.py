@@ -14,9 +14,10 @@ from smachac.checks.outline import (
     linear,
     mended,
 )
+from smachac.checks.stopping import undeclared_stops
 from smachac.diagnostics import Finding, Severity, rule
 from smachac.ir import nodes
-from smachac.ir.graph import edges, reachable
+from smachac.ir.graph import edges, reachable, stopped_endings
 from smachac.ir.nodes import Concurrence, Container, Machine, Node, Outcome, Sequence, StateMachine
 from smachac.ir.walk import containers, outcome_names
 from smachac.problems import listed
@@ -175,7 +176,10 @@ def _iterator_outcomes(container: nodes.Iterator) -> frozenset[str] | None:
         return None
     if _if_declared(container, {result for _, _, result in endings(container)}) is None:
         return None
-    return frozenset(edge.target[1] for edge in edges(container) if isinstance(edge.target, tuple))
+    found = {edge.target[1] for edge in edges(container) if isinstance(edge.target, tuple)}
+    found.update(stopped_endings(container).values())
+    # What SM208 speaks of was meant to bring about `preempted`.
+    return frozenset(found | {PREEMPTED} if undeclared_stops(container) else found)
 
 
 def _impossible(path: str, container: Container, outcome: Outcome) -> Finding:

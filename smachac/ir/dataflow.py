@@ -24,11 +24,11 @@ from smachac.ir.assignment import (
     may_be_set,
     may_be_unset,
 )
-from smachac.ir.graph import START, Place, edges
+from smachac.ir.graph import START, Place, edges, exit_place, stopped_endings
 from smachac.ir.joins import joined
 from smachac.ir.nodes import Concurrence, Container, Expression, Leaf, Machine, Node
 from smachac.ir.userdata import remapping
-from smachac.ir.walk import containers
+from smachac.ir.walk import containers, outcome_names
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -231,6 +231,13 @@ def _steps(path: str, container: Container, inner: Mapping[str, Scope]) -> Steps
         for target, together in joined(container, writes):
             found.setdefault(START, []).append(Step(target, "", together))
         return {place: tuple(steps) for place, steps in found.items()}
+    if isinstance(container, nodes.Iterator):
+        for child in container.children[:1]:
+            for outcome, result in stopped_endings(container).items():
+                stopped = writes(child.name, outcome)
+                if stopped is not None and result in outcome_names(container):
+                    step = Step(exit_place(result), outcome, stopped)
+                    found.setdefault(child.name, []).append(step)
     for edge in edges(container):
         given: Writes | None = NOTHING
         if isinstance(edge.source, str):

@@ -153,6 +153,14 @@ def _iterator_edges(container: nodes.Iterator) -> Iterator[Edge]:
         yield Edge(START, exit_place(exhausted), "", "exhausted")
 
 
+def stopped_endings(container: nodes.Iterator) -> dict[str, str]:
+    """How an iterator ends that is asked to stop (smach-semantics P9): the looping outcomes of its
+    child, and the outcomes of the iterator that come of them then. Not among `edges`."""
+    renamed = dict(container.final_map)
+    own = {name for child in container.children[:1] for name in outcome_names(child)}
+    return {name: renamed.get(name, name) for name in container.loop_outcomes if name in own}
+
+
 def _possible_outcomes(container: nodes.Iterator, child: Node) -> Iterable[str]:
     if not _is_open(child):
         return outcome_names(child)

@@ -209,6 +209,7 @@ class Builder(Leaves):
         body: Body = {"template": "Iterator", "outcomes": ["all", BAD], "it_label": item}
         body["it"] = self.draw.choice(lists) if lists else [1, 2, 3]
         body |= {"exhausted_outcome": "all", "loop_outcomes": [GOOD]}
+        body["final_outcome_map"] = {GOOD: BAD}
         inside: Body = {"template": "StateMachine", "outcomes": [GOOD, BAD]}
         within = self.machine(inside, depth - 1, [GOOD, BAD], {item: "int"})
         if item in within.reads:

@@ -116,3 +116,12 @@ def end_a_failure_in_success(victim: Victim) -> Mutant | None:
     site.body["transitions"][outcome] = "succeeded"
     place = (*site.path, "transitions", outcome)
     return Mutant(codes=("SM206",), places=((site.file, place), (site.file, site.path)))
+
+
+@kind
+def forget_how_an_iterator_stops(victim: Victim) -> Mutant | None:
+    site = victim.pick(site for site in victim.sites() if "final_outcome_map" in site.body)
+    if site is None:
+        return None
+    del site.body["final_outcome_map"]
+    return Mutant(codes=("SM208",), owners=(site,))

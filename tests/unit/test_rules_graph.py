@@ -207,3 +207,22 @@ def test_an_iterator_is_exhausted_if_it_loops(options: dict[str, Any], codes: li
     node = iterator("IT", outcomes, leaf("C", outcomes="ok bad"),
                     to=dict.fromkeys(outcomes.split(), "done"), **options)  # fmt: skip
     assert found(machine("sm", "done", node)) == codes
+
+
+def test_an_iterator_that_is_asked_to_stop_needs_an_outcome_for_that() -> None:
+    def each(outcomes: str, caught: str = "", **final: str) -> StateMachine:
+        node = iterator("E", outcomes, leaf("A", outcomes="next bad"), items=[1, 2],
+                        exhausted="all", loop="next", final={"bad": "all", **final},
+                        to=dict.fromkeys(outcomes.split(), "done"))  # fmt: skip
+        return machine("sm", "done", replace(node, catches=caught))
+
+    assert one(each("all"), "SM208").severity is Severity.INFO
+    assert one(each("all preempted"), "SM208").severity is Severity.WARNING
+    assert found(each("all preempted")) == ["SM208 sm/E"]
+    for fine in (
+        each("all preempted", next="preempted"),
+        each("all next"),
+        each("all", next="all"),
+        each("all error", caught="error"),
+    ):
+        assert [item.code.code for item in report(fine)] == []

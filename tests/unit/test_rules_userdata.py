@@ -267,6 +267,22 @@ def test_deep_nesting_is_judged() -> None:
                  "SM3") == ["SM301 sm/C899"]  # fmt: skip
 
 
+def test_what_comes_after_an_iterator_that_was_asked_to_stop() -> None:
+    """It ends with the outcome on which it goes on else, and with what that has set."""
+    stopped = {"next": "halt", "bad": "all"}
+
+    def each(of: Leaf) -> StateMachine:
+        return root(
+            iterator("E", "all halt", of, items=[1, 2], exhausted="all", loop="next", final=stopped,
+                     outs="k", to={"all": "done", "halt": "R"}),
+            reader("R", DONE),
+        )  # fmt: skip
+
+    outcomes = {"next": "", "bad": ""}
+    assert severity(each(writer("W", outcomes, bad="1"))) is Severity.ERROR
+    assert found(each(writer("W", outcomes)), "SM3") == []
+
+
 def test_many_missing_keys_take_no_longer_than_they_should() -> None:
     names = [f"S{number}" for number in range(2000)]
     steps = zip(names, [*names[1:], "done"], strict=True)

@@ -1,9 +1,9 @@
-// Made by smachac 0.1.0 from main.yml (sha256 f8d621b3fa0c5f75).
+// Made by smachac 0.1.0 from main.yml (sha256 6937b7d348686a85).
 #pragma once
 
 #include "smachac/smachac.hpp"
 
-namespace patrol::VISIT_ALL::VISIT { // main.yml:19
+namespace patrol::VISIT_ALL::VISIT { // main.yml:20
 
 enum class Outcome : std::uint8_t {
   seen,
@@ -21,7 +21,7 @@ struct Userdata {
 
 namespace types {
 
-/// main.yml:24
+/// main.yml:25
 struct DRIVE {
   enum class Outcome : std::uint8_t {
     arrived,
@@ -33,7 +33,7 @@ struct DRIVE {
   }
 };
 
-/// main.yml:28
+/// main.yml:29
 struct LOOK {
   enum class Outcome : std::uint8_t {
     succeeded,
@@ -58,8 +58,8 @@ enum class State : std::size_t {
 };
 
 inline constexpr smachac::Place places[] = {
-    {"patrol/VISIT_ALL/VISIT/DRIVE", "main.yml:24"},
-    {"patrol/VISIT_ALL/VISIT/LOOK", "main.yml:28"},
+    {"patrol/VISIT_ALL/VISIT/DRIVE", "main.yml:25"},
+    {"patrol/VISIT_ALL/VISIT/LOOK", "main.yml:29"},
 };
 
 template <class Run>
@@ -69,7 +69,7 @@ Outcome execute(States &states, Userdata &ud, Run &run) {
     for (;;) {
       run.enter(places, state);
       switch (state) {
-      case State::DRIVE: // main.yml:24
+      case State::DRIVE: // main.yml:25
         switch (states.DRIVE.execute()) {
         case types::DRIVE::Outcome::arrived:
           run.go(places, state, "arrived", State::LOOK);
@@ -78,7 +78,7 @@ Outcome execute(States &states, Userdata &ud, Run &run) {
           return run.end(places, state, "blocked", Outcome::blocked);
         }
         break;
-      case State::LOOK: // main.yml:28
+      case State::LOOK: // main.yml:29
         switch (states.LOOK.execute(ud)) {
         case types::LOOK::Outcome::succeeded:
           return run.end(places, state, "succeeded", Outcome::seen);
@@ -99,11 +99,11 @@ namespace patrol::VISIT_ALL { // main.yml:9
 enum class Outcome : std::uint8_t {
   all_seen,
   blocked,
-  seen,
+  preempted,
 };
 
 constexpr const char *name(Outcome outcome) {
-  constexpr const char *names[] = {"all_seen", "blocked", "seen"};
+  constexpr const char *names[] = {"all_seen", "blocked", "preempted"};
   return names[static_cast<std::size_t>(outcome)];
 }
 
@@ -122,7 +122,7 @@ enum class State : std::size_t {
 };
 
 inline constexpr smachac::Place places[] = {
-    {"patrol/VISIT_ALL/VISIT", "main.yml:19"},
+    {"patrol/VISIT_ALL/VISIT", "main.yml:20"},
 };
 
 template <class Run>
@@ -135,7 +135,7 @@ Outcome execute(States &states, Userdata &ud, Run &run) {
   smachac::Round round(run.stop, items.size());
   for (const auto &item : items) {
     ud.waypoint.hold(item);
-    // main.yml:19
+    // main.yml:20
     SMACHAC_TRY {
       run.enter(places, state);
       ud.VISIT_.waypoint.hold(ud.waypoint.get());
@@ -144,7 +144,7 @@ Outcome execute(States &states, Userdata &ud, Run &run) {
       switch (outcome) {
       case VISIT::Outcome::seen:
         if (over) {
-          return run.end(places, state, "seen", Outcome::seen);
+          return run.end(places, state, "seen", Outcome::preempted);
         }
         if (round.last()) {
           return run.end(places, state, "seen", Outcome::all_seen);
@@ -205,8 +205,8 @@ Outcome execute(States &states, Userdata &ud, Run &run) {
           return run.end(places, state, "all_seen", Outcome::succeeded);
         case VISIT_ALL::Outcome::blocked:
           return run.end(places, state, "blocked", Outcome::aborted);
-        case VISIT_ALL::Outcome::seen:
-          run.undeclared(places, state, "seen");
+        case VISIT_ALL::Outcome::preempted:
+          return run.end(places, state, "preempted", Outcome::aborted);
         }
         break;
       default:

@@ -1,4 +1,4 @@
-# Made by smachac 0.1.0 from main.yml (sha256 f8d621b3fa0c5f75).
+# Made by smachac 0.1.0 from main.yml (sha256 6937b7d348686a85).
 """The state machine `patrol`."""
 
 try:
@@ -54,27 +54,27 @@ def build():
     with patrol:
         # main.yml:9
         sm_visit_all = smach.Iterator(
-            outcomes=["all_seen", "blocked"],
+            outcomes=["all_seen", "blocked", "preempted"],
             it=lambda: sm_visit_all.userdata["waypoints"],
             it_label="waypoint",
             exhausted_outcome="all_seen",
             input_keys=["waypoints"],
         )
         with sm_visit_all:
-            # main.yml:19
+            # main.yml:20
             sm_visit = smach.StateMachine(
                 outcomes=["seen", "blocked"],
                 input_keys=["waypoint"],
             )
             with sm_visit:
-                # main.yml:24
+                # main.yml:25
                 smach.StateMachine.add(
                     "DRIVE",
                     ScriptedState(outcomes=["arrived", "blocked"]),
                     transitions={"arrived": "LOOK", "blocked": "blocked"},
                 )
 
-                # main.yml:28
+                # main.yml:29
                 smach.StateMachine.add(
                     "LOOK",
                     PrintUserdataState(input_keys=["waypoint"]),
@@ -85,12 +85,17 @@ def build():
                 "VISIT",
                 sm_visit,
                 loop_outcomes=["seen"],
+                final_outcome_map={"seen": "preempted"},
             )
 
         smach.StateMachine.add(
             "VISIT_ALL",
             sm_visit_all,
-            transitions={"all_seen": "succeeded", "blocked": "aborted"},
+            transitions={
+                "all_seen": "succeeded",
+                "blocked": "aborted",
+                "preempted": "aborted",
+            },
         )
     return patrol
 
