@@ -89,6 +89,8 @@ cpp_parts() {
   command -v g++ >/dev/null || echo g++
   compgen -c clang++ >/dev/null || printf '%s\n' clang libclang-rt-dev
   compgen -c clang-format >/dev/null || echo clang-format
+  command -v cmake >/dev/null || echo cmake
+  [[ -d /usr/share/ament_cmake ]] || echo ament-cmake
 }
 
 # PyPI has PyBullet ready-made for these alone.

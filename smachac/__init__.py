@@ -97,7 +97,7 @@ def build(
     files = driver.build(analysis.checked, found, library, report, options)
     if has_errors(report):
         raise ScriptError([*analysis.report, *report])
-    return {**files, **runtime_files(found.runtime)}
+    return {**files, **runtime_files(found.runtime(files))}
 
 
 def run(

@@ -204,14 +204,11 @@ MARK = "Made by smachac"
 """What every file we write says in its first lines: so we know our own."""
 
 
-def runtime_files(folder: str) -> dict[str, str]:
-    """The files that generated code of a target stands on, by their names beside it.
-
-    `folder` is that of its `runtime`; none where it has none.
-    """
-    root = _HERE / "runtime" / folder
-    paths = sorted(root.rglob("*.hpp")) if folder else []
-    return {path.relative_to(root).as_posix(): path.read_text("utf-8") for path in paths}
+def runtime_files(paths: Mapping[str, str]) -> dict[str, str]:
+    """The files that generated code stands on, by the names they get beside it; `paths` gives
+    where they are under smachac/runtime."""
+    root = _HERE / "runtime"
+    return {name: (root / path).read_text("utf-8") for name, path in paths.items()}
 
 
 def foreign_files(folder: Path, files: Mapping[str, str]) -> list[Path]:

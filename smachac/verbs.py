@@ -82,9 +82,9 @@ def _put(files: dict[str, str], target: Target, arguments: argparse.Namespace) -
 
     folder: Path = arguments.output
     if str(folder) == "-":
-        sys.stdout.write("".join(files.values()))
+        sys.stdout.write(next(iter(files.values())))
         return OK
-    files = {**files, **runtime_files(target.runtime)}
+    files = {**files, **runtime_files(target.runtime(files))}
     if arguments.check:
         changed = changed_files(folder, files)
         for path in changed:

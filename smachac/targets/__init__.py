@@ -41,21 +41,25 @@ class OptionError(ValueError):
 Emit = Callable[[Checked, Context, Report], Files]
 
 
+def _nothing(_: Files) -> Mapping[str, str]:
+    return {}
+
+
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Target:
     """A target: its name, a line about it, and the function that prints.
 
     `options` names the options it knows, each with a line of help. An emitter reports what is
     wrong in templates of the user and what its language cannot say; then it returns no files. It
-    raises OptionError. `runtime` is a folder under smachac/runtime whose files are written beside
-    the output.
+    raises OptionError; the first file it returns is the main one. `runtime` tells what such files
+    stand on: file names beside them, with their paths under smachac/runtime.
     """
 
     name: str
     description: str
     emit: Emit
     options: Mapping[str, str] = field(default_factory=dict)
-    runtime: str = ""
+    runtime: Callable[[Files], Mapping[str, str]] = _nothing
 
 
 def made_by(machine: Machine) -> str:

@@ -14,6 +14,8 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 from pathlib import Path
 
+import pytest
+
 import smachac
 
 HEADERS = Path(smachac.__file__).parent / "runtime" / "cpp"
@@ -89,3 +91,11 @@ def compilers() -> tuple[Compiler, ...]:
         command = (sys.executable, "-m", "ziglang", "c++")
         found = [Compiler("clang++", command)]
     return tuple(found)
+
+
+def last_with(*flags: str) -> Compiler:
+    """The last of our compilers, the quickest, that can build with such flags."""
+    found = [each for each in compilers() if each.runs_with(*flags)]
+    if not found:
+        pytest.skip(f"no compiler has what {' '.join(flags)} needs")
+    return found[-1]

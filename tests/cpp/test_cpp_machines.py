@@ -7,7 +7,7 @@ from pathlib import Path
 
 import pytest
 from busy_strategies import busy_machines
-from compiler import BARE, SANITIZED, THREADED, Compiler, compilers
+from compiler import BARE, SANITIZED, THREADED, Compiler, compilers, last_with
 from hypothesis import HealthCheck, given, seed, settings
 from test_differential import Event, differ, of_interpreter
 from traces import NOBODY, ROOT, Asked, Part, header, named, traces
@@ -92,14 +92,6 @@ def agree(expected: list[Expected], compiler: Compiler, folder: Path, *flags: st
     for ((machine, _, _), ours), theirs in zip(expected, told, strict=True):
         difference = differ(ours, theirs)
         assert difference is None, f"{machine.root.name}: {difference}"
-
-
-def last_with(*flags: str) -> Compiler:
-    """The last of our compilers, the quickest, that can build with such flags."""
-    found = [each for each in compilers() if each.runs_with(*flags)]
-    if not found:
-        pytest.skip(f"no compiler has what {' '.join(flags)} needs")
-    return found[-1]
 
 
 @COMPILERS

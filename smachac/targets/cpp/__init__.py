@@ -1,7 +1,8 @@
 """C++: one header of C++17 over the headers of smachac, as typed as the script is.
 
 The containers become functions with a switch over their states (containers.py), their userdata
-structs (header.py); what C++ cannot say is refused at its place in the script (plan.py).
+structs (header.py); what C++ cannot say is refused at its place in the script (plan.py). Options
+add what builds and runs the header (project.py).
 """
 
 from __future__ import annotations
@@ -11,19 +12,25 @@ from smachac.ir.nodes import Checked
 from smachac.targets import Context, Files, Target, stem
 from smachac.targets.cpp.header import header_text
 from smachac.targets.cpp.plan import plan
+from smachac.targets.cpp.project import OPTIONS, project, project_files, runtime
 
 
 def emit(machine: Checked, context: Context, report: Report) -> Files:
-    """The header of a machine: `<name>.hpp`."""
+    """The header of a machine, `<name>.hpp`, and what options add."""
+    wanted = project(context.options)
     planned = plan(machine)
-    text = header_text(planned, context.library)
+    text, parameters = header_text(planned, context.library)
     report.extend(in_order(planned.report))
-    return {} if planned.report else {f"{stem(machine)}.hpp": text}
+    if planned.report:
+        return {}
+    header = {wanted.path(f"{stem(machine)}.hpp"): text}
+    return header | project_files(machine, wanted, parameters)
 
 
 TARGET = Target(
     name="cpp",
     description="a C++17 header, with typed userdata",
     emit=emit,
-    runtime="cpp",
+    options=OPTIONS,
+    runtime=runtime,
 )

@@ -23,8 +23,9 @@ from smachac.targets.cpp.words import identifier
 Lines = list[str]
 
 
-def header_text(plan: Plan, library: Library) -> str:
-    """The text of the header. What C++ cannot say is in the plan's report afterwards, all of it."""
+def header_text(plan: Plan, library: Library) -> tuple[str, tuple[str, ...]]:
+    """The text of the header, and the parameters that the States of the machine are made with.
+    What C++ cannot say is in the plan's report afterwards, all of it."""
     printing = _Printing(plan=plan, library=library)
     blocks = [
         "\n".join(_container(printing, scope)) for scope in reversed(list(plan.scopes.values()))
@@ -35,7 +36,8 @@ def header_text(plan: Plan, library: Library) -> str:
     made = f"// {made_by(plan.machine)}\n#pragma once"
     includes = "\n".join(f'#include "{header}"' for header in headers)
     checks = ["\n".join(assertions(code)) for code in codes]
-    return "\n\n".join([made, includes, *checks, *blocks]) + "\n"
+    text = "\n\n".join([made, includes, *checks, *blocks]) + "\n"
+    return text, printing.parameters.get(plan.machine.root.name, ())
 
 
 @dataclass(slots=True, kw_only=True)

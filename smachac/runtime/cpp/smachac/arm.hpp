@@ -1,0 +1,304 @@
+// The state types of an arm (MoveAlongState, GripperState, ...) in C++, over a robot that is yours:
+// derive from `smachac::Arm` and `smachac::World`, and give both to the States of the machine.
+//
+// Lengths are in metres, angles in radians, poses in the frame of the robot's base.
+#ifndef SMACHAC_ARM_HPP
+#define SMACHAC_ARM_HPP
+
+#include <array>
+#include <cstdint>
+#include <cstdio>
+#include <map>
+#include <optional>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "smachac/smachac.hpp"
+
+namespace smachac {
+
+/// The name of an arm; none where the robot has one only.
+using Limb = std::optional<std::string>;
+
+/// How a motion ended: at its goal, elsewhere, or because somebody asked to stop.
+enum class Motion : std::uint8_t { succeeded, aborted, preempted };
+
+/// What the states ask of a robot. A motion blocks until it is over; while it goes on it looks at
+/// `stop.requested()` and, when that is true, holds the arm where it is and ends as preempted.
+class Arm {
+public:
+  Arm() = default;
+  Arm(const Arm &) = delete;
+  Arm &operator=(const Arm &) = delete;
+  virtual ~Arm() = default;
+
+  /// The pose of the tool that holds a body from above, where the body has a pose.
+  virtual Pose grasp_pose(const Limb &limb, const Pose &body) = 0;
+  /// Joint positions that bring the tool to a pose; none where it is out of reach.
+  virtual std::optional<std::vector<double>> solve_ik(const Limb &limb, const Pose &tool) = 0;
+  /// Move along a straight line in joint space; `speed` is that of the fastest joint (rad/s).
+  virtual Motion move_to_joints(const Limb &limb, const std::vector<double> &positions,
+                                double speed, Stop &stop) = 0;
+  /// Move the tool along a straight line to a pose.
+  virtual Motion move_along(const Limb &limb, const Pose &tool, double speed, Stop &stop) = 0;
+  /// Open or close the gripper; to close on nothing is to abort.
+  virtual Motion grip(const Limb &limb, bool open, Stop &stop) = 0;
+  /// How far the gripper stands open.
+  virtual double width(const Limb &limb) = 0;
+  /// Whether the gripper holds a body, or any where none is named.
+  virtual bool holds(const Limb &limb, const std::optional<std::string> &body) = 0;
+};
+
+/// A model to be put into a world: a built-in one by its name, or one of a file.
+struct Model {
+  std::string name;
+  std::optional<std::string> path;
+  std::string body;  ///< the name it gets in the world
+  std::string frame; ///< `base`, `world`, or a body
+};
+
+/// What the states ask of the world around the robot, simulated or seen by a camera.
+class World {
+public:
+  World() = default;
+  World(const World &) = delete;
+  World &operator=(const World &) = delete;
+  virtual ~World() = default;
+
+  /// A pose displaced at random by at most `spread` (x, y, yaw), `apart` from these bodies.
+  virtual Pose scattered(const Pose &pose, const std::array<double, 3> &spread,
+                         const std::map<std::string, double> &apart) = 0;
+  /// Put a model there; false where there is no such model or frame, or the name is taken.
+  virtual bool load(const Model &model, const Pose &pose) = 0;
+  /// The distance of a body from a pose; none where there is no such body.
+  virtual std::optional<double> distance(const std::string &body, const Pose &pose) = 0;
+  /// Whether a body stands upright and does not move.
+  virtual bool at_rest(const std::string &body) = 0;
+};
+
+/// A pose moved and turned by an offset, both along the axes of the base.
+inline Pose shifted(const Pose &pose, const std::optional<Pose> &offset) {
+  if (!offset.has_value()) {
+    return pose;
+  }
+  const Point &a = pose.position;
+  const Point &b = offset->position;
+  const Quaternion &p = offset->orientation;
+  const Quaternion &q = pose.orientation;
+  return Pose{Point{a.x + b.x, a.y + b.y, a.z + b.z},
+              Quaternion{p.w * q.x + p.x * q.w + p.y * q.z - p.z * q.y,
+                         p.w * q.y - p.x * q.z + p.y * q.w + p.z * q.x,
+                         p.w * q.z + p.x * q.y - p.y * q.x + p.z * q.w,
+                         p.w * q.w - p.x * q.x - p.y * q.y - p.z * q.z}};
+}
+
+namespace detail {
+
+/// The outcome of a state whose motion ended so; a request to stop is answered.
+template <class Outcome> Outcome outcome_of(Motion motion, Stop &stop) {
+  switch (motion) {
+  case Motion::succeeded:
+    return Outcome::succeeded;
+  case Motion::preempted:
+    stop.service();
+    return Outcome::preempted;
+  case Motion::aborted:
+    break;
+  }
+  return Outcome::aborted;
+}
+
+} // namespace detail
+
+/// Moves one arm to a joint configuration along a straight line in joint space.
+class MoveToJointPositionsState {
+public:
+  enum class Outcome { succeeded, aborted, preempted };
+  struct In {
+    const std::vector<double> &positions;
+  };
+  static constexpr std::uint32_t smachac_interface = 0x1e53a7a2U;
+
+  MoveToJointPositionsState(Arm &arm, Limb limb, double speed)
+      : arm_(arm), limb_(std::move(limb)), speed_(speed) {}
+
+  Outcome execute(In in, Stop &stop) {
+    return detail::outcome_of<Outcome>(arm_.move_to_joints(limb_, in.positions, speed_, stop),
+                                       stop);
+  }
+
+private:
+  Arm &arm_;
+  Limb limb_;
+  double speed_;
+};
+
+/// Moves the tool along a straight line to a pose.
+class MoveAlongState {
+public:
+  enum class Outcome { succeeded, aborted, preempted };
+  struct In {
+    const Pose &pose;
+    const std::optional<Pose> &offset;
+  };
+  static constexpr std::uint32_t smachac_interface = 0xf86fdf91U;
+
+  MoveAlongState(Arm &arm, Limb limb, bool grasp, double speed)
+      : arm_(arm), limb_(std::move(limb)), grasp_(grasp), speed_(speed) {}
+
+  Outcome execute(In in, Stop &stop) {
+    const Pose pose = grasp_ ? arm_.grasp_pose(limb_, in.pose) : in.pose;
+    return detail::outcome_of<Outcome>(
+        arm_.move_along(limb_, shifted(pose, in.offset), speed_, stop), stop);
+  }
+
+private:
+  Arm &arm_;
+  Limb limb_;
+  bool grasp_;
+  double speed_;
+};
+
+/// Opens or closes a gripper.
+class GripperState {
+public:
+  enum class Outcome { succeeded, aborted, preempted };
+  struct Out {
+    Key<double> &width;
+  };
+  static constexpr std::uint32_t smachac_interface = 0xf6784b1fU;
+
+  GripperState(Arm &arm, Limb limb, const std::string &command)
+      : arm_(arm), limb_(std::move(limb)), open_(command == "open") {}
+
+  Outcome execute(Out out, Stop &stop) {
+    const Motion motion = arm_.grip(limb_, open_, stop);
+    out.width = arm_.width(limb_);
+    return detail::outcome_of<Outcome>(motion, stop);
+  }
+
+private:
+  Arm &arm_;
+  Limb limb_;
+  bool open_;
+};
+
+/// Solves inverse kinematics: joint positions that bring the tool to a pose.
+class PoseToJointPositionsState {
+public:
+  enum class Outcome { succeeded, aborted };
+  struct In {
+    const Pose &pose;
+    const std::optional<Pose> &offset;
+  };
+  struct Out {
+    Key<std::vector<double>> &joints;
+  };
+  static constexpr std::uint32_t smachac_interface = 0xb36feb04U;
+
+  PoseToJointPositionsState(Arm &arm, Limb limb, bool grasp)
+      : arm_(arm), limb_(std::move(limb)), grasp_(grasp) {}
+
+  Outcome execute(In in, Out out) {
+    const Pose pose = grasp_ ? arm_.grasp_pose(limb_, in.pose) : in.pose;
+    std::optional<std::vector<double>> joints = arm_.solve_ik(limb_, shifted(pose, in.offset));
+    if (!joints.has_value()) {
+      return Outcome::aborted;
+    }
+    out.joints = std::move(*joints);
+    return Outcome::succeeded;
+  }
+
+private:
+  Arm &arm_;
+  Limb limb_;
+  bool grasp_;
+};
+
+/// Looks whether the gripper holds something.
+class CheckGraspState {
+public:
+  enum class Outcome { succeeded, aborted };
+  static constexpr std::uint32_t smachac_interface = 0x13d26e9fU;
+
+  CheckGraspState(Arm &arm, Limb limb, std::optional<std::string> body)
+      : arm_(arm), limb_(std::move(limb)), body_(std::move(body)) {}
+
+  Outcome execute() {
+    return arm_.holds(limb_, body_) ? Outcome::succeeded : Outcome::aborted;
+  }
+
+private:
+  Arm &arm_;
+  Limb limb_;
+  std::optional<std::string> body_;
+};
+
+/// Looks whether a body lies at rest where it was to be placed.
+class CheckPlacedState {
+public:
+  enum class Outcome { succeeded, aborted };
+  struct In {
+    const Pose &pose;
+  };
+  struct Out {
+    Key<double> &error;
+  };
+  static constexpr std::uint32_t smachac_interface = 0xe69f2892U;
+
+  CheckPlacedState(World &world, std::string body, double tolerance)
+      : world_(world), body_(std::move(body)), tolerance_(tolerance) {}
+
+  Outcome execute(In in, Out out) {
+    const std::optional<double> error = world_.distance(body_, in.pose);
+    if (!error.has_value()) {
+      return Outcome::aborted;
+    }
+    out.error = *error;
+    return *error <= tolerance_ && world_.at_rest(body_) ? Outcome::succeeded : Outcome::aborted;
+  }
+
+private:
+  World &world_;
+  std::string body_;
+  double tolerance_;
+};
+
+/// Puts a model into the world.
+class LoadModelState {
+public:
+  enum class Outcome { succeeded, aborted };
+  struct In {
+    const Pose &pose;
+    const std::optional<std::string> &reference_frame;
+  };
+  struct Out {
+    Key<Pose> &pose;
+  };
+  static constexpr std::uint32_t smachac_interface = 0x8fbc7534U;
+
+  LoadModelState(World &world, std::string model_name, std::optional<std::string> model_path,
+                 const std::optional<std::string> &body, const std::array<double, 3> &spread,
+                 std::map<std::string, double> apart)
+      : world_(world), model_{model_name, std::move(model_path), body.value_or(model_name), {}},
+        spread_(spread), apart_(std::move(apart)) {}
+
+  Outcome execute(In in, Out out) {
+    model_.frame = in.reference_frame.value_or("base");
+    const Pose pose = world_.scattered(in.pose, spread_, apart_);
+    const bool loaded = world_.load(model_, pose);
+    out.pose = pose;
+    return loaded ? Outcome::succeeded : Outcome::aborted;
+  }
+
+private:
+  World &world_;
+  Model model_;
+  std::array<double, 3> spread_;
+  std::map<std::string, double> apart_;
+};
+
+} // namespace smachac
+
+#endif

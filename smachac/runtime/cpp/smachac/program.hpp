@@ -1,0 +1,120 @@
+// A program around a machine: `--trace FILE`, Ctrl-C, and its outcome at the end. For POSIX.
+#ifndef SMACHAC_PROGRAM_HPP
+#define SMACHAC_PROGRAM_HPP
+
+#include <atomic>
+#include <csignal>
+#include <cstdio>
+#include <cstdlib>
+#include <cstring>
+#include <exception>
+#include <thread>
+
+#include "smachac/smachac.hpp"
+
+namespace smachac {
+
+namespace detail {
+
+/// While it lives, the first SIGINT or SIGTERM asks a machine to stop, the second ends the program.
+/// The threads that start meanwhile leave the signals to it.
+class Listener {
+public:
+  explicit Listener(Stop &stop) {
+    sigemptyset(&signals_);
+    sigaddset(&signals_, SIGINT);
+    sigaddset(&signals_, SIGTERM);
+    pthread_sigmask(SIG_BLOCK, &signals_, &before_);
+    thread_ = std::thread([this, &stop] { listen(stop); });
+  }
+  Listener(const Listener &) = delete;
+  Listener &operator=(const Listener &) = delete;
+  ~Listener() {
+    over_ = true;
+    pthread_kill(thread_.native_handle(), SIGTERM);
+    thread_.join();
+    pthread_sigmask(SIG_SETMASK, &before_, nullptr);
+  }
+
+private:
+  void listen(Stop &stop) {
+    int signal = 0;
+    sigwait(&signals_, &signal);
+    if (over_) {
+      return;
+    }
+    stop.request();
+    sigwait(&signals_, &signal);
+    if (!over_) {
+      std::_Exit(128 + signal);
+    }
+  }
+
+  sigset_t signals_{};
+  sigset_t before_{};
+  std::atomic<bool> over_{false};
+  std::thread thread_;
+};
+
+} // namespace detail
+
+/// Reads the arguments of a program and runs its machine.
+class Program {
+public:
+  /// Ends the program with 2 where the arguments make no sense.
+  Program(int count, char **arguments) {
+    for (int i = 1; i < count; ++i) {
+      if (std::strcmp(arguments[i], "--trace") != 0 || i + 1 == count) {
+        std::fprintf(stderr, "usage: %s [--trace FILE]\n", arguments[0]);
+        std::exit(2);
+      }
+      trace_ = arguments[++i];
+    }
+  }
+
+  /// Runs a machine, called with an Observer * and a Stop &, prints the name of the outcome that it
+  /// returns, and is what `main` returns: 0, or 1 where a state threw or the trace was not written.
+  template <class Machine> int run(Machine machine) {
+    std::FILE *file = nullptr;
+    if (trace_ != nullptr) {
+      file = std::fopen(trace_, "w");
+      if (file == nullptr) {
+        std::perror(trace_);
+        return 1;
+      }
+    }
+    TraceWriter writer(file);
+    int code = ended(machine, file != nullptr ? &writer : nullptr);
+    if (file != nullptr) {
+      const bool bad = std::ferror(file) != 0;
+      if (std::fclose(file) != 0 || bad) {
+        std::fprintf(stderr, "%s: not all of the trace was written\n", trace_);
+        code = 1;
+      }
+    }
+    return code;
+  }
+
+private:
+  template <class Machine> int ended(Machine &machine, Observer *observer) {
+    Stop stop;
+    const detail::Listener listener(stop);
+#if defined(__cpp_exceptions)
+    try {
+      std::printf("outcome: %s\n", machine(observer, stop));
+    } catch (const std::exception &error) {
+      std::fprintf(stderr, "error: %s\n", error.what());
+      return 1;
+    }
+#else
+    std::printf("outcome: %s\n", machine(observer, stop));
+#endif
+    return 0;
+  }
+
+  const char *trace_ = nullptr;
+};
+
+} // namespace smachac
+
+#endif

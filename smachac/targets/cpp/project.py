@@ -1,0 +1,197 @@
+"""What is printed beside a header by option: main.cpp, a CMake project, a package of ROS 2."""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Mapping
+from dataclasses import dataclass
+
+from smachac.ir.nodes import Machine
+from smachac.targets import Files, OptionError, made_by, stem
+from smachac.targets.cpp.plan import scope_name
+
+OPTIONS = {
+    "main": "true: also main.cpp, a program that runs the machine once",
+    "cmake": "true: also CMakeLists.txt, a library that find_package finds",
+    "package": "NAME: a package for colcon (ament_cmake), the header in include/NAME",
+}
+
+RUNTIME = ("values.hpp", "smachac.hpp")
+"""The headers of smachac that every machine includes."""
+RUNTIME_PARTS = ("arm.hpp", "program.hpp")
+"""Those that some do; each includes only RUNTIME."""
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Project:
+    """What is wanted beside a header; `package` is the name of an ament package, or empty."""
+
+    main: bool = False
+    cmake: bool = False
+    package: str = ""
+
+    def path(self, file: str) -> str:
+        """Where the header goes."""
+        return f"include/{self.package}/{file}" if self.package else file
+
+
+def project(options: Mapping[str, str]) -> Project:
+    """What options ask for. Raises OptionError."""
+    package = options.get("package", "")
+    if package and not re.fullmatch(r"[a-z][a-z0-9_]*", package):
+        raise OptionError(f"package is a name in lower case, letters first, not `{package}`")
+    return Project(main=_truth(options, "main"), cmake=_truth(options, "cmake"), package=package)
+
+
+def _truth(options: Mapping[str, str], name: str) -> bool:
+    value = options.get(name, "false")
+    if value not in ("true", "false"):
+        raise OptionError(f"{name} is `true` or `false`, not `{value}`")
+    return value == "true"
+
+
+def runtime(files: Files) -> dict[str, str]:
+    """The headers of smachac that files include, as paths under smachac/runtime."""
+    root = "include/" if any(name.startswith("include/") for name in files) else ""
+    text = "".join(files.values())
+    parts = [part for part in RUNTIME_PARTS if f'#include "smachac/{part}"' in text]
+    return {f"{root}smachac/{name}": f"cpp/smachac/{name}" for name in (*RUNTIME, *parts)}
+
+
+def project_files(machine: Machine, wanted: Project, parameters: tuple[str, ...]) -> Files:
+    """The files beside the header; `parameters` are those of the machine's States.
+
+    Raises OptionError where no program can be printed.
+    """
+    files: Files = {}
+    name = stem(machine)
+    if wanted.main:
+        if parameters:
+            told = " and ".join(f"`{each}`" for each in parameters)
+            raise OptionError(f"main: its states are made with {told}, so write main.cpp yourself")
+        folder = "src/" if wanted.package else ""
+        files[f"{folder}main.cpp"] = _main(machine, f"{wanted.package}/" if wanted.package else "")
+    if wanted.package:
+        files["CMakeLists.txt"] = _ament(machine, wanted)
+        files["package.xml"] = _package(machine, wanted.package)
+    elif wanted.cmake:
+        files["CMakeLists.txt"] = _cmake(machine, name, wanted)
+    return files
+
+
+def _main(machine: Machine, folder: str) -> str:
+    scope = scope_name(machine.root.name)
+    return f"""\
+// {made_by(machine)}
+#include "{folder}{stem(machine)}.hpp"
+#include "smachac/program.hpp"
+
+int main(int count, char **arguments) {{
+  smachac::Program program(count, arguments);
+  {scope}::States states;
+  {scope}::Userdata userdata;
+  return program.run([&](smachac::Observer *observer, smachac::Stop &stop) {{
+    return {scope}::name({scope}::run(states, userdata, observer, stop));
+  }});
+}}
+"""
+
+
+def _cmake(machine: Machine, name: str, wanted: Project) -> str:
+    program = (
+        f"\nadd_executable({name}_main main.cpp)\n"
+        f"set_target_properties({name}_main PROPERTIES OUTPUT_NAME {name})\n"
+        f"target_link_libraries({name}_main PRIVATE {name})\n"
+        f"install(TARGETS {name}_main)\n"
+        if wanted.main
+        else ""
+    )
+    return f"""\
+# {made_by(machine)}
+cmake_minimum_required(VERSION 3.14)
+project({name} LANGUAGES CXX)
+
+include(GNUInstallDirs)
+find_package(Threads REQUIRED)
+
+# find_package({name}) and target_link_libraries(... {name}::{name}) bring the header.
+add_library({name} INTERFACE)
+add_library({name}::{name} ALIAS {name})
+target_compile_features({name} INTERFACE cxx_std_17)
+target_link_libraries({name} INTERFACE Threads::Threads)
+target_include_directories({name} INTERFACE
+  $<BUILD_INTERFACE:${{CMAKE_CURRENT_SOURCE_DIR}}>
+  $<INSTALL_INTERFACE:${{CMAKE_INSTALL_INCLUDEDIR}}/{name}>)
+{program}
+install(FILES {name}.hpp DESTINATION ${{CMAKE_INSTALL_INCLUDEDIR}}/{name})
+install(DIRECTORY smachac DESTINATION ${{CMAKE_INSTALL_INCLUDEDIR}}/{name})
+install(TARGETS {name} EXPORT {name}Targets)
+install(EXPORT {name}Targets NAMESPACE {name}::
+  DESTINATION ${{CMAKE_INSTALL_LIBDIR}}/cmake/{name})
+file(WRITE ${{CMAKE_CURRENT_BINARY_DIR}}/{name}Config.cmake
+"include(CMakeFindDependencyMacro)
+find_dependency(Threads)
+include(\\${{CMAKE_CURRENT_LIST_DIR}}/{name}Targets.cmake)
+")
+install(FILES ${{CMAKE_CURRENT_BINARY_DIR}}/{name}Config.cmake
+  DESTINATION ${{CMAKE_INSTALL_LIBDIR}}/cmake/{name})
+"""
+
+
+def _ament(machine: Machine, wanted: Project) -> str:
+    name, program = wanted.package, ""
+    if wanted.main:
+        program = (
+            f"\nadd_executable({name}_main src/main.cpp)\n"
+            f"set_target_properties({name}_main PROPERTIES OUTPUT_NAME {stem(machine)})\n"
+            f"target_link_libraries({name}_main PRIVATE {name})\n"
+            f"install(TARGETS {name}_main DESTINATION lib/{name})\n"
+        )
+    return f"""\
+# {made_by(machine)}
+cmake_minimum_required(VERSION 3.14)
+project({name} LANGUAGES CXX)
+
+find_package(ament_cmake REQUIRED)
+find_package(Threads REQUIRED)
+
+add_library({name} INTERFACE)
+target_compile_features({name} INTERFACE cxx_std_17)
+target_link_libraries({name} INTERFACE Threads::Threads)
+target_include_directories({name} INTERFACE
+  $<BUILD_INTERFACE:${{CMAKE_CURRENT_SOURCE_DIR}}/include>
+  $<INSTALL_INTERFACE:include/{name}>)
+{program}
+install(DIRECTORY include/ DESTINATION include/{name})
+install(TARGETS {name} EXPORT export_{name})
+ament_export_targets(export_{name})
+ament_export_dependencies(Threads)
+ament_package()
+"""
+
+
+def _package(machine: Machine, name: str) -> str:
+    return f"""\
+<?xml version="1.0"?>
+<!-- {made_by(machine)} -->
+<package format="3">
+  <name>{name}</name>
+  <version>0.0.0</version>
+  <description>{_escaped(_summary(machine))}</description>
+  <maintainer email="todo@example.com">TODO: who keeps it</maintainer>
+  <license>TODO: its license</license>
+  <buildtool_depend>ament_cmake</buildtool_depend>
+  <export>
+    <build_type>ament_cmake</build_type>
+  </export>
+</package>
+"""
+
+
+def _summary(machine: Machine) -> str:
+    lines = machine.root.doc.split("\n")
+    return lines[0] or f"The state machine {machine.root.name}."
+
+
+def _escaped(text: str) -> str:
+    return text.replace("&", "&amp;").replace("<", "&lt;").replace(">", "&gt;")
