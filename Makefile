@@ -8,10 +8,10 @@ SMACHAC := .venv/bin/smachac
 DEMO := examples/08_pick_and_place/main.yml
 
 .DEFAULT_GOAL := help
-.PHONY: help demo test check golden docs bench build clean
+.PHONY: help demo test test-ros check golden docs bench build clean
 
 help: ## Print this list
-	@awk -F ':.*## ' '/^[a-z]+:.*## / {printf "  make %-8s %s\n", $$1, $$2}' Makefile
+	@awk -F ':.*## ' '/^[a-z-]+:.*## / {printf "  make %-8s %s\n", $$1, $$2}' Makefile
 
 demo: ## From YAML to a robot that moves: compile, check, simulate, draw; everything lands in out/
 	@scripts/setup.sh sim
@@ -22,9 +22,14 @@ demo: ## From YAML to a robot that moves: compile, check, simulate, draw; everyt
 	@if command -v dot >/dev/null; then for graph in out/*.dot; do dot -Tsvg "$$graph" -o "$${graph%.dot}.svg" || exit; done; fi
 	@ls -l out/
 
-test: ## Run all tests; ARGS="-k trace" narrows them
+test: ## Run all tests but those of live ROS; ARGS="-k trace" narrows them
 	@scripts/setup.sh dev
-	$(RUN) pytest -n auto --maxprocesses 8 $(ARGS)
+	$(RUN) pytest -n auto --maxprocesses 8 -m "not ros" $(ARGS)
+
+test-ros: ## Install ROS from Debian and run the tests that need it live
+	@scripts/setup.sh dev
+	@scripts/setup.sh ros
+	$(RUN) pytest -n auto --maxprocesses 8 -m ros $(ARGS)
 
 check: ## Lint, formatting and types; a warning fails
 	@scripts/setup.sh dev

@@ -4,10 +4,12 @@ from __future__ import annotations
 
 import os
 import signal
-from collections.abc import Generator
+from collections.abc import Generator, Iterator
+from pathlib import Path
 
 import pytest
 from hypothesis import settings
+from live import Graph, missing
 
 # A shell starts what it puts in the background deaf to Ctrl-C, which tests send and raise.
 if signal.getsignal(signal.SIGINT) is signal.SIG_IGN:
@@ -17,22 +19,27 @@ settings.register_profile("repeatable", derandomize=True, deadline=None, print_b
 settings.load_profile("repeatable")
 
 
-def _fail_if_skipped(report: pytest.TestReport | pytest.CollectReport) -> None:
-    """Turn a skip into a failure where `SMACHAC_REQUIRE_ALL` says that nothing may be missing."""
-    if report.outcome != "skipped" or not os.environ.get("SMACHAC_REQUIRE_ALL"):
+def _fail_if_skipped(
+    report: pytest.TestReport | pytest.CollectReport, demand: str = "SMACHAC_REQUIRE_ALL"
+) -> None:
+    """Turn a skip into a failure where the variable `demand` says that nothing may be missing."""
+    if report.outcome != "skipped" or not os.environ.get(demand):
         return
     if hasattr(report, "wasxfail"):
         return
     reason = report.longrepr[2] if isinstance(report.longrepr, tuple) else report.longrepr
     report.outcome = "failed"
-    report.longrepr = f"{reason} (SMACHAC_REQUIRE_ALL is set: a skip fails)"
+    report.longrepr = f"{reason} ({demand} is set: a skip fails)"
 
 
 @pytest.hookimpl(wrapper=True)
-def pytest_runtest_makereport() -> Generator[None, pytest.TestReport, pytest.TestReport]:
-    """Judge the skip of one test."""
+def pytest_runtest_makereport(
+    item: pytest.Item,
+) -> Generator[None, pytest.TestReport, pytest.TestReport]:
+    """Judge the skip of one test; ROS is asked for on its own."""
     report = yield
-    _fail_if_skipped(report)
+    live = item.get_closest_marker("ros") is not None
+    _fail_if_skipped(report, "SMACHAC_REQUIRE_ROS" if live else "SMACHAC_REQUIRE_ALL")
     return report
 
 
@@ -42,3 +49,15 @@ def pytest_make_collect_report() -> Generator[None, pytest.CollectReport, pytest
     report = yield
     _fail_if_skipped(report)
     return report
+
+
+@pytest.fixture
+def graph(tmp_path: Path) -> Iterator[Graph]:
+    """A ROS graph that nobody else uses; without ROS the test is skipped."""
+    if missing():
+        pytest.skip(f"ROS is not there ({missing()}): make test-ros")
+    live = Graph(tmp_path)
+    try:
+        yield live
+    finally:
+        live.stop()

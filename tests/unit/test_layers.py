@@ -52,7 +52,7 @@ WITHIN = {
 """The imports, as (who, whom), that are allowed inside one row."""
 
 ASIDE: Mapping[str, frozenset[str]] = {
-    "runtime": frozenset(),
+    "runtime": frozenset({"rospy", "rosgraph", "actionlib", "actionlib_msgs", "genpy"}),
     "sim": frozenset({"pybullet", "pybullet_data", "numpy", "PIL", "imageio_ffmpeg"}),
 }
 """What generated code stands on, with the packages it may import; no other part of ours."""

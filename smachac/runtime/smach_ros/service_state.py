@@ -1,0 +1,157 @@
+"""ServiceState: one call of a service."""
+
+from __future__ import annotations
+
+import copy
+import threading
+import traceback
+from collections.abc import Callable, Iterable, Mapping
+from typing import Any
+
+from smachac.runtime import smach
+from smachac.runtime.smach import has_smach_interface
+
+from .waiting import RosState, callback, check_slots, is_outcome
+
+CONTACT = 0.1
+"""Seconds for one try to reach a service; rospy rests 0.3 s after each."""
+
+
+class ServiceState(RosState):
+    """Waits for a service and calls it; ends as succeeded, aborted or preempted.
+
+    The request is `request` or an empty one, replaced by what is under `request_key`, its fields
+    `request_slots` set from the keys of the same names, then given to `request_cb(userdata,
+    request)`, which changes it or returns another. A key that is absent, a callback that raises
+    and a call that fails end the state as aborted.
+
+    `response_cb(userdata, response)` may return an outcome; the response goes to `response_key`,
+    its fields `response_slots` to the keys of the same names.
+    """
+
+    def __init__(
+        self,
+        service_name: str,
+        service_spec: Any,
+        request: Any = None,
+        request_cb: Callable[..., Any] | None = None,
+        request_cb_args: Iterable[Any] = (),
+        request_cb_kwargs: Mapping[str, Any] | None = None,
+        request_key: str | None = None,
+        request_slots: Iterable[str] = (),
+        response_cb: Callable[..., Any] | None = None,
+        response_cb_args: Iterable[Any] = (),
+        response_cb_kwargs: Mapping[str, Any] | None = None,
+        response_key: str | None = None,
+        response_slots: Iterable[str] = (),
+        input_keys: Iterable[str] = (),
+        output_keys: Iterable[str] = (),
+        outcomes: Iterable[str] = (),
+    ) -> None:
+        super().__init__(["succeeded", "aborted", "preempted"])
+        self._name = service_name
+        self._type = service_spec
+        self._proxy: Any = None
+        self._request = service_spec._request_class() if request is None else request
+        self._request_key = request_key
+        self._response_key = response_key
+        self._request_slots = check_slots(request_slots, service_spec._request_class, "request")
+        self._response_slots = check_slots(response_slots, service_spec._response_class, "response")
+        keys = tuple(input_keys), tuple(output_keys)
+        self._request_cb = callback(
+            self, "request", request_cb, request_cb_args, request_cb_kwargs, keys
+        )
+        self._response_cb = callback(
+            self, "response", response_cb, response_cb_args, response_cb_kwargs, keys
+        )
+        if has_smach_interface(response_cb):
+            self.register_outcomes(response_cb.get_registered_outcomes())
+        self.register_outcomes(outcomes)
+        self.register_input_keys([*filter(None, [request_key]), *self._request_slots, *keys[0]])
+        self.register_output_keys([*filter(None, [response_key]), *self._response_slots, *keys[1]])
+
+    def execute(self, ud: Any, /) -> str:
+        """Call the service once."""
+        if self._preempted():
+            return "preempted"
+        if self._proxy is None:
+            self._wait(self._is_up)
+            if self._preempted():
+                return "preempted"
+            if self._rospy.is_shutdown():
+                return "aborted"
+            self._proxy = self._rospy.ServiceProxy(self._name, self._type)
+        request = self._fill_request(ud)
+        if request is None:
+            return "aborted"
+        try:
+            response = self._call(request)
+        except (self._rospy.ServiceException, self._rospy.ROSInterruptException) as error:
+            smach.logerr(f"the call of service '{self._name}' failed: {error}")
+            return "aborted"
+        return "aborted" if response is None else self._take_response(ud, response)
+
+    def _is_up(self) -> bool:
+        try:
+            self._rospy.wait_for_service(self._name, CONTACT)
+        except self._rospy.ROSException:
+            self._rospy.logwarn_throttle(5, f"waiting for service '{self._name}'")
+            return False
+        return True
+
+    def _call(self, request: Any) -> Any:
+        """What the service answers, None at a shutdown. Raises what rospy raises.
+
+        The call has a thread of its own, for rospy swallows Ctrl-C and goes on waiting.
+        """
+        answers: list[Any] = []
+        faults: list[Exception] = []
+
+        def call() -> None:
+            try:
+                answers.append(self._proxy(request))
+            except Exception as error:
+                faults.append(error)
+            self._tell()
+
+        threading.Thread(target=call, name=f"call of {self._name}", daemon=True).start()
+        self._wait(lambda: bool(answers or faults), stopped=self._rospy.is_shutdown)
+        for fault in faults:
+            raise fault
+        return answers[0] if answers else None
+
+    def _fill_request(self, ud: Any) -> Any:
+        """The request to send, None if the userdata or the callback is at fault."""
+        wanted = [*filter(None, [self._request_key]), *self._request_slots]
+        absent = [key for key in wanted if key not in ud]
+        if absent:
+            smach.logerr(f"service '{self._name}' is not called: keys {absent} are absent")
+            return None
+        request = copy.copy(self._request if self._request_key is None else ud[self._request_key])
+        for slot in self._request_slots:
+            setattr(request, slot, ud[slot])
+        if self._request_cb is not None:
+            try:
+                other = self._request_cb(ud, request)
+            except Exception:
+                smach.logerr(f"the request callback failed:\n{traceback.format_exc()}")
+                return None
+            request = request if other is None else other
+        return request
+
+    def _take_response(self, ud: Any, response: Any) -> str:
+        """Hand the response to the user; the outcome."""
+        outcome = None
+        if self._response_cb is not None:
+            try:
+                outcome = self._response_cb(ud, response)
+            except Exception:
+                smach.logerr(f"the response callback failed:\n{traceback.format_exc()}")
+                return "aborted"
+            if outcome is not None and not is_outcome(self, outcome, self._name):
+                return "aborted"
+        if self._response_key is not None:
+            ud[self._response_key] = response
+        for slot in self._response_slots:
+            ud[slot] = getattr(response, slot)
+        return "succeeded" if outcome is None else outcome

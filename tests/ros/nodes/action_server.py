@@ -1,0 +1,60 @@
+"""An action server whose goals tell it what to do; see `WORK`."""
+
+from __future__ import annotations
+
+import os
+import threading
+
+import actionlib
+import rospy
+from actionlib.msg import TestAction, TestFeedback, TestGoal, TestResult
+
+CANCELLED = threading.Event()
+
+
+def succeed() -> None:
+    server.set_succeeded(TestResult(result=42))
+
+
+def abort() -> None:
+    server.set_aborted(TestResult(result=7))
+
+
+def until_cancelled() -> None:
+    server.publish_feedback(TestFeedback(feedback=41))
+    CANCELLED.wait()
+    print("cancelled")
+    server.set_preempted(TestResult(result=3))
+
+
+def deaf() -> None:
+    CANCELLED.wait()
+    print("cancelled")
+    threading.Event().wait()
+
+
+def crash() -> None:
+    os._exit(1)
+
+
+def preempt_itself() -> None:
+    server.set_preempted(TestResult(result=6))
+
+
+WORK = {1: succeed, 2: abort, 3: until_cancelled, 4: deaf, 5: crash, 6: preempt_itself}
+
+
+def execute(goal: TestGoal) -> None:
+    CANCELLED.clear()
+    print(f"goal {goal.goal}")
+    if server.is_preempt_requested():
+        CANCELLED.set()
+    WORK[goal.goal]()
+
+
+rospy.init_node("action_server")
+server = actionlib.SimpleActionServer("work", TestAction, execute, auto_start=False)
+server.register_preempt_callback(CANCELLED.set)
+server.start()
+print("ready")
+rospy.spin()

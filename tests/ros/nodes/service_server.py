@@ -1,0 +1,35 @@
+"""Services that answer, raise, crash and hang."""
+
+from __future__ import annotations
+
+import os
+import threading
+from typing import Any
+
+import rospy
+from std_srvs.srv import SetBool, SetBoolResponse
+
+
+def answer(request: Any) -> Any:
+    return SetBoolResponse(success=request.data, message="yes" if request.data else "no")
+
+
+def fail(request: Any) -> Any:
+    raise ValueError("not today")
+
+
+def crash(request: Any) -> Any:
+    print("called", flush=True)
+    os._exit(1)
+
+
+def hang(request: Any) -> Any:
+    print("called", flush=True)
+    threading.Event().wait()
+
+
+rospy.init_node("service_server")
+for service in (answer, fail, crash, hang):
+    rospy.Service(service.__name__, SetBool, service)
+print("ready")
+rospy.spin()

@@ -1,0 +1,167 @@
+"""IntrospectionServer, heard and ordered about by another node."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import pytest
+from live import Graph, Program
+
+pytestmark = pytest.mark.ros
+
+PROGRAM = """
+import threading
+import client
+from smachac.runtime import smach, smach_ros
+
+class Step(smach.State):
+    def __init__(self):
+        super().__init__(["done"], input_keys=["seen"])
+
+    def execute(self, userdata):
+        print("at", userdata.seen)
+        client.wait_for_line()
+        return "done"
+
+client.node()
+top = smach.StateMachine(["finished"])
+inner = smach.StateMachine(["done"], input_keys=["seen"])
+both = smach.Concurrence(["done"], "done", input_keys=["seen"])
+top.userdata.seen = "first"
+top.userdata.odd = threading.Lock()
+with top:
+    smach.StateMachine.add("ONE", Step(), {{"done": "INNER"}})
+    with inner:
+        smach.StateMachine.add("TWO", Step())
+        smach.StateMachine.add("THREE", Step())
+    smach.StateMachine.add("INNER", inner, {{"done": "BOTH"}})
+    with both:
+        smach.Concurrence.add("LEFT", Step())
+    smach.StateMachine.add("BOTH", both, {{"done": "finished"}})
+server = smach_ros.IntrospectionServer("sis", top, "/ROOT"{arguments})
+server.start()
+client.again(top)
+client.wait_for_line()
+server.stop()
+client.again(top)
+"""
+
+
+def started(graph: Graph, arguments: str = "") -> Program:
+    """The program in its first state."""
+    program = graph.start(PROGRAM.format(arguments=arguments))
+    program.expect("at first")
+    return program
+
+
+def test_a_late_subscriber_is_told_the_structure_of_all_containers(graph: Graph) -> None:
+    started(graph)
+    observer = graph.node("observer")
+    assert observer.expect("structure /ROOT ") == (
+        "structure /ROOT ['ONE', 'INNER', 'BOTH'] [('done', 'ONE', 'INNER'), "
+        "('done', 'INNER', 'BOTH'), ('done', 'BOTH', 'finished')] ['finished']"
+    )
+    assert observer.expect("structure /ROOT/INNER ") == (
+        "structure /ROOT/INNER ['TWO', 'THREE'] [('done', 'TWO', 'None'), "
+        "('done', 'THREE', 'None')] ['done']"
+    )
+    assert observer.expect("structure /ROOT/BOTH ") == ("structure /ROOT/BOTH ['LEFT'] [] ['done']")
+
+
+def test_starts_transitions_and_ends_are_told(graph: Graph) -> None:
+    program = started(graph)
+    observer = graph.node("observer")
+    told = observer.expect("status /ROOT ")
+    assert told.startswith("status /ROOT ['ONE'] ['ONE'] {'seen': 'first', 'odd': '<unlocked _th")
+    program.say("on")
+    assert "['ONE'] ['INNER']" in observer.expect("status /ROOT ['ONE'] ['INNER']")
+    observer.expect("status /ROOT/INNER ['TWO'] ['TWO'] {'seen': 'first'}")
+    program.expect("at first")
+    program.say("on")
+    observer.expect("status /ROOT/INNER ['TWO'] ['None']")
+    observer.expect("status /ROOT ['ONE'] ['BOTH']")
+    observer.expect("status /ROOT/BOTH ['LEFT'] ['LEFT']")
+    program.expect("at first")
+    program.say("on")
+    observer.expect("status /ROOT/BOTH ['LEFT'] []")
+    observer.expect("status /ROOT ['ONE'] ['None']")
+    program.expect("outcome: finished")
+
+
+def test_an_order_moves_the_start_but_what_came_pickled_is_dropped(
+    graph: Graph, tmp_path: Path
+) -> None:
+    program = started(graph)
+    observer = graph.node("observer")
+    trap = tmp_path / "trap"
+    observer = graph.node("observer", str(trap))
+    observer.say("/ROOT/INNER THREE bomb")
+    program.expect("unpickling it may run any code")
+    observer.expect("REMOTE_INIT")
+    program.say("on")
+    observer.expect("status /ROOT/INNER ['THREE'] ['THREE'] {'seen': 'first'}")
+    assert not trap.exists()
+
+
+def test_an_order_to_start_in_no_state_of_the_container_is_refused(graph: Graph) -> None:
+    program = started(graph)
+    observer = graph.node("observer")
+    observer.say("/ROOT/INNER ONE data")
+    program.expect("container '/ROOT/INNER' has no states ['ONE'] to start in")
+    program.say("on")
+    assert observer.expect("['ONE'] ['INNER']")
+    assert observer.expect("status /ROOT/INNER ['TWO'] ['TWO']")
+
+
+def test_userdata_of_an_order_is_taken_when_that_is_asked_for(graph: Graph) -> None:
+    program = started(graph, ", unpickle=True")
+    observer = graph.node("observer")
+    observer.say("/ROOT INNER data")
+    observer.expect("status /ROOT ['INNER']")
+    program.say("on")
+    assert program.expect("at told")
+
+
+def test_a_server_that_is_stopped_is_silent_and_the_machine_runs_on(graph: Graph) -> None:
+    program = started(graph)
+    for _ in range(3):
+        program.say("on")
+        program.expect("at first" if _ < 2 else "outcome: finished")
+    program.say("stop")
+    program.expect("at first")
+    assert not [name for name, _ in graph.ask("getSystemState")[0] if name.startswith("/sis")]
+    for _ in range(3):
+        program.say("on")
+        program.expect("at first" if _ < 2 else "outcome: finished")
+    assert program.end() == 0
+
+
+MESSAGES = """
+import client
+from smachac.runtime.smach_ros import messages
+
+for make in (
+    messages.container_status, messages.container_structure, messages.initial_status_command
+):
+    print(make()._type, make()._md5sum, make()._has_header)
+"""
+
+
+@pytest.mark.parametrize(
+    "line",
+    [
+        "smach_msgs/SmachContainerStatus 5ba2bb79ac19e3842d562a191f2a675b True",
+        "smach_msgs/SmachContainerStructure 3d3d1e0d0f99779ee9e58101a5dcf7ea True",
+        "smach_msgs/SmachContainerInitialStatusCmd 45f8cf31fc29b829db77f23001f788d6 False",
+    ],
+)
+def test_messages_are_those_of_smach_msgs(graph: Graph, line: str) -> None:
+    assert line in graph.run(MESSAGES)
+
+
+def test_a_leaf_has_nothing_to_look_into(graph: Graph) -> None:
+    text = "from smachac.runtime import smach, smach_ros\n"
+    text += "smach_ros.IntrospectionServer('sis', smach.State(['done']), '/ROOT').start()\n"
+    program = graph.start(text)
+    assert program.end() == 1
+    assert "InvalidStateError: a State has nothing to look into" in program.output
