@@ -29,7 +29,7 @@ test: ## Run all tests but those of live ROS; ARGS="-k trace" narrows them
 test-ros: ## Install ROS from Debian and run the tests that need it live
 	@scripts/setup.sh dev
 	@scripts/setup.sh ros
-	$(RUN) pytest -n auto --maxprocesses 8 -m ros $(ARGS)
+	$(RUN) pytest -n 4 -m ros $(ARGS)
 
 check: ## Lint, formatting and types; a warning fails
 	@scripts/setup.sh dev
