@@ -2,8 +2,8 @@
 
     python bench/fuzz.py [count] [--seed N] [--jobs N] [--only INDEX]
 
-Each input is read, judged by every rule and reported; one in four that are without error is
-printed by every target, one in eight interpreted. An exception that escapes is a find, and so are
+Each input is read, judged by every rule and reported, one in four laid out; one in four that are
+without error is printed by every target, one in eight interpreted. An exception that escapes is a find, and so are
 more than 2 s of CPU time for one input, and more than 500 MB of memory for a whole process.
 Input `INDEX` of a seed is always the same text: `--only INDEX` shows it and what happens.
 Ends with 1 if there is a find. Unix only.
@@ -30,6 +30,7 @@ from smachac.driver import analyse, analyse_alone, build, memory_library
 from smachac.files import disk_library
 from smachac.ir.behaviours import built_in
 from smachac.ir.run import run
+from smachac.refactor.layout import laid_out
 from smachac.report.explain import explanation
 from smachac.report.github import render_github
 from smachac.report.json import render_json
@@ -227,6 +228,8 @@ def tried(files: Mapping[str, str], index: int) -> str:
     analysis = analyse(source, library, [])
     render_text(analysis.report)
     FORMATS[index % len(FORMATS)](analysis.report)
+    if index % 4 == 2:
+        arranged(source)
     for name in texts:
         if index % 8 == 0 and name.endswith(".yml") and "/" not in name:
             analyse_alone(Source(name, files[name]), library, [])
@@ -238,6 +241,13 @@ def tried(files: Mapping[str, str], index: int) -> str:
     if index % 8 == 1:
         run(analysis.checked, built_in(), max_steps=300)
     return "checked"
+
+
+def arranged(source: Source) -> None:
+    """Laid out: that is a text with nothing left to be laid out."""
+    new = laid_out(source) if memory_library({}, BUILT_IN).parse(source, []) is not None else None
+    if new is not None:
+        assert laid_out(Source(source.name, new)) == new, "laid out twice is something else"
 
 
 def printed(machine: Any, library: Library, ours: bool) -> None:

@@ -21,17 +21,24 @@ COLOURS = {
 }
 """SGR parameters (ECMA-48, 8.3.117) of each style."""
 
+MOST_FINDINGS = 1000
+
 MOST_STEPS = 16
 """Longer witness paths lose their middle."""
 
 
 def render_text(report: Report, *, colour: bool = False, width: int = 100) -> str:
-    """The findings one after the other, with an empty line between; empty for none.
+    """The findings one after the other, with an empty line between; empty for none. Of very many
+    only the first: nobody reads more, and other formats have them all.
 
     `width` is that of the terminal in columns: it bounds lines of the source, not messages.
     Nothing in the texts of the user can steer the terminal.
     """
-    return "\n".join(_rendered(item, colour=colour, width=width) for item in report)
+    texts = [_rendered(item, colour=colour, width=width) for item in report[:MOST_FINDINGS]]
+    more = len(report) - len(texts)
+    if more:
+        texts.append(f"... and {more:,} findings more: `--format json` has all\n")
+    return "\n".join(texts)
 
 
 def summary(report: Report) -> str:

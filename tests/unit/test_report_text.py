@@ -11,7 +11,7 @@ from hypothesis import strategies as st
 
 from smachac.diagnostics import Code, Diagnostic, Finding, Related, Severity
 from smachac.report.cells import columns, lay_out, visible
-from smachac.report.text import render_text, steps, summary
+from smachac.report.text import MOST_FINDINGS, render_text, steps, summary
 from smachac.source import NOWHERE, Source, Span
 
 SCRIPT = Source(
@@ -77,6 +77,15 @@ def test_findings_are_set_apart_by_an_empty_line() -> None:
     one = finding(place("name"))
     assert shown(one, one) == shown(one) + "\n" + shown(one)
     assert shown() == ""
+
+
+def test_of_very_many_findings_only_the_first_are_printed() -> None:
+    one = finding(place("name"))
+    assert shown(*[one] * MOST_FINDINGS).count("error[SM101]") == MOST_FINDINGS
+    text = shown(*[one] * (MOST_FINDINGS + 1234))
+    assert text.startswith(shown(*[one] * MOST_FINDINGS))
+    assert text.endswith("| ^^^^\n\n... and 1,234 findings more: `--format json` has all\n")
+    assert text.count("error[SM101]") == MOST_FINDINGS
 
 
 def test_near_places_share_a_snippet_and_others_follow() -> None:
