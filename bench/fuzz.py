@@ -3,8 +3,9 @@
     python bench/fuzz.py [count] [--seed N] [--jobs N] [--only INDEX]
 
 Each input is read, judged by every rule and reported, one in four laid out; one in four that are
-without error is printed by every target, one in eight interpreted. An exception that escapes is a find, and so are
-more than 2 s of CPU time for one input, and more than 500 MB of memory for a whole process.
+without error is printed by every target, one in eight interpreted. An exception that escapes
+is a find, and so are more than 2 s of CPU time for one input, and more than 500 MB of memory for a
+whole process.
 Input `INDEX` of a seed is always the same text: `--only INDEX` shows it and what happens.
 Ends with 1 if there is a find. Unix only.
 """
