@@ -65,6 +65,7 @@ def lower(script: Script) -> Machine:
         source=PurePath(script.sources[0].name).name,
         digest=digest.hexdigest(),
         robot=script.robot,
+        unused=script.unused,
     )
 
 

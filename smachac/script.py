@@ -9,8 +9,8 @@ from dataclasses import dataclass, field
 
 from smachac import problems, schema, shapes
 from smachac.calls import overridden, sub_script_state
-from smachac.diagnostics import Related, Report, did_you_mean
-from smachac.ir.nodes import Key, Outcome
+from smachac.diagnostics import Related, Report
+from smachac.ir.nodes import Unused
 from smachac.ir.robots import Robot
 from smachac.lookups import (
     MAX_FILLED,
@@ -25,14 +25,17 @@ from smachac.lookups import (
 from smachac.robots import robot_of
 from smachac.source import Source, Span, Word
 from smachac.states import Library, StateType, find_state_type
-from smachac.sugar import check_sugar
 from smachac.syntax import Entry, Map, Scalar, Seq, Tree, known_wrong
 from smachac.typed import Aliases, read_aliases, typed
+from smachac.unused import Mark, Uses
+from smachac.variables import check_variables
 
 MAX_STATES = 1_000_000
 MAX_NESTED = 1_000
 """The most states a script may have once its sub-scripts are called, and the most containers
 inside one another."""
+
+CALLED_HERE = "in the sub-script called here"
 
 Fields = Mapping[str, Entry]
 """Variables by long name; the entry's key is where the name stands."""
@@ -61,6 +64,7 @@ class Script:
     base: State
     sources: tuple[Source, ...]
     robot: Robot | None = None
+    unused: tuple[Unused, ...] = ()
 
 
 @dataclass(frozen=True, slots=True)
@@ -117,6 +121,7 @@ class _Resolver:
         self.types: dict[str, StateType | None] = {}
         self.sub_scripts: dict[tuple[str, str], tuple[Source, Tree | None] | None] = {}
         self.count = self.looked_up = 0
+        self.uses = Uses()
 
     def script(self, source: Source, tree: Map) -> Script:
         self.sources[id(source)] = source
@@ -128,7 +133,14 @@ class _Resolver:
         start = tree.entries[0].key.span if tree.entries else tree.span
         base = self.state(name or Word("sm", start), fields, _Place(source), "base")
         robot = robot_of(base.fields, base.type, source, self.library, self.report)
-        return Script(base=base, sources=tuple(self.sources.values()), robot=robot)
+        if "types" in fields:
+            self.uses.aliases(fields["types"].value, self.report)
+        return Script(
+            base=base,
+            sources=tuple(self.sources.values()),
+            robot=robot,
+            unused=self.uses.judged(self.report),
+        )
 
     def expand(self, entries: tuple[Entry, ...]) -> dict[str, Entry]:
         """Entries by long name."""
@@ -143,22 +155,35 @@ class _Resolver:
                 self.report.append(problems.duplicate_key(word, first.key.span))
         return fields
 
-    def state(self, name: Word, own: dict[str, Entry], place: _Place, role: str = "") -> State:
-        """A state from its variables; `role` is "base" for the script itself."""
+    def state(
+        self,
+        name: Word,
+        own: dict[str, Entry],
+        place: _Place,
+        role: str = "",
+        begin: Mark | None = None,
+    ) -> State:
+        """A state from its variables; `role` is "base" for the script itself, `begin` where a
+        call of it was met."""
         if "params" in own:
             own["params"] = self.shallow(own["params"])
         params = own.get("params")
+        begin = begin or self.uses.mark(self.report)
+        for key, entry in own.items():
+            if key != "states":
+                self.uses.value(key, entry.value)
         scope = child_scope(place.scope, params.value if params else None, self.report)
-        holder = place.inner or name
+        called = place
         place = _Place(place.source, scope, place.calls, place.depth + 1)
         fields = {
             key: entry if key in ("params", "states") else self.filled(key, entry, scope)
             for key, entry in own.items()
         }
-        type_, owner = self.type_of(holder, fields, role)
+        type_, owner = self.type_of(name, fields, role, called)
+        self.uses.type(type_)
         if role != "base":
             self.count += 1
-        self.check_variables(name, fields, owner, type_)
+        check_variables(name, fields, owner, type_, called.inner, self.report)
         children: tuple[State, ...] = ()
         if "states" in fields and place.depth > MAX_NESTED:
             message = f"more than {MAX_NESTED} containers stand inside one another here"
@@ -168,6 +193,7 @@ class _Resolver:
             children = self.children(fields["states"].value, place)
             if owner == "Iterator":
                 self.check_iterated(children)
+        self.uses.params(params, begin, self.report, place.via)
         return State(
             name=name, owner=owner, type=type_, fields=fields, states=children, via=place.via
         )
@@ -266,9 +292,11 @@ class _Resolver:
 
     def called(self, name: Word, own: dict[str, Entry], place: _Place) -> State:
         """The state itself or, when it calls a sub-script, what the sub-script makes of it."""
+        begin = self.uses.mark(self.report)
         while "script" in own:
             entry = own.pop("script")
             scope = child_scope(place.scope, own["params"].value if "params" in own else None, [])
+            self.uses.value("script", entry.value)
             word = shapes.as_name(fill_in(entry.value, scope, self.report), self.report)
             found = self.sub_script(word, place) if word is not None and word.text else None
             if found is None:
@@ -278,7 +306,7 @@ class _Resolver:
             calls = (*place.calls, (source.name, call))
             place = _Place(source, place.scope, calls, place.depth, inner)
             own = overridden(self.expand(entries), own)
-        return self.state(name, own, place)
+        return self.state(name, own, place, begin=begin)
 
     def sub_script(
         self, word: Word, place: _Place
@@ -311,14 +339,20 @@ class _Resolver:
         found_state = sub_script_state(tree, word, self.report)
         return None if found_state is None else (source, *found_state)
 
-    def type_of(self, name: Word, fields: Fields, role: str) -> tuple[StateType, str]:
+    def type_of(
+        self, name: Word, fields: Fields, role: str, place: _Place
+    ) -> tuple[StateType, str]:
         """The state type a state names, and which variables of the schema are its own."""
         entry = fields.get("template")
         word = shapes.as_name(entry.value, self.report) if entry else None
         if entry is None and role == "base":
             word = Word("Base", name.span)
         if entry is None and role != "base":
-            self.report.append(problems.missing_variable(name.span, "template", f"`{name.text}`"))
+            held = place.inner or name
+            calls = place.via if place.inner is not None else ()
+            related = tuple(Related(span=each, message=CALLED_HERE) for each in calls)
+            whose = f"`{held.text}`"
+            self.report.append(problems.missing_variable(held.span, "template", whose, related))
         nested = "StateMachine" if "states" in fields else "state"
         if word is None or not word.text:
             return StateType(name="", open=True), role or nested
@@ -334,53 +368,6 @@ class _Resolver:
             return StateType(name=word.text, open=True), role or nested
         return found, role or ("StateMachine" if found.kind == "container" else nested)
 
-    def check_variables(self, name: Word, fields: Fields, owner: str, type_: StateType) -> None:
-        """SM003, SM004 and SM005 over the variables of one state."""
-        for key, entry in fields.items():
-            row = schema.VARIABLES.get(key)
-            if key in type_.variables:
-                shape = row.shape if row is not None else "value"
-            elif row is not None and owner in row.owners:
-                shape = row.shape
-            elif type_.open or "variables" in type_.given:
-                shape = "value"
-            else:
-                known = [*schema.names_for(owner), *type_.variables]
-                word = Word(str(entry.key.value), entry.key.span)
-                whose = f"state type `{type_.name}`" if owner == "state" else _called(owner)
-                self.report.append(problems.unknown_variable(word, whose, known))
-                continue
-            if key not in ("template", "states"):
-                shapes.READERS[shape](entry.value, self.report)
-        check_sugar(fields, type_, self.report)
-        if owner == "state" and not type_.open:
-            self.check_interface(fields, type_)
-        required = [*schema.REQUIRED[owner]]
-        required += [key for key, variable in type_.variables.items() if variable.required]
-        for key in required:
-            if key not in fields:
-                whose = f"state type `{type_.name}`" if key in type_.variables else _called(owner)
-                self.report.append(problems.missing_variable(name.span, key, whose))
-
-    def check_interface(self, fields: Fields, type_: StateType) -> None:
-        """What a state lists beyond an interface that is complete."""
-        declared: dict[str, tuple[Key, ...] | tuple[Outcome, ...]] = {
-            "input_keys": type_.input_keys,
-            "output_keys": type_.output_keys,
-            "outcomes": type_.outcomes,
-        }
-        for part, entries in declared.items():
-            if part in type_.given or part not in fields:
-                continue
-            known = [entry.name for entry in entries]
-            for word, _ in shapes.as_keys(fields[part].value, []):
-                if word.text not in known:
-                    what = part.replace("_", " ").removesuffix("s")
-                    message = f"state type `{type_.name}` has no {what} `{word.text}`"
-                    listed = ", ".join(f"`{name}`" for name in known) or "none"
-                    help = did_you_mean(word.text, known) or f"it has {listed}"
-                    self.report.append(problems.wrong_shape(word.span, message, help))
-
 
 def _unknown(name: Word, fields: Fields, place: _Place) -> State:
     """What stands for a state that cannot be read: its name is a target, no more is known."""
@@ -388,9 +375,3 @@ def _unknown(name: Word, fields: Fields, place: _Place) -> State:
     return State(
         name=name, owner="state", type=StateType(name="", open=True), fields=kept, via=place.via
     )
-
-
-def _called(owner: str) -> str:
-    if owner == "base":
-        return "the script"
-    return "a state" if owner == "state" else f"a container of type `{owner}`"

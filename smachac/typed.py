@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import re
-from collections.abc import Mapping
+from collections.abc import Iterator, Mapping
 
 from smachac import problems, shapes
 from smachac.diagnostics import Report
@@ -54,6 +54,27 @@ def typed(key: str, entry: Entry, aliases: Aliases, report: Report) -> Entry:
         for item in value.entries
     )
     return Entry(entry.key, Map(items, value.span))
+
+
+def type_words(key: str, tree: Tree) -> Iterator[str]:
+    """The words of the types that a variable of a state names."""
+    if not isinstance(tree, Map) or key not in ("input_keys", "output_keys", "userdata"):
+        return
+    for item in tree.entries:
+        value = item.value
+        if key == "userdata":
+            entry = value.get("type") if isinstance(value, Map) and is_long_form(value) else None
+            if entry is None:
+                continue
+            value = entry.value
+        yield from words_of(value)
+
+
+def words_of(tree: Tree) -> list[str]:
+    """The words of a type as it is written."""
+    if isinstance(tree, Scalar) and isinstance(tree.value, str):
+        return _WORD.findall(tree.value)
+    return []
 
 
 def is_long_form(tree: Tree) -> bool:

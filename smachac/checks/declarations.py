@@ -6,15 +6,17 @@ from collections.abc import Iterable, Iterator
 
 from smachac.checks.bodies import dropped_writes, unknown_reads
 from smachac.checks.cures import with_output
-from smachac.checks.hints import calls, did_you_mean, guesser
+from smachac.checks.expressions import unknown_endings
+from smachac.checks.hints import CALLED_HERE, calls, did_you_mean, guesser
 from smachac.checks.lost import lost_outputs
 from smachac.checks.missing import missing_keys
 from smachac.checks.outline import is_open
 from smachac.checks.userdata import flow_of, undeclared_reads, undeclared_writes
 from smachac.checks.witness import container_name
-from smachac.diagnostics import Finding, Severity, rule
+from smachac.diagnostics import Finding, Related, Severity, rule
 from smachac.ir import nodes
 from smachac.ir.accesses import callback_names, callbacks, userdata_fields
+from smachac.ir.behaviours import variable
 from smachac.ir.dataflow import Scope
 from smachac.ir.graph import START
 from smachac.ir.keyuses import place_of
@@ -133,9 +135,11 @@ def _sets(node: Node, key: Key) -> bool:
 
 @rule("SM306", "unused-declaration", Severity.WARNING)
 def unused_declaration(machine: Machine) -> Iterator[Finding]:
-    """A container or state declares a key that it does not use.
+    """A key, an outcome, a param or a type is declared, and nothing uses it.
 
-    Who calls it has to hand in what nobody needs, or waits for a result that never comes.
+    Who calls a container has to hand in what nobody needs, or waits for a result that never comes;
+    a param that nobody looks up changes nothing, though whoever sets it believes so. Nothing is
+    said of params where a template without an interface may read them.
 
     Wrong:
         name: sm
@@ -189,6 +193,7 @@ def unused_declaration(machine: Machine) -> Iterator[Finding]:
         for key in container.outputs:
             if key.name not in set_ and (outer, scope.outputs[key.name]) not in missing:
                 yield _unused(scope.path, container, key, "output", "sets")
+    yield from _unused_by_the_script(machine)
 
 
 def _unused(path: str, node: Node, key: Key, what: str, use: str) -> Finding:
@@ -202,6 +207,22 @@ def _unused(path: str, node: Node, key: Key, what: str, use: str) -> Finding:
     )
 
 
+def _unused_by_the_script(machine: Machine) -> Iterator[Finding]:
+    """Params and types: what is left of them in the graph is nothing."""
+    for what, word, via in machine.unused:
+        message = f"the type `{word.text}` is named here, and nothing is of it"
+        if what == "param":
+            message = f"the param `{word.text}` is given here, and nothing inside looks it up"
+        outside = (call for call in via if call.source is not word.span.source)
+        yield Finding(
+            span=word.span,
+            message=message,
+            help="take it out, or look for the name that was meant",
+            related=tuple(Related(span=call, message=CALLED_HERE) for call in outside),
+            node=machine.root.name,
+        )
+
+
 def _unused_by_code(path: str, leaf: Leaf) -> Iterator[Finding]:
     """The keys that a leaf made of code in the script declares, and that none of it uses."""
     functions = callbacks(leaf)
@@ -213,9 +234,26 @@ def _unused_by_code(path: str, leaf: Leaf) -> Iterator[Finding]:
         used = {key for each in fields for key in (*each.read, *each.tested)}
         used |= _meant_keys((key for key, _ in undeclared_reads(leaf)), leaf.inputs)
         yield from _unused_keys(path, leaf, leaf.inputs, used, "input", "reads")
+    if leaf.type == "ConditionalOutcomeState" and not [*unknown_endings(path, leaf)]:
+        yield from _unused_outcomes(path, leaf, functions)
     if leaf.type == "CallbacksState":
         made = callback_names(leaf) | _meant_keys(undeclared_writes(leaf), leaf.outputs)
         yield from _unused_keys(path, leaf, leaf.outputs, made, "output", "sets")
+
+
+def _unused_outcomes(path: str, leaf: Leaf, functions: Iterable[str]) -> Iterator[Finding]:
+    """The outcomes for which there is no condition."""
+    possible = {*functions, variable(leaf, "default_outcome"), leaf.catches}
+    for outcome in leaf.outcomes:
+        if outcome.name not in possible:
+            yield Finding(
+                span=outcome.span,
+                message=f"`{outcome.name}` is declared as an outcome here, and no condition leads"
+                " to it",
+                help=f"give it one in `callbacks`, or take it out of the outcomes of `{leaf.name}`",
+                related=calls(leaf, outcome.span),
+                node=path,
+            )
 
 
 def _unused_keys(

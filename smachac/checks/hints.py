@@ -23,6 +23,8 @@ GOOD = frozenset(
 )
 """The outcomes that say so where there is an outcome of failure beside them."""
 
+CALLED_HERE = "in the sub-script called here"
+
 PREEMPTED = "preempted"
 """The outcome of a state that was asked to stop; it never comes by itself."""
 
@@ -64,7 +66,7 @@ def did_you_mean(name: str | None) -> str | None:
 def calls(node: Node, span: Span) -> tuple[Related, ...]:
     """The calls of sub-scripts that led into the file where `span` lies, outermost first."""
     outside = takewhile(lambda call: call.source is not span.source, node.via)
-    return tuple(Related(span=call, message="in the sub-script called here") for call in outside)
+    return tuple(Related(span=call, message=CALLED_HERE) for call in outside)
 
 
 def other_place(span: Span, message: str) -> tuple[Related, ...]:

@@ -8,7 +8,7 @@ nowhere stays in it, for the rules to find.
 from __future__ import annotations
 
 from dataclasses import dataclass, field
-from typing import Literal, NewType, TypeAlias
+from typing import Literal, NamedTuple, NewType, TypeAlias
 
 from smachac.ir.robots import Robot
 from smachac.ir.types import ANY, Type
@@ -256,6 +256,14 @@ Container: TypeAlias = StateMachine | Sequence | Concurrence | Iterator
 Node: TypeAlias = Leaf | Container
 
 
+class Unused(NamedTuple):
+    """What the script declares and nothing uses, and the calls of sub-scripts that led there."""
+
+    what: Literal["param", "type"]
+    word: Word
+    via: tuple[Span, ...] = ()
+
+
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Machine:
     """A whole program: the outermost container and what the base template needs to know.
@@ -263,7 +271,8 @@ class Machine:
     `base` is the base template; `variables` are the base's own variables (`node_name`,
     `function_name`, `manifest`, those of the base's interface). `source` is the name of the script
     without its folder and `digest` a SHA-256 over the texts of the script and its sub-scripts.
-    `robot` is what rules know of the robot; no target prints it.
+    `robot` is what rules know of the robot, `unused` what the script declared in vain; no target
+    prints them.
     """
 
     root: StateMachine
@@ -272,6 +281,7 @@ class Machine:
     source: str = ""
     digest: str = field(default="", compare=False)
     robot: Robot | None = field(default=None, compare=False, repr=False)
+    unused: tuple[Unused, ...] = field(default=(), compare=False, repr=False)
 
 
 Checked = NewType("Checked", Machine)

@@ -147,7 +147,9 @@ def wrong_shape(
 
 
 @problem("SM005", "missing-variable", Severity.ERROR)
-def missing_variable(span: Span, name: str, owner: str) -> Finding:
+def missing_variable(
+    span: Span, name: str, owner: str, related: tuple[Related, ...] = ()
+) -> Finding:
     """A variable is missing that the language or the state type cannot do without.
 
     Without it the state has no meaning, or a skill would start without the value it needs.
@@ -166,9 +168,8 @@ def missing_variable(span: Span, name: str, owner: str) -> Finding:
         states:
           - PICK: {template: ScriptedState, outcomes: [done], transitions: {done: done}}
     """
-    return Finding(
-        span=span, message=f"{owner} lacks the variable `{name}`", help=f"add `{name}:` here"
-    )
+    message = f"{owner} lacks the variable `{name}`"
+    return Finding(span=span, message=message, help=f"add `{name}:` here", related=related)
 
 
 OTHER_NAMES = {

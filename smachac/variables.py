@@ -1,0 +1,79 @@
+"""Which variables a state has, may have and lacks: SM003, SM004, SM005."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+
+from smachac import problems, schema, shapes
+from smachac.diagnostics import Related, Report, did_you_mean
+from smachac.ir.nodes import Key, Outcome
+from smachac.source import Word
+from smachac.states import StateType
+from smachac.sugar import check_sugar
+from smachac.syntax import Entry
+
+
+def check_variables(
+    name: Word,
+    fields: Mapping[str, Entry],
+    owner: str,
+    type_: StateType,
+    inner: Word | None,
+    report: Report,
+) -> None:
+    """SM003, SM004 and SM005 over the variables of one state; `inner` is its name in the
+    sub-script that a call stands for."""
+    for key, entry in fields.items():
+        row = schema.VARIABLES.get(key)
+        if key in type_.variables:
+            shape = row.shape if row is not None else "value"
+        elif row is not None and owner in row.owners:
+            shape = row.shape
+        elif type_.open or "variables" in type_.given:
+            shape = "value"
+        else:
+            known = [*schema.names_for(owner), *type_.variables]
+            word = Word(str(entry.key.value), entry.key.span)
+            whose = f"state type `{type_.name}`" if owner == "state" else _called(owner)
+            report.append(problems.unknown_variable(word, whose, known))
+            continue
+        if key not in ("template", "states"):
+            shapes.READERS[shape](entry.value, report)
+    check_sugar(fields, type_, report)
+    if owner == "state" and not type_.open:
+        _check_interface(fields, type_, report)
+    required = [*schema.REQUIRED[owner]]
+    required += [key for key, variable in type_.variables.items() if variable.required]
+    for key in required:
+        if key not in fields:
+            whose = f"state type `{type_.name}`" if key in type_.variables else _called(owner)
+            related: tuple[Related, ...] = ()
+            if inner is not None:
+                related = (Related(span=inner.span, message="nor does the sub-script give it"),)
+            report.append(problems.missing_variable(name.span, key, whose, related))
+
+
+def _check_interface(fields: Mapping[str, Entry], type_: StateType, report: Report) -> None:
+    """What a state lists beyond an interface that is complete."""
+    declared: dict[str, tuple[Key, ...] | tuple[Outcome, ...]] = {
+        "input_keys": type_.input_keys,
+        "output_keys": type_.output_keys,
+        "outcomes": type_.outcomes,
+    }
+    for part, entries in declared.items():
+        if part in type_.given or part not in fields:
+            continue
+        known = [entry.name for entry in entries]
+        for word, _ in shapes.as_keys(fields[part].value, []):
+            if word.text not in known:
+                what = part.replace("_", " ").removesuffix("s")
+                message = f"state type `{type_.name}` has no {what} `{word.text}`"
+                listed = ", ".join(f"`{name}`" for name in known) or "none"
+                help = did_you_mean(word.text, known) or f"it has {listed}"
+                report.append(problems.wrong_shape(word.span, message, help))
+
+
+def _called(owner: str) -> str:
+    if owner == "base":
+        return "the script"
+    return "a state" if owner == "state" else f"a container of type `{owner}`"

@@ -1,0 +1,94 @@
+# Made by smachac 0.1.0 from main.yml (sha256 36ce5025c9f6b2d3).
+"""The state machine `sm`."""
+
+try:
+    import smach
+except ImportError:  # no ROS on this machine: the same names without it
+    from smachac.runtime import smach
+
+
+class ScriptedState(smach.State):
+    """Ends as it is told: visit n does step n, the last step is repeated.
+
+    Asked to stop, it ends as `preempted` where it has that outcome.
+    """
+
+    def __init__(self, outcomes, steps=(), input_keys=(), output_keys=()):
+        super().__init__(
+            outcomes=outcomes,
+            input_keys=list(input_keys),
+            output_keys=list(output_keys),
+        )
+        self.steps = list(steps) or [{"outcome": outcomes[0]}]
+        self.visits = 0
+
+    def execute(self, userdata):
+        step = self.steps[min(self.visits, len(self.steps) - 1)]
+        self.visits += 1
+        if self.preempt_requested() and "preempted" in self.get_registered_outcomes():
+            self.service_preempt()
+            return "preempted"
+        for key, value in step.get("set", {}).items():
+            userdata[key] = value
+        return step["outcome"]
+
+
+class ConditionalOutcomeState(smach.State):
+    """Ends with the first of its outcomes whose condition holds, else the default."""
+
+    def __init__(self, outcomes, callbacks, default_outcome, input_keys=()):
+        super().__init__(outcomes=outcomes, input_keys=list(input_keys))
+        self.conditions = [
+            (name, callbacks[name]) for name in outcomes if name in callbacks
+        ]
+        self.default_outcome = default_outcome
+
+    def execute(self, userdata):
+        for outcome, holds in self.conditions:
+            if holds(userdata):
+                return outcome
+        return self.default_outcome
+
+
+def build():
+    """Build the state machine `sm`."""
+    # main.yml:2
+    sm = smach.StateMachine(outcomes=["done", "failed"])
+    sm.userdata.both = [1.0, 2.0]
+    sm.userdata.way = "/left"
+    with sm:
+        # main.yml:10
+        sm_call = smach.StateMachine(outcomes=["done"])
+        with sm_call:
+            # sub.yml:6
+            smach.StateMachine.add(
+                "SAY",
+                ScriptedState(outcomes=["done"], steps=[{"outcome": "done"}]),
+                transitions={"done": "done"},
+            )
+
+        smach.StateMachine.add("CALL", sm_call, transitions={"done": "JUDGE"})
+
+        # main.yml:14
+        smach.StateMachine.add(
+            "JUDGE",
+            ConditionalOutcomeState(
+                outcomes=["large", "small", "tiny"],
+                callbacks={"large": lambda ud: ud.both[0] > 1 and ud.way != ""},
+                default_outcome="small",
+                input_keys=["both", "way"],
+            ),
+            transitions={"large": "done", "small": "failed", "tiny": "failed"},
+        )
+    return sm
+
+
+def main():
+    """Run the state machine once and return its outcome."""
+    return build().execute()
+
+
+if __name__ == "__main__":
+    outcome = main()
+    print(f"outcome: {outcome}")
+    raise SystemExit(outcome is None)
