@@ -182,12 +182,13 @@ def memory_library(files: Mapping[str, str], built_in: Library) -> Library:
         names = (name, f"{name}.yml", f"{name}.yaml")
         return next((sources[name] for name in names if name in sources), None)
 
-    def template(name: str) -> Source | None:
-        return sources.get(f"templates/{name}") or built_in.template(name)
+    def own_template(name: str) -> Source | None:
+        return sources.get(f"templates/{name}") or built_in.own_template(name)
 
     return Library(
         script=script,
-        template=template,
+        template=lambda name: own_template(name) or built_in.template(name),
+        own_template=own_template,
         script_folders=lambda caller: ["."],
         template_folders=lambda: ["templates", *built_in.template_folders()],
         script_names=lambda caller: [name.removesuffix(".yml") for name in sources],

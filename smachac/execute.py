@@ -53,20 +53,57 @@ def execute(
             from smachac import sim
 
             sim.configure(seed=seed, gui=gui, record=record)
-        build = module["build"]
         built: list[Any] = []
 
-        def watched_build() -> Any:
-            root = build()
+        def watch(root: Any) -> None:
             if observe is not None:
                 trace.attach(root, machine.root.name, observe, places(machine))
             built.append(root)
+
+        with (
+            _watching(module, watch) as outcomes,
+            _quiet(module["smach"]),
+            _preempting(built, on_preempt),
+        ):
+            outcome: str | None = module[main_function(machine)]()
+        return outcomes[0] if outcomes else outcome
+
+
+@contextmanager
+def _watching(module: dict[str, Any], watch: Callable[[Any], None]) -> Iterator[list[str | None]]:
+    """Show the machine to `watch` before it runs.
+
+    A program with `build` shows what that makes, and its main function returns the outcome; of one
+    that is all one function, as SMACHA's are, the first machine that runs is the whole, and its
+    outcome is what the list gets.
+    """
+    outcomes: list[str | None] = []
+    build = module.get("build")
+    if build is not None:
+
+        def watched_build() -> Any:
+            root = build()
+            watch(root)
             return root
 
         module["build"] = watched_build
-        with _quiet(module["smach"]), _preempting(built, on_preempt):
-            outcome: str | None = module[main_function(machine)]()
+        yield outcomes
+        return
+    kind = module["smach"].StateMachine
+    execute = kind.execute
+
+    def watched_execute(self: Any, *arguments: Any) -> Any:
+        kind.execute = execute
+        watch(self)
+        outcome = self.execute(*arguments)
+        outcomes.append(outcome)
         return outcome
+
+    kind.execute = watched_execute
+    try:
+        yield outcomes
+    finally:
+        kind.execute = execute
 
 
 @contextmanager

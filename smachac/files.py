@@ -156,13 +156,14 @@ def disk_library(
         path = _found(name, script_folders(caller), SUFFIXES, disk)
         return disk.read(path, report) if path else None
 
-    def template(name: str) -> Source | None:
-        path = _found(name, template_folders, ("",), disk)
+    def template(name: str, folders: Sequence[Path] = template_folders) -> Source | None:
+        path = _found(name, folders, ("",), disk)
         return disk.read(path, report) if path else None
 
     return Library(
         script=script,
         template=template,
+        own_template=lambda name: template(name, template_folders[: -len(BUILT_IN)]),
         script_folders=lambda caller: [str(folder) for folder in script_folders(caller)],
         template_folders=lambda: [
             *(str(folder) for folder in template_folders[: -len(BUILT_IN)]),

@@ -27,6 +27,7 @@ from smachac.ir.nodes import (
     Remap,
     Sequence,
     StateMachine,
+    Struct,
     Transition,
     Value,
     Variable,
@@ -37,7 +38,7 @@ from smachac.source import Word
 from smachac.sugar import NAMES, has_sugar, is_own, read_sugar
 from smachac.syntax import Map, Scalar, Tree
 from smachac.typed import is_long_form
-from smachac.values import as_value
+from smachac.values import as_value, as_written
 
 _NOT_VARIABLES = frozenset(schema.names_for("state")) | {"script"}
 """What of a leaf's fields belongs to the language; the rest are variables of its state type."""
@@ -157,7 +158,19 @@ def _interface(state: State) -> dict[str, Any]:
         ),
         "span": state.name.span,
         "via": state.via,
+        "written": tuple(_written(state)) if type_.prints_itself else (),
     }
+
+
+def _written(state: State) -> Iterable[Variable]:
+    """What the script says of a state; params are those in scope."""
+    for name, entry in state.fields.items():
+        if name not in ("template", "states", "params"):
+            yield Variable(name=name, value=as_written(entry.value), span=entry.key.span)
+    if state.params:
+        entries = ((name, as_written(tree).data) for name, tree in state.params.items())
+        value = Value(data=Struct(entries=tuple(entries)), span=state.name.span)
+        yield Variable(name="params", value=value, span=state.name.span)
 
 
 def _part(state: State, found: re.Match[str]) -> str:

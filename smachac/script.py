@@ -46,7 +46,7 @@ class State:
     """A state or container of a script, or the script's base.
 
     `owner` says which variables of the schema it may have: "base", a container type or "state".
-    `via`: the calls of sub-scripts that led here, outermost first.
+    `via`: the calls of sub-scripts that led here, outermost first. `params`: those in scope.
     """
 
     name: Word
@@ -55,6 +55,7 @@ class State:
     fields: Fields
     states: tuple[State, ...] = ()
     via: tuple[Span, ...] = ()
+    params: Scope = field(default_factory=dict)
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -195,8 +196,9 @@ class _Resolver:
                 self.check_iterated(children)
         self.uses.params(params, begin, self.report, place.via)
         return State(
-            name=name, owner=owner, type=type_, fields=fields, states=children, via=place.via
-        )
+            name=name, owner=owner, type=type_, fields=fields, states=children, via=place.via,
+            params=scope,
+        )  # fmt: skip
 
     def filled(self, key: str, entry: Entry, scope: Scope) -> Entry:
         value = entry.value

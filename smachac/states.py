@@ -6,13 +6,11 @@ A template without either makes an open type: anything goes, nothing is known.
 
 from __future__ import annotations
 
-import re
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from keyword import iskeyword
-from typing import Literal
 
-from smachac import problems, shapes
+from smachac import meta, problems, shapes
 from smachac.diagnostics import Report, did_you_mean
 from smachac.ir.nodes import Body, Key, Outcome
 from smachac.ir.python_body import python_body
@@ -22,7 +20,7 @@ from smachac.source import Source, Span, Word
 from smachac.syntax import Map, Scalar, Tree, parse
 from smachac.typed import read_type
 
-Kind = Literal["base", "container", "state"]
+Kind = meta.Kind
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -31,12 +29,14 @@ class Library:
 
     `script(name, caller)` is the text of a sub-script named in the source `caller`;
     `template(file)` that of an interface or template by file name (`MoveTo.yml`,
-    `MoveTo.tpl.py`). The folders and names serve messages. `policy` is that of the project;
-    `parse` may remember the trees of texts that several scripts share.
+    `MoveTo.tpl.py`), `own_template` the same where it is the user's, not one of ours. The folders
+    and names serve messages. `policy` is that of the project; `parse` may remember the trees of
+    texts that several scripts share.
     """
 
     script: Callable[[str, str], Source | None]
     template: Callable[[str], Source | None]
+    own_template: Callable[[str], Source | None] = lambda file: None
     script_folders: Callable[[str], Sequence[str]] = lambda caller: ()
     template_folders: Callable[[], Sequence[str]] = lambda: ()
     script_names: Callable[[str], Sequence[str]] = lambda caller: ()
@@ -64,7 +64,8 @@ class StateType:
     "variables", "input_keys", "output_keys", "outcomes" (`"*": {}` in the interface).
     `code` maps a language to a template's file name or to a reference to code, `classes` a language
     to a class of it, in words: `header`, `class`, `with`. `body` is what the template of Python
-    does. `open`: there is no interface.
+    does. `open`: there is no interface. `prints_itself`: the template of Python adds the
+    state to its container, as those of SMACHA do.
     """
 
     name: str
@@ -82,6 +83,7 @@ class StateType:
     classes: Mapping[str, Mapping[str, str]] = field(default_factory=dict)
     body: Body | None = None
     open: bool = False
+    prints_itself: bool = False
 
 
 TEMPLATE_FILES = ("{}.tpl.py", "{}.tpl")
@@ -90,7 +92,7 @@ TEMPLATE_FILES = ("{}.tpl.py", "{}.tpl")
 CLASS_FIELDS = ("header", "class", "with")
 """What is said of code that is a class: where it is, its name, what it is made with."""
 
-_META = re.compile(r"\{%-?\s*block\s+meta\s*-?%\}(.*?)\{%-?\s*endblock", re.DOTALL)
+_ALL_GIVEN = frozenset(["variables", "input_keys", "output_keys", "outcomes"])
 
 _FIELDS: dict[str, str] = {
     "name": "name",
@@ -108,14 +110,26 @@ _FIELDS: dict[str, str] = {
 
 
 def find_state_type(name: str, library: Library, report: Report) -> StateType | None:
-    """The state type of that name, or None where there is neither interface nor template."""
-    interface = library.template(f"{name}.yml")
-    if interface is not None:
-        return _read_interface(name, interface, library, report)
-    for pattern in TEMPLATE_FILES:
-        template = library.template(pattern.format(name))
-        if template is not None:
-            return _read_meta(name, template, pattern.format(name))
+    """The state type of that name, or None where there is neither interface nor template.
+
+    What the user has of that name, be it a template alone, comes before what we have.
+    """
+    return _find(name, library, report, frozenset())
+
+
+def _find(name: str, library: Library, report: Report, below: frozenset[str]) -> StateType | None:
+    """`below`: the types whose templates extend this one."""
+    if name in below:
+        return None
+    for find in (library.own_template, library.template):
+        interface = find(f"{name}.yml")
+        if interface is not None:
+            return _read_interface(name, interface, library, report)
+        for pattern in TEMPLATE_FILES:
+            template = find(pattern.format(name))
+            if template is not None:
+                file = pattern.format(name)
+                return _read_template(name, template, file, library, below | {name})
     return None
 
 
@@ -162,6 +176,7 @@ def _read_interface(name: str, source: Source, library: Library, report: Report)
         code=code,
         classes=_classes(fields.get("code"), report),
         body=_body(name, code.get("python", ""), given, library),
+        prints_itself=_prints_itself(code.get("python", ""), library),
     )
 
 
@@ -310,38 +325,45 @@ def _declares(fields: Mapping[str, Tree], part: str, what: str, word: Word, repo
     report.append(problems.wrong_shape(word.span, message, did_you_mean(word.text, names)))
 
 
-def _read_meta(name: str, template: Source, file: str) -> StateType:
-    """The state type of a template in SMACHA's style: its meta block, or an open type.
+def _prints_itself(file: str, library: Library) -> bool:
+    """Whether a template, or one that it extends, has a block `body`."""
+    seen: set[str] = set()
+    while file and ":" not in file and file not in seen:
+        seen.add(file)
+        source = library.template(file) or library.template(f"{file}.py")
+        if source is None:
+            return False
+        if meta.has_body(source):
+            return True
+        file = meta.extended(source)
+    return False
 
-    Meta blocks served SMACHA's help only and many are loose; what cannot be read is left out.
-    """
-    found = _META.search(template.text)
-    tree = parse(Source(template.name, found.group(1)), []) if found else None
-    if not isinstance(tree, Map):
-        return StateType(name=name, open=True, code={"python": file})
 
-    def listed(part: str) -> list[tuple[str, Tree]]:
-        entry = tree.get(part)
-        return _meta_items(entry.value) if entry else []
-
-    kind = _text(tree, "type")
+def _read_template(
+    name: str, template: Source, file: str, library: Library, below: frozenset[str]
+) -> StateType:
+    """The state type of a template in SMACHA's style: its meta block, else the type it extends,
+    else an open one with the outcomes that stand in its code."""
+    whole = _prints_itself(file, library)
+    found = meta.read_meta(template)
+    if found is None:
+        extended = meta.extended(template).partition(".")[0]
+        known = _find(extended, library, [], below) if extended else None
+        outcomes = known.outcomes if known is not None else meta.outcomes_in_code(template)
+        known = known or StateType(name=name, open=True)
+        return replace(
+            known, name=name, outcomes=outcomes, code={"python": file}, prints_itself=whole,
+            body=None, given=known.given if known.open else _ALL_GIVEN,
+        )  # fmt: skip
     return StateType(
         name=name,
-        kind="base" if kind == "Base" else "container" if kind == "Container" else "state",
-        doc=_text(tree, "description"),
-        variables={key: VariableType(name=key, required=False) for key, _ in listed("variables")},
-        input_keys=tuple(Key(name=key, span=value.span) for key, value in listed("input_keys")),
-        output_keys=tuple(Key(name=key, span=value.span) for key, value in listed("output_keys")),
-        outcomes=tuple(Outcome(name=key, span=value.span) for key, value in listed("outcomes")),
-        given=frozenset(["variables", "input_keys", "output_keys", "outcomes"]),
+        kind=found.kind,
+        doc=found.doc,
+        variables={key: VariableType(name=key, required=False) for key in found.variables},
+        input_keys=tuple(Key(name=word.text, span=word.span) for word in found.input_keys),
+        output_keys=tuple(Key(name=word.text, span=word.span) for word in found.output_keys),
+        outcomes=found.outcomes,
+        given=_ALL_GIVEN,
         code={"python": file},
+        prints_itself=whole,
     )
-
-
-def _meta_items(tree: Tree) -> list[tuple[str, Tree]]:
-    """Names in a meta list: `- x: {...}` or `- x`; optional ones stand in a nested list."""
-    if isinstance(tree, Scalar):
-        return [(str(tree.value), tree)] if tree.value is not None else []
-    if isinstance(tree, Map):
-        return [(str(entry.key.value), entry.value) for entry in tree.entries]
-    return [found for item in tree.items for found in _meta_items(item)]

@@ -12,13 +12,22 @@ def as_value(tree: Tree, *, code: bool = False) -> Value:
     return Value(data=_data(tree, code), span=tree.span)
 
 
-def _data(tree: Tree, code: bool) -> Data:
+def as_written(tree: Tree) -> Value:
+    """The value of a tree as SMACHA's templates expect it: backticks stay in strings."""
+    return Value(data=_data(tree, False, ticks=True), span=tree.span)
+
+
+def _data(tree: Tree, code: bool, ticks: bool = False) -> Data:
     if isinstance(tree, Scalar):
-        return _scalar(tree, code)
+        data = _scalar(tree, code)
+        ticked = ticks and isinstance(data, Expression) and tree.value != data.text
+        return str(tree.value).strip() if ticked else data
     if isinstance(tree, Seq):
-        return tuple([_data(item, code) for item in tree.items])
+        return tuple([_data(item, code, ticks) for item in tree.items])
     return Struct(
-        entries=tuple((str(entry.key.value), _data(entry.value, code)) for entry in tree.entries)
+        entries=tuple(
+            (str(entry.key.value), _data(entry.value, code, ticks)) for entry in tree.entries
+        )
     )
 
 

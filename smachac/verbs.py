@@ -63,6 +63,7 @@ def _compile(
     arguments: argparse.Namespace, target: Target, options: dict[str, str]
 ) -> tuple[Analysis, dict[str, str] | None]:
     """The files of a target; none, with a report on stderr, where the script has errors."""
+    from smachac.diagnostics import has_errors
     from smachac.driver import build
 
     analysis, library = _load(arguments.script, arguments)
@@ -72,7 +73,7 @@ def _compile(
         found: Report = []
         files = build(analysis.checked, target, library, found, options)
         report = [*report, *found]
-        files = None if found else files
+        files = None if has_errors(found) else files
     print_report(shown(report), arguments, sys.stderr)
     return analysis, files
 

@@ -138,7 +138,8 @@ class _State:
     `type` is the state type (the template's name). `via` are the calls of sub-scripts that led
     here, outermost first. `in`/`out` keys are `inputs`/`outputs`. `catches` names the outcome that
     an exception in the state becomes; it is one of `outcomes`, never one of the state's own, and
-    empty where exceptions go on.
+    empty where exceptions go on. `written` is what the script says of the
+    state, for templates that print it themselves; empty for all others.
     """
 
     name: str
@@ -153,6 +154,7 @@ class _State:
     catches: str = ""
     span: Span = field(compare=False, repr=False)
     via: tuple[Span, ...] = field(default=(), compare=False, repr=False)
+    written: tuple[Variable, ...] = field(default=(), compare=False, repr=False)
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)

@@ -18,6 +18,7 @@ from smachac.problems.calls import (
     unresolved_look_up,
 )
 from smachac.problems.targets import no_code_for_target, unsupported_by_target
+from smachac.problems.templates import defined_twice, python_2_code
 from smachac.problems.text import (
     bad_type,
     duplicate_key,
@@ -36,10 +37,12 @@ __all__ = [
     "bad_robot",
     "bad_sub_script",
     "bad_type",
+    "defined_twice",
     "duplicate_key",
     "listed",
     "missing_variable",
     "no_code_for_target",
+    "python_2_code",
     "recursive_include",
     "script_not_found",
     "template_error",

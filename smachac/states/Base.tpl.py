@@ -1,44 +1,84 @@
+{% block base_header %}
 {{ made_by }}
 """{{ title }}"""
-{%- if base_header %}
 
 {{ base_header }}
-{%- endif %}
-{%- if imports %}
+{% endblock base_header %}
 
+{% block imports %}
 {{ imports }}
-{%- endif %}
 
 try:
     import smach
-except ImportError:  # no ROS on this machine: the same names without it
+{% if smach_ros or introspection %}
+    import smach_ros
+{% endif %}
+except ImportError:  # SMACH is not on this machine: the same names without it
     from smachac.runtime import smach
-{%- for part in (defs, class_defs, cb_defs) if part %}
+{% if smach_ros or introspection %}
+    from smachac.runtime import smach_ros
+{% endif %}
+{% endblock imports %}
 
 
-{{ part }}
-{%- endfor %}
+{% block defs %}
+{{ defs }}
+{% endblock defs %}
 
 
-def build():
-    """Build the state machine `{{ name }}`."""
-{{ body }}
-    return {{ sm_name }}
-{%- if functions %}
+{% block class_defs %}
+{{ class_defs }}
+{% endblock class_defs %}
+
+
+{% block cb_defs %}
+{{ cb_defs }}
+{% endblock cb_defs %}
 
 
 {{ functions }}
-{%- endif %}
 
 
-def {{ function_name | default("main") }}():
-{%- block main %}
-    """Run the state machine once and return its outcome."""
-    return build().execute()
-{%- endblock %}
+{% block main_def %}
+def {{ function_name | default("main") | lower }}():
+    """Build the state machine, run it once and tell its outcome."""
+{% block node %}
+{% endblock node %}
+    {{ main_def | indent(4) }}
+{% endblock main_def %}
 
+{% block body %}
+{{ machine }}
+{% endblock body %}
+
+{% block footer %}
+{% if footer %}
+    with {{ sm_name }}:
+        {{ footer | indent(8) }}
+{% endif %}
+{% endblock footer %}
+
+{% block introspection_server %}
+    sis = smach_ros.IntrospectionServer({{ node_name | default(name) | literal }}, {{ sm_name }}, {{ ("/" ~ name) | literal }})
+    sis.start()
+{% endblock introspection_server %}
+
+{% block execute %}
+    {{ execute | indent(4) }}
+    outcome = {{ sm_name }}.execute()
+    print(f"outcome: {outcome}")
+{% endblock execute %}
+
+{% block spin %}
+{% endblock spin %}
+
+{% block base_footer %}
+    {{ base_footer | indent(4) }}
+{% endblock base_footer %}
+
+{% block main %}
+{{ main }}
 
 if __name__ == "__main__":
-    outcome = {{ function_name | default("main") }}()
-    print(f"outcome: {outcome}")
-    raise SystemExit(outcome is None)
+    {{ function_name | default("main") | lower }}()
+{% endblock main %}

@@ -1,4 +1,4 @@
-{% extends "Base.tpl.py" %}
+{% extends "Program.tpl.py" %}
 {%- block main %}
     """Run the state machine once in a simulated world and return its outcome."""
     with sim.World(robot=sim.robots.{{ robot | default("panda") }}()) as world:

@@ -47,7 +47,7 @@ def _node(path: str, node: Node) -> dict[str, Any]:
 def _entries(value: Any) -> Iterator[tuple[str, Any]]:
     """The fields of a value of the IR; spans are places, children are names."""
     for field in fields(value):
-        if field.name == "body":
+        if field.name in ("body", "written"):
             # Not of the script, but of code that is not printed.
             continue
         content = getattr(value, field.name)

@@ -1,41 +1,186 @@
-"""What SMACHA gave to the templates of its users: plain data under the names they expect."""
+"""What SMACHA gave to the templates of its users: plain data under the names they expect, and the
+tests and filters by which they tell code from text.
+"""
 
 from __future__ import annotations
 
-from smachac.ir.nodes import Container, Data, Expression, Leaf, Struct
+import hashlib
+import re
+from collections.abc import Callable, Iterable, Mapping
+from typing import Any
+
+from smachac.ir.nodes import Concurrence, Container, Data, Expression, Leaf, Struct, Variable
 from smachac.ir.walk import own_outcomes
+from smachac.targets.python.layout import flat, literal, string
+
+
+class Code(str):
+    """Text that is code: printed as it is, also inside a list."""
+
+    __slots__ = ()
+
+    def __repr__(self) -> str:
+        return str(self)
+
+
+class Text(str):
+    """Text of the script that is no code, whatever it looks like."""
+
+    __slots__ = ()
+
+
+class Headers(list[str]):
+    """`defined_headers`: what has been printed once. Asking is as quick with thousands of them."""
+
+    def __init__(self) -> None:
+        super().__init__()
+        self._known: set[str] = set()
+
+    def append(self, name: str) -> None:
+        self._known.add(name)
+        super().append(name)
+
+    def __contains__(self, name: object) -> bool:
+        return name in self._known
+
+
+_TICKED = re.compile(r"`(.*)`", re.DOTALL)
+_DOTTED_OR_CALL = re.compile(r"\D+[.]\D+|.*\(.*\)")
+
+
+def is_expression(value: object) -> bool:
+    """SMACHA's test `expression`: a string in backticks. Code of a script is one without."""
+    if isinstance(value, Code):
+        return True
+    return isinstance(value, str) and _TICKED.fullmatch(value) is not None
+
+
+def is_not_string(value: object) -> bool:
+    """SMACHA's test `not_string`: what is printed without quotes.
+
+    Strings that come from a script are known to be text or code; others are judged by their look.
+    """
+    if not isinstance(value, str) or isinstance(value, Code):
+        return value is not None
+    if isinstance(value, Text) or value.startswith("'"):
+        return False
+    try:
+        float(value)
+    except ValueError:
+        return _DOTTED_OR_CALL.match(value) is not None
+    return True
+
+
+def without_ticks(value: object) -> object:
+    """SMACHA's filter `exptostr`: the expression in backticks."""
+    if not isinstance(value, str):
+        return value
+    return Code(_TICKED.sub(r"\1", value))
+
+
+def as_literal(value: object) -> str:
+    """A value as Python code, in double quotes where it is text."""
+    return flat(literal(_data(value)))
+
+
+def _data(value: object) -> Data:
+    if isinstance(value, Mapping):
+        return Struct(entries=tuple((str(key), _data(each)) for key, each in value.items()))
+    if isinstance(value, list | tuple):
+        return tuple(_data(each) for each in value)
+    if isinstance(value, Code) or (isinstance(value, str) and is_not_string(value)):
+        from smachac.source import NOWHERE
+
+        return Expression(text=str(value), span=NOWHERE)
+    if isinstance(value, str):
+        quoted = len(value) > 1 and value[0] == value[-1] == "'" and not isinstance(value, Text)
+        return value[1:-1] if quoted else str(value)
+    return value if isinstance(value, int | float) or value is None else str(value)
+
+
+TESTS: Mapping[str, Callable[..., Any]] = {
+    "expression": is_expression,
+    "not_string": is_not_string,
+}
+FILTERS: Mapping[str, Callable[..., Any]] = {
+    "exptostr": without_ticks,
+    "literal": as_literal,
+    "quoted": lambda value: string(str(value)),
+}
 
 
 def plain(data: Data) -> object:
-    """A value as Python data; an expression is its text."""
+    """A value as Python data; expressions and strings remain told apart."""
     match data:
         case Expression(text=text):
-            return text
+            return Code(text)
         case Struct(entries=entries):
             return {key: plain(value) for key, value in entries}
         case tuple():
             return [plain(item) for item in data]
+        case str():
+            return Text(data)
     return data
 
 
-def state_variables(leaf: Leaf, parent: Container, parent_sm_name: str) -> dict[str, object]:
-    """The variables of a leaf's template: its own, and where it stands."""
-    variables: dict[str, object] = {
-        variable.name: plain(variable.value.data) for variable in leaf.variables
-    }
-    optional: dict[str, object] = {
-        "outcomes": list(own_outcomes(leaf)),
-        "input_keys": [key.name for key in leaf.inputs],
-        "output_keys": [key.name for key in leaf.outputs],
-        "transitions": {edge.outcome: edge.target for edge in leaf.transitions},
-        "remapping": {remap.key: remap.to for remap in leaf.remaps},
-    }
-    variables.update({name: value for name, value in optional.items() if value})
-    return variables | {
-        "name": leaf.name,
-        "class_name": leaf.type,
+def written(variables: Iterable[Variable]) -> dict[str, object]:
+    """Variables as a script has them."""
+    return {variable.name: plain(variable.value.data) for variable in variables}
+
+
+def stable_id(path: str) -> str:
+    """`uuid`: 32 hexadecimal digits, the same in each build for the same state."""
+    return hashlib.sha256(path.encode("utf-8", "surrogatepass")).hexdigest()[:32]
+
+
+def place_variables(parent: Container, parent_sm_name: str, path: str) -> dict[str, object]:
+    """Where a state stands."""
+    return {
+        "uuid": stable_id(path),
         "parent_name": parent.name,
         "parent_sm_name": parent_sm_name,
         "parent_type": type(parent).__name__,
         "parent_template": parent.type,
     }
+
+
+def state_variables(
+    leaf: Leaf, parent: Container, parent_sm_name: str, path: str
+) -> dict[str, object]:
+    """The variables of a leaf's template: those that its script writes, and where it stands."""
+    variables = written(leaf.written)
+    if isinstance(parent, Concurrence):
+        variables.pop("transitions", None)  # smach.Concurrence.add takes none
+    return {
+        **variables,
+        **place_variables(parent, parent_sm_name, path),
+        "name": leaf.name,
+        "class_name": leaf.type,
+    }
+
+
+def container_variables(
+    node: Container, parent: Container | None, parent_sm_name: str, path: str
+) -> dict[str, object]:
+    """The variables of a container's template, or with no parent of the base's."""
+    variables: dict[str, object] = {
+        "outcomes": list(own_outcomes(node)),
+        "input_keys": [key.name for key in node.inputs],
+        "output_keys": [key.name for key in node.outputs],
+        "userdata": {preset.key: plain(preset.value.data) for preset in node.userdata},
+        "transitions": {
+            edge.outcome: edge.target for edge in node.transitions if edge.origin == "written"
+        },
+        "remapping": {remap.key: remap.to for remap in node.remaps},
+    }
+    if isinstance(node, Concurrence):
+        variables["default_outcome"] = node.default_outcome or node.rules[-1].outcome
+        variables["outcome_map"] = {
+            rule.outcome: {one.child: one.outcome for one in rule.when} for rule in node.rules
+        }
+    if isinstance(parent, Concurrence):
+        variables["transitions"] = {}
+    variables = {name: value for name, value in variables.items() if value or name == "outcomes"}
+    around = place_variables(parent, parent_sm_name, path) if parent is not None else {}
+    own = {"name": node.name, "class_name": node.type}
+    return {**written(node.written), **variables, **around, **own}

@@ -1,1 +1,1 @@
-{% extends "StateMachine.tpl.py" %}
+{% extends "Container.tpl.py" %}

@@ -1,10 +1,1 @@
-{% block body %}
-# {{ place }}
-{{ construct }}
-{% for line in userdata %}{{ line }}
-{% endfor %}with {{ sm_name }}:
-{{ children }}
-{% for line in after %}{{ line }}
-{% endfor %}
-{{ add }}
-{% endblock %}
+{% extends "Container.tpl.py" %}

@@ -27,7 +27,7 @@ def build():
     with sm:
         # main.yml:6
         smach.StateMachine.add('GREET', Greet('HELLO'),
-                               transitions={'succeeded': 'AGAIN', 'aborted': 'aborted'})
+                               transitions={'succeeded': 'AGAIN'})
 
         # main.yml:11
         smach.StateMachine.add('AGAIN', Greet('AGAIN_YOU'),

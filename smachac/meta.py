@@ -1,0 +1,103 @@
+"""What a template of SMACHA's kind tells of its state type: its meta block, and its text.
+
+Meta blocks served SMACHA's help only and many are loose; what cannot be read is left out.
+"""
+
+from __future__ import annotations
+
+import re
+from dataclasses import dataclass
+from typing import Literal
+
+from smachac.ir.nodes import Outcome
+from smachac.source import Source, Span, Word
+from smachac.syntax import Map, Scalar, Seq, Tree, parse
+
+Kind = Literal["base", "container", "state"]
+
+_META = re.compile(r"\{%-?\s*block\s+meta\s*-?%\}(.*?)\{%-?\s*endblock", re.DOTALL)
+_BODY = re.compile(r"\{%[-+]?\s*block\s+body\b")
+_EXTENDS = re.compile(r"\{%[-+]?\s*extends\s+[\"']([^\"']+)[\"']")
+_OUTCOMES = re.compile(r"\boutcomes\s*=\s*\[([^\[\]{}]*)\]")
+_QUOTED = re.compile(r"([\"'])(\w+)\1")
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Meta:
+    """A meta block. Of keys it has those that are always there: others the script lists."""
+
+    kind: Kind
+    doc: str
+    variables: tuple[str, ...]
+    input_keys: tuple[Word, ...]
+    output_keys: tuple[Word, ...]
+    outcomes: tuple[Outcome, ...]
+
+
+def has_body(template: Source) -> bool:
+    """Whether a template prints its state itself."""
+    return _BODY.search(template.text) is not None
+
+
+def extended(template: Source) -> str:
+    """The file that a template extends, or nothing."""
+    found = _EXTENDS.search(template.text)
+    return found.group(1) if found else ""
+
+
+def read_meta(template: Source) -> Meta | None:
+    """The meta block of a template, where it has one that can be read."""
+    found = _META.search(template.text)
+    tree = parse(Source(template.name, found.group(1)), []) if found else None
+    if not isinstance(tree, Map):
+        return None
+
+    def listed(part: str, *, optional: bool) -> tuple[Word, ...]:
+        entry = tree.get(part)
+        return tuple(_names(entry.value, optional)) if entry else ()
+
+    kind = _text(tree, "type")
+    return Meta(
+        kind="base" if kind == "Base" else "container" if kind == "Container" else "state",
+        doc=_text(tree, "description"),
+        variables=tuple(word.text for word in listed("variables", optional=True)),
+        input_keys=listed("input_keys", optional=False),
+        output_keys=listed("output_keys", optional=False),
+        outcomes=tuple(
+            Outcome(name=word.text, span=word.span)
+            for word in listed("outcomes", optional=True)
+            if re.fullmatch(r"\w+", word.text)  # some say in words that the script gives them
+        ),
+    )
+
+
+def outcomes_in_code(template: Source) -> tuple[Outcome, ...]:
+    """The outcomes of the one class of states in a template, where they are all written out."""
+    found = list(_OUTCOMES.finditer(template.text))
+    words = list(_QUOTED.finditer(found[0].group(1))) if len(found) == 1 else []
+    if not words or _QUOTED.sub("", found[0].group(1)).strip(", \n\t"):
+        return ()
+    start = found[0].start(1)
+    return tuple(
+        Outcome(
+            name=word.group(2),
+            span=Span(template, start + word.start(2), start + word.end(2)),
+        )
+        for word in words
+    )
+
+
+def _text(tree: Map, name: str) -> str:
+    """The text under a name of a mapping, or nothing."""
+    entry = tree.get(name)
+    return str(entry.value.value) if entry and isinstance(entry.value, Scalar) else ""
+
+
+def _names(tree: Tree, optional: bool) -> list[Word]:
+    """Names in a meta list: `- x: {...}` or `- x`; optional ones stand in a nested list."""
+    if isinstance(tree, Scalar):
+        return [Word(str(tree.value), tree.span)] if tree.value is not None else []
+    if isinstance(tree, Map):
+        return [Word(str(entry.key.value), entry.value.span) for entry in tree.entries]
+    inner = (item for item in tree.items if optional or not isinstance(item, Seq))
+    return [found for item in inner for found in _names(item, optional)]

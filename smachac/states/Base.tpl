@@ -1,0 +1,1 @@
+{% extends "ROSBase.tpl.py" %}

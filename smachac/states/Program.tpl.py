@@ -1,0 +1,49 @@
+{{ made_by }}
+"""{{ title }}"""
+{%- if base_header %}
+
+{{ base_header }}
+{%- endif %}
+{%- if imports %}
+
+{{ imports }}
+{%- endif %}
+{%- block imports %}
+
+try:
+    import smach
+except ImportError:  # no ROS on this machine: the same names without it
+    from smachac.runtime import smach
+{%- endblock %}
+{%- for part in definitions %}
+
+
+{{ part }}
+{%- endfor %}
+
+
+def build():
+    """Build the state machine `{{ name }}`."""
+{%- if main_def %}
+    {{ main_def | indent(4) }}
+{%- endif %}
+{{ machine }}
+    return {{ sm_name }}
+{%- if functions %}
+
+
+{{ functions }}
+{%- endif %}
+
+
+def {{ function_name | default("main") }}():
+{%- block main %}
+    """Run the state machine once and return its outcome."""
+    return build().execute()
+{%- endblock %}
+
+
+if __name__ == "__main__":
+    outcome = {{ function_name | default("main") }}()
+    print(f"outcome: {outcome}")
+    raise SystemExit(outcome is None)

@@ -1,0 +1,28 @@
+{% block meta %}
+name: State
+description: What templates that print their states themselves have in common, but for the line that adds the state.
+language: Python
+framework: SMACH
+type: None
+{% endblock meta %}
+{% from "Utils.tpl.py" import render_userdata, render_def_lambda_callbacks %}
+{% block base_header %}{% endblock base_header %}
+{% block imports %}{% endblock imports %}
+{% block defs %}{% endblock defs %}
+{% block class_defs %}{% endblock class_defs %}
+{% block cb_defs %}
+{% if callbacks is defined %}
+{{ render_def_lambda_callbacks(defined_headers, class_name, name, uuid, input_keys | default([]), outcomes, callbacks) }}
+{% endif %}
+{% endblock cb_defs %}
+{% block main_def %}{% endblock main_def %}
+{% block header %}{% endblock header %}
+{% block header_userdata %}
+{% if userdata is defined %}{{ render_userdata(parent_sm_name, userdata) }}{% endif %}
+{% endblock header_userdata %}
+{% block footer %}{% endblock footer %}
+{% block introspection_server %}{% endblock introspection_server %}
+{% block execute %}{% endblock execute %}
+{% block spin %}{% endblock spin %}
+{% block base_footer %}{% endblock base_footer %}
+{% block main %}{% endblock main %}

@@ -1,0 +1,334 @@
+"""Jinja that cannot run away: what a template does is counted, and has an end.
+
+The sandbox keeps a template from Python's internals; here it is kept from loops without end and
+from texts without bound. Everything that costs is paid for in characters: each turn of a loop, each
+call, what filters and operators take in and give back, what is printed. When all is spent, the
+rendering fails. No clock is asked and no signal sent: the same template fails at the same place.
+"""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Callable, Iterator, Sized
+from functools import wraps
+from typing import TYPE_CHECKING, Any, TypeVar
+
+from jinja2 import TemplateRuntimeError, Undefined, nodes
+from jinja2.filters import FILTERS
+from jinja2.sandbox import SandboxedEnvironment
+from jinja2.visitor import NodeTransformer
+
+if TYPE_CHECKING:
+    from jinja2.runtime import Context
+
+Made = TypeVar("Made", bound=nodes.Node)
+
+BUDGET = 1_000_000
+"""Characters' worth of work for one rendering, beside ten times what it is given. A state takes
+some thousands."""
+
+CALL = 20
+"""What a call costs, in characters."""
+
+MOST_CALLS_DEEP = 200
+"""Macros, blocks and includes inside one another."""
+
+DROPPED_FILTERS = ("random",)
+"""Filters that would give another program each time."""
+
+KEPT_GLOBALS = ("range", "dict", "cycler", "joiner", "namespace")
+
+_NUMBER = re.compile(r"\d+")
+_CHEAP = frozenset(["append", "get", "items", "keys", "values", "pop", "setdefault", "add"])
+"""Methods whose cost does not grow with what they are called on."""
+
+PYTHON_2_METHODS = {"iteritems": "items", "itervalues": "values", "iterkeys": "keys"}
+
+
+class TooMuchError(TemplateRuntimeError):
+    """A template does more than a template may; the words say what."""
+
+
+class Missing(Undefined):
+    """A name that is not there: it may be asked for, as in `{% if x %}`, but not printed."""
+
+    __slots__ = ()
+    __str__ = Undefined._fail_with_undefined_error
+
+
+class Meter:
+    """What one rendering may still spend."""
+
+    def __init__(self) -> None:
+        self.left = BUDGET
+        self.depth = 0
+
+    def begin(self, given: object) -> None:
+        """A new rendering with these variables."""
+        self.left = BUDGET
+        self.left += 10 * self.size(given)
+        self.depth = 0
+
+    def charge(self, amount: int) -> None:
+        self.left -= amount
+        if self.left < 0:
+            raise TooMuchError("this template has no end, or makes more text than it may")
+
+    def size(self, value: object) -> int:
+        """The characters of a value, counted no further than the meter goes."""
+        if isinstance(value, str):
+            return len(value)
+        if not isinstance(value, list | tuple | dict):
+            return value.bit_length() // 3 + 1 if isinstance(value, int) else 1
+        total, todo = 0, [value]
+        while todo and total <= self.left:
+            each: Any = todo.pop()
+            total += 1
+            if isinstance(each, str):
+                total += len(each)
+            elif isinstance(each, dict):
+                todo.extend(each.keys())
+                todo.extend(each.values())
+            elif isinstance(each, list | tuple):
+                todo.extend(each)
+        return total
+
+
+class _Counted:
+    """What a loop runs over; each turn is charged."""
+
+    def __init__(self, meter: Meter, items: Any, text: int) -> None:
+        self.meter = meter
+        self.items = items
+        self.text = text
+
+    def __iter__(self) -> Iterator[Any]:
+        for item in self.items:
+            self.meter.charge(1 + self.text)
+            yield item
+
+    def __len__(self) -> int:
+        return len(self.items)
+
+
+class BoundedEnvironment(SandboxedEnvironment):
+    """The sandbox, with a meter on all that a template does.
+
+    `include` is what an `{% include %}` makes: file names, context, whether one may be missing.
+    """
+
+    intercepted_binops = frozenset(["+", "*", "**", "%"])
+
+    def __init__(self, include: Callable[[Any, Any, bool], str], **options: Any) -> None:
+        self.meter = Meter()
+        super().__init__(undefined=Missing, finalize=self._finalized, **options)
+        self.include = include
+        self.globals = {name: self.globals[name] for name in KEPT_GLOBALS}
+        self.filters = {
+            name: self._metered(name, function)
+            for name, function in FILTERS.items()
+            if name not in DROPPED_FILTERS
+        }
+
+    def _parse(self, source: str, name: str | None, filename: str | None) -> nodes.Template:
+        tree = super()._parse(source, name, filename)
+        counted: nodes.Template = _Counting().visit(tree)
+        return counted
+
+    def _finalized(self, value: object) -> object:
+        self.meter.charge(self.meter.size(value))
+        return value
+
+    # What _Counting puts into templates.
+
+    def counted(self, items: Any, text: int) -> _Counted:
+        """What a loop runs over, with `text` characters printed at each turn."""
+        return _Counted(self.meter, items, text)
+
+    def joined(self, *parts: object) -> str:
+        """`a ~ b`."""
+        self.meter.charge(1 + sum(self.meter.size(part) for part in parts))
+        return "".join(str(part) for part in parts)
+
+    def weighed(self, value: Any) -> Any:
+        """A value that is about to be searched, compared or copied."""
+        if type(value) in (list, tuple, str):
+            self.meter.charge(self.meter.size(value))
+        return value
+
+    def included(self, names: Any, context: Context, may_be_missing: bool) -> str:
+        return self.include(names, context, may_be_missing)
+
+    # What the sandbox asks.
+
+    def getattr(self, obj: Any, attribute: str) -> Any:
+        if attribute in PYTHON_2_METHODS and isinstance(obj, dict):
+            attribute = PYTHON_2_METHODS[attribute]
+        return super().getattr(obj, attribute)
+
+    def call_binop(self, context: Context, operator: str, left: Any, right: Any) -> Any:
+        meter = self.meter
+        meter.charge(1 + meter.size(left) + meter.size(right))
+        if operator == "%" and isinstance(left, str):
+            meter.charge(_widths(left, right))
+        elif operator == "*":
+            meter.charge(_product(left, right))
+        elif operator == "**" and isinstance(left, int) and isinstance(right, int):
+            meter.charge(left.bit_length() * max(0, right))
+        return super().call_binop(context, operator, left, right)
+
+    def call(__self, __context: Context, __obj: Any, *args: Any, **kwargs: Any) -> Any:  # noqa: N805
+        meter = __self.meter
+        if meter.depth >= MOST_CALLS_DEEP:
+            raise TooMuchError("macros, blocks or includes call one another without an end")
+        function = getattr(__obj, "__func__", None)
+        own = getattr(__obj, "__self__", None) is __self and function is not None
+        if not own:
+            meter.charge(CALL + sum(map(meter.size, (*args, *kwargs.values()))))
+            meter.charge(_cost_of_method(__obj, (*args, *kwargs.values()), meter))
+        meter.depth += 1
+        result = super().call(__context, __obj, *args, **kwargs)
+        meter.depth -= 1
+        if not own:
+            meter.charge(meter.size(result))
+        return result
+
+    def _metered(self, name: str, function: Callable[..., Any]) -> Callable[..., Any]:
+        meter = self.meter
+
+        @wraps(function)
+        def filtered(*args: Any, **kwargs: Any) -> Any:
+            values = [*args, *kwargs.values()]
+            if getattr(function, "jinja_pass_arg", None) is not None:
+                values = values[1:]
+            meter.charge(1 + sum(map(meter.size, values)))
+            for value in values[1:]:
+                if type(value) is int:
+                    meter.charge(abs(value) * _lines(values[0]))
+            if name == "replace" and len(values) > 2:
+                meter.charge((meter.size(values[0]) + 1) * meter.size(values[2]))
+            elif name == "join" and len(values) > 1:
+                meter.charge(meter.size(values[0]) * meter.size(values[1]))
+            elif name == "format" and isinstance(values[0], str):
+                meter.charge(_widths(values[0], tuple(values[1:])))
+            result = function(*args, **kwargs)
+            if isinstance(result, Iterator):
+                return iter(_Counted(meter, result, 0))
+            meter.charge(meter.size(result))
+            return result
+
+        return filtered
+
+
+def _lines(value: object) -> int:
+    """How often a width may count in what a filter makes of a value."""
+    if isinstance(value, str):
+        return 1 + value.count("\n")
+    return 1 + len(value) if isinstance(value, Sized) else 1
+
+
+def _product(left: object, right: object) -> int:
+    """The size of a product."""
+    for row, number in ((left, right), (right, left)):
+        if isinstance(row, str | list | tuple) and isinstance(number, int):
+            return len(row) * max(0, number)
+    return 0
+
+
+def _widths(text: str, values: object) -> int:
+    """What the widths in a format may add."""
+    many = values if isinstance(values, tuple) else (values,)
+    stars = sum(abs(value) for value in many if type(value) is int) if "*" in text else 0
+    return stars + sum(int(found[:12]) for found in _NUMBER.findall(text))
+
+
+def _cost_of_method(function: object, values: tuple[Any, ...], meter: Meter) -> int:
+    """What a method of a string or list may cost beyond its arguments."""
+    name = getattr(function, "__name__", "")
+    # The sandbox puts a function of its own before `str.format`.
+    owner = getattr(getattr(function, "__wrapped__", function), "__self__", None)
+    if not isinstance(owner, str | list | tuple | dict) or name in _CHEAP:
+        return 0
+    cost = meter.size(owner)
+    if name.startswith("format") and isinstance(owner, str):
+        cost += _widths(owner, ())
+    cost += sum(abs(value) * _lines(owner) for value in values if type(value) is int)
+    if name == "replace" and len(values) > 1:
+        cost *= 1 + meter.size(values[1])
+    elif name in ("join", "translate") and values:
+        cost *= 1 + meter.size(values[0])
+    elif name == "expandtabs":
+        cost += 8 * len(owner) + sum(abs(v) * len(owner) for v in values if type(v) is int)
+    return cost
+
+
+class _Counting(NodeTransformer):
+    """Puts the counting into a template: around loops, joins, comparisons, slices, includes.
+
+    At the top level of a template that extends another, an include prints nothing, but is called:
+    its blocks are gathered.
+    """
+
+    def __init__(self) -> None:
+        self.is_top_of_child = False
+
+    def visit_Template(self, node: nodes.Template) -> nodes.Template:  # noqa: N802
+        self.is_top_of_child = node.find(nodes.Extends) is not None
+        self.generic_visit(node)
+        return node
+
+    def visit_Block(self, node: nodes.Block) -> nodes.Block:  # noqa: N802
+        before, self.is_top_of_child = self.is_top_of_child, False
+        self.generic_visit(node)
+        self.is_top_of_child = before
+        return node
+
+    def visit_For(self, node: nodes.For) -> nodes.For:  # noqa: N802
+        self.generic_visit(node)
+        text = sum(len(data.data) for data in node.find_all(nodes.TemplateData))
+        node.iter = _call("counted", [node.iter, nodes.Const(text)], node)
+        return node
+
+    def visit_Concat(self, node: nodes.Concat) -> nodes.Call:  # noqa: N802
+        self.generic_visit(node)
+        return _call("joined", node.nodes, node)
+
+    def visit_Compare(self, node: nodes.Compare) -> nodes.Compare:  # noqa: N802
+        self.generic_visit(node)
+        node.expr = _weighed(node.expr)
+        for operand in node.ops:
+            operand.expr = _weighed(operand.expr)
+        return node
+
+    def visit_Getitem(self, node: nodes.Getitem) -> nodes.Expr:  # noqa: N802
+        self.generic_visit(node)
+        return _weighed(node) if isinstance(node.arg, nodes.Slice) else node
+
+    def visit_Include(self, node: nodes.Include) -> nodes.Stmt:  # noqa: N802
+        self.generic_visit(node)
+        values: list[Any] = [node.template]
+        values.append(nodes.DerivedContextReference())
+        values.append(nodes.Const(node.ignore_missing))
+        call = _call("included", values, node)
+        if self.is_top_of_child:
+            return _in_environment(nodes.ExprStmt(call, lineno=node.lineno), node)
+        return _in_environment(nodes.Output([call], lineno=node.lineno), node)
+
+
+def _weighed(expression: Any) -> nodes.Expr:
+    if isinstance(expression, nodes.Const):
+        return expression
+    return _call("weighed", [expression], expression)
+
+
+def _call(method: str, values: list[Any], node: nodes.Node) -> nodes.Call:
+    """A call of a method of the environment, at the place of a node."""
+    function = nodes.EnvironmentAttribute(method)
+    return _in_environment(nodes.Call(function, values, [], None, None, lineno=node.lineno), node)
+
+
+def _in_environment(made: Made, node: nodes.Node) -> Made:
+    """A node that was made, in the environment of another."""
+    assert node.environment is not None
+    made.set_environment(node.environment)
+    return made

@@ -1,0 +1,270 @@
+"""The containers and states of a machine, each printed by us or by a template of the user's."""
+
+from __future__ import annotations
+
+import re
+from dataclasses import dataclass, field
+from textwrap import indent
+
+from smachac import problems, schema
+from smachac.ir.nodes import Container, Iterator, Leaf, Node
+from smachac.ir.walk import own_outcomes
+from smachac.states import StateType, find_state_type
+from smachac.targets.blocks import BlockError, Page
+from smachac.targets.python import body
+from smachac.targets.python.gathered import (
+    APPENDED,
+    KEYED,
+    PREPENDED,
+    Buffers,
+    Gathered,
+    Used,
+    buffers,
+)
+from smachac.targets.python.layout import call, literal, names
+from smachac.targets.python.smacha import container_variables, state_variables
+
+_PRESET = re.compile(r"\s*\w+\.userdata\.(\w+) = ")
+"""A line by which a state's template sets userdata; the container has set it already."""
+
+Headers = dict[str, dict[str, list[str]]]
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Inside:
+    """Where a state is printed: the container, its variable, its path, how deep it stands.
+
+    `headers` are the lines that states bring for containers, by block and name of the container.
+    """
+
+    node: Container
+    variable: str
+    path: str
+    depth: int
+    headers: Headers = field(default_factory=lambda: {name: {} for name in KEYED})
+
+    def lines(self) -> list[str]:
+        """The lines that belong before the states of this container."""
+        return [line for name in KEYED for line in self.headers[name].get(self.node.name, ())]
+
+
+def container(
+    node: Container,
+    parent: Inside | None,
+    variable: str,
+    depth: int,
+    path: str,
+    gathered: Gathered,
+) -> str:
+    """The lines of a container and all below it, relative to the block they stand in."""
+    template = _own_template(node, gathered) if parent is not None else None
+    if template is not None and parent is not None:
+        return _by_template(node, parent, template, path, gathered)
+    if depth % body.MOST_NESTED == 0:
+        return _function(node, parent, variable, depth, path, gathered)
+    inside = Inside(node=node, variable=variable, path=path, depth=depth)
+    states = children(inside, gathered)
+    return gathered.blocks.render("Container.tpl.py", "body", structure(inside, parent, states))
+
+
+def structure(inside: Inside, parent: Inside | None, states: str) -> dict[str, object]:
+    """What our template of a container needs, with the lines that add its states."""
+    node, variable, depth = inside.node, inside.variable, inside.depth
+    return {
+        "place": body.place(node),
+        "name": node.name,
+        "sm_name": variable,
+        "construct": body.construct(node, variable, depth),
+        "presets": [*body.userdata(node, variable, depth), *inside.lines()],
+        "children": indent(states or "pass", "    "),
+        "after": body.initial(node, variable),
+        "add": body.add(node, parent.node, body.made(node, variable), depth)
+        if parent is not None
+        else "",
+    }
+
+
+def children(inside: Inside, gathered: Gathered) -> str:
+    """The lines that add the states of a container."""
+    states = []
+    for child in body.children(inside.node):
+        below = f"{inside.path}/{child.name}"
+        try:
+            if isinstance(child, Leaf):
+                states.append(_leaf(child, inside, below, gathered))
+            else:
+                variable = gathered.fresh(child.name, False)
+                depth = inside.depth + 1
+                states.append(container(child, inside, variable, depth, below, gathered))
+        except BlockError as error:
+            gathered.fault(error, child)
+    return "\n\n".join(states)
+
+
+def _own_template(node: Container, gathered: Gathered) -> str | None:
+    """The template of the user's that prints a container; none for what sugar was made into."""
+    if node.sugar or not node.type:
+        return None
+    library = gathered.context.library
+    for file in (f"{node.type}.tpl.py", f"{node.type}.tpl"):
+        if library.own_template(file) is not None:
+            return file
+    if node.type in schema.CONTAINERS:
+        return None
+    type_ = find_state_type(node.type, library, [])
+    return type_.code.get("python") if type_ is not None else None
+
+
+def _by_template(
+    node: Container, parent: Inside, template: str, path: str, gathered: Gathered
+) -> str:
+    """A container that a template of SMACHA's kind prints, its states' blocks in its variables.
+
+    What the template has no block for goes on to the container around.
+    """
+    _catches_nothing(node)
+    variables = container_variables(node, parent.node, parent.variable, path)
+    variable = str(variables.get("sm_name", f"sm_{node.name.lower()}"))
+    inside = Inside(node=node, variable=variable, path=path, depth=parent.depth + 1)
+    outer, gathered.buffers = gathered.buffers, buffers()
+    try:
+        states = children(inside, gathered)
+        inner, gathered.buffers = gathered.buffers, buffers()
+        page = gathered.blocks.page(
+            template,
+            {
+                **structure(inside, parent, states), **variables, **joined(inner),
+                **headers(inside), "body": states, "defined_headers": gathered.defined_headers,
+            },
+        )  # fmt: skip
+        for name, lines in inner.items():
+            if name not in page.names:
+                gathered.buffers[name] = lines
+        gathered.gather(page, node)
+        _headers(page, parent, node, gathered)
+        return f"# {body.place(node)}\n{gathered.code(page, 'body', node)}"
+    finally:
+        _pass_on(gathered.buffers, outer)
+        gathered.buffers = outer
+
+
+def headers(inside: Inside) -> dict[str, object]:
+    """The blocks that states bring for containers, as a template sees them."""
+    return {
+        block: {name: "\n".join(lines) for name, lines in texts.items()}
+        for block, texts in inside.headers.items()
+    }
+
+
+def joined(texts: Buffers) -> dict[str, str]:
+    """Buffers as a template sees them."""
+    return {name: "\n\n".join(lines).strip() for name, lines in texts.items()}
+
+
+def _pass_on(inner: Buffers, outer: Buffers) -> None:
+    for name in (*APPENDED, *PREPENDED):
+        new = [text for text in inner[name] if text not in outer[name]]
+        outer[name] = [*new, *outer[name]] if name in PREPENDED else [*outer[name], *new]
+
+
+def _function(
+    node: Container,
+    parent: Inside | None,
+    variable: str,
+    depth: int,
+    path: str,
+    gathered: Gathered,
+) -> str:
+    """A container nested so deep that it gets a function of its own; the line that calls it."""
+    inner = container(node, None, variable, 1, path, gathered)
+    text = f'def _{variable}():\n    """The container `{path}`."""\n{indent(inner, "    ")}'
+    gathered.functions.append(f"{text}\n    return {variable}")
+    assert parent is not None
+    return body.add(node, parent.node, body.made(node, f"_{variable}()"), depth)
+
+
+def _leaf(leaf: Leaf, inside: Inside, path: str, gathered: Gathered) -> str:
+    used = _used(leaf, gathered)
+    if used.whole:
+        return _whole(leaf, inside, path, used, gathered)
+    arguments: body.Arguments = []
+    if "outcomes" in used.type.given:
+        arguments.append(("outcomes=", names(own_outcomes(leaf))))
+    arguments += [(f"{one.name}=", literal(one.value.data)) for one in leaf.variables]
+    given = used.type.given
+    arguments += body.key_arguments(
+        leaf.inputs if "input_keys" in given else (),
+        leaf.outputs if "output_keys" in given else (),
+    )
+    made = body.made(leaf, call(used.class_name, arguments))
+    return f"# {body.place(leaf)}\n{body.add(leaf, inside.node, made, inside.depth + 1)}"
+
+
+def _used(leaf: Leaf, gathered: Gathered) -> Used:
+    """The state type of a leaf; at its first use what its template brings is gathered."""
+    if leaf.type in gathered.used:
+        return gathered.used[leaf.type]
+    type_ = find_state_type(leaf.type, gathered.context.library, [])
+    type_ = type_ or StateType(name=leaf.type, open=True)
+    code = type_.code.get("python", f"{leaf.type}.tpl.py")
+    if ":" in code:
+        module, _, class_name = code.partition(":")
+        gathered.buffers["imports"].append(f"from {module} import {class_name}")
+        used = Used(type=type_, class_name=class_name)
+    elif gathered.blocks.source(code) is None:
+        message = f"state type `{leaf.type}` has no code for Python"
+        raise BlockError(problems.template_error(leaf.span, message, f"`{code}` was looked for"))
+    else:
+        found = gathered.blocks.names(code)
+        used = Used(
+            type=type_,
+            class_name=re.sub(r"\W+", "_", leaf.type),
+            template=code,
+            whole="body" in found,
+        )
+        if not used.whole:
+            variables: dict[str, object] = {
+                "class_name": used.class_name,
+                "defined_headers": gathered.defined_headers,
+            }
+            gathered.gather(gathered.blocks.page(code, variables), leaf)
+    gathered.used[leaf.type] = used
+    return used
+
+
+def _whole(leaf: Leaf, inside: Inside, path: str, used: Used, gathered: Gathered) -> str:
+    """A state whose template prints itself, with the variables SMACHA gave it."""
+    _catches_nothing(leaf)
+    if isinstance(inside.node, Iterator):
+        message = f"the template of `{leaf.name}` cannot add it to an Iterator: SMACH has no `add`"
+        help = "put the state into a StateMachine, and iterate over that"
+        raise BlockError(problems.template_error(leaf.span, message, help))
+    variables = state_variables(leaf, inside.node, inside.variable, path)
+    variables["defined_headers"] = gathered.defined_headers
+    page = gathered.blocks.page(used.template, variables)
+    gathered.gather(page, leaf)
+    _headers(page, inside, leaf, gathered)
+    return f"# {body.place(leaf)}\n{gathered.code(page, 'body', leaf)}"
+
+
+def _catches_nothing(node: Node) -> None:
+    """A state that its template adds cannot be wrapped into what catches its exceptions."""
+    if node.catches:
+        message = f"the template of `{node.type}` prints its states itself, so that `{node.name}`"
+        help = "take the block `body` out of the template, or put the state into a StateMachine"
+        message += " cannot end with its exceptions"
+        raise BlockError(problems.template_error(node.span, message, help))
+
+
+def _headers(page: Page, inside: Inside, node: Node, gathered: Gathered) -> None:
+    """The lines that a state has for its container, without userdata that this has of itself."""
+    presets = {preset.key.lower() for preset in inside.node.userdata}
+    for name in KEYED:
+        if name not in page.names:
+            continue
+        known = inside.headers[name].setdefault(inside.node.name, [])
+        for line in gathered.code(page, name, node).splitlines():
+            found = _PRESET.match(line)
+            again = found is not None and (found[1].lower() in presets or line in known)
+            if line.strip() and not again:
+                known.append(line)

@@ -1,0 +1,84 @@
+"""The imports of a generated module: those that templates bring, and those that the code needs."""
+
+from __future__ import annotations
+
+import ast
+import sys
+from collections.abc import Iterable
+
+ROS_MODULES = ("rospy", "roslib", "rospkg", "rostopic", "actionlib", "tf2_ros")
+"""Modules that SMACHA's bases imported for everybody."""
+
+MESSAGES = {
+    "geometry_msgs.msg": (
+        "Point Point32 PointStamped Polygon Pose Pose2D PoseArray PoseStamped"
+        " PoseWithCovarianceStamped Quaternion QuaternionStamped Transform TransformStamped Twist"
+        " TwistStamped Vector3 Vector3Stamped Wrench WrenchStamped"
+    ),
+    "sensor_msgs.msg": (
+        "CameraInfo CompressedImage Image Imu JointState Joy LaserScan PointCloud PointCloud2"
+        " PointField Range"
+    ),
+    "std_msgs.msg": (
+        "Bool ColorRGBA Duration Float32 Float64 Float64MultiArray Header Int16 Int32 Int64 Int8"
+        " String UInt16 UInt32 UInt64 UInt8"
+    ),
+    "trajectory_msgs.msg": "JointTrajectory JointTrajectoryPoint",
+    "nav_msgs.msg": "OccupancyGrid Odometry Path",
+    "actionlib_msgs.msg": "GoalID GoalStatus",
+}
+"""The messages of ROS's common packages, by module: names that scripts call to make one."""
+
+_MODULE_OF = {name: module for module, names in MESSAGES.items() for name in names.split()}
+
+
+def import_lines(texts: Iterable[str]) -> str:
+    """Imports, each once: modules first, then names out of modules, then what is more than that."""
+    lines: set[str] = set()
+    others: dict[str, None] = {}
+    for text in texts:
+        try:
+            tree = ast.parse(text)
+        except SyntaxError:
+            others[text.strip()] = None
+            continue
+        if all(isinstance(node, ast.Import | ast.ImportFrom) for node in tree.body):
+            lines.update(ast.unparse(node) for node in tree.body)
+        else:
+            others[text.strip()] = None
+    first = sorted(lines, key=lambda line: (line.startswith("from"), line))
+    return "\n".join([*first, *filter(None, others)])
+
+
+def unbound_names(parts: Iterable[str]) -> list[str]:
+    """Imports for what code uses and nothing binds: modules by their attributes (`rospy.loginfo`),
+    messages by their calls (`Point()`). Code with `import *` may bind any message."""
+    used: set[str] = set()
+    bound: set[str] = set()
+    for part in parts:
+        try:
+            tree = ast.parse(part)
+        except (SyntaxError, ValueError, RecursionError, MemoryError):
+            continue
+        for node in ast.walk(tree):
+            match node:
+                case ast.Attribute(value=ast.Name(id=name)):
+                    used.add(name)
+                case ast.Call(func=ast.Name(id=name)):
+                    used.add(f"{name}()")
+                case ast.Name(id=name, ctx=ast.Store()) | ast.arg(arg=name):
+                    bound.add(name)
+                case ast.FunctionDef(name=name) | ast.ClassDef(name=name):
+                    bound.add(name)
+                case ast.Import(names=names) | ast.ImportFrom(names=names):
+                    bound |= {each.asname or each.name.partition(".")[0] for each in names}
+    modules = sys.stdlib_module_names | set(ROS_MODULES)
+    found = [f"import {name}" for name in sorted(used - bound) if name in modules]
+    if "*" in bound or not any(name in used | bound for name in (*ROS_MODULES, "smach_ros")):
+        return found
+    calls = sorted(name.removesuffix("()") for name in used if name.endswith("()"))
+    return found + [
+        f"from {_MODULE_OF[name]} import {name}"
+        for name in calls
+        if name in _MODULE_OF and name not in bound
+    ]

@@ -1,0 +1,64 @@
+"""Python 2 in the templates of SMACHA's time: what can be told for sure is written as Python 3."""
+
+from __future__ import annotations
+
+import ast
+import re
+
+Change = tuple[str, str]
+"""A line as it was, and what was done about it."""
+
+_EXCEPT = re.compile(r"^(\s*except\s+(?:\([^()]*\)|[\w.]+))\s*,\s*(\w+)\s*:(.*)$")
+_PRINT = re.compile(r"^(\s*)print(?:\s+(?!\()|(?=[\"']))([^>\s].*?)(,?)\s*$")
+_PRINT_NOTHING = re.compile(r"^(\s*)print\s*$")
+_PRINT_FORMAT = re.compile(r"^(\s*)print\s+(\(.*\)\s*%.*|[\"'].*)$")
+_RAISE = re.compile(r"^(\s*raise\s+[\w.]+)\s*,\s*(.+?)\s*$")
+_UNEQUAL = re.compile(r"^([^\"'#]*?)<>(.*)$")
+
+
+def modern(text: str) -> tuple[str, list[Change]]:
+    """Text as Python 3, and each line that was changed.
+
+    Text that is Python 3 stays as it is, but for `except A, e:`, which new Pythons read as two
+    exceptions.
+    """
+    changes: list[Change] = []
+    lines = text.split("\n")
+    for number, line in enumerate(lines):
+        found = _EXCEPT.match(line)
+        if found:
+            lines[number] = f"{found[1]} as {found[2]}:{found[3]}"
+            changes.append((line, f"`{line.strip()}` is Python 2; it is printed with `as`"))
+    text = "\n".join(lines)
+    if _is_python(text):
+        return text, changes
+    more: list[Change] = []
+    for number, line in enumerate(lines):
+        new = _line(line)
+        if new is not None and new != line:
+            lines[number] = new
+            more.append((line, f"`{line.strip()}` is Python 2; it is printed as `{new.strip()}`"))
+    tried = "\n".join(lines)
+    return (tried, [*changes, *more]) if more and _is_python(tried) else (text, changes)
+
+
+def _line(line: str) -> str | None:
+    """A line of Python 2 as Python 3, if it is one of those that can be told."""
+    if found := _PRINT_NOTHING.match(line):
+        return f"{found[1]}print()"
+    if found := _PRINT_FORMAT.match(line) or _PRINT.match(line):
+        end = ', end=" "' if found.lastindex == 3 and found[3] else ""
+        return f"{found[1]}print({found[2]}{end})"
+    if found := _RAISE.match(line):
+        return f"{found[1]}({found[2]})"
+    if found := _UNEQUAL.match(line):
+        return f"{found[1]}!={found[2]}"
+    return None
+
+
+def _is_python(text: str) -> bool:
+    try:
+        ast.parse(text)
+    except (SyntaxError, ValueError, RecursionError, MemoryError):
+        return False
+    return True

@@ -1,4 +1,0 @@
-{% block body %}
-# {{ place }}
-{{ add }}
-{% endblock %}

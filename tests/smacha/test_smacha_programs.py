@@ -1,0 +1,154 @@
+"""What becomes of SMACHA's kind of scripts and templates: the machine that the program builds.
+
+`expected/` has the outlines of the machines, written down from what SMACHA makes of such scripts:
+states in the order of the script, transitions, remappings, keys, userdata and outcome maps.
+"""
+
+from __future__ import annotations
+
+import ast
+import os
+import subprocess
+import sys
+from collections import deque
+from pathlib import Path
+
+import pytest
+from smacha_programs import FOLDER, TEMPLATES, machine_of, outline, stand_ins, text_of
+
+import smachac
+from smachac.diagnostics import Report, Severity
+from smachac.driver import build
+from smachac.targets import load_target
+
+SCRIPTS = ["callbacks", "counting", "params", "recording", "two_arms", "whole"]
+REWRITE = os.environ.get("SMACHAC_GOLDEN") == "rewrite"
+
+
+@pytest.mark.parametrize("script", SCRIPTS)
+def test_golden_outline(script: str) -> None:
+    found = outline(machine_of(text_of(script))) + "\n"
+    path = FOLDER / "expected" / f"{script}.txt"
+    if REWRITE:
+        path.parent.mkdir(exist_ok=True)
+        path.write_text(found, "utf-8")
+    assert found == path.read_text("utf-8")
+
+
+def test_the_same_texts_each_time() -> None:
+    code = (
+        "import sys; from smacha_programs import text_of; "
+        f"sys.stdout.write('====='.join(map(text_of, {SCRIPTS})))"
+    )
+    path = os.pathsep.join([str(FOLDER.parents[1]), str(FOLDER)])
+    texts = {
+        subprocess.run(
+            [sys.executable, "-c", code], check=True, capture_output=True, text=True,
+            env={**os.environ, "PYTHONHASHSEED": seed, "PYTHONPATH": path},
+        ).stdout
+        for seed in ("1", "2")
+    }  # fmt: skip
+    assert len(texts) == 1
+    assert all("Made by smachac" in text[:200] for text in texts.pop().split("====="))
+
+
+def test_callbacks_run_by_name_and_lambdas_write_their_keys() -> None:
+    machine = machine_of(text_of("callbacks"))
+    with stand_ins():
+        assert machine.execute() == "final"
+    assert machine.userdata.animals == ["cats", "dogs", "goat", "ducks", "goat"]
+    assert machine.userdata.numbers == [1, 2, 3, 4, 123, 42]
+
+
+def test_a_class_defined_twice_and_not_alike_is_told() -> None:
+    path = FOLDER / "scripts" / "counting.yml"
+    report = built_report(path)
+    assert [item.code.code for item in report] == ["SM607"]
+    assert [each.span.text for each in report[0].finding.related] == ["FOO", "BAR"]
+
+
+def test_python_2_is_translated_and_told() -> None:
+    report = built_report(FOLDER / "scripts" / "two_arms.yml")
+    assert [item.code.code for item in report] == ["SM606", "SM606"]
+    assert [item.span.text for item in report] == [
+        "except (KeyError, AttributeError), e:",
+        "print 'no such limb: %s' % e",
+    ]
+
+
+def test_shared_objects_are_made_once_in_the_function_that_builds() -> None:
+    text = text_of("two_arms")
+    assert text.count("limbs = dict()") == 1
+    assert text.count("class OldMove") == 1
+    assert (
+        text.index("rospy.init_node") < text.index("limbs = dict()") < text.index("OldMove(limbs)")
+    )
+    machine = machine_of(text)
+    with stand_ins():
+        assert machine.execute() == "succeeded"
+    states = [machine["MOVE"]["MOVE_1"], machine["MOVE"]["MOVE_2"]["MOVE"], machine["BACK"]]
+    assert len({id(state._limbs) for state in states}) == 1
+    assert states[0]._limbs == {
+        "left": deque([([-0.08, -0.99998, 1.0], 15.0), ([0.5, 0.25], 15.0)]),
+        "right": deque([([-0.08, -0.99998, 1.0], 5.0)]),
+    }
+
+
+def test_blocks_go_where_smacha_put_them() -> None:
+    text = text_of("recording")
+    order = ["import heapq", "class Shared", "class Recorder", "def main",
+             "shared_recorder = Shared()", "sm = smach.StateMachine(", "footer_of_stop",
+             "footer_of_pause", "footer_of_start",
+             "before_stop", "before_start", "sm.execute()", "after_stop", "after_start",
+             "__main__"]  # fmt: skip
+    places = [text.index(part) for part in order]
+    assert places == sorted(places)
+    assert text.count("class Shared") == text.count("class Recorder") == 1
+
+
+def test_what_smacha_gave_to_templates() -> None:
+    text = text_of("recording")
+    (line,) = (line for line in text.splitlines() if "# Recorder" in line and "in IN" in line)
+    words = line.split()
+    assert len(words[2]) == 32
+    assert int(words[2], 16)
+    assert "(StateMachine), params {'side': 'left'}" in line
+
+
+def test_comments_and_introspection_are_printed_when_asked_for() -> None:
+    plain, full = text_of("whole"), text_of("whole", comments="yes", introspection="yes")
+    for part in ("IntrospectionServer('whole', sm, '/SM')", "rospy.spin()"):
+        assert part not in plain
+        assert part in full
+    ast.parse(full)
+    with_server = text_of("recording", introspection="yes")
+    assert 'smach_ros.IntrospectionServer("SM", sm, "/SM")' in with_server
+    ast.parse(with_server)
+
+
+def test_options_are_yes_or_no() -> None:
+    with pytest.raises(ValueError, match="comments: `yes` or `no`, not `maybe`"):
+        text_of("whole", comments="maybe")
+
+
+def test_a_program_that_is_one_function_runs_and_tells_its_outcome(tmp_path: Path) -> None:
+    events: list[dict[str, object]] = []
+    outcome = smachac.run(
+        FOLDER / "scripts" / "recording.yml", templates=[TEMPLATES], observe=events.append
+    )
+    assert outcome == "succeeded"
+    entered = [event["path"] for event in events if event["event"] == "enter"]
+    assert entered == ["SM/START", "SM/IN", "SM/IN/PAUSE", "SM/STOP"]
+
+
+def built_report(path: Path) -> Report:
+    """What building says beyond what checking says."""
+    analysis, library = smachac.analyse_file(path, (), (TEMPLATES,))
+    target = load_target("python")
+    assert analysis.checked is not None
+    assert library is not None
+    assert target is not None
+    report: Report = []
+    build(analysis.checked, target, library, report)
+    assert all(item.severity is Severity.WARNING for item in report)
+    return report

@@ -1,0 +1,177 @@
+"""Templates that do harm: each ends in an error at its line, soon, and nothing is written."""
+
+# ruff: noqa: E501
+from __future__ import annotations
+
+from pathlib import Path
+
+import pytest
+
+from smachac.diagnostics import Report
+from smachac.driver import analyse, build
+from smachac.files import disk_library, read_source
+from smachac.targets import load_target
+
+MAIN = """\
+name: sm
+template: Base
+outcomes: [done]
+states:
+  - A: {template: Bad, outcomes: [done], given: word, transitions: {done: done}}
+"""
+
+NO_END = "this template has no end, or makes more text than it may"
+CALLS = "macros, blocks or includes call one another without an end"
+ITSELF = "the template extends, includes or calls itself without an end"
+
+HARMFUL = {
+    "nested loops": ("{% for a in range(90000) %}{% for b in range(90000) %}x{% endfor %}{% endfor %}", NO_END),
+    "a long range": ("{% for a in range(10**9) %}x{% endfor %}", "Range too big"),
+    "a product": ("{{ 'x' * 10**10 }}", NO_END),
+    "a product of variables": ("{% set n = 10**9 %}{{ given * n }}", NO_END),
+    "a power": ("{{ 9 ** (9 ** 9) }}", NO_END),
+    "squares": ("{% set ns = namespace(n=7) %}{% for i in range(60) %}{% set ns.n = ns.n * ns.n %}{% endfor %}{{ ns.n }}", NO_END),
+    "doubling by ~": ("{% set ns = namespace(s='x') %}{% for i in range(60) %}{% set ns.s = ns.s ~ ns.s %}{% endfor %}", NO_END),
+    "doubling by +": ("{% set ns = namespace(s='x') %}{% for i in range(60) %}{% set ns.s = ns.s + ns.s %}{% endfor %}", NO_END),
+    "doubling by join": ("{% set ns = namespace(s='x') %}{% for i in range(60) %}{% set ns.s = [ns.s, ns.s] | join %}{% endfor %}", NO_END),
+    "lists in lists": ("{% set ns = namespace(s=['x']) %}{% for i in range(60) %}{% set ns.s = [ns.s, ns.s] %}{% endfor %}{{ ns.s }}", NO_END),
+    "a list that grows": ("{% set l = [1] %}{% for i in range(60) %}{% do l.extend(l) %}{% endfor %}", NO_END),
+    "a wide format": ("{{ '%999999999d' | format(1) }}", NO_END),
+    "a wide %": ("{{ '%999999999d' % 1 }}", NO_END),
+    "a wide str.format": ("{{ '{:999999999}'.format(1) }}", NO_END),
+    "a wide str.format by argument": ("{{ '{:{w}}'.format(1, w=999999999) }}", NO_END),
+    "a wide center": ("{{ given | center(10**9) }}", NO_END),
+    "a wide indent": ("{{ given | indent(10**9, true) }}", NO_END),
+    "ljust": ("{{ given.ljust(10**9) }}", NO_END),
+    "zfill": ("{{ given.zfill(10**9) }}", NO_END),
+    "replace": ("{% set s = 'x' * 100000 %}{{ s | replace('x', s) }}", NO_END),
+    "str.replace": ("{% set s = 'x' * 100000 %}{{ s.replace('x', s) }}", NO_END),
+    "str.join": ("{% set s = 'x' * 100000 %}{{ s.join(s) }}", NO_END),
+    "join": ("{% set s = 'x' * 100000 %}{{ s | join(s) }}", NO_END),
+    "translate": ("{% set s = 'x' * 100000 %}{{ s.translate({120: s}) }}", NO_END),
+    "expandtabs": ("{{ '\t'.expandtabs(10**9) }}", NO_END),
+    "batch": ("{{ [1] | batch(10**9, 0) | list }}", NO_END),
+    "slice": ("{{ [1] | slice(10**9) | list }}", NO_END),
+    "tojson": ("{{ [[1]] | tojson(10**9) }}", NO_END),
+    "searching long lists": ("{% set l = range(90000) | list %}{% for i in range(90000) %}{% if -1 in l %}{% endif %}{% endfor %}", NO_END),
+    "slices": ("{% set l = range(90000) | list %}{% set k = [] %}{% for i in range(90000) %}{% do k.append(l[:]) %}{% endfor %}", NO_END),
+    "a macro that calls itself": ("{% macro m() %}{{ m() }}{% endmacro %}{{ m() }}", CALLS),
+    "macros that branch": ("{% macro m(n) %}{% if n %}{{ m(n - 1) }}{{ m(n - 1) }}{% endif %}{% endmacro %}{{ m(100) }}", NO_END),
+    "a block that prints itself": ("{{ self.body() }}", CALLS),
+    "an include of itself": ("{% include 'Bad.tpl.py' %}", CALLS),
+    "insides of Python": ("{{ ''.__class__.__mro__ }}", "access to attribute '__class__' of 'str' object is unsafe"),
+    "globals of a function": ("{{ range.__globals__ }}", "access to attribute '__globals__'"),
+    "insides by attr": ("{{ '' | attr('__class__') }}", "access to attribute '__class__' of 'str' object is unsafe"),
+    "insides by format": ("{{ '{0.__class__}'.format(1) }}", "access to attribute '__class__' of 'int' object is unsafe"),
+    "insides of a cycler": ("{{ cycler.__init__.__globals__ }}", "access to attribute '__init__'"),
+    "a path upwards": ("{% include '../secret.txt' %}", "there is no template `../secret.txt`"),
+    "a path from the root": ("{% include '/etc/hostname' %}", "there is no template `/etc/hostname`"),
+    "an import from outside": ("{% from '../secret.txt' import x %}", "there is no template `../secret.txt`"),
+    "chance": ("{{ [1, 2] | random }}", "No filter named 'random'"),
+    "a text of nothing": ("{{ lipsum(n=10**6) }}", "'lipsum' is undefined"),
+    "a missing variable": ("{{ nowhere }}", "'nowhere' is undefined"),
+    "a part of what is missing": ("{{ nowhere.x }}", "'nowhere' is undefined"),
+    "division by nothing": ("{{ 1 / 0 }}", "division by zero"),
+}  # fmt: skip
+
+
+def failed(folder: Path, template: str) -> Report:
+    """What building says of a template whose `body` is the text."""
+    (folder / "templates").mkdir()
+    (folder / "secret.txt").write_text("secret")
+    (folder / "main.yml").write_text(MAIN)
+    (folder / "templates" / "Bad.tpl.py").write_text(template)
+    path = folder / "main.yml"
+    report: Report = []
+    source = read_source(path, report)
+    assert source is not None
+    library = disk_library(path, report)
+    analysis = analyse(source, library, report)
+    assert analysis.checked is not None, analysis.report
+    target = load_target("python")
+    assert target is not None
+    found: Report = []
+    assert build(analysis.checked, target, library, found) == {}
+    return found
+
+
+@pytest.mark.parametrize("harm", HARMFUL)
+def test_harm_ends_in_an_error_at_its_line(harm: str, tmp_path: Path) -> None:
+    body, words = HARMFUL[harm]
+    report = failed(tmp_path, f"{{% block body %}}\n{body}\n{{% endblock %}}\n")
+    (found,) = report
+    assert found.code.code == "SM605"
+    assert words in found.finding.message
+    assert found.span.source.name.endswith("Bad.tpl.py")
+    assert found.span.line == 2
+    assert [each.span.text for each in found.finding.related] == ["A"]
+
+
+@pytest.mark.parametrize(
+    ("template", "words"),
+    [
+        ("{% extends 'Bad.tpl.py' %}", "the template extends, includes or calls itself without an end"),
+        ("{% include 'Bad.tpl.py' %}{% block body %}{% endblock %}", ITSELF),
+        ("{% from 'Bad.tpl.py' import m %}{% macro m() %}{% endmacro %}{% block body %}{% endblock %}", ITSELF),
+        ("{% block body %}{% endblock %}{{ 'x' * 10**10 }}{% set a = 1 %}", NO_END),
+        ("{% block body %}" + "(" * 500, ""),
+        ("{% block body %}{{ " + "(" * 5000 + "1" + ")" * 5000 + " }}{% endblock %}", ITSELF),
+        ("{% for a in [1] %}" * 30 + "{% endfor %}" * 30 + "{% block body %}{% endblock %}", ""),
+        ("{% block body %}smach.add(\n{% endblock %}", "block `body` makes no Python"),
+        ("{% block class_defs %}class A\n{% endblock %}{% block body %}pass{% endblock %}",
+         "block `class_defs` makes no Python"),
+    ],
+)  # fmt: skip
+def test_templates_that_are_wrong_as_a_whole(template: str, words: str, tmp_path: Path) -> None:
+    (found,) = failed(tmp_path, template)
+    assert found.code.code == "SM605"
+    assert words in found.finding.message
+
+
+def test_all_faulty_templates_are_told_at_once(tmp_path: Path) -> None:
+    (tmp_path / "templates").mkdir()
+    states = "".join(
+        f"  - S{n}: {{template: Bad{n % 3}, outcomes: [done], transitions: {{done: done}}}}\n"
+        for n in range(6)
+    )
+    for n in range(3):
+        text = f"{{% block body %}}{{{{ missing_{n} }}}}{{% endblock %}}"
+        (tmp_path / "templates" / f"Bad{n}.tpl.py").write_text(text)
+    path = tmp_path / "main.yml"
+    path.write_text(f"name: sm\ntemplate: Base\noutcomes: [done]\nstates:\n{states}")
+    report: Report = []
+    source = read_source(path, report)
+    library = disk_library(path, report)
+    assert source is not None
+    machine = analyse(source, library, report)
+    target = load_target("python")
+    assert target is not None
+    assert machine.machine is not None
+    found: Report = []
+    target.emit(machine.machine, _context(library), found)  # type: ignore[arg-type]
+    assert [item.finding.message for item in found] == [
+        f"'missing_{n}' is undefined" for n in range(3)
+    ]
+
+
+def _context(library: object) -> object:
+    from smachac.targets import Context
+
+    return Context(library=library)  # type: ignore[arg-type]
+
+
+def test_what_templates_may_do(tmp_path: Path) -> None:
+    from smachac.source import Source
+    from smachac.targets.blocks import Blocks
+
+    text = (
+        "{% block body %}{% set d = {'b': 1, 'a': 2} %}{% do d.update({'c': 3}) %}"
+        "{% for k, v in d.iteritems() | sort %}{{ k }}={{ v }}{% if not loop.last %},{% endif %}"
+        "{% endfor %};{{ loop is defined }};{{ 'a' ~ 1 }};{{ [3, 1] | sort | join(' ') }};"
+        "{{ '%s-%d' | format('x', 2) }};{% if nowhere %}yes{% endif %};{{ nowhere | default('d') }}"
+        "{% for x in range(5) %}{{ loop.index }}/{{ loop.length }} {% endfor %}{% endblock %}"
+    )
+    blocks = Blocks({"T.tpl.py": Source("T.tpl.py", text)}.get)
+    assert blocks.render("T.tpl.py", "body", {}) == (
+        "a=2,b=1,c=3;False;a1;1 3;x-2;;d1/5 2/5 3/5 4/5 5/5"
+    )
