@@ -6,7 +6,7 @@ from smachac.diagnostics import Finding, Related, Severity, problem
 from smachac.source import Span
 
 
-@problem("SM606", "python-2-code", Severity.WARNING)
+@problem("SM606", "old-python", Severity.WARNING)
 def python_2_code(span: Span, message: str) -> Finding:
     """A template holds Python 2; it is printed as Python 3.
 

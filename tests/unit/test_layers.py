@@ -15,6 +15,7 @@ LAYERS = (
     ("syntax", "ir", "shapes", "policy"),
     (
         "states",
+        "meta",
         "script",
         "schema",
         "lookups",
