@@ -7,12 +7,12 @@ import gc
 import os
 import sys
 
-from smachac import __version__
+from smachac import __version__, arguments
+from smachac.arguments import colour, path, search_folders
 
 TYPE_CHECKING = False  # typing and pathlib cost more than all the rest of `smachac --help`
 if TYPE_CHECKING:
     from collections.abc import Sequence
-    from pathlib import Path
 
 BUG, INTERRUPTED = 70, 130
 """Exit codes beside those of verbs.py: our fault; Ctrl-C."""
@@ -42,16 +42,6 @@ examples:
 exit codes: 0 explained, 1 unreadable script, 2 wrong usage or no such name, 70 a bug in smachac
 """
 
-FMT_EXAMPLES = """\
-examples:
-  smachac fmt                        lay out every script below this folder
-  smachac fmt main.yml --diff        what it would change, as a patch
-  smachac fmt --check                fail if a script is not laid out (CI)
-  smachac fmt main.yml --shorthand   T, o, t, [[x]] instead of template, outcomes, transitions, ...
-
-exit codes: 0 done, 1 something to lay out (--check, --diff) or unreadable, 2 wrong usage, 70 a bug
-"""
-
 VERIFY_EXAMPLES = """\
 examples:
   smachac verify main.yml                        does the generated Python do what the script says?
@@ -78,12 +68,6 @@ examples:
 
 exit codes: 0 clean, 1 findings, 2 wrong usage, 70 a bug in smachac
 """
-
-
-def _path(text: str) -> Path:
-    from pathlib import Path
-
-    return Path(text)
 
 
 def _names(text: str) -> list[str]:
@@ -128,15 +112,15 @@ def _parser(given: Sequence[str]) -> argparse.ArgumentParser:
 
 def _check(verb: argparse.ArgumentParser) -> None:
     verb.epilog = CHECK_EXAMPLES
-    verb.add_argument("script", nargs="*", type=_path, default=None,
+    verb.add_argument("script", nargs="*", type=path, default=None,
                       help="scripts, folders, patterns (default: this folder)")  # fmt: skip
-    _search_folders(verb)
+    search_folders(verb)
     verb.add_argument("--format", choices=FORMATS, default="text", help="of the report")
     verb.add_argument("--strict", action="store_true", help="warnings fail as errors do")
     for name, what in (("select", "report these alone"), ("ignore", "leave these out")):
         verb.add_argument(f"--{name}", action="append", default=[], metavar="CODE[,CODE]",
                           help=f"{what}: codes, or beginnings such as SM2")  # fmt: skip
-    verb.add_argument("--baseline", type=_path, metavar="FILE", help="leave out what it knows")
+    verb.add_argument("--baseline", type=path, metavar="FILE", help="leave out what it knows")
     verb.add_argument("--write-baseline", action="store_true", help="make --baseline know all")
     verb.add_argument("--changed-since", metavar="REV",
                       help="only scripts made of files that changed since then (git)")  # fmt: skip
@@ -144,16 +128,16 @@ def _check(verb: argparse.ArgumentParser) -> None:
     verb.add_argument("--diff", action="store_true", help="show what --fix would do, write nothing")
     verb.add_argument("--sim", action="store_true", help="ask the simulated arm what it can reach")
     verb.add_argument("--watch", action="store_true", help="check again when a file changes")
-    _colour(verb)
+    colour(verb)
 
 
 def _build(verb: argparse.ArgumentParser) -> None:
-    verb.add_argument("script", type=_path, help="a script (.yml, .yaml)")
+    verb.add_argument("script", type=path, help="a script (.yml, .yaml)")
     verb.add_argument("--target", "-t", required=True, help="see `smachac targets`")
     verb.add_argument(
         "-o",
         "--output",
-        type=_path,
+        type=path,
         default=".",
         metavar="DIR",
         help="where to write (default: here; `-` prints)",
@@ -167,25 +151,25 @@ def _build(verb: argparse.ArgumentParser) -> None:
     verb.add_argument(
         "--force", action="store_true", help="overwrite files that smachac did not write"
     )
-    _search_folders(verb)
-    _colour(verb)
+    search_folders(verb)
+    colour(verb)
 
 
 def _run(verb: argparse.ArgumentParser) -> None:
-    verb.add_argument("script", type=_path, help="a script (.yml, .yaml)")
+    verb.add_argument("script", type=path, help="a script (.yml, .yaml)")
     verb.add_argument("--gui", action="store_true", help="show the simulation in a window")
-    verb.add_argument("--record", type=_path, metavar="FILE", help="film it: .gif or .mp4")
-    verb.add_argument("--trace", type=_path, metavar="FILE", help="write every event, JSON lines")
+    verb.add_argument("--record", type=path, metavar="FILE", help="film it: .gif or .mp4")
+    verb.add_argument("--trace", type=path, metavar="FILE", help="write every event, JSON lines")
     verb.add_argument("--seed", type=int, default=0, help="of the simulated world (default 0)")
-    verb.add_argument("--mock", type=_path, metavar="FILE", help="play a scenario instead")
+    verb.add_argument("--mock", type=path, metavar="FILE", help="play a scenario instead")
     verb.add_argument("--schedule", type=_names, metavar="A,B,...",
                       help="with --mock: whose turn it is among concurrent branches")  # fmt: skip
     verb.add_argument("--orders", type=_count, metavar="N",
                       help="with --mock: try N orders of the branches, fail on a race")  # fmt: skip
     verb.add_argument("--expect", metavar="OUTCOME", help="fail unless it ends with this outcome")
     verb.add_argument("--quiet", "-q", action="store_true", help="no progress, only the outcome")
-    _search_folders(verb)
-    _colour(verb)
+    search_folders(verb)
+    colour(verb)
 
 
 def _explain(verb: argparse.ArgumentParser) -> None:
@@ -196,38 +180,21 @@ def _explain(verb: argparse.ArgumentParser) -> None:
     verb.add_argument("--failures", action="store_true", help="of a script: where failures lead")
     verb.add_argument("--format", choices=("text", "json", "md", "csv"), default="text",
                       help="md and csv for --failures alone")  # fmt: skip
-    _search_folders(verb)
-    _colour(verb)
-
-
-def _fmt(verb: argparse.ArgumentParser) -> None:
-    verb.epilog = FMT_EXAMPLES
-    verb.add_argument("script", nargs="*", type=_path, default=None,
-                      help="scripts, folders, patterns (default: this folder)")  # fmt: skip
-    _dry_run(verb)
-    spelling = verb.add_mutually_exclusive_group()
-    for name in ("short", "long"):
-        spelling.add_argument(f"--{name}hand", dest="spelling", action="store_const", const=name,
-                              default="kept", help=f"{name} names of variables")  # fmt: skip
-    _colour(verb)
-
-
-def _dry_run(verb: argparse.ArgumentParser) -> None:
-    verb.add_argument("--check", action="store_true", help="write nothing; 1 if it would")
-    verb.add_argument("--diff", action="store_true", help="write nothing; print it as a patch")
+    search_folders(verb)
+    colour(verb)
 
 
 def _verify(verb: argparse.ArgumentParser) -> None:
     verb.epilog = VERIFY_EXAMPLES
-    verb.add_argument("script", type=_path, help="a script (.yml, .yaml)")
+    verb.add_argument("script", type=path, help="a script (.yml, .yaml)")
     verb.add_argument("--targets", type=_names, default=["python"], metavar="A,B,...",
                       help="what to compare with the interpreter (default: python)")  # fmt: skip
     verb.add_argument("--paths", type=_count, metavar="N",
                       help="at most (default: 200, or what all transitions take)")  # fmt: skip
     verb.add_argument("--seed", type=int, default=0, help="of the random paths (default 0)")
     verb.add_argument("--format", choices=("text", "json"), default="text", help="of the report")
-    _search_folders(verb)
-    _colour(verb)
+    search_folders(verb)
+    colour(verb)
 
 
 def _targets(verb: argparse.ArgumentParser) -> None:
@@ -240,20 +207,14 @@ COMMANDS = {
     "run": ("run a script: on the simulated arm, or with mock states", _run),
     "verify": ("compare what targets make of a script, path by path", _verify),
     "explain": ("what a code means, or a state, key or failure of a script", _explain),
-    "fmt": ("lay out scripts, with their comments", _fmt),
+    "fmt": ("lay out scripts, with their comments", arguments.fmt),
+    "contain": ("put states into a container of their own", arguments.contain),
+    "extract": ("make a sub-script of a container", arguments.extract),
+    "inline": ("put a sub-script in the place of its call", arguments.inline),
+    "rename": ("give a state, outcome or key another name, everywhere", arguments.rename),
     "targets": ("list what can be built", _targets),
 }
 """Command to what it does and what adds its arguments; verbs.py holds what it does."""
-
-
-def _search_folders(parser: argparse.ArgumentParser) -> None:
-    for name, what in (("scripts", "sub-scripts"), ("templates", "templates and interfaces")):
-        parser.add_argument(f"--{name}", type=_path, action="append", default=[], metavar="DIR",
-                            help=f"another folder with {what} (repeatable)")  # fmt: skip
-
-
-def _colour(parser: argparse.ArgumentParser) -> None:
-    parser.add_argument("--colour", "--color", choices=["auto", "always", "never"], default="auto")
 
 
 def main(arguments: Sequence[str] | None = None) -> int:

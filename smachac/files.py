@@ -65,11 +65,13 @@ class Disk:
     """What one run reads: each file once, each text parsed once, whoever asks for it.
 
     `texts` stand for the files at their (real) paths. `asked` collects the real paths of all that
-    was looked for, whether it was there or not; whoever wants to know empties it before.
+    was looked for, whether it was there or not; whoever wants to know empties it before. `plain`:
+    lines end with a line feed alone, whatever the files say.
     """
 
-    def __init__(self, texts: Mapping[str, str] | None = None) -> None:
+    def __init__(self, texts: Mapping[str, str] | None = None, *, plain: bool = False) -> None:
         self.texts = texts or {}
+        self.plain = plain
         self.asked: set[str] = set()
         self._sources: dict[str, tuple[Source | None, Report]] = {}
         self._trees: dict[Source, tuple[Tree | None, Report]] = {}
@@ -82,6 +84,8 @@ class Disk:
             found: Report = []
             text = self.texts.get(key)
             source = read_source(path, found) if text is None else Source(str(path), text)
+            if self.plain and source is not None and "\r" in source.text:
+                source = Source(source.name, with_line_feeds(source.text))
             self._sources[key] = (source, found)
         source, problems_found = self._sources[key]
         report.extend(problems_found)
@@ -97,8 +101,13 @@ class Disk:
         return tree
 
     def is_file(self, path: Path) -> bool:
-        self.asked.add(os.path.realpath(path))
-        return path.is_file()
+        key = os.path.realpath(path)
+        self.asked.add(key)
+        return key in self.texts or path.is_file()
+
+
+def with_line_feeds(text: str) -> str:
+    return text.replace("\r\n", "\n").replace("\r", "\n")
 
 
 def find_project(main: Path, report: Report, disk: Disk | None = None) -> Project:
@@ -253,14 +262,19 @@ class ChangedError(Exception):
 
 def rewrite_files(texts: Mapping[str, str], before: Mapping[str, Source]) -> None:
     """Give files, named by real path, new texts: all of them or none, in the encoding and with the
-    permissions they have.
+    permissions they have. What `before` does not hold is a new file.
 
-    Raises OSError, also for a file that nobody may write, and ChangedError where somebody else has
-    written since `before` was read.
+    Raises OSError, also for a file that nobody may write or a new one that is there, and
+    ChangedError where somebody else has written since `before` was read.
     """
     contents: dict[Path, tuple[bytes, int]] = {}
     for name, text in texts.items():
         path = Path(name)
+        if name not in before:
+            if path.exists():
+                raise FileExistsError(errno.EEXIST, os.strerror(errno.EEXIST), name)
+            contents[path] = (text.encode("utf-8"), 0o644)
+            continue
         data = path.read_bytes()
         mode = path.stat().st_mode & 0o7777
         if _decoded(data) != before[name].text:

@@ -49,23 +49,33 @@ def fmt(arguments: Namespace) -> int:
     return FINDINGS if left else code
 
 
-def put(texts: Texts, sources: Mapping[str, Source], arguments: Namespace, done: str) -> int:
-    """Write new texts, or show what would be written, as `--check` and `--diff` say."""
-    names = sorted(source.name for source in sources.values())
+def put(
+    texts: Texts,
+    sources: Mapping[str, Source],
+    arguments: Namespace,
+    done: str,
+    new: frozenset[str] = frozenset(),
+) -> int:
+    """Write new texts, or show what would be written, as `--check` and `--diff` say. `new` are the
+    paths of files that are not there yet."""
+    verbs = {
+        source.name: "made" if path in new else done
+        for path, source in sorted(sources.items(), key=lambda each: each[1].name)
+    }
     if arguments.diff:
         sys.stdout.writelines(differences(texts, sources))
         return FINDINGS if texts else OK
     if arguments.check:
-        for name in names:
-            print(f"{name} would be {done}")
+        for name, verb in verbs.items():
+            print(f"{name} would be {verb}")
         return FINDINGS if texts else OK
     try:
-        rewrite_files(texts, sources)
+        rewrite_files(texts, {path: sources[path] for path in sources.keys() - new})
     except (OSError, ChangedError) as error:
         words = getattr(error, "strerror", None) or str(error)
         where = getattr(error, "filename", None)
         print(f"nothing was written: {f'{where}: ' if where else ''}{words}", file=sys.stderr)
         return FINDINGS
-    for name in names:
-        print(f"{done} {name}")
+    for name, verb in verbs.items():
+        print(f"{verb} {name}")
     return OK

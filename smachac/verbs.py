@@ -37,6 +37,30 @@ def _fmt(arguments: argparse.Namespace) -> int:
     return fmt(arguments)
 
 
+def _extract(arguments: argparse.Namespace) -> int:
+    from smachac.rework import run_extract
+
+    return run_extract(arguments)
+
+
+def _inline(arguments: argparse.Namespace) -> int:
+    from smachac.rework import run_inline
+
+    return run_inline(arguments)
+
+
+def _rename(arguments: argparse.Namespace) -> int:
+    from smachac.rework import run_rename
+
+    return run_rename(arguments)
+
+
+def _contain(arguments: argparse.Namespace) -> int:
+    from smachac.rework import run_contain
+
+    return run_contain(arguments)
+
+
 def _build(arguments: argparse.Namespace) -> int:
     from smachac.targets import OptionError, load_target, target_names
 
@@ -284,6 +308,10 @@ VERBS: dict[str, Callable[[argparse.Namespace], int]] = {
     "verify": _verify,
     "explain": _explain,
     "fmt": _fmt,
+    "contain": _contain,
+    "extract": _extract,
+    "inline": _inline,
+    "rename": _rename,
     "targets": _targets,
 }
 """Command to function."""

@@ -8,6 +8,7 @@ from __future__ import annotations
 
 import re
 from dataclasses import dataclass, field
+from itertools import accumulate
 from typing import Any, TypeAlias
 
 from smachac.source import Source
@@ -44,18 +45,21 @@ class Item:
     """An entry of a mapping, or an item of a list, which has no key.
 
     `lead` are the lines above, comments or empty; `aside` the comment behind, with its spaces.
+    `start` is where its first line begins, or the first one above it, if it begins a line.
     """
 
     key: Atom | None
     value: Node
     lead: list[str] = field(default_factory=list)
     aside: str = ""
+    start: int = -1
 
 
 @dataclass(slots=True)
 class Group:
     """A mapping or a list. `raw`: a flow collection that has to stay as it is written, for there
-    are comments in it. `properties`: anchor and tag. `tail`: the comments below the last item."""
+    are comments in it. `properties`: anchor and tag. `tail`: the comments below the last item, with
+    which it ends."""
 
     mapping: bool
     flow: bool
@@ -247,6 +251,8 @@ class _Reader:
         text = self.text[self.end : to]
         opening, closed = self.opening, self.closed
         self.opening, self.closed = None, []
+        if opening is not None:
+            opening.start = self.source.line_starts[self.source.position(to)[0] - 1]
         if "#" not in text and text.count("\n") < 2:
             return
         lines = text.split("\n")
@@ -265,6 +271,8 @@ class _Reader:
         blanks = target if opening or self.here is None else []
         own = -1 if last else self.margin_of(opening, to)
         floating = True
+        begin = 0
+        ends = list(accumulate((len(line) + 1 for line in lines), initial=self.end))[-len(found) :]
         for number, (line, comment) in enumerate(found):
             if comment is None and (line.strip() or number == len(found) - 1):
                 floating = floating and not _DASH.match(line.strip() + " ")
@@ -275,8 +283,14 @@ class _Reader:
             words = comment[0].rstrip() if comment else ""
             if group is not None and comment is not None:
                 group.tail += [*_blanks(blanks), words]
+                begin = 0
+                for each in closed[closed.index(group) :]:
+                    each.end = ends[number] - 1
             else:
                 (target if words else blanks).append(words)
+                begin = begin or ends[number] - len(line) - 1
+        if opening is not None and begin:
+            opening.start = begin
 
     def margin_of(self, opening: Item | None, to: int) -> int:
         """The column of what begins at a place."""

@@ -61,6 +61,20 @@ def _laid_out(source: Source, spelling: Spelling, ordered: bool) -> str | None:
     return made.text if Counter(comments) == Counter(text.comments) else None
 
 
+def item_lines(item: Item, column: int, *, first: bool) -> list[str]:
+    """The lines of one item of a list whose dashes stand in a column."""
+    printer = _Printer()
+    margin = " " * column
+    printer.lines += printer.trivia(item.lead, margin, first=first)
+    printer.item(item, f"{margin}- ", column)
+    return printer.lines
+
+
+def list_text(item: Item, tail: list[str]) -> str:
+    """A text that is a list with one item."""
+    return "".join(f"{line}\n" for line in [*item_lines(item, 0, first=True), *tail])
+
+
 class _Printer:
     """Prints parts as lines."""
 

@@ -23,7 +23,7 @@ neither here nor below stands between, as it is written: it belongs to the state
 
 LAST = (
     *("userdata", "remapping", "claims", "timeout", "retry", "for_each", "forever"),
-    *("transitions", "initial", "states"),
+    *("transitions", "on_error", "initial", "states"),
 )
 """What a state ends with: first its keys, then where it leads, then what is in it."""
 
@@ -40,21 +40,26 @@ def put_in_order(root: Group, spelling: Spelling, *, ordered: bool = True) -> No
     todo: list[Group] = []
     if not root.mapping:
         todo += _states(root)
-    elif any(_long(item) == "states" for item in root.items):
+    elif any(long_name(item) == "states" for item in root.items):
         todo.append(root)
     while todo:
         state = todo.pop()
         state.is_state = True
         for item in state.items:
-            name = _long(item)
+            name = long_name(item)
             if name == "states" and isinstance(item.value, Group):
                 todo += _states(item.value)
             _spell(item, name, spelling)
         if ordered:
-            state.items.sort(key=lambda item: _RANKS.get(_long(item), len(FIRST)))
+            sort_variables(state)
 
 
-def _long(item: Item) -> str:
+def sort_variables(state: Group) -> None:
+    """Put the variables of one state in order."""
+    state.items.sort(key=lambda item: _RANKS.get(long_name(item), len(FIRST)))
+
+
+def long_name(item: Item) -> str:
     text = item.key.text if item.key is not None else ""
     if text[:1] in ("'", '"') and text[:1] == text[-1:]:
         text = text[1:-1]
@@ -64,17 +69,25 @@ def _long(item: Item) -> str:
 def _states(states: Group) -> Iterator[Group]:
     """The variables of each state of a list; those beside its name are put under it."""
     for item in states.items if not states.mapping else ():
-        state = item.value
-        if not isinstance(state, Group) or not state.mapping or not state.items:
-            continue
-        first, rest = state.items[0], state.items[1:]
-        if rest and isinstance(first.value, Atom) and first.value.text in ("", "~", "null"):
-            column = rest[0].key.column if rest[0].key is not None else state.column
-            inner = Group(True, state.flow, state.start, column=column, items=rest)
-            inner.tail, state.tail = state.tail, []
-            first.value, state.items = inner, [first]
-        if isinstance(first.value, Group) and first.value.mapping:
-            yield first.value
+        body = variables_of(item)
+        if body is not None:
+            yield body
+
+
+def variables_of(item: Item) -> Group | None:
+    """The variables of a state item, put under its name if they stand beside it."""
+    state = item.value
+    if not isinstance(state, Group) or not state.mapping or not state.items:
+        return None
+    first, rest = state.items[0], state.items[1:]
+    if rest and isinstance(first.value, Atom) and first.value.text in ("", "~", "null"):
+        column = rest[0].key.column if rest[0].key is not None else state.column
+        inner = Group(True, state.flow, state.start, column=column, items=rest)
+        inner.end = state.end
+        inner.tail, state.tail = state.tail, []
+        first.value, state.items = inner, [first]
+    body = first.value
+    return body if isinstance(body, Group) and body.mapping else None
 
 
 def _spell(item: Item, name: str, spelling: Spelling) -> None:

@@ -32,7 +32,8 @@ LAYERS = (
     ("__init__", "runs", "streams", "survey", "discover", "baseline"),
     ("fixes", "verify"),
     ("checkup", "rewriting"),
-    ("verbs",),
+    ("rework",),
+    ("verbs", "arguments"),
     ("cli",),
     ("__main__",),
 )

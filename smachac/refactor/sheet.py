@@ -1,0 +1,202 @@
+"""A script to be changed: words here and there, and states that are written anew or elsewhere."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable
+from dataclasses import dataclass
+
+from smachac.refactor.concrete import Atom, Group, Item, take_apart
+from smachac.refactor.layout import item_lines
+from smachac.refactor.order import long_name, variables_of
+from smachac.source import Source, Span
+
+
+class RefusedError(Exception):
+    """Something cannot be done; the words say what is in the way, and what helps."""
+
+    def __init__(self, span: Span, message: str, help: str | None = None) -> None:
+        super().__init__(message)
+        self.span = span
+        self.message = message
+        self.help = help
+
+
+@dataclass(slots=True)
+class Place:
+    """A state of a script: its item, and the list that it is an item of."""
+
+    item: Item
+    states: Group
+
+
+class Sheet:
+    """One text, and what is to become of it. States are known by where their name begins."""
+
+    def __init__(self, source: Source) -> None:
+        self.source = source
+        self.text = take_apart(source)
+        self.places: dict[int, Place] = {}
+        self._words: dict[tuple[int, int], str] = {}
+        self._anew: dict[int, tuple[Place, list[Item]]] = {}
+        self._values: dict[int, Atom] = {}
+        self._find()
+
+    def _find(self) -> None:
+        root = self.text.root
+        todo = [root] if not root.mapping else _lists(root)
+        while todo:
+            states = todo.pop()
+            for item in states.items:
+                name = _name(item)
+                body = variables_of(item)
+                if name is not None and body is not None:
+                    self.places[name.start] = Place(item, states)
+                    todo += _lists(body)
+
+    def state(self, span: Span) -> Place:
+        """The state whose name stands there. Raises RefusedError where it is in brackets."""
+        place = self.places.get(span.start)
+        if place is None or place.states.flow or place.item.start < 0:
+            help = "lay the script out first: `smachac fmt`"
+            raise RefusedError(span, "this state stands in brackets, or in an unusual place", help)
+        return place
+
+    def bodies(self) -> list[Group]:
+        """The variables of the script itself and of every state in it."""
+        root = self.text.root
+        found = [root] if root.mapping else []
+        for place in self.places.values():
+            body = variables_of(place.item)
+            if body is not None:
+                found.append(body)
+        return found
+
+    def value_of(self, span: Span) -> Atom:
+        """The scalar behind the key that stands there. Raises RefusedError."""
+        if not self._values:
+            todo = [Item(None, self.text.root)]
+            while todo:
+                item = todo.pop()
+                if isinstance(item.value, Group):
+                    todo += item.value.items
+                elif item.key is not None:
+                    self._values[item.key.start] = item.value
+        if span.start not in self._values:
+            raise RefusedError(span, "what stands here comes from elsewhere", "write it out first")
+        return self._values[span.start]
+
+    def spell(self, span: Span, text: str) -> None:
+        """Let another word stand there; in quotes, if the one before does."""
+        written = span.text
+        if written[:1] in ("'", '"') and written[:1] == written[-1:]:
+            text = f"{written[0]}{text}{written[0]}"
+        self._words[span.start, span.end] = text
+
+    def write_anew(self, place: Place, items: list[Item] | None = None) -> None:
+        """Write a state as its parts have become; or other states, or none, in its stead."""
+        self._anew[place.item.start] = (place, [place.item] if items is None else items)
+
+    def result(self) -> str:
+        """The new text."""
+        text = self.source.text
+        parts: list[str] = []
+        at = 0
+        words = sorted(self._words.items())
+        stretches = [(*self._stretch(place), place, items) for place, items in self._anew.values()]
+        todo = [(start, end, new) for (start, end), new in words]
+        inside = 0
+        for begin, end, place, items in sorted(stretches, key=lambda each: each[:2]):
+            if begin < inside:
+                continue
+            inside = end
+            todo = [each for each in todo if not begin <= each[0] < end]
+            todo.append((begin, end, self._printed(place, items)))
+        for begin, end, new in sorted(todo):
+            parts += [text[at:begin], new]
+            at = end
+        return "".join(parts) + text[at:]
+
+    def _stretch(self, place: Place) -> tuple[int, int]:
+        """The lines of a state, as far as the next one or the end of the list."""
+        items = place.states.items
+        number = next(at for at, item in enumerate(items) if item is place.item)
+        if number + 1 < len(items):
+            return place.item.start, items[number + 1].start
+        end = self.source.text.find("\n", place.states.end)
+        return place.item.start, len(self.source.text) if end < 0 else end + 1
+
+    def _printed(self, place: Place, items: list[Item]) -> str:
+        first = place.states.items[0] is place.item
+        lines: list[str] = []
+        for item in items:
+            self.respell(item)
+            lines += item_lines(item, place.states.column, first=first and not lines)
+        return "".join(f"{line}\n" for line in lines)
+
+    def respell(self, top: Item) -> None:
+        """Bring the new words into the parts that are written anew."""
+        if not self._words:
+            return
+        todo = [top]
+        while todo:
+            item = todo.pop()
+            for node in (item.key, item.value):
+                match node:
+                    case Atom(start=start, end=end) if start >= 0:
+                        node.text = self._changed(start, end) or node.text
+                    case Group(raw=str()):
+                        node.raw = self._changed(node.start, node.end) or node.raw
+                    case Group():
+                        todo += node.items
+
+    def _changed(self, start: int, end: int) -> str | None:
+        """The text between two places with its new words; None if there are none."""
+        parts: list[str] = []
+        at = start
+        for (begin, stop), new in sorted(self._words.items()):
+            if start <= begin and stop <= end:
+                parts += [self.source.text[at:begin], new]
+                at = stop
+        return "".join(parts) + self.source.text[at:end] if parts else None
+
+
+def _lists(body: Group) -> list[Group]:
+    """The list of states among the variables of a state."""
+    values = (item.value for item in body.items if long_name(item) == "states")
+    return [value for value in values if isinstance(value, Group) and not value.mapping]
+
+
+def _name(item: Item) -> Atom | None:
+    state = item.value
+    return (
+        state.items[0].key if isinstance(state, Group) and state.mapping and state.items else None
+    )
+
+
+def variable(body: Group, name: str) -> Item | None:
+    """A variable of a state by its long name."""
+    return next((item for item in body.items if long_name(item) == name), None)
+
+
+def word(text: str) -> Atom:
+    """A scalar that no text holds yet."""
+    return Atom(text, -1, -1)
+
+
+def pairs(entries: Iterable[tuple[str, str]]) -> Group:
+    """A mapping in brackets."""
+    return Group(True, True, -1, items=[Item(word(key), word(value)) for key, value in entries])
+
+
+def put(body: Group, name: str, key: str, value: str) -> None:
+    """Add an entry to a variable that is a mapping, or the variable."""
+    item = variable(body, name)
+    if item is None or not isinstance(item.value, Group):
+        item = Item(word(name), pairs(()))
+        assert isinstance(item.value, Group)
+        states = variable(body, "states")
+        at = len(body.items) if states is None else body.items.index(states)
+        body.items.insert(at, item)
+    assert isinstance(item.value, Group)
+    item.value.flat = ""
+    item.value.items.append(Item(word(key), word(value)))

@@ -1,0 +1,375 @@
+"""The commands that move or rename states: worked out in memory, proven, then shown or written."""
+
+from __future__ import annotations
+
+import os
+import sys
+from argparse import Namespace
+from collections import Counter
+from collections.abc import Callable, Container, Iterator, Mapping
+from pathlib import Path
+
+from smachac.diagnostics import (
+    Code,
+    Diagnostic,
+    Finding,
+    Report,
+    Severity,
+    did_you_mean,
+    has_errors,
+)
+from smachac.discover import scripts_of
+from smachac.driver import Analysis, analyse
+from smachac.files import Disk, disk_library
+from smachac.ir.depth import deep_recursion
+from smachac.ir.nodes import Leaf, Machine, Node
+from smachac.ir.userdata import remapping
+from smachac.ir.walk import walk
+from smachac.problems import listed
+from smachac.refactor.alike import same_machine
+from smachac.refactor.concrete import Atom, UnusualError
+from smachac.refactor.contain import contain, presets_of
+from smachac.refactor.containing import contained_alike, plan
+from smachac.refactor.renaming import Renaming, rename_outcome, rename_state
+from smachac.refactor.renaming_keys import rename_key
+from smachac.refactor.sheet import RefusedError, Sheet
+from smachac.refactor.skeleton import renamed_alike
+from smachac.refactor.subscripts import extract, inline
+from smachac.rewriting import FINDINGS, put
+from smachac.source import Source, Span
+from smachac.spelling import is_plain
+from smachac.streams import print_report, usage
+from smachac.syntax import Map
+
+Texts = Mapping[str, str]
+
+NO_ERRORS = "it has errors: mend them first, for nobody knows what the machine would be"
+
+
+class NotFoundError(Exception):
+    """A name of the user means nothing, or several things; the words say what there is."""
+
+
+class Desk:
+    """One script with all it is made of, before a change; line ends are line feeds alone."""
+
+    def __init__(self, arguments: Namespace) -> None:
+        self.arguments = arguments
+        self.path: Path = arguments.script
+        self.disk = Disk(plain=True)
+        self.analysis = self.read(self.disk)
+        self.sheets: dict[str, Sheet] = {}
+        self.made: dict[str, str] = {}
+
+    def read(self, disk: Disk, path: Path | None = None) -> Analysis:
+        """What there is to say of the script, or of another one, read from a disk."""
+        path = path or self.path
+        report: Report = []
+        source = disk.read(path, report)
+        if source is None:
+            return Analysis(report=report)
+        library = disk_library(path, report, scripts=self.arguments.scripts,
+                               templates=self.arguments.templates, disk=disk)  # fmt: skip
+        return analyse(source, library, report)
+
+    @property
+    def machine(self) -> Machine:
+        """The machine before the change. Raises RefusedError where the script has errors."""
+        if self.analysis.checked is None:
+            place = Span(Source(str(self.path), ""), 0, 0)
+            raise RefusedError(place, NO_ERRORS)
+        return self.analysis.checked
+
+    def sheet(self, source: Source) -> Sheet:
+        """The text that a source holds, to be changed."""
+        name = os.path.realpath(source.name)
+        if name not in self.sheets:
+            try:
+                self.sheets[name] = Sheet(source)
+            except UnusualError as error:
+                words = f"{source.name} cannot be rewritten: {error}"
+                raise RefusedError(Span(source, 0, 0), words) from error
+        return self.sheets[name]
+
+    def texts(self) -> dict[str, str]:
+        """What has become of the texts, by real path; those that stay the same are left out."""
+        found = {name: sheet.result() for name, sheet in self.sheets.items()}
+        changed = {
+            name: text for name, text in found.items() if text != self.sheets[name].source.text
+        }
+        return {**changed, **self.made}
+
+    def others(self, changed: Container[str]) -> Iterator[tuple[Path, Machine]]:
+        """The machines of the other scripts beside this one that use one of these files, as far as
+        they have no errors."""
+        mine = os.path.realpath(self.path)
+        for path in scripts_of([self.path.parent], self.disk):
+            if os.path.realpath(path) == mine:
+                continue
+            self.disk.asked.clear()
+            source = self.disk.read(path, [])
+            if source is None or not isinstance(self.disk.parse(source, []), Map):
+                continue
+            found = self.read(self.disk, path)
+            if found.checked is not None and any(name in changed for name in self.disk.asked):
+                yield path, found.checked
+
+    def proven(self, span: Span, same: Callable[[Machine, Machine], bool]) -> Analysis:
+        """The script after the change. Raises RefusedError unless it is as good as before, and so
+        is every other script beside it that uses a file that changes."""
+        texts = self.texts()
+        disk = Disk(texts, plain=True)
+        after = self.read(disk)
+        if after.checked is None:
+            first = next(item for item in after.report if item.severity is Severity.ERROR)
+            message = f"the script would have an error: {first.finding.message}"
+            anchors = "alias" in first.finding.message
+            help = "write out what the alias stands for" if anchors else first.finding.help
+            raise RefusedError(span, message, help)
+        if not same(self.machine, after.checked):
+            raise RefusedError(span, "the machine would not do the same any more")
+        for path, machine in self.others(texts.keys() - {os.path.realpath(self.path)}):
+            other = self.read(disk, path).checked
+            if other is None or not same(machine, other):
+                raise RefusedError(span, f"{path} would not do the same any more")
+        return after
+
+    def written(self) -> int:
+        """Write what has become, or show it; the exit code."""
+        texts: dict[str, str] = {}
+        sources: dict[str, Source] = {}
+        disk = Disk()
+        for name, text in self.texts().items():
+            shown = next((sheet.source.name for path, sheet in self.sheets.items() if path == name),
+                         os.path.relpath(name))  # fmt: skip
+            if name in self.made:
+                texts[name], sources[name] = text, Source(shown, "")
+                continue
+            before = disk.read(Path(shown), [])
+            assert before is not None
+            crlf = "\r\n" in before.text[: before.text.find("\n") + 1]
+            texts[name] = text.replace("\n", "\r\n") if crlf else text
+            sources[name] = before
+        if not texts:
+            print("nothing to do")
+        return put(texts, sources, self.arguments, "changed", new=frozenset(self.made))
+
+
+def find_state(machine: Machine, name: str) -> tuple[str, Node]:
+    """A state by its path or the end of it. Raises NotFoundError."""
+    found = {path: node for path, node in walk(machine.root)
+             if path == name or path.endswith(f"/{name}")}  # fmt: skip
+    if name in found:
+        return name, found[name]
+    if not found:
+        paths = [path for path, _ in walk(machine.root)]
+        names = dict.fromkeys(path.rpartition("/")[2] for path in paths)
+        near = did_you_mean(name.rpartition("/")[2], names) or ""
+        raise NotFoundError(f"there is no state `{name}`\n{near}".rstrip())
+    if len(found) > 1:
+        lines = [f"there are {len(found)} states `{name}`; name one by its path:"]
+        raise NotFoundError("\n".join([*lines, *(f"  {path}" for path in list(found)[:20])]))
+    return next(iter(found.items()))
+
+
+def perform(arguments: Namespace, verb: str, change: Callable[[Desk], int]) -> int:
+    """Run one of the commands below, and tell why it cannot be done."""
+    with deep_recursion():
+        desk = Desk(arguments)
+        try:
+            if desk.analysis.checked is None:
+                errors = (each for each in desk.analysis.report if has_errors([each]))
+                print_report(list(errors), arguments, sys.stderr)
+            return change(desk)
+        except NotFoundError as error:
+            return usage(str(error))
+        except RefusedError as error:
+            if error.message == NO_ERRORS and has_errors(desk.analysis.report):
+                print(f"nothing was changed: {error.message}", file=sys.stderr)
+                return FINDINGS
+            code = Code(code=verb, name=verb, severity=Severity.ERROR, explanation="")
+            finding = Finding(span=error.span, message=error.message, help=error.help)
+            told = Diagnostic(code=code, severity=Severity.ERROR, finding=finding)
+            print_report([told], arguments, sys.stderr)
+            return FINDINGS
+
+
+def run_extract(arguments: Namespace) -> int:
+    """Make a sub-script of a container."""
+
+    def change(desk: Desk) -> int:
+        path, node = find_state(desk.machine, arguments.state)
+        if path == desk.machine.root.name:
+            raise RefusedError(node.span, "this is the whole script")
+        sheet = desk.sheet(node.span.source)
+        folder = Path(node.span.source.name).parent
+        name = arguments.to or Path(f"{node.name.lower()}.yml")
+        target = folder / name
+        if name.suffix not in (".yml", ".yaml") or len(name.parts) != 1:
+            return usage("--to wants the name of a file beside the script, such as `pick.yml`")
+        if target.exists() or desk.disk.is_file(target):
+            raise RefusedError(node.span, f"{target} is there already", "choose another: --to")
+        text = extract(sheet, node.span, name.stem)
+        desk.made[os.path.realpath(target)] = text
+        desk.proven(node.span, same_machine)
+        return desk.written()
+
+    return perform(arguments, "extract", change)
+
+
+def run_inline(arguments: Namespace) -> int:
+    """Put a sub-script in the place of its call."""
+
+    def change(desk: Desk) -> int:
+        _, node = find_state(desk.machine, arguments.state)
+        sheet = desk.sheet(node.span.source)
+        sub = _called(desk, node)
+        inline(sheet, node.span, Sheet(sub))
+        desk.proven(node.span, same_machine)
+        return desk.written()
+
+    return perform(arguments, "inline", change)
+
+
+def run_rename(arguments: Namespace) -> int:
+    """Give a state, an outcome or a key another name."""
+    if not is_plain(arguments.new):
+        return usage(f"`{arguments.new}` is no name that YAML takes as it stands")
+
+    def change(desk: Desk) -> int:
+        kind, declared, old = _named(desk.machine, arguments.path, arguments.kind)
+        if old == arguments.new:
+            return desk.written()
+        _check_written(desk.machine, kind, declared, old)
+        work = Renaming(old, arguments.new, desk.sheet)
+        rename = {"state": rename_state, "outcome": rename_outcome, "key": rename_key}[kind]
+        rename(work, desk.machine, declared)
+        shared = desk.sheets.keys() - {os.path.realpath(desk.path)}
+        for _, machine in desk.others(shared) if shared else ():
+            rename(work, machine, declared)
+        desk.proven(declared, lambda one, other: renamed_alike(one, other, old, arguments.new))
+        return desk.written()
+
+    return perform(arguments, "rename", change)
+
+
+def _check_written(machine: Machine, kind: str, declared: Span, old: str) -> None:
+    """Raises RefusedError where a name does not stand in a script for itself."""
+    nodes = [node for _, node in walk(machine.root)]
+    texts = {id(node.span.source) for node in nodes}
+    mine = next((node for node in nodes
+                 if any(each.span == declared for each in node.outcomes)), None)  # fmt: skip
+    if kind == "outcome" and mine is not None and id(declared.source) not in texts:
+        message = f"`{old}` is an outcome of the state type `{mine.type}`, whatever its name here"
+        help = f"rename it in the interface of `{mine.type}`, or put the state into a container"
+        raise RefusedError(mine.span, message, help)
+    if kind != "key" and declared.text.strip("'\"") != old:
+        message = f"nobody wrote `{old}` here: it comes from the language, or from a look-up"
+        raise RefusedError(declared, message)
+
+
+def _named(machine: Machine, path: str, kind: str | None) -> tuple[str, Span, str]:
+    """What a path means: a state, or an outcome or key of the state before its last part; where
+    that is declared, and its name. Raises NotFoundError."""
+    around, _, name = path.rpartition("/")
+    found: dict[tuple[str, int, int], tuple[str, Span, str, str]] = {}
+    known: dict[str, None] = {}
+
+    def note(what: str, where: str, span: Span) -> None:
+        found.setdefault((what, id(span.source), span.start), (what, span, name, where))
+
+    for here, node in walk(machine.root):
+        known.setdefault(node.name)
+        if here == path or here.endswith(f"/{path}"):
+            note("state", here, node.span)
+        known.update(dict.fromkeys(outcome.name for outcome in node.outcomes))
+        if not (here == around or here.endswith(f"/{around}") or (not around and "/" not in here)):
+            continue
+        for outcome in node.outcomes:
+            if outcome.name == name:
+                note("outcome", f"{here}/{name}", outcome.span)
+        if isinstance(node, Leaf) or node.sugar or not node.children:
+            continue
+        keys = {key.name for key in (*node.inputs, *node.outputs)}
+        keys |= {preset.key for preset in node.userdata}
+        for child in node.children:
+            outer = remapping(child)
+            keys |= {outer.get(key.name, key.name) for key in (*child.inputs, *child.outputs)}
+        known.update(dict.fromkeys(sorted(keys)))
+        if name in keys:
+            note("key", f"{here}/{name}", node.children[0].span)
+    meant = [each for each in found.values() if kind in (None, each[0])]
+    if not meant:
+        near = did_you_mean(name, known) or ""
+        what = kind or "state, outcome or key"
+        raise NotFoundError(f"there is no {what} `{path}`\n{near}".rstrip())
+    if len(meant) > 1:
+        lines = [f"`{path}` may mean {len(meant)} things; say more of the path, or --kind:"]
+        lines += [f"  {where} ({what})" for what, _, _, where in meant[:20]]
+        raise NotFoundError("\n".join(lines))
+    return meant[0][:3]
+
+
+def run_contain(arguments: Namespace) -> int:
+    """Put states into a container of their own."""
+    if not is_plain(arguments.name):
+        return usage(f"`{arguments.name}` is no name that YAML takes as it stands")
+
+    def change(desk: Desk) -> int:
+        before = desk.machine
+        path, _ = find_state(before, arguments.states[0])
+        above = path.rpartition("/")[0]
+        if not above:
+            raise RefusedError(before.root.span, "this is the whole script")
+        _, parent = find_state(before, above)
+        assert not isinstance(parent, Leaf)
+        known = {child.name: child for child in parent.children}
+        names = [each.rpartition("/")[2] for each in arguments.states]
+        for name in names:
+            if name not in known:
+                near = did_you_mean(name, known) or f"it has {listed(known)}"
+                raise NotFoundError(f"`{above}` has no state `{name}`\n{near}")
+        inside = [child for child in parent.children if child.name in names]
+        presets = presets_of(desk.sheet(inside[0].span.source), inside)
+        made = plan(parent, inside, presets, arguments.name, arguments.type)
+        contain(desk.sheet, made)
+        after = desk.proven(inside[0].span, lambda one, two: contained_alike(one, two, made))
+        _no_worse(desk.analysis, after, inside[0].span)
+        return desk.written()
+
+    return perform(arguments, "contain", change)
+
+
+def _no_worse(before: Analysis, after: Analysis, span: Span) -> None:
+    """Raises RefusedError where the flow of data has a fault that it had not."""
+
+    def flaws(analysis: Analysis) -> Counter[str]:
+        grave = (each for each in analysis.report if each.severity is not Severity.INFO)
+        return Counter(each.code.code for each in grave if each.code.code.startswith("SM3"))
+
+    new = flaws(after) - flaws(before)
+    found = next((item for item in after.report if item.code.code in new), None)
+    if found is not None:
+        message = f"the script would have a fault: {found.finding.message} ({found.code.code})"
+        raise RefusedError(span, message, found.finding.help)
+
+
+def _called(desk: Desk, node: Node) -> Source:
+    """The text of the sub-script that a state calls. Raises RefusedError."""
+    from smachac.refactor.order import variables_of
+    from smachac.refactor.sheet import variable
+
+    sheet = desk.sheet(node.span.source)
+    body = variables_of(sheet.state(node.span).item)
+    script = variable(body, "script") if body is not None else None
+    if script is None:
+        help = "`smachac extract` is what goes the other way"
+        raise RefusedError(node.span, f"`{node.name}` calls no sub-script", help)
+    words = script.value.text.strip("'\"") if isinstance(script.value, Atom) else ""
+    library = disk_library(desk.path, [], scripts=desk.arguments.scripts,
+                           templates=desk.arguments.templates, disk=desk.disk)  # fmt: skip
+    found = library.script(words, node.span.source.name)
+    if found is None:
+        message = "the name of the sub-script comes from a look-up"
+        raise RefusedError(node.span, message, "write it out first")
+    return found
