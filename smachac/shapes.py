@@ -105,8 +105,9 @@ def _names(key: Scalar, report: Report) -> bool:
 def as_pairs(tree: Tree, report: Report) -> tuple[tuple[Word, Word], ...]:
     """A mapping of names to names: transitions, remapping."""
     pairs = []
-    for entry in as_map(tree, report):
-        key, value = as_name(entry.key, []), as_name(entry.value, report)
+    for entry in tree.entries if isinstance(tree, Map) else as_map(tree, report):
+        key = as_name(entry.key, report)
+        value = as_name(entry.value, report) if key is not None else None
         if key is not None and value is not None:
             pairs.append((key, value))
     return tuple(pairs)

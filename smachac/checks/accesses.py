@@ -4,9 +4,9 @@ from __future__ import annotations
 
 from typing import NamedTuple
 
+from smachac.checks.once import states
 from smachac.ir import nodes
 from smachac.ir.nodes import Leaf, Machine, Node
-from smachac.ir.walk import walk
 
 Keys = dict[str, Node]
 """Keys, under the names they have around the state, with the leaf or container that is behind it:
@@ -28,7 +28,7 @@ def accesses(machine: Machine) -> dict[int, Accesses]:
     something in it reads, and as writing what it hands on or something in it has put there.
     """
     found: dict[int, Accesses] = {}
-    for _, node in reversed(list(walk(machine.root))):
+    for _, node in reversed(states(machine)):
         found[id(node)] = around(node, inside(node, found))
     return found
 

@@ -5,10 +5,11 @@ from __future__ import annotations
 from collections.abc import Iterable, Iterator
 
 from smachac.checks.hints import did_you_mean, guesser
+from smachac.checks.once import containers
 from smachac.diagnostics import Finding, Severity, rule
 from smachac.ir import nodes
 from smachac.ir.nodes import Body, Leaf, Machine
-from smachac.ir.walk import containers, outcome_names
+from smachac.ir.walk import outcome_names
 from smachac.problems import listed
 from smachac.source import Word
 
@@ -17,7 +18,7 @@ def leaves_by_type(machine: Machine, *, declared: bool) -> Iterator[tuple[str, L
     """A leaf of each type whose code was read, with its path. `declared`: one that sees only the
     keys it declares, unlike the child of an iterator."""
     seen: set[int] = set()
-    for path, container in containers(machine.root):
+    for path, container in containers(machine):
         if declared and isinstance(container, nodes.Iterator):
             continue
         for child in container.children:

@@ -6,8 +6,8 @@ import re
 from collections.abc import Iterator, Mapping
 
 from smachac.checks.accesses import accesses, inside
+from smachac.checks.once import containers, states
 from smachac.ir.nodes import Data, Machine, Node
-from smachac.ir.walk import containers, walk
 
 Held = dict[int, dict[str, Node]]
 """By `id` of a state what it or something in it claims, with the innermost that does."""
@@ -30,12 +30,12 @@ def claims(machine: Machine) -> Held:
     may be of different things."""
     values = _constants(machine) if _have_keys(machine) else {}
     found: Held = {id(machine.root): {}}
-    for _, container in containers(machine.root):
+    for _, container in containers(machine):
         for child in container.children:
             keys = values.get(id(container), {})
             own = (_filled(claim, child, keys) for claim in child.claims)
             found[id(child)] = dict.fromkeys(own, child)
-    for _, container in reversed(list(containers(machine.root))):
+    for _, container in reversed(containers(machine)):
         held = found[id(container)]
         for child in container.children:
             for claim, origin in found[id(child)].items():
@@ -44,7 +44,7 @@ def claims(machine: Machine) -> Held:
 
 
 def _have_keys(machine: Machine) -> bool:
-    return any("{" in claim for _, node in walk(machine.root) for claim in node.claims)
+    return any("{" in claim for _, node in states(machine) for claim in node.claims)
 
 
 def _filled(claim: str, node: Node, keys: Mapping[str, str | None]) -> str:
@@ -64,7 +64,7 @@ def _constants(machine: Machine) -> dict[int, Constants]:
     known = accesses(machine)
     found: dict[int, Constants] = {}
     parents: dict[int, Node] = {}
-    for _, container in containers(machine.root):
+    for _, container in containers(machine):
         parents.update((id(child), container) for child in container.children)
         own: Constants = {preset.key: _text(preset.value.data) for preset in container.userdata}
         outside = found[id(parents[id(container)])] if id(container) in parents else None

@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterator
 from dataclasses import dataclass, field
 
+from smachac.checks.once import once, states
 from smachac.checks.types import types_of
 from smachac.ir import nodes
 from smachac.ir.accesses import callbacks
@@ -18,7 +19,7 @@ from smachac.ir.nodes import Expression, Leaf, Machine, Node
 from smachac.ir.places import Place
 from smachac.ir.types import ANY, Type
 from smachac.ir.userdata import remapping
-from smachac.ir.walk import expressions, outcome_names, walk
+from smachac.ir.walk import expressions, outcome_names
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -56,22 +57,16 @@ def _is_declared(place: Place) -> bool:
     return place.declared != ANY or all(flow.origin.how == "declared" for flow in flows)
 
 
-_latest: list[tuple[Machine, list[tuple[Code, Fault]]]] = []
-
-
+@once
 def faults_of(machine: Machine) -> list[tuple[Code, Fault]]:
-    """What is wrong with the code of a machine; that of the last one is kept, as several rules ask
-    for it."""
-    if not _latest or _latest[0][0] is not machine:
-        found = [(code, fault) for code in codes(machine) for fault in code.faults()]
-        _latest[:] = [(machine, found)]
-    return _latest[0][1]
+    """What is wrong with the code of a machine."""
+    return [(code, fault) for code in codes(machine) for fault in code.faults()]
 
 
 def codes(machine: Machine) -> Iterator[Code]:
     """The code of every state, as far as it is portable."""
     types = types_of(machine)
-    for path, node in walk(machine.root):
+    for path, node in states(machine):
         over_userdata = dict(_functions(path, node, types))
         for expression in expressions(node):
             known = over_userdata.get(id(expression))

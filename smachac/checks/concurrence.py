@@ -7,11 +7,12 @@ from collections.abc import Iterator
 from smachac.checks.combinations import UndecidedError, bits
 from smachac.checks.endings import Judged, judged
 from smachac.checks.hints import calls, did_you_mean, guesser, other_place
+from smachac.checks.once import containers
 from smachac.checks.outline import is_open
 from smachac.diagnostics import Finding, Severity, rule
 from smachac.ir import nodes
 from smachac.ir.nodes import Concurrence, Machine, Node
-from smachac.ir.walk import containers, outcome_names
+from smachac.ir.walk import outcome_names
 from smachac.problems import listed
 
 
@@ -60,7 +61,7 @@ def dead_rule(machine: Machine) -> Iterator[Finding]:
                 - RIGHT: {template: ScriptedState, outcomes: [done]}
               transitions: {ready: ready, failed: failed}
     """
-    for path, container in containers(machine.root):
+    for path, container in containers(machine):
         match container:
             case Concurrence():
                 yield from _dead_rules(path, container)
@@ -184,7 +185,7 @@ def empty_concurrence(machine: Machine) -> Iterator[Finding]:
                 - RIGHT: {template: ScriptedState, outcomes: [ok]}
               transitions: {done: done}
     """
-    for path, container in containers(machine.root):
+    for path, container in containers(machine):
         if isinstance(container, Concurrence) and not container.children:
             yield Finding(
                 span=container.span,

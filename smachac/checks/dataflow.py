@@ -9,13 +9,13 @@ from smachac.checks.cures import with_input, with_output
 from smachac.checks.hints import calls, did_you_mean, guesser, other_place
 from smachac.checks.lost import lost_outputs
 from smachac.checks.missing import Missing, missing_keys
+from smachac.checks.once import states
 from smachac.checks.userdata import flow_of, unknown_remaps
 from smachac.checks.witness import Searches, Witness, container_name, reader_at
 from smachac.diagnostics import Edit, Finding, Related, Severity, rule
 from smachac.ir.dataflow import Flow, Scope
 from smachac.ir.keyuses import Use, place_of, uses_by_key
 from smachac.ir.nodes import Machine, Node
-from smachac.ir.walk import walk
 from smachac.problems import listed
 from smachac.source import Word
 from smachac.spelling import Guesser, respelt
@@ -179,7 +179,7 @@ def unknown_remap(machine: Machine) -> Iterator[Finding]:
               remapping: {pose: block_pose}
               transitions: {succeeded: held}
     """
-    for path, node in walk(machine.root):
+    for path, node in states(machine):
         if path != machine.root.name:
             yield from _unknown_remaps(path, node)
     flow = flow_of(machine)

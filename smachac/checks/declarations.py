@@ -10,6 +10,7 @@ from smachac.checks.expressions import unknown_endings
 from smachac.checks.hints import CALLED_HERE, calls, did_you_mean, guesser
 from smachac.checks.lost import lost_outputs
 from smachac.checks.missing import missing_keys
+from smachac.checks.once import containers
 from smachac.checks.outline import is_open
 from smachac.checks.userdata import flow_of, undeclared_reads, undeclared_writes
 from smachac.checks.witness import container_name
@@ -22,7 +23,6 @@ from smachac.ir.graph import START
 from smachac.ir.keyuses import place_of
 from smachac.ir.nodes import Key, Leaf, Machine, Node
 from smachac.ir.userdata import remapping
-from smachac.ir.walk import containers
 from smachac.source import Span
 
 
@@ -314,7 +314,7 @@ def lossy_write(machine: Machine) -> Iterator[Finding]:
 
 def _leaves_with_code(machine: Machine) -> Iterator[tuple[str, Leaf]]:
     """The leaves but those that see every key of an iterator, as there is nothing to declare."""
-    for path, container in containers(machine.root):
+    for path, container in containers(machine):
         for child in container.children if not isinstance(container, nodes.Iterator) else ():
             if isinstance(child, Leaf) and not child.open:
                 yield f"{path}/{child.name}", child

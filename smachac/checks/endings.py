@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Iterator, Sequence
+from collections.abc import Iterable, Sequence
 from dataclasses import replace
 from typing import NamedTuple
 
@@ -17,11 +17,12 @@ from smachac.checks.branches import (
 )
 from smachac.checks.combinations import UndecidedError
 from smachac.checks.hints import PREEMPTED
+from smachac.checks.once import containers, once, states
 from smachac.checks.outline import Linear, children_names, is_open, leads_somewhere, mended
 from smachac.ir import nodes
 from smachac.ir.graph import edges, is_unread, stopped_endings
 from smachac.ir.nodes import Concurrence, Leaf, Machine, Node, StateMachine
-from smachac.ir.walk import containers, leads_to_child, outcome_names, walk
+from smachac.ir.walk import leads_to_child, outcome_names
 from smachac.source import assert_never
 
 Known = dict[int, tuple[str, ...]]
@@ -35,6 +36,7 @@ class Endings(NamedTuple):
     calm: Known
 
 
+@once
 def endings(machine: Machine) -> Endings:
     """The possible endings of all states inside concurrences, in the order of declaration.
 
@@ -44,7 +46,7 @@ def endings(machine: Machine) -> Endings:
     found = Endings({}, {})
     inside: list[Node] = []
     within: set[int] = set()
-    for _, node in walk(machine.root):
+    for _, node in states(machine):
         if isinstance(node, Leaf):
             continue
         if isinstance(node, Concurrence) or id(node) in within:
@@ -166,32 +168,30 @@ def _results(node: Concurrence, read: Study | None, spaces: Sequence[Space]) -> 
 
 
 class Judged(NamedTuple):
-    """A concurrence whose rules can be judged, at its path."""
+    """A concurrence whose rules can be judged, at its path.
+
+    `whole` is how its branches may end, also when it is asked to stop; `calm` how they may while
+    nobody asks it to, as far as outcomes are known, and for `join: any` which branch ends first.
+    """
 
     path: str
     read: Study
     endings: Endings
-
-    @property
-    def whole(self) -> Space:
-        """How its branches may end, also when it is asked to stop."""
-        return space(self.read, self.endings.ever)
-
-    @property
-    def calm(self) -> list[tuple[Space, str]]:
-        """How they may end while nobody asks it to, as far as outcomes are known, and for
-        `join: any` which branch ends first."""
-        spaces = calm_spaces(self.read, *self.endings)
-        return [(without_other(each), first) for each, first in spaces]
+    whole: Space
+    calm: list[tuple[Space, str]]
 
 
-def judged(machine: Machine) -> Iterator[Judged]:
+@once
+def judged(machine: Machine) -> list[Judged]:
     """The concurrences of a machine whose rules can be judged, without those made for sugar."""
-    found: Endings | None = None
-    for path, container in containers(machine.root):
+    found: list[Judged] = []
+    for path, container in containers(machine):
         if not isinstance(container, Concurrence) or container.sugar:
             continue
         read = study(container)
         if read is not None:
-            found = found or endings(machine)
-            yield Judged(path, read, found)
+            known = endings(machine)
+            spaces = calm_spaces(read, *known)
+            calm = [(without_other(each), first) for each, first in spaces]
+            found.append(Judged(path, read, known, space(read, known.ever), calm))
+    return found

@@ -7,10 +7,11 @@ import warnings
 from collections.abc import Iterator
 
 from smachac.checks.hints import calls, did_you_mean, guesser
+from smachac.checks.once import states
 from smachac.diagnostics import Finding, Severity, rule
 from smachac.ir.accesses import callbacks
 from smachac.ir.nodes import Expression, Leaf, Machine, Struct
-from smachac.ir.walk import expressions, outcome_names, walk
+from smachac.ir.walk import expressions, outcome_names
 from smachac.problems import listed
 from smachac.source import Word
 
@@ -48,7 +49,7 @@ def bad_expression(machine: Machine) -> Iterator[Finding]:
               callbacks: {n: 'lambda ud: ud.n + 1'}
               transitions: {succeeded: succeeded}
     """
-    for path, node in walk(machine.root):
+    for path, node in states(machine):
         for expression in expressions(node):
             fault = _fault(expression.text)
             if fault:

@@ -9,10 +9,11 @@ from typing import Literal
 
 from smachac.checks.hints import PREEMPTED, is_failure, successes
 from smachac.checks.masking import starts_failure
+from smachac.checks.once import states
 from smachac.checks.routes import Arrival, Routes, Step
 from smachac.ir.graph import is_unread
 from smachac.ir.nodes import Leaf, Machine, Node
-from smachac.ir.walk import outcome_names, walk
+from smachac.ir.walk import outcome_names
 from smachac.source import Span
 
 Answer = Literal["caught", "repeated", "passed over", "not caught", "lost"]
@@ -50,7 +51,7 @@ def failures(machine: Machine) -> Iterator[Failure]:
     routes = Routes(machine)
     ways = routes.ways()
     ends = _possible_ends(routes, ways)
-    for path, node in walk(machine.root):
+    for path, node in states(machine):
         if node is not routes.nodes[path] or is_unread(node):
             continue
         for name in outcome_names(node):

@@ -6,6 +6,7 @@ from collections.abc import Iterable, Iterator
 from dataclasses import replace
 
 from smachac.checks.hints import did_you_mean, guesser
+from smachac.checks.once import states
 from smachac.checks.robot import at, moves_arm, robot_of
 from smachac.checks.types import types_of
 from smachac.diagnostics import Finding, Severity, rule
@@ -14,7 +15,6 @@ from smachac.ir.fitting import present
 from smachac.ir.nodes import Data, Leaf, Machine, Struct
 from smachac.ir.places import Flow
 from smachac.ir.robots import Robot
-from smachac.ir.walk import walk
 
 USUAL = frozenset(["base", "base_footprint", "base_link", "earth", "map", "odom", "world"])
 """Frames that no description has and every robot may: REP 105 (ros.org/reps/rep-0105.html), and
@@ -126,7 +126,7 @@ def _known(robot: Robot) -> frozenset[str]:
 def _simulated(machine: Machine, robot: Robot) -> frozenset[str]:
     """The frames of the simulated world; none where code of the user may add to them."""
     found = {"base", "world", robot.name, *robot.added}
-    for _, node in walk(machine.root):
+    for _, node in states(machine):
         if not isinstance(node, Leaf):
             continue
         if node.type not in TAME:

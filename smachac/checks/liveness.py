@@ -7,6 +7,7 @@ from dataclasses import replace
 from typing import NamedTuple
 
 from smachac.checks.hints import PREEMPTED, calls, is_failure
+from smachac.checks.once import states
 from smachac.checks.outline import Linear, endless_states, linear, outline
 from smachac.checks.ways import (
     Steps,
@@ -21,7 +22,7 @@ from smachac.checks.ways import (
 from smachac.diagnostics import Finding, Severity, rule
 from smachac.ir.graph import can_end, reachable
 from smachac.ir.nodes import Leaf, Machine, Node, StateMachine, Transition
-from smachac.ir.walk import leads_to_child, outcome_names, walk
+from smachac.ir.walk import leads_to_child, outcome_names
 from smachac.problems import listed
 
 
@@ -174,7 +175,7 @@ def _goes_back(container: Linear) -> bool:
 def _waiting(machine: Machine) -> frozenset[int]:
     """The states, by `id`, that wait, or may."""
     found: set[int] = set()
-    for _, node in reversed(list(walk(machine.root))):
+    for _, node in reversed(states(machine)):
         if isinstance(node, Leaf):
             waits = node.blocking or node.open or node.type == "SleepState"
         else:

@@ -7,6 +7,7 @@ from typing import NamedTuple
 
 from smachac.checks.expressions import unknown_endings
 from smachac.checks.hints import calls, did_you_mean, guesser, other_place
+from smachac.checks.once import containers, states
 from smachac.checks.outline import (
     Linear,
     children_names,
@@ -19,7 +20,7 @@ from smachac.checks.outline import (
 from smachac.diagnostics import Finding, Severity, rule
 from smachac.ir import nodes
 from smachac.ir.nodes import Concurrence, Container, Leaf, Machine, Node, Transition
-from smachac.ir.walk import containers, outcome_names, walk
+from smachac.ir.walk import outcome_names
 from smachac.problems import listed
 from smachac.source import Word
 from smachac.spelling import respelt
@@ -74,11 +75,11 @@ def unknown_target(machine: Machine) -> Iterator[Finding]:
     """
     lost = [fault for path, container in linear(machine) for fault in _lost(path, container)]
     paths: dict[str, str] = {}
-    for path, node in walk(machine.root) if lost else ():
+    for path, node in states(machine) if lost else ():
         paths.setdefault(node.name, path)
     for fault in lost:
         yield _nowhere(fault, paths.get(fault.step.target))
-    for path, container in containers(machine.root):
+    for path, container in containers(machine):
         if isinstance(container, Concurrence | nodes.Iterator):
             yield from _idle_transitions(path, container)
 
@@ -159,7 +160,7 @@ def unknown_outcome(machine: Machine) -> Iterator[Finding]:
               outcomes: [done, slipped]
               transitions: {done: picked, slipped: lost}
     """
-    for path, container in containers(machine.root):
+    for path, container in containers(machine):
         if isinstance(container, nodes.Iterator):
             yield from _unknown_loops(path, container)
         elif not isinstance(container, Concurrence):
@@ -227,7 +228,7 @@ def duplicate_state(machine: Machine) -> Iterator[Finding]:
           - MOVE: {template: ScriptedState, outcomes: [there], transitions: {there: MOVE_BACK}}
           - MOVE_BACK: {template: ScriptedState, outcomes: [back], transitions: {back: done}}
     """
-    for path, container in containers(machine.root):
+    for path, container in containers(machine):
         first: dict[str, Node] = {}
         for child in container.children:
             known = first.setdefault(child.name, child)
@@ -267,7 +268,7 @@ def name_clash(machine: Machine) -> Iterator[Finding]:
           - WORK: {template: ScriptedState, outcomes: [ok, bad], transitions: {ok: done, bad: PARK}}
           - PARK: {template: ScriptedState, outcomes: [ok], transitions: {ok: stopped}}
     """
-    for path, node in walk(machine.root):
+    for path, node in states(machine):
         if not node.name.isprintable() or "/" in node.name or not node.name:
             yield Finding(
                 span=node.span,
@@ -322,7 +323,7 @@ def shadowed_name(machine: Machine) -> Iterator[Finding]:
                 - GRASP: {template: ScriptedState, outcomes: [ok], transitions: {ok: picked}}
               transitions: {picked: done}
     """
-    for path, container in containers(machine.root):
+    for path, container in containers(machine):
         for child in container.children:
             if child.name == container.name and not container.sugar:
                 yield Finding(

@@ -5,11 +5,12 @@ from __future__ import annotations
 from collections.abc import Iterable, Iterator
 
 from smachac.checks.hints import PREEMPTED, calls, did_you_mean, is_failure, other_place
+from smachac.checks.once import containers
 from smachac.checks.outline import Linear, linear, places_of, unknown_outcomes
 from smachac.diagnostics import Finding, Severity, rule
 from smachac.ir import nodes
 from smachac.ir.nodes import Concurrence, Machine, Node, Outcome, Transition
-from smachac.ir.walk import containers, outcome_names
+from smachac.ir.walk import outcome_names
 
 
 @rule("SM103", "undeclared-container-outcome", Severity.ERROR, firm=True)
@@ -52,7 +53,7 @@ def undeclared_container_outcome(machine: Machine) -> Iterator[Finding]:
                 - RIGHT: {template: ScriptedState, outcomes: [done, slipped]}
               transitions: {ready: ready, partly: failed, failed: failed}
     """
-    for path, container in containers(machine.root):
+    for path, container in containers(machine):
         if isinstance(container, Concurrence):
             yield from _undeclared_results(path, container)
         elif isinstance(container, nodes.Iterator):

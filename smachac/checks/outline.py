@@ -12,6 +12,7 @@ from dataclasses import replace
 from typing import TypeAlias
 
 from smachac.checks.hints import PREEMPTED, guesser, is_failure
+from smachac.checks.once import containers, once, states
 from smachac.ir import nodes
 from smachac.ir.graph import START, can_end, edges, reachable
 from smachac.ir.nodes import (
@@ -24,7 +25,7 @@ from smachac.ir.nodes import (
     StateMachine,
     Transition,
 )
-from smachac.ir.walk import containers, leads_to_child, outcome_names, walk
+from smachac.ir.walk import leads_to_child, outcome_names
 from smachac.source import assert_never
 from smachac.spelling import Guesser
 
@@ -34,7 +35,7 @@ Linear: TypeAlias = "StateMachine | Sequence"
 
 def linear(machine: Machine) -> Iterator[tuple[str, Linear]]:
     """The containers with transitions, and their paths."""
-    for path, container in containers(machine.root):
+    for path, container in containers(machine):
         if isinstance(container, StateMachine | Sequence):
             yield path, container
 
@@ -130,13 +131,14 @@ def outline(container: Linear, endless: AbstractSet[int]) -> Linear:
     return mended(outlined)
 
 
+@once
 def endless_states(machine: Machine) -> frozenset[int]:
     """The states, by `id`, that never end and are meant so, or have no outcome at all.
 
     A container with a trap of its own is not among them: the trap is reported inside it.
     """
     found: set[int] = set()
-    for _, node in reversed(list(walk(machine.root))):
+    for _, node in reversed(states(machine)):
         if _never_ends(node, found):
             found.add(id(node))
     return frozenset(found)

@@ -7,9 +7,9 @@ from collections.abc import Iterator
 from smachac.checks.accesses import Accesses, accesses
 from smachac.checks.claims import Held, claims, prefixes
 from smachac.checks.hints import calls, other_place
+from smachac.checks.once import containers
 from smachac.diagnostics import Finding, Related, Severity, rule
 from smachac.ir.nodes import Concurrence, Machine, Node
-from smachac.ir.walk import containers
 from smachac.problems import listed
 from smachac.source import Span
 
@@ -68,7 +68,7 @@ def data_race(machine: Machine) -> Iterator[Finding]:
               transitions: {done: done}
     """
     found: dict[int, Accesses] = {}
-    for path, container in containers(machine.root):
+    for path, container in containers(machine):
         if isinstance(container, Concurrence) and len(container.children) > 1:
             found = found or accesses(machine)
             yield from _races(path, container, found)
@@ -186,7 +186,7 @@ def resource_clash(machine: Machine) -> Iterator[Finding]:
               transitions: {succeeded: succeeded, aborted: aborted}
     """
     concurrences = [
-        (path, one) for path, one in containers(machine.root) if isinstance(one, Concurrence)
+        (path, one) for path, one in containers(machine) if isinstance(one, Concurrence)
     ]
     held = claims(machine) if concurrences else {}
     for path, container in concurrences:

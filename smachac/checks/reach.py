@@ -6,6 +6,7 @@ from collections.abc import Iterator
 from dataclasses import dataclass
 from typing import TypeAlias
 
+from smachac.checks.once import containers
 from smachac.checks.robot import at, robot_of
 from smachac.checks.types import types_of
 from smachac.diagnostics import Finding, Severity, problem
@@ -14,7 +15,6 @@ from smachac.ir.inference import Types
 from smachac.ir.nodes import Data, Leaf, Machine
 from smachac.ir.places import Flow
 from smachac.ir.userdata import remapping
-from smachac.ir.walk import containers
 
 Numbers: TypeAlias = "list[Numbers] | float"
 
@@ -83,7 +83,7 @@ def poses_to_reach(machine: Machine) -> Iterator[Reach]:
     literals: dict[int, list[Flow]] = {}
     for flow in types.constants:
         literals.setdefault(id(flow.place), []).append(flow)
-    for path, container in containers(machine.root):
+    for path, container in containers(machine):
         for leaf in container.children:
             if not isinstance(leaf, Leaf) or leaf.type not in REACHING:
                 continue

@@ -5,11 +5,12 @@ from __future__ import annotations
 from collections.abc import Iterator
 
 from smachac.checks.hints import PREEMPTED, calls
+from smachac.checks.once import containers
 from smachac.diagnostics import Finding, Severity, rule
 from smachac.ir import nodes
 from smachac.ir.graph import stopped_endings
 from smachac.ir.nodes import Machine
-from smachac.ir.walk import containers, outcome_names
+from smachac.ir.walk import outcome_names
 from smachac.problems import listed
 
 
@@ -54,7 +55,7 @@ def no_way_to_stop(machine: Machine) -> Iterator[Finding]:
                 - LOOK: {template: ScriptedState, outcomes: [done]}
               transitions: {all: seen, preempted: stopped}
     """
-    for path, container in containers(machine.root):
+    for path, container in containers(machine):
         lost = undeclared_stops(container) if isinstance(container, nodes.Iterator) else []
         if not lost:
             continue

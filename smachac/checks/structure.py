@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterator
 
 from smachac.checks.hints import PREEMPTED, calls, did_you_mean, guesser
+from smachac.checks.once import containers
 from smachac.checks.outcomes import endings, unhandled
 from smachac.checks.outline import (
     Linear,
@@ -19,7 +20,7 @@ from smachac.diagnostics import Finding, Severity, rule
 from smachac.ir import nodes
 from smachac.ir.graph import edges, reachable, stopped_endings
 from smachac.ir.nodes import Concurrence, Container, Machine, Node, Outcome, Sequence, StateMachine
-from smachac.ir.walk import containers, outcome_names
+from smachac.ir.walk import outcome_names
 from smachac.problems import listed
 from smachac.source import assert_never
 
@@ -122,7 +123,7 @@ def impossible_outcome(machine: Machine) -> Iterator[Finding]:
               outcomes: [done, slipped]
               transitions: {done: picked, slipped: lost}
     """
-    for path, container in containers(machine.root):
+    for path, container in containers(machine):
         possible = _possible_outcomes(container)
         for outcome in container.outcomes:
             if possible is not None and outcome.name not in (*possible, container.catches):
@@ -228,7 +229,7 @@ def no_initial(machine: Machine) -> Iterator[Finding]:
         states:
           - PICK: {template: ScriptedState, outcomes: [ok], transitions: {ok: done}}
     """
-    for path, container in containers(machine.root):
+    for path, container in containers(machine):
         if isinstance(container, Concurrence):
             continue
         if not container.children:

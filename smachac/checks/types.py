@@ -6,33 +6,30 @@ from collections.abc import Iterator
 
 from smachac.checks.arrivals import Arrivals
 from smachac.checks.clashes import clash_findings
+from smachac.checks.once import once
 from smachac.diagnostics import Finding, Severity, rule
 from smachac.ir.fitting import Kind
-from smachac.ir.inference import Types, infer
+from smachac.ir.inference import infer
 from smachac.ir.nodes import Machine
 from smachac.ir.places import Clash
 
-_latest: list[tuple[Machine, Types, dict[Kind, list[Clash]]]] = []
+types_of = once(infer)
 
 
-def types_of(machine: Machine) -> Types:
-    """The types of a machine; those of the last one are kept, as several rules ask for them."""
-    if not _latest or _latest[0][0] is not machine:
-        types = infer(machine)
-        arrivals = Arrivals()
-        clashes: dict[Kind, list[Clash]] = {"type": [], "length": [], "unit": []}
-        for clash in types.clashes:
-            arrived = arrivals.arrived(clash)
-            if arrived is not None:
-                clashes[clash.misfit.kind].append(arrived)
-        _latest[:] = [(machine, types, clashes)]
-    return _latest[0][1]
+@once
+def _arriving(machine: Machine) -> dict[Kind, list[Clash]]:
+    arrivals = Arrivals()
+    found: dict[Kind, list[Clash]] = {"type": [], "length": [], "unit": []}
+    for clash in types_of(machine).clashes:
+        arrived = arrivals.arrived(clash)
+        if arrived is not None:
+            found[clash.misfit.kind].append(arrived)
+    return found
 
 
 def clashes_of(machine: Machine, kind: Kind) -> list[Clash]:
     """The clashes of one kind whose value can be there when it is read."""
-    types_of(machine)
-    return _latest[0][2][kind]
+    return _arriving(machine)[kind]
 
 
 @rule("SM304", "type-mismatch", Severity.ERROR)

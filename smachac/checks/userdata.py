@@ -8,6 +8,7 @@ from dataclasses import replace
 from typing import NamedTuple, cast
 
 from smachac.checks.hints import guesser
+from smachac.checks.once import containers, once
 from smachac.checks.outline import is_open, mended
 from smachac.ir import nodes
 from smachac.ir.accesses import callbacks, scripted_steps, userdata_fields
@@ -23,7 +24,7 @@ from smachac.ir.nodes import (
     StateMachine,
 )
 from smachac.ir.types import ANY, Type
-from smachac.ir.walk import containers, outcome_names
+from smachac.ir.walk import outcome_names
 
 
 class UnknownRemap(NamedTuple):
@@ -80,7 +81,7 @@ def mended_machine(machine: Machine) -> Machine:
     """The machine as it was meant: misspelt targets, outcomes and remaps put right, and what the
     code of the script reads and writes declared. Iterative, so that deep nesting costs nothing."""
     built: dict[int, Container] = {}
-    for _, container in reversed(list(containers(machine.root))):
+    for _, container in reversed(containers(machine)):
         raw = isinstance(container, nodes.Iterator)
         children = tuple(
             _meant(built.get(id(child), child), raw and isinstance(child, Leaf))
@@ -114,12 +115,7 @@ def _meant(node: Node, raw: bool) -> Node:
     return node
 
 
-_latest: list[tuple[Machine, Flow]] = []
-"""The machine that was asked for last: every rule asks for the same one."""
-
-
+@once
 def flow_of(machine: Machine) -> Flow:
     """The flow of a machine as it was meant."""
-    if not _latest or _latest[0][0] is not machine:
-        _latest[:] = [(machine, data_flow(mended_machine(machine)))]
-    return _latest[0][1]
+    return data_flow(mended_machine(machine))

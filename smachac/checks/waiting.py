@@ -7,10 +7,11 @@ from collections.abc import Set as AbstractSet
 
 from smachac.checks.endings import Endings, endings
 from smachac.checks.hints import PREEMPTED, calls
+from smachac.checks.once import containers, states
 from smachac.checks.outline import endless_states
 from smachac.diagnostics import Finding, Severity, rule
 from smachac.ir.nodes import Concurrence, Leaf, Machine
-from smachac.ir.walk import containers, outcome_names, walk
+from smachac.ir.walk import outcome_names
 from smachac.problems import listed
 
 TIMEOUTS = frozenset(["timeout", "timed_out"])
@@ -67,7 +68,7 @@ def no_timeout(machine: Machine) -> Iterator[Finding]:
         code: {python: my_robot.states:WaitForButton}
     """
     around: dict[int, Concurrence] = {}
-    for path, node in walk(machine.root):
+    for path, node in states(machine):
         outer = around.get(id(node))
         if not isinstance(node, Leaf):
             outer = node if isinstance(node, Concurrence) else outer
@@ -158,7 +159,7 @@ def never_ends(machine: Machine) -> Iterator[Finding]:
               transitions: {done: done}
     """
     concurrences = [
-        (path, one) for path, one in containers(machine.root) if isinstance(one, Concurrence)
+        (path, one) for path, one in containers(machine) if isinstance(one, Concurrence)
     ]
     if not concurrences:
         return

@@ -5,7 +5,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Iterator
+from collections.abc import Iterable, Iterator, Sequence
 from itertools import chain
 from typing import TYPE_CHECKING, Literal, NamedTuple, TypeAlias
 
@@ -84,11 +84,11 @@ def caught_edges(container: Container) -> Iterator[Edge]:
         yield Edge(START, exit_place(container.catches), container.catches, "caught")
 
 
-def _live_transitions(child: Node) -> Iterator[Transition]:
-    declared = frozenset(outcome_names(child))
-    for transition in child.transitions:
-        if _is_open(child) or transition.outcome in declared:
-            yield transition
+def _live_transitions(child: Node) -> Sequence[Transition]:
+    if _is_open(child):
+        return child.transitions
+    declared = {outcome.name for outcome in child.outcomes}
+    return [step for step in child.transitions if step.outcome in declared]
 
 
 def _is_open(child: Node) -> bool:
@@ -107,12 +107,11 @@ def _transition_edges(container: nodes.StateMachine | nodes.Sequence) -> Iterato
         yield Edge(START, container.initial, "", "enter")
     for child in container.children:
         for step in _live_transitions(child):
-            target: Place = exit_place(step.target)
             if leads_to_child(step, names):
-                target = step.target
-            elif step.target not in exits:
-                continue
-            yield Edge(child.name, target, step.outcome, step.origin, step)
+                yield Edge(child.name, step.target, step.outcome, step.origin, step)
+            elif step.target in exits:
+                target = exit_place(step.target)
+                yield Edge(child.name, target, step.outcome, step.origin, step)
 
 
 def _concurrence_edges(container: Concurrence) -> Iterator[Edge]:
@@ -206,9 +205,9 @@ def can_end(container: Container) -> frozenset[str]:
     before: dict[Place, list[Place]] = {}
     leaving: list[Place] = []
     for child in container.children:
-        steps = list(_live_transitions(child))
+        steps = _live_transitions(child)
         handled = {step.outcome for step in steps}
-        loose = any(name not in handled for name in outcome_names(child))
+        loose = any(outcome.name not in handled for outcome in child.outcomes)
         if loose or (_is_open(child) and not steps):
             leaving.append(child.name)
         for step in steps:

@@ -102,5 +102,6 @@ def test_a_trap_is_not_a_loop_as_well() -> None:
 
 def test_an_iterator_bounds_its_tries() -> None:
     node = iterator("TRY", "exhausted ok", leaf("A", outcomes="ok failed"), loop="failed",
-                    items=[1, 2, 3], to={"ok": "done", "exhausted": "lost"})  # fmt: skip
+                    items=[1, 2, 3], final={"failed": "exhausted"},
+                    to={"ok": "done", "exhausted": "lost"})  # fmt: skip
     assert report(machine("sm", "done lost", node)) == []
