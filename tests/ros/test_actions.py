@@ -57,7 +57,7 @@ def test_callbacks_change_the_goal_and_choose_the_outcome(graph: Graph) -> None:
 
 def test_feedback_goes_to_its_callback(graph: Graph) -> None:
     graph.node("action_server")
-    arguments = "feedback_cb=lambda ud, feedback: print('feedback', feedback.feedback)"
+    arguments = "feedback_cb=lambda ud, feedback: client.say(f'feedback {feedback.feedback}')"
     program = graph.start(client(f"{work(3)}, {arguments}"))
     program.expect("feedback 41")
     program.say("preempt")
@@ -199,7 +199,7 @@ from std_srvs.srv import SetBool
 
 client.node()
 both = smach.Concurrence(
-    ["done"], "done", outcome_cb=lambda ended: print(sorted(ended.items())),
+    ["done"], "done", outcome_cb=lambda ended: client.say(sorted(ended.items())),
     child_termination_cb=lambda ended: True,
 )
 with both:

@@ -46,7 +46,7 @@ with machine:
     )
 machine.userdata.wanted = 3
 client.run(machine)
-print("asked:", len(asked))
+client.say("asked: " + str(len(asked)))
 """
 
 

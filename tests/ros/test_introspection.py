@@ -19,7 +19,7 @@ class Step(smach.State):
         super().__init__(["done"], input_keys=["seen"])
 
     def execute(self, userdata):
-        print("at", userdata.seen)
+        client.say("at " + userdata.seen)
         client.wait_for_line()
         return "done"
 

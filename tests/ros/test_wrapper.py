@@ -26,7 +26,7 @@ class Double(smach.State):
         self.woken.set()
 
     def execute(self, userdata):
-        print("goal", userdata.goal)
+        client.say(f"goal {userdata.goal}")
         if userdata.goal == 0:
             self.woken.wait()
             self.service_preempt()
@@ -48,9 +48,9 @@ wrapper = smach_ros.ActionServerWrapper(
 )
 wrapper.run_server()
 smach_ros.set_preempt_handler(machine)
-print("ready")
+client.say("ready")
 rospy.spin()
-print("idle:", not machine.is_running())
+client.say(f"idle: {not machine.is_running()}")
 """
 
 CLIENT = """

@@ -8,6 +8,7 @@ import threading
 import actionlib
 import rospy
 from actionlib.msg import TestAction, TestFeedback, TestGoal, TestResult
+from client import say
 
 CANCELLED = threading.Event()
 
@@ -23,13 +24,13 @@ def abort() -> None:
 def until_cancelled() -> None:
     server.publish_feedback(TestFeedback(feedback=41))
     CANCELLED.wait()
-    print("cancelled")
+    say("cancelled")
     server.set_preempted(TestResult(result=3))
 
 
 def deaf() -> None:
     CANCELLED.wait()
-    print("cancelled")
+    say("cancelled")
     threading.Event().wait()
 
 
@@ -46,7 +47,7 @@ WORK = {1: succeed, 2: abort, 3: until_cancelled, 4: deaf, 5: crash, 6: preempt_
 
 def execute(goal: TestGoal) -> None:
     CANCELLED.clear()
-    print(f"goal {goal.goal}")
+    say(f"goal {goal.goal}")
     if server.is_preempt_requested():
         CANCELLED.set()
     WORK[goal.goal]()
@@ -56,5 +57,5 @@ rospy.init_node("action_server")
 server = actionlib.SimpleActionServer("work", TestAction, execute, auto_start=False)
 server.register_preempt_callback(CANCELLED.set)
 server.start()
-print("ready")
+say("ready")
 rospy.spin()

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import os
+import sys
 import threading
 from typing import Any
 
@@ -16,6 +17,11 @@ def node(name: str = "client") -> None:
     that comes meanwhile blocks it for ever.
     """
     rospy.init_node(name, disable_rosout=True)
+
+
+def say(text: str) -> None:
+    """Print a line in one piece, whatever other threads print: `print` writes its end apart."""
+    sys.stdout.write(f"{text}\n")
 
 
 def heed_preempt_requests(machine: Any) -> None:
@@ -39,8 +45,8 @@ def again(machine: Any, *keys: str) -> None:
     """Run a machine; tell its outcome and what is under these keys."""
     outcome = machine.execute()
     for key in keys:
-        print(f"{key}: {machine.userdata[key]}")
-    print(f"outcome: {outcome}")
+        say(f"{key}: {machine.userdata[key]}")
+    say(f"outcome: {outcome}")
 
 
 def wait_for_line() -> None:

@@ -9,6 +9,7 @@ import sys
 from typing import Any
 
 import rospy
+from client import say
 
 from smachac.runtime.smach_ros import messages
 
@@ -21,14 +22,16 @@ class Bomb:
 
 
 def structure(message: Any) -> None:
-    parts = message.internal_outcomes, message.outcomes_from, message.outcomes_to
-    edges = list(zip(*parts, strict=True))
-    print("structure", message.path, message.children, edges, message.container_outcomes)
+    lists = message.internal_outcomes, message.outcomes_from, message.outcomes_to
+    edges = list(zip(*lists, strict=True))
+    parts = [message.path, message.children, edges, message.container_outcomes]
+    say(f"structure {' '.join(map(str, parts))}")
 
 
 def status(message: Any) -> None:
     data = pickle.loads(base64.b64decode(message.local_data))
-    print("status", message.path, message.initial_states, message.active_states, data, message.info)
+    parts = [message.path, message.initial_states, message.active_states, data, message.info]
+    say(f"status {' '.join(map(str, parts))}")
 
 
 def order(path: str, label: str, data: Any) -> None:
@@ -43,7 +46,7 @@ rospy.Subscriber("sis/smach/container_status", messages.container_status(), stat
 orders = rospy.Publisher(
     "sis/smach/container_init", messages.initial_status_command(), queue_size=10
 )
-print("ready", flush=True)
+say("ready")
 while text := os.read(0, 1000).decode():
     for line in text.splitlines():
         path, label, kind = line.split()

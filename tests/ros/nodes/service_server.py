@@ -7,6 +7,7 @@ import threading
 from typing import Any
 
 import rospy
+from client import say
 from std_srvs.srv import SetBool, SetBoolResponse
 
 
@@ -19,17 +20,17 @@ def fail(request: Any) -> Any:
 
 
 def crash(request: Any) -> Any:
-    print("called", flush=True)
+    say("called")
     os._exit(1)
 
 
 def hang(request: Any) -> Any:
-    print("called", flush=True)
+    say("called")
     threading.Event().wait()
 
 
 rospy.init_node("service_server")
 for service in (answer, fail, crash, hang):
     rospy.Service(service.__name__, SetBool, service)
-print("ready")
+say("ready")
 rospy.spin()

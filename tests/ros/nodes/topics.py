@@ -5,11 +5,12 @@ from __future__ import annotations
 import sys
 
 import rospy
+from client import say
 from std_msgs.msg import Int32
 
 rospy.init_node("topics")
 number = rospy.Publisher("number", Int32, queue_size=10)
-print("ready")
+say("ready")
 while not number.get_num_connections() and not rospy.is_shutdown():
     rospy.rostime.wallsleep(0.01)
 for argument in sys.argv[1:]:
