@@ -6,3 +6,7 @@
 {% block node %}
     rospy.init_node({{ node_name | default(name) | literal }})
 {% endblock node %}
+{% block execute %}
+    rospy.on_shutdown({{ sm_name }}.request_preempt)
+{{ super() }}
+{% endblock execute %}

@@ -20,6 +20,7 @@ except ImportError:  # ROS without SMACH, as Debian has it
     """Run the state machine once as a node and return its outcome."""
     rospy.init_node({{ node_name | default(name) | literal }})
     {{ sm_name }} = build()
+    rospy.on_shutdown({{ sm_name }}.request_preempt)  # rospy takes Ctrl-C, and states may wait for long
 {%- if introspection %}
     server = smach_ros.IntrospectionServer({{ node_name | default(name) | literal }}, {{ sm_name }}, {{ ("/" ~ name) | literal }})
     server.start()

@@ -162,6 +162,7 @@ class Graph:
             self.environment["ROS_MASTER_URI"] = f"http://127.0.0.1:{port}"
             master = self._launch(["rosmaster", "--core", "-p", str(port)])
             if wait_for(lambda master=master: self._is_up(master)) == "up":  # type: ignore[misc]
+                self.master = master
                 return
             master.kill()
         raise AssertionError("no port for a master")

@@ -108,6 +108,29 @@ def test_exec_timeout_cancels_the_goal_and_aborts(graph: Graph) -> None:
     server.expect("cancelled")
 
 
+def test_timeouts_are_lengths_of_ros_time(graph: Graph) -> None:
+    server = graph.node("action_server")
+    simulated = client(f"{work(3)}, exec_timeout=rospy.Duration(86400)").replace(
+        "client.node()", "rospy.set_param('use_sim_time', True)\nclient.node()"
+    )
+    program = graph.start(simulated)
+    server.expect("goal 3")
+    graph.node("clock")
+    server.expect("cancelled")
+    assert program.end() == 0
+    assert "outcome: aborted\n" in program.output
+
+
+def test_an_action_goes_on_without_the_master(graph: Graph) -> None:
+    server = graph.node("action_server")
+    program = graph.start(client(work(3)))
+    server.expect("goal 3")
+    graph.master.kill()
+    program.say("preempt")
+    program.expect("outcome: preempted")
+    assert "lost" not in program.output
+
+
 def test_a_server_that_is_deaf_to_its_cancelling_is_left(graph: Graph) -> None:
     server = graph.node("action_server")
     output = graph.run(client(f"{work(4)}, exec_timeout=0.2, preempt_timeout=0.3"))

@@ -113,6 +113,27 @@ def test_an_order_to_start_in_no_state_of_the_container_is_refused(graph: Graph)
     assert observer.expect("status /ROOT/INNER ['TWO'] ['TWO']")
 
 
+CLIENT = """
+import sys
+import client
+from smachac.runtime import smach_ros
+
+client.node("viewer")
+viewer = smach_ros.IntrospectionClient()
+client.say(f"servers: {viewer.get_servers()}")
+client.say(f"obeyed: {viewer.set_initial_state('/sis', '/ROOT/INNER', ['THREE'], None, 60)}")
+client.say(f"obeyed: {viewer.set_initial_state('/sis', '/ROOT/INNER', ['ONE'], None, 0.1)}")
+"""
+
+
+def test_a_client_finds_the_server_and_is_told_whether_it_obeys(graph: Graph) -> None:
+    program = started(graph)
+    output = graph.run(CLIENT)
+    assert "servers: ['/sis']\nobeyed: True\nobeyed: False\n" in output
+    program.say("on")
+    assert program.expect("starting in 'THREE'")
+
+
 def test_userdata_of_an_order_is_taken_when_that_is_asked_for(graph: Graph) -> None:
     program = started(graph, ", unpickle=True")
     observer = graph.node("observer")

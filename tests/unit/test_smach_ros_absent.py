@@ -19,6 +19,7 @@ from smachac.runtime.smach_ros import ros
         lambda: smach_ros.MonitorState("name", object(), bool),
         lambda: smach_ros.ConditionState(bool),
         lambda: smach_ros.IntrospectionServer("name", smach.StateMachine(["done"]), "/ROOT"),
+        smach_ros.IntrospectionClient,
         lambda: smach_ros.ActionServerWrapper("name", object(), smach.StateMachine(["done"])),
         lambda: smach_ros.set_preempt_handler(smach.StateMachine(["done"])),
     ],

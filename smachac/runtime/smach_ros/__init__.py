@@ -19,7 +19,7 @@ from . import (
 )
 from .action_server_wrapper import ActionServerWrapper
 from .condition_state import ConditionState
-from .introspection import IntrospectionServer
+from .introspection import IntrospectionClient, IntrospectionServer
 from .monitor_state import MonitorState
 from .service_state import ServiceState
 from .simple_action_state import SimpleActionState
@@ -28,6 +28,7 @@ from .util import set_preempt_handler
 __all__ = [
     "ActionServerWrapper",
     "ConditionState",
+    "IntrospectionClient",
     "IntrospectionServer",
     "MonitorState",
     "ServiceState",

@@ -156,13 +156,55 @@ class IntrospectionServer:
         userdata = UserData()
         if order.local_data and self._unpickle:
             store(userdata).update(pickle.loads(base64.b64decode(order.local_data)))
-        elif order.local_data:
+        elif order.local_data not in ("", _pickled(UserData())):
             smach.logwarn(
                 f"container '{order.path}' is given an initial state; the userdata that came with "
                 "it is dropped, for unpickling it may run any code (IntrospectionServer: unpickle)"
             )
         container.set_initial_state(order.initial_states, userdata)
         self._report(order.path, container, "REMOTE_INIT")
+
+
+class IntrospectionClient:
+    """What a viewer does: finds servers, and orders containers to start elsewhere."""
+
+    def __init__(self) -> None:
+        self._rospy = ros.rospy()
+
+    def get_servers(self) -> list[str]:
+        """The names of the servers on the graph."""
+        topics = self._rospy.get_published_topics()
+        return [name[: -len(STATUS_TOPIC)] for name, _ in topics if name.endswith(STATUS_TOPIC)]
+
+    def set_initial_state(
+        self,
+        server: str,
+        path: str,
+        initial_states: list[str],
+        initial_userdata: UserData | None = None,
+        timeout: ros.Time | None = None,
+    ) -> bool | None:
+        """Order a container to start in these states; whether it says so within `timeout`.
+
+        Without a time limit the order is sent and nothing is waited for: None.
+        """
+        obeyed = threading.Event()
+
+        def heed(status: Any) -> None:
+            if status.path == path and list(status.initial_states) == list(initial_states):
+                obeyed.set()
+
+        type_, limit = messages.initial_status_command(), ros.seconds(timeout)
+        orders = self._rospy.Publisher(server + INIT_TOPIC, type_, queue_size=1, latch=True)
+        data = _pickled(initial_userdata or UserData())
+        orders.publish(type_(path=path, initial_states=initial_states, local_data=data))
+        if limit is None:
+            return None
+        statuses = self._rospy.Subscriber(server + STATUS_TOPIC, messages.container_status(), heed)
+        obeyed.wait(limit)
+        statuses.unregister()
+        orders.unregister()
+        return obeyed.is_set()
 
 
 class _Listener:
