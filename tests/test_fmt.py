@@ -123,6 +123,12 @@ def test_whatever_is_yaml_can_be_laid_out_once_for_all(
             assert ("\r\n" in found) == ("\r\n" in text[: text.find("\n") + 1])
 
 
+@pytest.mark.parametrize("text", ["states:\n  - # x\n", "states:\n  -\n  # x\n"])
+def test_a_comment_at_an_empty_item_is_left_alone(text: str) -> None:
+    """A comment there went above the dash and below it again, in turn (found by fuzzing)."""
+    assert lay_out(text) is None
+
+
 def test_long_and_short_are_two_forms_of_one_script() -> None:
     for seed in range(10):
         for data in correct_project(seed).values():

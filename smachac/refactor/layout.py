@@ -12,7 +12,7 @@ from collections import Counter
 from collections.abc import Iterator
 
 from smachac.ir.depth import deep_recursion
-from smachac.refactor.concrete import Atom, Group, Item, UnusualError, take_apart
+from smachac.refactor.concrete import Atom, Group, Item, Text, UnusualError, take_apart
 from smachac.refactor.likeness import same_meaning
 from smachac.refactor.order import Spelling, put_in_order
 from smachac.source import Source
@@ -46,19 +46,26 @@ def _laid_out(source: Source, spelling: Spelling, ordered: bool) -> str | None:
         text = take_apart(source)
     except UnusualError:
         return None
-    put_in_order(text.root, spelling, ordered=ordered)
-    printer = _Printer()
-    printer.lines += printer.trivia(text.head, "", first=True)
-    printer.root(text.root)
-    made = Source(source.name, "\n".join(printer.lines).rstrip("\n") + "\n")
+    made = Source(source.name, _printed(text, spelling, ordered))
     after = parse(made, [])
     if after is None or not same_meaning(before, after):
         return None
     try:
-        comments = take_apart(made).comments
+        again = take_apart(made)
     except UnusualError:
         return None
-    return made.text if Counter(comments) == Counter(text.comments) else None
+    if Counter(again.comments) != Counter(text.comments):
+        return None
+    # A comment beside an empty item has no place that is found again.
+    return made.text if _printed(again, spelling, ordered) == made.text else None
+
+
+def _printed(text: Text, spelling: Spelling, ordered: bool) -> str:
+    put_in_order(text.root, spelling, ordered=ordered)
+    printer = _Printer()
+    printer.lines += printer.trivia(text.head, "", first=True)
+    printer.root(text.root)
+    return "\n".join(printer.lines).rstrip("\n") + "\n"
 
 
 def item_lines(item: Item, column: int, *, first: bool) -> list[str]:
