@@ -17,7 +17,7 @@ def written(combination: Mapping[str, str]) -> str:
     return ", ".join(f"`{child}: {outcome}`" for child, outcome in combination.items())
 
 
-@rule("SM401", "uncovered-combination", Severity.ERROR)
+@rule("SM401", "uncovered-combination", Severity.ERROR, firm=True)
 def uncovered_combination(machine: Machine) -> Iterator[Finding]:
     """The children can end in a way that no rule speaks of, and there is no default outcome.
 
