@@ -333,7 +333,7 @@ class _Resolver:
             return None
         self.sources.setdefault(id(source), source)
         if tree is None:
-            if not source.text.strip():
+            if self.library.parse(source, broken := []) is None and not broken:
                 span = Span(source, 0, 0)
                 message = "the sub-script is empty"
                 self.report.append(problems.bad_sub_script(span, message, word.span))
