@@ -1,0 +1,70 @@
+# Made by smachac 0.1.0 from main.yml (sha256 0edf566321a46b52).
+"""The state machine `tour`."""
+
+try:
+    import smach
+except ImportError:  # no ROS on this machine: the same names without it
+    from smachac.runtime import smach
+
+
+class ScriptedState(smach.State):
+    """Ends as it is told: visit n does step n, the last step is repeated.
+
+    Asked to stop, it ends as `preempted` where it has that outcome.
+    """
+
+    def __init__(self, outcomes, steps=(), input_keys=(), output_keys=()):
+        super().__init__(
+            outcomes=outcomes,
+            input_keys=list(input_keys),
+            output_keys=list(output_keys),
+        )
+        self.steps = list(steps) or [{"outcome": outcomes[0]}]
+        self.visits = 0
+
+    def execute(self, userdata):
+        step = self.steps[min(self.visits, len(self.steps) - 1)]
+        self.visits += 1
+        if self.preempt_requested() and "preempted" in self.get_registered_outcomes():
+            self.service_preempt()
+            return "preempted"
+        for key, value in step.get("set", {}).items():
+            userdata[key] = value
+        return step["outcome"]
+
+
+def build():
+    """Build the state machine `tour`."""
+    # main.yml:2
+    tour = smach.StateMachine(
+        outcomes=["succeeded"],
+        input_keys=["part"],
+        output_keys=["part"],
+    )
+    tour.userdata.part = "bolt"
+    with tour:
+        # main.yml:11
+        smach.StateMachine.add(
+            "FIRST",
+            ScriptedState(outcomes=["done"]),
+            transitions={"done": "SECOND"},
+        )
+
+        # main.yml:12
+        smach.StateMachine.add(
+            "SECOND",
+            ScriptedState(outcomes=["done"]),
+            transitions={"done": "succeeded"},
+        )
+    return tour
+
+
+def start():
+    """Run the state machine once and return its outcome."""
+    return build().execute()
+
+
+if __name__ == "__main__":
+    outcome = start()
+    print(f"outcome: {outcome}")
+    raise SystemExit(outcome is None)

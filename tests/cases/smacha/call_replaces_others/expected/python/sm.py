@@ -1,0 +1,91 @@
+# Made by smachac 0.1.0 from main.yml (sha256 b5cfaa95e941898d).
+"""The state machine `sm`."""
+
+import threading
+
+try:
+    import smach
+except ImportError:  # no ROS on this machine: the same names without it
+    from smachac.runtime import smach
+
+
+class SleepState(smach.State):
+    """Waits for `time` seconds, a number or a function of userdata; a preempt request ends it."""
+
+    def __init__(self, time, input_keys=()):
+        super().__init__(
+            outcomes=["succeeded", "preempted"],
+            input_keys=list(input_keys),
+        )
+        self.time = time
+        self.woken = threading.Event()
+
+    def request_preempt(self):
+        super().request_preempt()
+        self.woken.set()
+
+    def execute(self, userdata):
+        self.woken.wait(self.time(userdata) if callable(self.time) else self.time)
+        self.woken.clear()
+        if self.preempt_requested():
+            self.service_preempt()
+            return "preempted"
+        return "succeeded"
+
+
+class ScriptedState(smach.State):
+    """Ends as it is told: visit n does step n, the last step is repeated.
+
+    Asked to stop, it ends as `preempted` where it has that outcome.
+    """
+
+    def __init__(self, outcomes, steps=(), input_keys=(), output_keys=()):
+        super().__init__(
+            outcomes=outcomes,
+            input_keys=list(input_keys),
+            output_keys=list(output_keys),
+        )
+        self.steps = list(steps) or [{"outcome": outcomes[0]}]
+        self.visits = 0
+
+    def execute(self, userdata):
+        step = self.steps[min(self.visits, len(self.steps) - 1)]
+        self.visits += 1
+        if self.preempt_requested() and "preempted" in self.get_registered_outcomes():
+            self.service_preempt()
+            return "preempted"
+        for key, value in step.get("set", {}).items():
+            userdata[key] = value
+        return step["outcome"]
+
+
+def build():
+    """Build the state machine `sm`."""
+    # main.yml:2
+    sm = smach.StateMachine(outcomes=["succeeded"])
+    with sm:
+        # main.yml:6
+        smach.StateMachine.add(
+            "WAIT",
+            SleepState(time=2.5),
+            transitions={"succeeded": "SAY", "preempted": "succeeded"},
+        )
+
+        # main.yml:7
+        smach.StateMachine.add(
+            "SAY",
+            ScriptedState(outcomes=["told"]),
+            transitions={"told": "succeeded"},
+        )
+    return sm
+
+
+def main():
+    """Run the state machine once and return its outcome."""
+    return build().execute()
+
+
+if __name__ == "__main__":
+    outcome = main()
+    print(f"outcome: {outcome}")
+    raise SystemExit(outcome is None)

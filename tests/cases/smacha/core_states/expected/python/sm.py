@@ -1,0 +1,124 @@
+# Made by smachac 0.1.0 from main.yml (sha256 055d40ab4ec652a9).
+"""The state machine `sm`."""
+
+import random
+
+try:
+    import smach
+except ImportError:  # no ROS on this machine: the same names without it
+    from smachac.runtime import smach
+
+
+class CallbacksState(smach.State):
+    """Calls functions of the userdata, keeps what each returns under its own name."""
+
+    def __init__(self, callbacks, input_keys=(), output_keys=()):
+        super().__init__(
+            outcomes=["succeeded"],
+            input_keys=list(input_keys),
+            output_keys=list(output_keys),
+        )
+        self.callbacks = callbacks
+
+    def execute(self, userdata):
+        for key in sorted(self.callbacks):
+            userdata[key] = self.callbacks[key](userdata)
+        return "succeeded"
+
+
+class ConditionalOutcomeState(smach.State):
+    """Ends with the first of its outcomes whose condition holds, else the default."""
+
+    def __init__(self, outcomes, callbacks, default_outcome, input_keys=()):
+        super().__init__(outcomes=outcomes, input_keys=list(input_keys))
+        self.conditions = [
+            (name, callbacks[name]) for name in outcomes if name in callbacks
+        ]
+        self.default_outcome = default_outcome
+
+    def execute(self, userdata):
+        for outcome, holds in self.conditions:
+            if holds(userdata):
+                return outcome
+        return self.default_outcome
+
+
+class RandomOutcomeState(smach.State):
+    """Ends with one of its outcomes by chance; a seed makes the row repeatable."""
+
+    def __init__(self, outcomes, seed=0):
+        super().__init__(outcomes=outcomes)
+        self.choices = list(outcomes)
+        self.random = random.Random(seed)
+
+    def execute(self, userdata):
+        return self.random.choice(self.choices)
+
+
+class PrintUserdataState(smach.State):
+    """Prints its input keys, one a line."""
+
+    def __init__(self, input_keys=()):
+        super().__init__(outcomes=["succeeded"], input_keys=list(input_keys))
+        self.printed_keys = sorted(input_keys)
+
+    def execute(self, userdata):
+        for key in self.printed_keys:
+            print(f"{key}: {userdata[key]}")
+        return "succeeded"
+
+
+def build():
+    """Build the state machine `sm`."""
+    # main.yml:2
+    sm = smach.StateMachine(outcomes=["succeeded", "failed"])
+    sm.userdata.n = 1
+    with sm:
+        # main.yml:7
+        smach.StateMachine.add(
+            "ADD",
+            CallbacksState(
+                callbacks={"n": lambda ud: ud.n + 1},
+                input_keys=["n"],
+                output_keys=["n"],
+            ),
+            transitions={"succeeded": "JUDGE"},
+        )
+
+        # main.yml:13
+        smach.StateMachine.add(
+            "JUDGE",
+            ConditionalOutcomeState(
+                outcomes=["large", "small"],
+                callbacks={"large": lambda ud: ud.n > 5},
+                default_outcome="small",
+                input_keys=["n"],
+            ),
+            transitions={"large": "SHOW", "small": "CHANCE"},
+        )
+
+        # main.yml:20
+        smach.StateMachine.add(
+            "CHANCE",
+            RandomOutcomeState(outcomes=["heads", "tails"]),
+            transitions={"heads": "ADD", "tails": "failed"},
+        )
+
+        # main.yml:21
+        smach.StateMachine.add(
+            "SHOW",
+            PrintUserdataState(input_keys=["n"]),
+            transitions={"succeeded": "succeeded"},
+        )
+    return sm
+
+
+def main():
+    """Run the state machine once and return its outcome."""
+    return build().execute()
+
+
+if __name__ == "__main__":
+    outcome = main()
+    print(f"outcome: {outcome}")
+    raise SystemExit(outcome is None)

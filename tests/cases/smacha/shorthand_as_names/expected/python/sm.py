@@ -1,0 +1,68 @@
+# Made by smachac 0.1.0 from main.yml (sha256 6e22a01432ad6384).
+"""The state machine `sm`."""
+
+try:
+    import smach
+except ImportError:  # no ROS on this machine: the same names without it
+    from smachac.runtime import smach
+
+
+class ScriptedState(smach.State):
+    """Ends as it is told: visit n does step n, the last step is repeated.
+
+    Asked to stop, it ends as `preempted` where it has that outcome.
+    """
+
+    def __init__(self, outcomes, steps=(), input_keys=(), output_keys=()):
+        super().__init__(
+            outcomes=outcomes,
+            input_keys=list(input_keys),
+            output_keys=list(output_keys),
+        )
+        self.steps = list(steps) or [{"outcome": outcomes[0]}]
+        self.visits = 0
+
+    def execute(self, userdata):
+        step = self.steps[min(self.visits, len(self.steps) - 1)]
+        self.visits += 1
+        if self.preempt_requested() and "preempted" in self.get_registered_outcomes():
+            self.service_preempt()
+            return "preempted"
+        for key, value in step.get("set", {}).items():
+            userdata[key] = value
+        return step["outcome"]
+
+
+def build():
+    """Build the state machine `sm`."""
+    # main.yml:2
+    sm = smach.StateMachine(outcomes=["o"])
+    sm.userdata.p = 1
+    sm.userdata.s = ["t"]
+    sm.userdata.T = {"ud": 2}
+    with sm:
+        # main.yml:7
+        smach.StateMachine.add(
+            "T",
+            ScriptedState(outcomes=["t", "n"], input_keys=["p", "s", "T"]),
+            transitions={"t": "S", "n": "o"},
+        )
+
+        # main.yml:12
+        smach.StateMachine.add(
+            "S",
+            ScriptedState(outcomes=["o"]),
+            transitions={"o": "o"},
+        )
+    return sm
+
+
+def main():
+    """Run the state machine once and return its outcome."""
+    return build().execute()
+
+
+if __name__ == "__main__":
+    outcome = main()
+    print(f"outcome: {outcome}")
+    raise SystemExit(outcome is None)

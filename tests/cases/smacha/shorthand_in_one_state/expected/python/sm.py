@@ -1,0 +1,63 @@
+# Made by smachac 0.1.0 from main.yml (sha256 e2b5825759dd7f0c).
+"""The state machine `sm`."""
+
+try:
+    import smach
+except ImportError:  # no ROS on this machine: the same names without it
+    from smachac.runtime import smach
+
+
+class ScriptedState(smach.State):
+    """Ends as it is told: visit n does step n, the last step is repeated.
+
+    Asked to stop, it ends as `preempted` where it has that outcome.
+    """
+
+    def __init__(self, outcomes, steps=(), input_keys=(), output_keys=()):
+        super().__init__(
+            outcomes=outcomes,
+            input_keys=list(input_keys),
+            output_keys=list(output_keys),
+        )
+        self.steps = list(steps) or [{"outcome": outcomes[0]}]
+        self.visits = 0
+
+    def execute(self, userdata):
+        step = self.steps[min(self.visits, len(self.steps) - 1)]
+        self.visits += 1
+        if self.preempt_requested() and "preempted" in self.get_registered_outcomes():
+            self.service_preempt()
+            return "preempted"
+        for key, value in step.get("set", {}).items():
+            userdata[key] = value
+        return step["outcome"]
+
+
+def build():
+    """Build the state machine `sm`."""
+    # main.yml:2
+    sm = smach.StateMachine(outcomes=["succeeded"])
+    with sm:
+        # main.yml:7
+        sm_foo = smach.StateMachine(outcomes=["done"])
+        with sm_foo:
+            # main.yml:12
+            smach.StateMachine.add(
+                "BAR",
+                ScriptedState(outcomes=["done"]),
+                transitions={"done": "done"},
+            )
+
+        smach.StateMachine.add("FOO", sm_foo, transitions={"done": "succeeded"})
+    return sm
+
+
+def main():
+    """Run the state machine once and return its outcome."""
+    return build().execute()
+
+
+if __name__ == "__main__":
+    outcome = main()
+    print(f"outcome: {outcome}")
+    raise SystemExit(outcome is None)
