@@ -101,11 +101,13 @@ def _variable(state: State, name: str) -> Variable:
 
 def _keys(state: State, name: str, known: tuple[Key, ...]) -> tuple[Key, ...]:
     """The keys of an interface and those the script adds."""
-    tree = _tree(state, name)
-    if tree is None:
+    part = name.removesuffix("_keys")
+    listed = [key for key, each in state.type.variables.items() if each.keys == part]
+    trees = [tree for key in (name, *listed) if (tree := _tree(state, key)) is not None]
+    if not trees:
         return known
     keys = {key.name: key for key in known}
-    for word, type_ in shapes.as_keys(tree, []):
+    for word, type_ in (pair for tree in trees for pair in shapes.as_keys(tree, [])):
         found = parse_type(type_.text) if type_ is not None else None
         below = keys.get(word.text)
         keys[word.text] = Key(
@@ -200,6 +202,11 @@ def _leaf(state: State) -> Leaf:
         given = [*_words(state, "outcomes")]
         if "default_outcome" in state.fields:
             given.append(_word(state, "default_outcome"))
+        elif "default_outcome" in type_.variables:
+            default = type_.variables["default_outcome"].default
+            given += (
+                [Word(str(default.value), state.name.span)] if isinstance(default, Scalar) else []
+            )
         if type_.open and not given:
             given += [key for key, _ in _pairs(state, "transitions")]
         for word in given:
@@ -207,16 +214,37 @@ def _leaf(state: State) -> Leaf:
     return Leaf(
         **fields,
         outcomes=tuple(outcomes.values()),
-        variables=tuple(
-            _variable(state, name)
-            for name in state.fields
-            if name not in _NOT_VARIABLES or (name in NAMES and is_own(name, type_))
+        variables=(
+            *(
+                _variable(state, name)
+                for name in state.fields
+                if name not in _NOT_VARIABLES or (name in NAMES and is_own(name, type_))
+            ),
+            *_defaults(state),
         ),
         writes=type_.writes,
         open=type_.open,
         blocking=type_.blocking,
         body=type_.body,
     )
+
+
+def _defaults(state: State) -> Iterable[Variable]:
+    """The default outcome of a state, where the script leaves it to the interface."""
+    known = state.type.variables.get("default_outcome")
+    if known is not None and known.default is not None and known.name not in state.fields:
+        value = as_value(known.default)
+        yield Variable(name=known.name, type=known.type, value=value, span=state.name.span)
+
+
+def _without_optional(child: Node, state: State, outcomes: frozenset[str]) -> Node:
+    """A state without those outcomes that its type can do without, and that nobody speaks of."""
+    if not isinstance(child, Leaf) or not state.type.optional:
+        return child
+    led = {edge.outcome for edge in child.transitions} | outcomes
+    dropped = state.type.optional - led
+    kept = tuple(each for each in child.outcomes if each.name not in dropped)
+    return child if len(kept) == len(child.outcomes) else replace(child, outcomes=kept)
 
 
 def _container(state: State, owner: str) -> Container:
@@ -243,6 +271,7 @@ def _container(state: State, owner: str) -> Container:
     if "on_error" in state.fields:
         target = _word(state, "on_error")
         children = tuple([with_way_out(child, target) for child in children])
+    children = tuple(map(_without_optional, children, state.states, [outcomes] * len(children)))
     fields["children"] = tuple(_with_implicit(child, outcomes) for child in children)
     first = children[0].name if children else ""
     initial = _word(state, "initial", first)

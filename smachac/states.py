@@ -47,13 +47,17 @@ class Library:
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class VariableType:
-    """A variable of a state type. Without a default it is required."""
+    """A variable of a state type. Without a default it is required.
+
+    `keys` says that it lists keys of the userdata, "input" or "output" ones.
+    """
 
     name: str
     type: Type = ANY
     required: bool = True
     doc: str = ""
     default: Tree | None = None
+    keys: str = ""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -65,7 +69,8 @@ class StateType:
     `code` maps a language to a template's file name or to a reference to code, `classes` a language
     to a class of it, in words: `header`, `class`, `with`. `body` is what the template of Python
     does. `open`: there is no interface. `prints_itself`: the template of Python adds the
-    state to its container, as those of SMACHA do.
+    state to its container, as those of SMACHA do. `optional` are outcomes that a state has only
+    where its container or a transition of it speaks of them.
     """
 
     name: str
@@ -84,6 +89,7 @@ class StateType:
     body: Body | None = None
     open: bool = False
     prints_itself: bool = False
+    optional: frozenset[str] = frozenset()
 
 
 TEMPLATE_FILES = ("{}.tpl.py", "{}.tpl")
@@ -154,6 +160,7 @@ def _read_interface(name: str, source: Source, library: Library, report: Report)
         for part in ("variables", "input_keys", "output_keys", "outcomes")
         if isinstance(tree := fields.get(part), Map) and tree.get("*") is not None
     )
+    optional = _optional_outcomes(fields.get("outcomes"))
     return StateType(
         name=name,
         kind=_kind(fields.get("kind"), report),
@@ -175,9 +182,17 @@ def _read_interface(name: str, source: Source, library: Library, report: Report)
         blocking="blocking" in fields and shapes.as_flag(fields["blocking"], []),
         code=code,
         classes=_classes(fields.get("code"), report),
-        body=_body(name, code.get("python", ""), given, library),
+        body=_body(
+            name, code.get("python", ""), given | ({"optional"} if optional else set()), library
+        ),
         prints_itself=_prints_itself(code.get("python", ""), library),
+        optional=optional,
     )
+
+
+def _optional_outcomes(tree: Tree | None) -> frozenset[str]:
+    """Outcomes with `optional: true`."""
+    return frozenset(key for key, value in _declared(tree) if _text(value, "optional") == "True")
 
 
 def _body(name: str, file: str, given: frozenset[str], library: Library) -> Body | None:
@@ -188,7 +203,7 @@ def _body(name: str, file: str, given: frozenset[str], library: Library) -> Body
         return None
     return replace(
         body,
-        returns=() if "outcomes" in given else body.returns,
+        returns=() if {"outcomes", "optional"} & given else body.returns,
         reads=() if "input_keys" in given else body.reads,
         writes=() if {"input_keys", "output_keys"} & given else body.writes,
     )
@@ -292,6 +307,7 @@ def _variable(name: str, tree: Tree, report: Report) -> VariableType:
         required=default is None,
         doc=_doc(tree),
         default=default.value if default is not None else None,
+        keys=_text(tree, "keys"),
     )
 
 

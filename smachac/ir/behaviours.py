@@ -95,11 +95,18 @@ def _first_true(path: str, leaf: Leaf, visit: int, userdata: Userdata) -> str:
     callbacks = _callbacks(leaf)
     for outcome in own_outcomes(leaf):
         if outcome in callbacks and called(callbacks[outcome], userdata):
-            return outcome
+            return _told(leaf, outcome, userdata)
     otherwise = variable(leaf, "default_outcome")
     if not isinstance(otherwise, str):
         raise BehaviourError("no condition holds, and there is no `default_outcome`")
-    return otherwise
+    return _told(leaf, otherwise, userdata)
+
+
+def _told(leaf: Leaf, outcome: str, userdata: Userdata) -> str:
+    """An outcome, also under the key `outcome` where the leaf has that."""
+    if any(key.name == "outcome" for key in leaf.outputs):
+        userdata["outcome"] = outcome
+    return outcome
 
 
 def _draws(seed: int) -> Behaviour:
@@ -109,7 +116,8 @@ def _draws(seed: int) -> Behaviour:
         if path not in sources:
             own = variable(leaf, "seed")
             sources[path] = random.Random(own if isinstance(own, int) else seed)
-        return sources[path].choice(own_outcomes(leaf) or (default_outcome(leaf),))
+        outcome = sources[path].choice(own_outcomes(leaf) or (default_outcome(leaf),))
+        return _told(leaf, outcome, userdata)
 
     return draw
 

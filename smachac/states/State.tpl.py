@@ -1,13 +1,8 @@
 {% extends "State.tpl" %}
-{% from "Utils.tpl.py" import render_input_keys, render_output_keys, render_outcomes, render_callbacks, render_transitions, render_remapping %}
+{% from "Utils.tpl.py" import render_callbacks %}
 {% block body %}
-smach.{{ parent_type }}.add({{ name | quoted }}, {{ class_name }}(
-{%- if input_keys is defined %}{{ render_input_keys(input_keys, indent=0) }}, {% endif %}
-{%- if output_keys is defined %}{{ render_output_keys(output_keys, indent=0) }}, {% endif %}
-{%- if callbacks is defined %}{{ render_callbacks(name, uuid, callbacks, indent=0) }}, {% endif %}
-{%- if outcomes is defined %}{{ render_outcomes(outcomes, indent=0) }}{% endif %})
-{%- if transitions is defined %},
-{{ render_transitions(transitions) }}{% endif %}
-{%- if remapping is defined %},
-{{ render_remapping(remapping) }}{% endif %})
+{% if callbacks is defined %}
+{% set functions = render_callbacks(name, uuid, callbacks, indent=0) | replace("callbacks=", "", 1) | code %}
+{% endif %}
+{{ add(class_name, input_keys=input_keys, output_keys=output_keys, callbacks=functions, outcomes=outcomes) }}
 {% endblock body %}

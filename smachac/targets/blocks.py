@@ -227,16 +227,16 @@ class Page:
         self.names: set[str] = self.own.union(*(page.names for page in self.inner))
         self.target = target
 
-    def render(self, block: str) -> str:
+    def render(self, block: str, *, alone: bool = False) -> str:
         """One block, without the line ends around it. Raises BlockError."""
         with self.blocks._located(self.file):
-            return self.text(block).strip("\n").rstrip()
+            return self.text(block, alone=alone).strip("\n").rstrip()
 
-    def text(self, block: str) -> str:
+    def text(self, block: str, *, alone: bool = False) -> str:
         """What templates included at the top level have in the block, then what this one has; of
         `body`, which adds the state, there is one."""
         parts = []
-        if block != "body" or block not in self.own:
+        if not alone and (block != "body" or block not in self.own):
             parts = [page.text(block) for page in self.inner if block in page.names]
         if block in self.own:
             before, self.blocks._page = self.blocks._page, self

@@ -11,7 +11,7 @@ from typing import Any
 from unittest.mock import patch
 
 import smachac
-from smachac.runtime import smach
+from smachac.runtime import smach, smach_ros
 
 FOLDER = Path(__file__).parent
 TEMPLATES = FOLDER / "templates"
@@ -21,15 +21,44 @@ class Anything(ModuleType):
     """A module of ROS as far as code touches it when a machine is built: it has every name."""
 
     def __getattr__(self, name: str) -> Any:
+        if name == "__all__":
+            return ["Point"]
         if name.startswith("__"):
             raise AttributeError(name)
-        return self
+        kinds = (smach_ros.ServiceState, smach_ros.SimpleActionState)
+        return {kind.__name__: Named for kind in kinds}.get(name, self)
 
     def __call__(self, *arguments: Any, **named: Any) -> Any:
         return self
 
 
-ROS = ("rospy", "roslib", "rospkg", "rostopic", "actionlib", "tf2_ros", "rosbag", "smach_ros")
+MESSAGES = (
+    *("actionlib.msg", "geometry_msgs", "geometry_msgs.msg", "my_msgs", "my_msgs.srv"),
+    *("roslib.message", "sensor_msgs", "sensor_msgs.msg", "std_msgs", "std_msgs.msg"),
+    *("std_srvs", "std_srvs.srv", "tf2_geometry_msgs"),
+)
+
+
+class Named(smach.State):
+    """In place of a state of smach_ros, which wants a node: its outcomes and keys alone."""
+
+    def __init__(self, name: str, kind: Any, **given: Any) -> None:
+        inputs = [*given.get("request_slots", []), *given.get("input_keys", [])]
+        super().__init__(["succeeded", "aborted", "preempted"], input_keys=inputs)
+        self.given = (name, kind, given)
+
+
+ROS = (
+    *MESSAGES,
+    "rospy",
+    "roslib",
+    "rospkg",
+    "rostopic",
+    "actionlib",
+    "tf2_ros",
+    "rosbag",
+    "smach_ros",
+)
 
 
 @contextmanager

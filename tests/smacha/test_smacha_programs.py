@@ -21,7 +21,10 @@ from smachac.diagnostics import Report, Severity
 from smachac.driver import build
 from smachac.targets import load_target
 
-SCRIPTS = ["callbacks", "counting", "params", "recording", "two_arms", "whole"]
+SCRIPTS = [
+    *("callbacks", "core", "counting", "params", "recording", "ros_states", "services", "two_arms"),
+    "whole",
+]
 REWRITE = os.environ.get("SMACHAC_GOLDEN") == "rewrite"
 
 
@@ -139,6 +142,70 @@ def test_a_program_that_is_one_function_runs_and_tells_its_outcome(tmp_path: Pat
     assert outcome == "succeeded"
     entered = [event["path"] for event in events if event["event"] == "enter"]
     assert entered == ["SM/START", "SM/IN", "SM/IN/PAUSE", "SM/STOP"]
+
+
+def test_core_states_do_what_their_names_say(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+) -> None:
+    monkeypatch.chdir(tmp_path)
+    machine = machine_of(text_of("core"))
+    written: list[str] = []
+    delete = machine["DELETE"].execute
+
+    def look_and_delete(userdata: object) -> str:
+        written.append((tmp_path / "numbers.csv").read_text("utf-8"))
+        outcome: str = delete(userdata)
+        return outcome
+
+    machine["DELETE"].execute = look_and_delete
+    assert machine.execute() == "succeeded"
+    assert written == ["level;word\n1;a\n"]
+    assert not (tmp_path / "numbers.csv").exists()
+    lines = capsys.readouterr().out.splitlines()
+    assert len({"outcome: low", "outcome: high"} & set(lines)) == 1
+    assert machine.execute() == "succeeded"
+    machine["WRITE"].delimiter = ","
+    machine.userdata.file = str(tmp_path / "nowhere" / "numbers.csv")
+    assert machine.execute() == "aborted"
+
+
+def test_rows_of_messages_field_by_field(tmp_path: Path) -> None:
+    class Message:
+        __slots__ = ("header", "x", "y")
+
+        def __init__(self, x: object, y: object) -> None:
+            self.header, self.x, self.y = "seq", x, y
+
+    machine = machine_of(text_of("core"))
+    machine.userdata.level = [Message(1, 2), Message(3, Message(4, 5))]
+    machine.userdata.data_keys = ["level"]
+    machine.userdata.file = str(tmp_path / "rows.csv")
+    assert machine["WRITE"].execute(machine.userdata) == "succeeded"
+    assert (tmp_path / "rows.csv").read_text() == "level_x;level_y\n1;2\n3;4;5\n"
+
+
+def test_ros_states_bring_their_imports_once() -> None:
+    text = text_of("ros_states")
+    imports = [line for line in text.splitlines() if line.startswith(("import", "from"))]
+    assert len(imports) == len(set(imports))
+    for line in ("import rospy", "from std_msgs.msg import String"):
+        assert line in imports
+    tree = ast.parse(text)
+    names = [node.name for node in tree.body if isinstance(node, ast.ClassDef | ast.FunctionDef)]
+    assert len(names) == len(set(names))
+    services = text_of("services")
+    assert "from actionlib.msg import TestAction, TestGoal" in services
+    assert "from std_srvs.srv import SetBool" in services
+
+
+def test_services_and_actions_get_what_the_script_says() -> None:
+    machine = machine_of(text_of("services"))
+    (name, _, given) = machine["SLOTS"].given
+    assert (name, given) == ("gripper_srv", {"request_slots": ["max_effort", "position"]})
+    (_, _, given) = machine["CB"].given
+    assert given["request_cb"].get_registered_input_keys() == ("gripper_input",)
+    assert given["input_keys"] == ["gripper_input"]
+    assert set(machine["ACT"].given[2]) == {"goal", "exec_timeout"}
 
 
 def built_report(path: Path) -> Report:

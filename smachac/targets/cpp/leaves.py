@@ -168,6 +168,7 @@ def _callbacks(code: _Code) -> _Body:
 
 def _conditional(code: _Code) -> _Body:
     functions = code.functions()
+    _tells_nothing(code)
     lines = []
     for outcome in own_outcomes(code.leaf):
         if outcome in functions:
@@ -214,7 +215,13 @@ def _sleep(code: _Code) -> _Body:
     return _Body(lines=(*lines, code.end(default_outcome(code.leaf))))
 
 
+def _tells_nothing(code: _Code) -> None:
+    if code.leaf.outputs:
+        raise UnportableError("it writes its outcome under a key")
+
+
 def _random(code: _Code) -> _Body:
+    _tells_nothing(code)
     seed = variable(code.leaf, "seed")
     number = abs(seed) if isinstance(seed, int) else 0
     words: list[str] = []

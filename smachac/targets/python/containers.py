@@ -22,7 +22,7 @@ from smachac.targets.python.gathered import (
     buffers,
 )
 from smachac.targets.python.layout import call, literal, names
-from smachac.targets.python.smacha import container_variables, state_variables
+from smachac.targets.python.smacha import adding, container_variables, state_variables
 
 _PRESET = re.compile(r"\s*\w+\.userdata\.(\w+) = ")
 """A line by which a state's template sets userdata; the container has set it already."""
@@ -188,7 +188,8 @@ def _leaf(leaf: Leaf, inside: Inside, path: str, gathered: Gathered) -> str:
     if used.whole:
         return _whole(leaf, inside, path, used, gathered)
     arguments: body.Arguments = []
-    if "outcomes" in used.type.given:
+    dropped = len(own_outcomes(leaf)) < len(used.type.outcomes)
+    if "outcomes" in used.type.given or (used.type.optional and dropped):
         arguments.append(("outcomes=", names(own_outcomes(leaf))))
     arguments += [(f"{one.name}=", literal(one.value.data)) for one in leaf.variables]
     given = used.type.given
@@ -234,13 +235,16 @@ def _used(leaf: Leaf, gathered: Gathered) -> Used:
 
 def _whole(leaf: Leaf, inside: Inside, path: str, used: Used, gathered: Gathered) -> str:
     """A state whose template prints itself, with the variables SMACHA gave it."""
-    _catches_nothing(leaf)
-    if isinstance(inside.node, Iterator):
+    own = gathered.context.library.own_template(used.template) is not None
+    if own:
+        _catches_nothing(leaf)
+    if isinstance(inside.node, Iterator) and own:
         message = f"the template of `{leaf.name}` cannot add it to an Iterator: SMACH has no `add`"
         help = "put the state into a StateMachine, and iterate over that"
         raise BlockError(problems.template_error(leaf.span, message, help))
     variables = state_variables(leaf, inside.node, inside.variable, path)
     variables["defined_headers"] = gathered.defined_headers
+    variables["add"] = adding(leaf, inside.node, inside.depth + 1)
     page = gathered.blocks.page(used.template, variables)
     gathered.gather(page, leaf)
     _headers(page, inside, leaf, gathered)

@@ -79,11 +79,13 @@ class Gathered:
             self.faults.append(found)
 
     def gather(self, page: Page, node: Node) -> None:
-        """Put the blocks of a template to those of the same name."""
+        """Put the blocks of a template to those of the same name, those it includes before it."""
+        for inner in page.inner:
+            self.gather(inner, node)
         for name in (*APPENDED, *PREPENDED):
-            if name not in page.names:
+            if name not in page.own:
                 continue
-            text = self.code(page, name, node)
+            text = self.code(page, name, node, alone=True)
             buffer = self.buffers[name]
             if text.strip() and text not in buffer:  # templates share definitions by `extends`
                 buffer.insert(0 if name in PREPENDED else len(buffer), text)
@@ -107,9 +109,9 @@ class Gathered:
                     states = ((first.name, first.span), (node.name, node.span))
                     self.note(problems.defined_twice(span, what, each.name, states))
 
-    def code(self, page: Page, block: str, node: Node) -> str:
-        """A block that holds Python, as Python 3."""
-        text, changes = modern(page.render(block))
+    def code(self, page: Page, block: str, node: Node, *, alone: bool = False) -> str:
+        """A block that holds Python, as Python 3; `alone`: without what the template includes."""
+        text, changes = modern(page.render(block, alone=alone))
         for line, change in changes:
             self.note(problems.python_2_code(self._place(page, block, line) or node.span, change))
         try:

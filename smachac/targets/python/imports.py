@@ -6,6 +6,8 @@ import ast
 import sys
 from collections.abc import Iterable
 
+from smachac.targets.python.layout import WIDTH
+
 ROS_MODULES = ("rospy", "roslib", "rospkg", "rostopic", "actionlib", "tf2_ros")
 """Modules that SMACHA's bases imported for everybody."""
 
@@ -34,26 +36,41 @@ _MODULE_OF = {name: module for module, names in MESSAGES.items() for name in nam
 
 def import_lines(texts: Iterable[str]) -> str:
     """Imports, each once: modules first, then names out of modules, then what is more than that."""
-    lines: set[str] = set()
+    modules: set[str] = set()
+    names: dict[str, set[str]] = {}
     others: dict[str, None] = {}
     for text in texts:
         try:
-            tree = ast.parse(text)
+            body = ast.parse(text).body
         except SyntaxError:
+            body = [ast.Pass()]
+        if not all(isinstance(node, ast.Import | ast.ImportFrom) for node in body):
             others[text.strip()] = None
             continue
-        if all(isinstance(node, ast.Import | ast.ImportFrom) for node in tree.body):
-            lines.update(ast.unparse(node) for node in tree.body)
-        else:
-            others[text.strip()] = None
-    first = sorted(lines, key=lambda line: (line.startswith("from"), line))
-    return "\n".join([*first, *filter(None, others)])
+        for node in body:
+            if isinstance(node, ast.ImportFrom):
+                module = "." * node.level + (node.module or "")
+                names.setdefault(module, set()).update(map(ast.unparse, node.names))
+            elif isinstance(node, ast.Import):
+                modules.update(map(ast.unparse, node.names))
+    lines = [f"import {name}" for name in sorted(modules)]
+    lines += [_from_import(module, sorted(names[module])) for module in sorted(names)]
+    return "\n".join([*lines, *filter(None, others)])
+
+
+def _from_import(module: str, names: list[str]) -> str:
+    stars = ["*"] if "*" in names else names
+    line = f"from {module} import {', '.join(stars)}"
+    if len(line) <= WIDTH:
+        return line
+    return f"from {module} import (\n" + "".join(f"    {name},\n" for name in stars) + ")"
 
 
 def unbound_names(parts: Iterable[str]) -> list[str]:
     """Imports for what code uses and nothing binds: modules by their attributes (`rospy.loginfo`),
-    messages by their calls (`Point()`). Code with `import *` may bind any message."""
+    messages by their names (`Point()`). Code with `import *` may bind any message."""
     used: set[str] = set()
+    named: set[str] = set()
     bound: set[str] = set()
     for part in parts:
         try:
@@ -64,8 +81,8 @@ def unbound_names(parts: Iterable[str]) -> list[str]:
             match node:
                 case ast.Attribute(value=ast.Name(id=name)):
                     used.add(name)
-                case ast.Call(func=ast.Name(id=name)):
-                    used.add(f"{name}()")
+                case ast.Name(id=name, ctx=ast.Load()):
+                    named.add(name)
                 case ast.Name(id=name, ctx=ast.Store()) | ast.arg(arg=name):
                     bound.add(name)
                 case ast.FunctionDef(name=name) | ast.ClassDef(name=name):
@@ -74,11 +91,12 @@ def unbound_names(parts: Iterable[str]) -> list[str]:
                     bound |= {each.asname or each.name.partition(".")[0] for each in names}
     modules = sys.stdlib_module_names | set(ROS_MODULES)
     found = [f"import {name}" for name in sorted(used - bound) if name in modules]
-    if "*" in bound or not any(name in used | bound for name in (*ROS_MODULES, "smach_ros")):
+    if "*" in bound or not any(
+        name in used | named | bound for name in (*ROS_MODULES, "smach_ros")
+    ):
         return found
-    calls = sorted(name.removesuffix("()") for name in used if name.endswith("()"))
     return found + [
         f"from {_MODULE_OF[name]} import {name}"
-        for name in calls
-        if name in _MODULE_OF and name not in bound
+        for name in sorted(named - bound)
+        if name in _MODULE_OF
     ]

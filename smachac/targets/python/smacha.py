@@ -9,9 +9,10 @@ import re
 from collections.abc import Callable, Iterable, Mapping
 from typing import Any
 
-from smachac.ir.nodes import Concurrence, Container, Data, Expression, Leaf, Struct, Variable
+from smachac.ir.nodes import Concurrence, Container, Data, Expression, Leaf, Node, Struct, Variable
 from smachac.ir.walk import own_outcomes
-from smachac.targets.python.layout import flat, literal, string
+from smachac.targets.python import body
+from smachac.targets.python.layout import call, flat, literal, string
 
 
 class Code(str):
@@ -102,9 +103,34 @@ TESTS: Mapping[str, Callable[..., Any]] = {
     "expression": is_expression,
     "not_string": is_not_string,
 }
+
+
+def ros_class(value: object) -> Code:
+    """The class that a ROS type names: `Trigger` of `std_srvs/Trigger`, `std_srvs.srv.Trigger`."""
+    return Code(re.split(r"[/.]", str(value))[-1])
+
+
+def ros_import(
+    value: object, part: str, ending: str = "", other: str = "", code: object = ""
+) -> str:
+    """The import of a ROS type that names its package; of others the module's code is to know.
+
+    Code may name a class beside it: `TestGoal` beside `TestAction`, with `other` for `ending`.
+    """
+    words = re.split(r"[/.]", str(value))
+    if len(words) < 2 or not all(word.isidentifier() for word in words):
+        return ""
+    beside = words[-1].removesuffix(ending) + other
+    names = [words[-1], *([beside] if isinstance(code, str) and f"{beside}(" in code else [])]
+    return f"from {words[0]}.{part} import {', '.join(names)}"
+
+
 FILTERS: Mapping[str, Callable[..., Any]] = {
+    "ros_class": ros_class,
+    "ros_import": ros_import,
     "exptostr": without_ticks,
     "literal": as_literal,
+    "code": lambda value: Code(value) if isinstance(value, str) else value,
     "quoted": lambda value: string(str(value)),
 }
 
@@ -131,6 +157,27 @@ def written(variables: Iterable[Variable]) -> dict[str, object]:
 def stable_id(path: str) -> str:
     """`uuid`: 32 hexadecimal digits, the same in each build for the same state."""
     return hashlib.sha256(path.encode("utf-8", "surrogatepass")).hexdigest()[:32]
+
+
+def adding(node: Node, parent: Container, depth: int) -> Callable[..., str]:
+    """A function for templates: the line that adds the state that a class makes.
+
+    Named arguments that are missing are left out; strings are printed as text, code as it is.
+    """
+
+    def add(class_name: object, *values: object, **named: object) -> str:
+        from jinja2 import Undefined
+
+        arguments = [("", literal(_data(value))) for value in values]
+        arguments += [
+            (f"{name}=", literal(_data(value)))
+            for name, value in named.items()
+            if not isinstance(value, Undefined)
+        ]
+        made = body.made(node, call(str(class_name), arguments))
+        return body.add(node, parent, made, depth)
+
+    return add
 
 
 def place_variables(parent: Container, parent_sm_name: str, path: str) -> dict[str, object]:

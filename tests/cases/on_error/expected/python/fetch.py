@@ -66,33 +66,47 @@ class CallbacksState(smach.State):
 
     def execute(self, userdata):
         for key in sorted(self.callbacks):
-            userdata[key] = self.callbacks[key](userdata)
+            function = self.callbacks[key]
+            if not smach.has_smach_interface(function):
+                userdata[key] = function(userdata)
+            else:  # it writes its keys itself
+                inputs = function.get_registered_input_keys()
+                outputs = function.get_registered_output_keys()
+                function(smach.Remapper(userdata, inputs, outputs, {}))
         return "succeeded"
 
 
 class ConditionalOutcomeState(smach.State):
     """Ends with the first of its outcomes whose condition holds, else the default."""
 
-    def __init__(self, outcomes, callbacks, default_outcome, input_keys=()):
-        super().__init__(outcomes=outcomes, input_keys=list(input_keys))
+    def __init__(
+        self, outcomes, callbacks, default_outcome, input_keys=(), output_keys=()
+    ):
+        super().__init__(
+            outcomes=outcomes,
+            input_keys=list(input_keys),
+            output_keys=list(output_keys),
+        )
+        self.tells = "outcome" in output_keys
         self.conditions = [
             (name, callbacks[name]) for name in outcomes if name in callbacks
         ]
         self.default_outcome = default_outcome
 
     def execute(self, userdata):
-        for outcome, holds in self.conditions:
-            if holds(userdata):
-                return outcome
-        return self.default_outcome
+        holding = (name for name, holds in self.conditions if holds(userdata))
+        outcome = next(holding, self.default_outcome)
+        if self.tells:
+            userdata["outcome"] = outcome
+        return outcome
 
 
 class SleepState(smach.State):
     """Waits for `time` seconds, a number or a function of userdata; a preempt request ends it."""
 
-    def __init__(self, time, input_keys=()):
+    def __init__(self, time, input_keys=(), outcomes=("succeeded", "preempted")):
         super().__init__(
-            outcomes=["succeeded", "preempted"],
+            outcomes=list(outcomes),
             input_keys=list(input_keys),
         )
         self.time = time
@@ -105,7 +119,7 @@ class SleepState(smach.State):
     def execute(self, userdata):
         self.woken.wait(self.time(userdata) if callable(self.time) else self.time)
         self.woken.clear()
-        if self.preempt_requested():
+        if self.preempt_requested() and "preempted" in self.get_registered_outcomes():
             self.service_preempt()
             return "preempted"
         return "succeeded"

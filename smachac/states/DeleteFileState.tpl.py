@@ -1,0 +1,24 @@
+{% block imports %}
+import glob
+import os
+{% endblock %}
+{% block class_defs %}
+class DeleteFileState(smach.State):
+    """Deletes the files that a pattern stands for."""
+
+    def __init__(self):
+        super().__init__(outcomes=["succeeded", "aborted"], input_keys=["file"])
+
+    def execute(self, userdata):
+        paths = glob.glob(userdata["file"])
+        if not paths:
+            smach.logwarn(f"there is no file {userdata['file']}")
+            return "aborted"
+        try:
+            for path in sorted(paths):
+                os.remove(path)
+        except OSError as error:
+            smach.logwarn(f"a file cannot be deleted: {error}")
+            return "aborted"
+        return "succeeded"
+{% endblock %}

@@ -1,0 +1,127 @@
+{% block meta %}
+name: ParseMessages
+description: Lists of numbers as messages, for the Parse templates and the states that publish.
+type: None
+{% endblock meta %}
+{% block imports %}
+import rospy
+from geometry_msgs.msg import Point, Point32, PointStamped, Pose, PoseArray, PoseStamped, Quaternion, Transform, TransformStamped, Vector3
+from sensor_msgs.msg import PointCloud, PointCloud2, PointField
+{% endblock %}
+{% block defs %}
+def parse_point(data):
+    """A Point of `[x, y, z]`, a Point or a PointStamped."""
+    if isinstance(data, PointStamped):
+        return data.point
+    if isinstance(data, Point):
+        return data
+    x, y, z = map(float, data)
+    return Point(x, y, z)
+
+
+def parse_pose(data):
+    """A Pose of `[[x, y, z], [qx, qy, qz, qw]]`, a Pose or a PoseStamped."""
+    if isinstance(data, PoseStamped):
+        return data.pose
+    if isinstance(data, Pose):
+        return data
+    position, orientation = data
+    return Pose(parse_point(position), Quaternion(*map(float, orientation)))
+
+
+def stamped(kind, part, data, value):
+    """A stamped message; one that is stamped already keeps its frame."""
+    if isinstance(data, kind):
+        return data
+    message = kind(**{part: value})
+    message.header.stamp = rospy.Time.now()
+    return message
+
+
+def parse_pointstamped(data):
+    """A PointStamped of whatever `parse_point` takes."""
+    return stamped(PointStamped, "point", data, parse_point(data))
+
+
+def parse_posestamped(data):
+    """A PoseStamped of whatever `parse_pose` takes."""
+    return stamped(PoseStamped, "pose", data, parse_pose(data))
+
+
+def parse_posearray(data):
+    """A PoseArray of a list of poses."""
+    if isinstance(data, PoseArray):
+        return data
+    return stamped(PoseArray, "poses", data, [parse_pose(each) for each in data])
+
+
+def parse_pointcloud(data):
+    """A PointCloud of a list of points."""
+    if isinstance(data, PointCloud):
+        return data
+    points = [Point32(*map(float, each)) for each in data]
+    return stamped(PointCloud, "points", data, points)
+
+
+def parse_pointcloud2(data):
+    """A PointCloud2 of a list of points."""
+    if isinstance(data, PointCloud2):
+        return data
+    points = [tuple(map(float, each)) for each in data]
+    fields = [
+        PointField(name, 4 * place, PointField.FLOAT32, 1)
+        for place, name in enumerate("xyz")
+    ]
+    message = PointCloud2(
+        height=1,
+        width=len(points),
+        fields=fields,
+        is_bigendian=False,
+        point_step=12,
+        row_step=12 * len(points),
+        data=b"".join(struct.pack("<fff", *point) for point in points),
+        is_dense=True,
+    )
+    message.header.stamp = rospy.Time.now()
+    return message
+
+
+def parse_transformstamped(data):
+    """A TransformStamped of `[[x, y, z], [qx, qy, qz, qw]]`, a Transform or one itself."""
+    if isinstance(data, TransformStamped):
+        return data
+    if not isinstance(data, Transform):
+        translation, rotation = data
+        data = Transform(
+            Vector3(*map(float, translation)), Quaternion(*map(float, rotation))
+        )
+    return TransformStamped(transform=data)
+
+
+PARSERS = {
+    "geometry_msgs/Point": parse_point,
+    "geometry_msgs/PointStamped": parse_pointstamped,
+    "geometry_msgs/Pose": parse_pose,
+    "geometry_msgs/PoseStamped": parse_posestamped,
+    "geometry_msgs/PoseArray": parse_posearray,
+    "sensor_msgs/PointCloud": parse_pointcloud,
+    "sensor_msgs/PointCloud2": parse_pointcloud2,
+}
+
+
+def parse_message(data, kind=None):
+    """A message: as it is, or made of lists of numbers; without a type by their shape."""
+    if hasattr(data, "_type") and kind in (None, data._type):
+        return data
+    if kind is not None:
+        if kind not in PARSERS:
+            raise ValueError(f"no list of numbers is known to be a {kind}")
+        return PARSERS[kind](data)
+    if len(data) == 2 and len(data[0]) == 3 and len(data[1]) == 4:
+        return parse_posestamped(data)
+    if len(data) == 3 and all(isinstance(each, (int, float)) for each in data):
+        return parse_pointstamped(data)
+    if all(len(each) == 3 for each in data):
+        return parse_pointcloud2(data)
+    return parse_posearray(data)
+{% endblock %}

@@ -1,0 +1,1 @@
+{% extends "ParseMessages.tpl.py" %}

@@ -1,0 +1,42 @@
+{% include "ROSHelp.tpl.py" %}
+{% include "ParseMessages.tpl.py" %}
+{% include "MsgPublisher.tpl.py" %}
+{% block imports %}
+import struct
+{% endblock %}
+{% block defs %}
+{% endblock %}
+{% block class_defs %}
+class PublishMsgState(smach.State):
+    """Starts or stops publishing a message again and again."""
+
+    publisher = MsgPublisher()
+
+    def __init__(self, action, input_keys=(), output_keys=()):
+        super().__init__(
+            outcomes=["succeeded", "aborted"],
+            input_keys=list(input_keys),
+            output_keys=list(output_keys),
+        )
+        self.action = action
+
+    def execute(self, userdata):
+        if self.action == "stop_all":
+            return self.publisher.stop_all()
+        topic = optional(userdata, "topic", "smacha/message")
+        if self.action == "stop":
+            return self.publisher.stop(topic)
+        try:
+            message = parse_message(userdata["msg"], optional(userdata, "msg_type"))
+        except (TypeError, ValueError) as error:
+            smach.logerr(f"this is no message: {error}")
+            return "aborted"
+        frame = optional(userdata, "frame_id", "")
+        rate = optional(userdata, "rate", 100.0)
+        callback = optional(userdata, "callback")
+        outcome = self.publisher.start(message, topic, rate, frame, callback)
+        outputs = self.get_registered_output_keys()
+        give(userdata, outputs, ["msg", "output_msg", "msg_output"], message)
+        give(userdata, outputs, ["topic", "output_topic", "topic_output"], topic)
+        return outcome
+{% endblock %}

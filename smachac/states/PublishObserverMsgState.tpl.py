@@ -1,0 +1,38 @@
+{% include "ROSHelp.tpl.py" %}
+{% include "ParseMessages.tpl.py" %}
+{% include "MsgPublisherObserver.tpl.py" %}
+{% block imports %}
+import struct
+{% endblock %}
+{% block class_defs %}
+class PublishObserverMsgState(smach.State):
+    """Publishes a message each time that one comes in on another topic; or stops that."""
+
+    observers = {}
+
+    def __init__(self, action, sub_topic="tf", input_keys=(), output_keys=()):
+        super().__init__(
+            outcomes=["succeeded", "aborted"],
+            input_keys=list(input_keys),
+            output_keys=list(output_keys),
+        )
+        self.action = action
+        self.observer = self.observers.setdefault(sub_topic, MsgPublisherObserver(sub_topic))
+
+    def execute(self, userdata):
+        if self.action == "remove_all":
+            return self.observer.remove_all()
+        topic = optional(userdata, "topic", "smacha/message")
+        if self.action == "remove":
+            return self.observer.remove(topic)
+        try:
+            message = parse_message(userdata["msg"], optional(userdata, "msg_type"))
+        except (TypeError, ValueError) as error:
+            smach.logerr(f"this is no message: {error}")
+            return "aborted"
+        outcome = self.observer.add(message, topic, optional(userdata, "frame_id", ""))
+        outputs = self.get_registered_output_keys()
+        give(userdata, outputs, ["msg", "output_msg", "msg_output"], message)
+        give(userdata, outputs, ["topic", "output_topic", "topic_output"], topic)
+        return outcome
+{% endblock %}

@@ -1,0 +1,39 @@
+{% include "WaitForMsg.tpl.py" %}
+{% block imports %}
+import roslib.message
+import rospy
+{% endblock %}
+{% block class_defs %}
+class ReadTopicState(smach.State):
+    """Reads one message from the topic that the userdata names."""
+
+    def __init__(self, timeout=None, input_keys=("topic",), output_keys=("output",), outcomes=("succeeded", "aborted", "preempted")):
+        super().__init__(
+            outcomes=list(outcomes),
+            input_keys=list(input_keys),
+            output_keys=list(output_keys),
+        )
+        self.timeout = timeout
+
+    def execute(self, userdata):
+        topic = userdata["topic"]
+        kind = optional(userdata, "msg_type")
+        raw = self.read(topic, rospy.AnyMsg)
+        if raw is None:
+            return given_up(self)
+        kind = kind or raw._connection_header["type"]
+        message_class = roslib.message.get_message_class(kind)
+        if message_class is None:
+            smach.logerr(f"{kind} of {topic} is not installed here")
+            return "aborted"
+        message = message_class()
+        message.deserialize(raw._buff)
+        outputs = self.get_registered_output_keys()
+        give(userdata, outputs, ["output", "msg", "output_msg", "msg_output"], message)
+        return "succeeded"
+
+    def read(self, topic, kind):
+        """The next message on a topic, or None."""
+        with WaitForMsgState(topic, kind, latch=True, timeout=self.timeout) as reader:
+            return reader.wait_for_message(self)
+{% endblock %}

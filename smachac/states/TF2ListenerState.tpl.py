@@ -1,0 +1,22 @@
+{% include "ROSHelp.tpl.py" %}
+{% include "TF2ListenerSingleton.tpl.py" %}
+{% block class_defs %}
+class TF2ListenerState(smach.State):
+    """Waits for a transform of tf; a request to stop and a shutdown end the wait."""
+
+    def __init__(self, timeout=10.0, outcomes=("succeeded", "aborted", "preempted")):
+        super().__init__(
+            outcomes=list(outcomes),
+            input_keys=["target", "source"],
+            output_keys=["output"],
+        )
+        self.timeout = timeout
+
+    def execute(self, userdata):
+        target, source = userdata["target"], userdata["source"]
+        transform = TF2ListenerSingleton.look_up(self, target, source, self.timeout)
+        if transform is None:
+            return given_up(self)
+        userdata["output"] = transform
+        return "succeeded"
+{% endblock %}

@@ -1,0 +1,74 @@
+{% include "ROSHelp.tpl.py" %}
+{% include "ParseMessages.tpl.py" %}
+{% include "TF2ListenerSingleton.tpl.py" %}
+{% block imports %}
+import copy
+import struct
+import tf2_geometry_msgs
+from geometry_msgs.msg import Quaternion, Vector3
+{% endblock %}
+{% block defs %}
+def transformed(message, transform):
+    """A message in another frame. Raises TypeError for types that tf2 cannot transform."""
+    if isinstance(message, PointStamped):
+        return tf2_geometry_msgs.do_transform_point(message, transform)
+    if isinstance(message, PoseStamped):
+        return tf2_geometry_msgs.do_transform_pose(message, transform)
+    if isinstance(message, (PointCloud, PointCloud2)):
+        from tf2_sensor_msgs.tf2_sensor_msgs import do_transform_cloud
+
+        return do_transform_cloud(message, transform)
+    if isinstance(message, (Point, Pose)):
+        part = "point" if isinstance(message, Point) else "pose"
+        kind = PointStamped if part == "point" else PoseStamped
+        return getattr(transformed(kind(**{part: message}), transform), part)
+    raise TypeError(f"a {type(message).__name__} cannot be transformed")
+{% endblock %}
+{% block class_defs %}
+class TransformMsgState(smach.State):
+    """Transforms a message from one frame to another."""
+
+    def __init__(self, transform_type="transform", timeout=10.0, input_keys=("msg", "frame_id"), output_keys=("output_msg",), outcomes=("succeeded", "aborted", "preempted")):
+        super().__init__(
+            outcomes=list(outcomes),
+            input_keys=list(input_keys),
+            output_keys=list(output_keys),
+        )
+        self.transform_type = transform_type
+        self.timeout = timeout
+
+    def execute(self, userdata):
+        try:
+            message = parse_message(userdata["msg"], optional(userdata, "msg_type"))
+            transform = self.transform(userdata, message)
+            if transform is None:
+                return given_up(self)
+            result = transformed(message, transform)
+        except (TypeError, ValueError) as error:
+            smach.logerr(f"the message cannot be transformed: {error}")
+            return "aborted"
+        outputs = self.get_registered_output_keys()
+        give(userdata, outputs, ["output_msg", "msg", "msg_output"], result)
+        names = ["transform", "output_transform", "transform_output"]
+        give(userdata, outputs, names, transform)
+        return "succeeded"
+
+    def transform(self, userdata, message):
+        """The part of the transform that is applied, or None: tf does not have it."""
+        if "transform" in userdata:
+            found = parse_transformstamped(userdata["transform"])
+        else:
+            target = optional(userdata, "target") or optional(userdata, "frame_id")
+            header = getattr(message, "header", None)
+            source = optional(userdata, "source") or getattr(header, "frame_id", "")
+            if not target or not source:
+                raise ValueError("it wants a frame to come from, and one to go to")
+            found = TF2ListenerSingleton.look_up(self, target, source, self.timeout)
+        if found is not None:
+            found = copy.deepcopy(found)
+            if self.transform_type == "translation":
+                found.transform.rotation = Quaternion(0.0, 0.0, 0.0, 1.0)
+            elif self.transform_type == "rotation":
+                found.transform.translation = Vector3(0.0, 0.0, 0.0)
+        return found
+{% endblock %}

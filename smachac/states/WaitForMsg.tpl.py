@@ -1,0 +1,57 @@
+{% include "ROSHelp.tpl.py" %}
+{% block imports %}
+import threading
+import rospy
+{% endblock %}
+{% block class_defs %}
+class WaitForMsgState(smach.State):
+    """Waits for a message; a request to stop and a shutdown end the wait."""
+
+    def __init__(self, topic, msg_type, msg_cb=None, output_keys=(), latch=False, timeout=None):
+        super().__init__(
+            outcomes=["succeeded", "aborted", "preempted"],
+            output_keys=list(output_keys),
+        )
+        self.latch = latch
+        self.timeout = timeout
+        self.msg_cb = msg_cb
+        self.message = None
+        self.arrived = threading.Condition()
+        self.subscriber = rospy.Subscriber(topic, msg_type, self._keep, queue_size=1)
+
+    def __enter__(self):
+        return self
+
+    def __exit__(self, *_):
+        self.subscriber.unregister()
+
+    def _keep(self, message):
+        with self.arrived:
+            self.message = message
+            self.arrived.notify_all()
+
+    def wait_for_message(self, asker=None):
+        """The next message, or None: it did not come in time, or `asker` is to stop."""
+        end = None if self.timeout is None else rospy.Time.now() + rospy.Duration(self.timeout)
+        with self.arrived:
+            while self.message is None:
+                if stopping(asker or self) or (end is not None and rospy.Time.now() > end):
+                    return None
+                self.arrived.wait(0.1)
+            message = self.message
+            if not self.latch:
+                self.message = None
+            return message
+
+    waitForMsg = wait_for_message
+
+    def execute(self, userdata):
+        if not self.latch:
+            self.message = None
+        message = self.wait_for_message()
+        if message is None:
+            return given_up(self)
+        if self.msg_cb is not None and self.msg_cb(message, userdata) is False:
+            return "aborted"
+        return "succeeded"
+{% endblock %}
