@@ -168,6 +168,7 @@ def test_our_own_state_types_are_read() -> None:
             Source(path.name, path.read_text("utf-8")), path.name.removesuffix(".tpl.py")
         )
         for path in folder.glob("*State.tpl.py")
+        if "def execute(" in path.read_text("utf-8") and "block body" not in path.read_text("utf-8")
     }
     assert len(found) > 10
     assert None not in found.values()
