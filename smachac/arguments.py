@@ -8,6 +8,26 @@ TYPE_CHECKING = False
 if TYPE_CHECKING:
     from pathlib import Path
 
+NEW_EXAMPLES = """\
+examples:
+  smachac new my_robot                                 a folder with a machine that runs
+  smachac new state Grasp                              templates/Grasp.yml and robot_states/grasp.py
+  smachac new state Grasp --input target=Pose --output "width=float<m>" --outcome held
+  smachac new state Grasp --target cpp                 include/robot_states/grasp.hpp
+
+Nothing that is there is ever written over.
+exit codes: 0 made, 1 something is in the way, 2 wrong usage, 70 a bug in smachac
+"""
+
+STATES_EXAMPLES = """\
+examples:
+  smachac states                                 all that a script in this folder may use
+  smachac states MoveToJointPositionsState       its variables, keys, outcomes
+  smachac states --format md > states.md         all of them, as a document
+
+exit codes: 0 told, 2 wrong usage or no such state type, 70 a bug in smachac
+"""
+
 FMT_EXAMPLES = """\
 examples:
   smachac fmt                        lay out every script below this folder
@@ -70,6 +90,25 @@ def search_folders(parser: argparse.ArgumentParser) -> None:
 
 def colour(parser: argparse.ArgumentParser) -> None:
     parser.add_argument("--colour", "--color", choices=["auto", "always", "never"], default="auto")
+
+
+def new(verb: argparse.ArgumentParser) -> None:
+    verb.epilog = NEW_EXAMPLES
+    verb.add_argument("words", nargs="+", metavar="FOLDER | state NAME", help="what to begin")
+    verb.add_argument("--target", choices=("python", "cpp"), default="python", help="of the stub")
+    for name in ("input", "output"):
+        verb.add_argument(f"--{name}", action="append", default=[], metavar="KEY[=TYPE]",
+                          help=f"a key of the state type's {name}s (repeatable)")  # fmt: skip
+    verb.add_argument("--outcome", action="append", default=[], metavar="NAME",
+                      help="an outcome of the state type (repeatable)")  # fmt: skip
+
+
+def states(verb: argparse.ArgumentParser) -> None:
+    verb.epilog = STATES_EXAMPLES
+    verb.add_argument("name", nargs="?", metavar="NAME", help="a state type")
+    verb.add_argument("--format", choices=("text", "json", "md"), default="text")
+    verb.add_argument("--templates", type=path, action="append", default=[], metavar="DIR",
+                      help="another folder with templates and interfaces (repeatable)")  # fmt: skip
 
 
 def fmt(verb: argparse.ArgumentParser) -> None:

@@ -207,6 +207,8 @@ COMMANDS = {
     "run": ("run a script: on the simulated arm, or with mock states", _run),
     "verify": ("compare what targets make of a script, path by path", _verify),
     "explain": ("what a code means, or a state, key or failure of a script", _explain),
+    "new": ("begin a project, or a state type", arguments.new),
+    "states": ("list the state types, or tell of one", arguments.states),
     "fmt": ("lay out scripts, with their comments", arguments.fmt),
     "contain": ("put states into a container of their own", arguments.contain),
     "extract": ("make a sub-script of a container", arguments.extract),

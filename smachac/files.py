@@ -234,6 +234,11 @@ def foreign_files(folder: Path, files: Mapping[str, str]) -> list[Path]:
     return found
 
 
+def present_files(folder: Path, files: Iterable[str]) -> list[Path]:
+    """Those of some files that are there, whoever wrote them."""
+    return [folder / name for name in files if (folder / name).exists()]
+
+
 def changed_files(folder: Path, files: Mapping[str, str]) -> list[Path]:
     """Files whose content on disk is not what would be written."""
     changed = []

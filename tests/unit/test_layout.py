@@ -25,6 +25,7 @@ TOUCHES = {
     "smachac/verbs.py": "prints what the commands say",
     "smachac/checkup.py": "prints reports",
     "smachac/rewriting.py": "prints diffs and what was written",
+    "smachac/beginning.py": "prints what was made",
     "smachac/rework.py": "prints why something is refused",
     "smachac/streams.py": "prints reports",
     "smachac/runs.py": "opens the trace, shows progress",

@@ -1,0 +1,198 @@
+"""State types for people and programs: what a state of a type may have, needs, and ends with."""
+
+from __future__ import annotations
+
+import json
+import textwrap
+from collections.abc import Iterable, Sequence
+from typing import Any, NamedTuple
+
+from smachac import schema
+from smachac.ir.types import ANY, Type
+from smachac.states import StateType, VariableType
+from smachac.values import as_value
+
+CONTAINERS = {
+    "StateMachine": "States that follow one another along transitions.",
+    "Concurrence": "States that run at once; an outcome map says what their outcomes mean.",
+    "Sequence": "States in a row, linked by one outcome.",
+    "Iterator": "One state, run once for each item of a list.",
+}
+"""The containers of the language, which have no interface."""
+
+
+WIDTH = 90
+"""Of descriptions, in columns."""
+
+
+class Known(NamedTuple):
+    """A state type, and whose it is: a folder of the user's, or `built-in`."""
+
+    type: StateType
+    place: str
+
+
+def container_type(name: str) -> StateType:
+    """A container as a state type, its variables those of the schema."""
+    names = schema.REQUIRED[name]
+    own = [row for row in schema.VARIABLES.values() if name in row.owners]
+    return StateType(
+        name=name,
+        kind="container",
+        doc=CONTAINERS[name],
+        variables={
+            row.name: VariableType(name=row.name, required=row.name in names)
+            for row in own
+            if row.name not in ("template", "transitions", "remapping", "doc")
+        },
+        given=frozenset(["outcomes", "input_keys", "output_keys"]),
+    )
+
+
+def list_text(known: Sequence[Known]) -> str:
+    """All types, a line each, by whose they are and what they are."""
+    width = max((len(each.type.name) for each in known), default=0)
+    lines: list[str] = []
+    for title, some in _grouped(known):
+        lines += ["", title] if lines else [title]
+        lines += [f"  {each.type.name:<{width}}  {_first(each.type.doc)}".rstrip() for each in some]
+    return "\n".join([*lines, "", "smachac states NAME tells more of one."]) + "\n"
+
+
+def _grouped(known: Sequence[Known]) -> Iterable[tuple[str, list[Known]]]:
+    kinds = {"state": "state types", "container": "containers", "base": "bases"}
+    for place in dict.fromkeys(each.place for each in known):
+        for kind, word in kinds.items():
+            some = [each for each in known if each.place == place and each.type.kind == kind]
+            if some:
+                yield f"{word} ({place})", some
+
+
+def _first(doc: str) -> str:
+    """The first sentence of a text."""
+    line = " ".join(doc.split())
+    end = line.find(". ")
+    return line[: end + 1] if end > 0 else line
+
+
+def type_text(known: Known) -> str:
+    """One type, for people."""
+    type_ = known.type
+    lines = [f"{type_.name}: a {type_.kind} ({known.place})"]
+    if type_.doc:
+        lines += ["", *textwrap.wrap(type_.doc, WIDTH)]
+    if type_.open:
+        lines += ["", "It has no interface: anything goes, nothing is known of it."]
+    for title, rows in _sections(type_):
+        lines += ["", f"{title}:"]
+        width = max(len(name) for name, _ in rows)
+        for name, doc in rows:
+            lines.append(f"  {name:<{width}}  {doc}".rstrip())
+    facts = _facts(type_)
+    lines += ["", *facts] if facts else []
+    return "\n".join(lines) + "\n"
+
+
+def type_markdown(known: Known, level: int = 2) -> str:
+    """One type, as a section of Markdown."""
+    type_ = known.type
+    lines = [f"{'#' * level} {type_.name}", "", type_.doc or "No description.", ""]
+    for title, rows in _sections(type_):
+        lines += [f"| {title} | |", "| --- | --- |"]
+        lines += [f"| `{_cell(name)}` | {_cell(doc)} |" for name, doc in rows]
+        lines.append("")
+    lines += [f"- {fact}" for fact in _facts(type_)]
+    return "\n".join(lines).rstrip("\n") + "\n"
+
+
+def _cell(text: str) -> str:
+    return text.replace("|", "\\|").replace("\n", " ")
+
+
+def _sections(type_: StateType) -> Iterable[tuple[str, list[tuple[str, str]]]]:
+    variables = [(_variable(each), each.doc) for each in type_.variables.values()]
+    keys = {"input keys": type_.input_keys, "output keys": type_.output_keys}
+    parts: dict[str, list[tuple[str, str]]] = {"variables": variables}
+    for title, several in keys.items():
+        parts[title] = [(_named(key.name, key.type), key.doc) for key in several]
+    parts["outcomes"] = [(each.name, each.doc or _comes_with(type_, each.name))
+                         for each in type_.outcomes]  # fmt: skip
+    for title, rows in parts.items():
+        if title.replace(" ", "_") in type_.given:
+            rows = [*rows, ("...", "what the script lists")]
+        if rows:
+            yield title, rows
+
+
+def _comes_with(type_: StateType, outcome: str) -> str:
+    keys = dict(type_.writes).get(outcome, ())
+    return f"with {', '.join(keys)}" if keys else ""
+
+
+def _variable(variable: VariableType) -> str:
+    text = _named(variable.name, variable.type)
+    if variable.required:
+        return f"{text} (required)"
+    return f"{text} = {_default(variable)}" if variable.default is not None else text
+
+
+def _default(variable: VariableType) -> str:
+    assert variable.default is not None
+    span = variable.default.span
+    return " ".join(span.text.split()) or json.dumps(_data(variable))
+
+
+def _data(variable: VariableType) -> Any:
+    from smachac.ir.userdata import python_data, trace_value
+
+    return trace_value(python_data(as_value(variable.default).data)) if variable.default else None
+
+
+def _named(name: str, type_: Type) -> str:
+    return name if type_ == ANY else f"{name}: {type_}"
+
+
+def _facts(type_: StateType) -> list[str]:
+    facts = []
+    if type_.claims:
+        facts.append(f"It claims {', '.join(type_.claims)} while it runs.")
+    if type_.blocking:
+        facts.append("It waits for the outside world.")
+    languages = dict.fromkeys((*type_.code, *type_.classes))
+    if languages:
+        facts.append(f"It has code for: {', '.join(languages)}.")
+    return facts
+
+
+def type_json(known: Known) -> dict[str, Any]:
+    """One type, for programs."""
+    type_ = known.type
+    return {
+        "name": type_.name,
+        "kind": type_.kind,
+        "place": known.place,
+        "doc": type_.doc,
+        "open": type_.open,
+        "variables": [
+            {
+                "name": each.name,
+                "type": str(each.type),
+                "required": each.required,
+                "default": _data(each),
+                "doc": each.doc,
+            }
+            for each in type_.variables.values()
+        ],
+        "input_keys": [_key(key.name, key.type, key.doc) for key in type_.input_keys],
+        "output_keys": [_key(key.name, key.type, key.doc) for key in type_.output_keys],
+        "outcomes": [{"name": each.name, "doc": each.doc} for each in type_.outcomes],
+        "writes": {outcome: list(keys) for outcome, keys in type_.writes},
+        "given_by_script": sorted(type_.given),
+        "claims": list(type_.claims),
+        "blocking": type_.blocking,
+        "languages": list(dict.fromkeys((*type_.code, *type_.classes))),
+    }
+
+
+def _key(name: str, type_: Type, doc: str) -> dict[str, str]:
+    return {"name": name, "type": str(type_), "doc": doc}

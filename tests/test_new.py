@@ -1,0 +1,208 @@
+"""What `smachac new` begins is without a finding, runs, and is never written over; `states`."""
+
+from __future__ import annotations
+
+import json
+import sys
+from pathlib import Path
+
+import pytest
+
+from smachac.cli import main
+from smachac.report.state_types import CONTAINERS
+from smachac.scaffold import BadNameError, file_stem, key_and_type
+
+
+@pytest.fixture
+def project(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
+    monkeypatch.chdir(tmp_path)
+    assert main(["new", "my-robot"]) == 0
+    monkeypatch.chdir(tmp_path / "my-robot")
+    for name in [name for name in sys.modules if name.partition(".")[0] == "robot_states"]:
+        monkeypatch.delitem(sys.modules, name)  # that of another test's project
+    return tmp_path / "my-robot"
+
+
+def files(folder: Path) -> dict[str, str]:
+    return {
+        path.relative_to(folder).as_posix(): path.read_text("utf-8")
+        for path in sorted(folder.rglob("*"))
+        if path.is_file() and "__pycache__" not in path.parts
+    }
+
+
+def test_a_project_is_clean_and_runs(project: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    capsys.readouterr()
+    assert main(["check", "--strict"]) == 0
+    assert capsys.readouterr().out == "no findings\n"
+    assert main(["fmt", "--check", ".", "templates/Greet.yml"]) == 0
+    assert main(["build", "main.yml", "--target", "python", "-o", "out"]) == 0
+    assert main(["run", "main.yml", "--quiet", "--expect", "succeeded"]) == 0
+    assert "off to the door" in capsys.readouterr().out
+    assert (project / "out" / "my_robot.py").is_file()
+
+
+def test_nothing_is_written_over(project: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    (project / "main.yml").write_text("mine")
+    (project / "README.md").unlink()
+    before = files(project)
+    assert main(["new", "."]) == 1
+    assert "main.yml is there already: nothing was written" in capsys.readouterr().err
+    assert files(project) == before
+    assert main(["new", "state", "Grasp"]) == 0
+    before = files(project)
+    assert main(["new", "state", "Grasp", "--outcome", "other"]) == 1
+    assert files(project) == before
+
+
+@pytest.mark.parametrize("name", ["1st", "---", "Ünë", "with space", "name: x"])
+def test_folders_of_any_name(name: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.chdir(tmp_path)
+    assert main(["new", f"./{name}"]) == 0
+    monkeypatch.chdir(tmp_path / name)
+    assert main(["check", "--strict"]) == 0
+
+
+def test_a_state_type_with_its_code(project: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    words = ["--input", "goal=str", "--output", "width=float<m>", "--outcome", "held"]
+    assert main(["new", "state", "GraspPart", *words, "--outcome", "lost"]) == 0
+    text = (project / "main.yml").read_text()
+    text = text.replace("template: ScriptedState           ", "template: GraspPart   ")
+    text = text.replace("      outcomes: [there, lost]\n", "").replace("there: ", "held: ")
+    (project / "main.yml").write_text(text)
+    assert main(["check", "--strict"]) == 0
+    assert main(["fmt", "--check", "templates/GraspPart.yml"]) == 0
+    assert main(["run", "main.yml", "--quiet", "--expect", "succeeded"]) == 0
+    capsys.readouterr()
+    assert main(["states", "GraspPart"]) == 0
+    told = capsys.readouterr().out
+    assert told.startswith("GraspPart: a state (of this project)\n")
+    assert "  goal: str\n" in told
+    assert "  width: float<m>\n" in told
+
+
+def test_code_in_another_language(project: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    assert main(["new", "state", "Grasp", "--input", "at=Pose"]) == 0
+    capsys.readouterr()
+    assert main(["new", "state", "Grasp", "--target", "cpp"]) == 0
+    assert capsys.readouterr().out == (
+        "made include/robot_states/grasp.hpp\n"
+        "add to the `code` of templates/Grasp.yml:"
+        ' cpp: {header: robot_states/grasp.hpp, class: "robot_states::Grasp"}\n'
+    )
+    assert (
+        "struct In { const smachac::Pose &at; };"
+        in files(project)["include/robot_states/grasp.hpp"]
+    )
+
+
+@pytest.mark.parametrize(
+    ("words", "message"),
+    [
+        (["state", "grasp"], "`grasp` is no name for a state type"),
+        (["state", "Gräsp"], "`Gräsp` is no name"),
+        (["state"], "name a folder, or say `new state NAME`"),
+        (["a", "b"], "name a folder"),
+        (["state", "Grasp", "--input", "a b"], "`a b` is no name for a key"),
+        (["state", "Grasp", "--input", "a=float<"], "`float<` is no type"),
+        (["state", "Grasp", "--outcome", "no good"], "`no good` is no name for an outcome"),
+        (["state", "Grasp", "--target", "cpp", "--input", "a=pkg/Msg"], "there can be no stub"),
+    ],
+)
+def test_wrong_usage(
+    words: list[str], message: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch,
+    capsys: pytest.CaptureFixture[str],
+) -> None:  # fmt: skip
+    monkeypatch.chdir(tmp_path)
+    assert main(["new", *words]) == 2
+    assert message in capsys.readouterr().err
+    assert list(tmp_path.iterdir()) == []
+
+
+def test_a_folder_that_cannot_be_written(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+) -> None:
+    monkeypatch.chdir(tmp_path)
+    Path("taken").write_text("a file")
+    assert main(["new", "taken"]) == 1
+    assert "cannot write to taken" in capsys.readouterr().err
+
+
+def test_names_of_files_and_keys() -> None:
+    assert [file_stem(name) for name in ("Grasp", "GraspPart", "TF2Listener", "GoToXY")] == [
+        "grasp", "grasp_part", "tf2_listener", "go_to_xy",
+    ]  # fmt: skip
+    assert key_and_type("a=list[int]") == ("a", "list[int]")
+    with pytest.raises(BadNameError):
+        key_and_type("=int")
+
+
+# --- states
+
+
+def test_every_state_type_is_told(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+) -> None:
+    monkeypatch.chdir(tmp_path)
+    assert main(["states", "--format", "json"]) == 0
+    every = json.loads(capsys.readouterr().out)
+    names = [each["name"] for each in every]
+    assert set(CONTAINERS) < set(names)
+    assert {"MoveToJointPositionsState", "ScriptedState", "Base"} < set(names)
+    assert "Utils" not in names
+    assert main(["states"]) == 0
+    listed = capsys.readouterr().out
+    assert main(["states", "--format", "md"]) == 0
+    document = capsys.readouterr().out
+    for each in every:
+        assert each["doc"], each["name"]
+        assert f"\n  {each['name']} " in listed
+        assert f"## {each['name']}\n" in document
+        assert main(["states", each["name"], "--format", "json"]) == 0
+        assert json.loads(capsys.readouterr().out) == each
+        assert main(["states", each["name"]]) == 0
+        told = capsys.readouterr().out
+        for part in ("variables", "input_keys", "output_keys", "outcomes"):
+            for row in each[part]:
+                assert f"\n  {row['name']}" in told
+
+
+def test_one_state_type(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+) -> None:
+    monkeypatch.chdir(tmp_path)
+    assert main(["states", "GripperState"]) == 0
+    assert capsys.readouterr().out == (
+        "GripperState: a state (built-in)\n\nOpens or closes a gripper.\n\nvariables:\n"
+        "  limb: str? = null                        The arm; the only one if left out.\n"
+        "  command: one_of[open, close] (required)\n\noutput keys:\n"
+        "  width: float<m>  Between the fingers.\n\noutcomes:\n  succeeded\n"
+        "  aborted    It did not open, or closed on nothing.\n  preempted\n\n"
+        "It claims gripper.{limb} while it runs.\nIt waits for the outside world.\n"
+        "It has code for: python, cpp.\n"
+    )
+
+
+def test_an_unknown_state_type(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+) -> None:
+    monkeypatch.chdir(tmp_path)
+    assert main(["states", "GriperState"]) == 2
+    assert "did you mean `GripperState`?" in capsys.readouterr().err
+
+
+def test_what_the_user_has_comes_first(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+) -> None:
+    monkeypatch.chdir(tmp_path)
+    (tmp_path / "more").mkdir()
+    (tmp_path / "more" / "Mine.tpl.py").write_text("{% block body %}{% endblock %}")
+    (tmp_path / "more" / "SleepState.yml").write_text("name: SleepState\ndoc: Ours.\n")
+    assert main(["states", "--templates", "more"]) == 0
+    listed = capsys.readouterr().out
+    assert listed.startswith(
+        "state types (of this project)\n  Mine\n  SleepState                 Ours.\n"
+    )
+    assert listed.count("  SleepState ") == 1
+    assert main(["states", "Mine", "--templates", "more"]) == 0
+    assert "anything goes" in capsys.readouterr().out
