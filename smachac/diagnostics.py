@@ -12,6 +12,7 @@ import hashlib
 from collections.abc import Callable, Iterable, Iterator
 from dataclasses import dataclass, field
 from enum import Enum
+from functools import lru_cache
 from pathlib import PurePath
 from typing import Any, ParamSpec
 
@@ -210,7 +211,11 @@ that no run is quadratic."""
 
 def did_you_mean(word: str, candidates: Iterable[str]) -> str | None:
     """The help line for a misspelt name, or None when nothing is near."""
-    names = list(dict.fromkeys(candidates))
+    return _nearest(word, tuple(dict.fromkeys(candidates)))
+
+
+@lru_cache(maxsize=1000)
+def _nearest(word: str, names: tuple[str, ...]) -> str | None:
     folded = word.casefold()
     nearest = [name for name in names if name.casefold() == folded and name != word]
     if not nearest and len(names) <= MOST_CANDIDATES and len(word) <= LONGEST_WORD:

@@ -4,7 +4,7 @@ every state with its type; one self-contained tree that lowering only has to rea
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
 
 from smachac import problems, schema, shapes
@@ -121,6 +121,7 @@ class _Resolver:
         self.sources: dict[int, Source] = {}
         self.types: dict[str, StateType | None] = {}
         self.sub_scripts: dict[tuple[str, str], tuple[Source, Tree | None] | None] = {}
+        self.templates: tuple[Sequence[str], Sequence[str]] | None = None
         self.count = self.looked_up = 0
         self.uses = Uses()
 
@@ -341,6 +342,12 @@ class _Resolver:
         found_state = sub_script_state(tree, word, self.report)
         return None if found_state is None else (source, *found_state)
 
+    def known_templates(self) -> tuple[Sequence[str], Sequence[str]]:
+        """Where templates are searched, and the names that are there; looked up once."""
+        if self.templates is None:
+            self.templates = self.library.template_folders(), self.library.template_names()
+        return self.templates
+
     def type_of(
         self, name: Word, fields: Fields, role: str, place: _Place
     ) -> tuple[StateType, str]:
@@ -364,8 +371,8 @@ class _Resolver:
             self.types[word.text] = find_state_type(word.text, self.library, self.report)
         found = self.types[word.text]
         if found is None:
-            searched = self.library.template_folders()
-            known = [*self.library.template_names(), *([] if role else schema.CONTAINERS)]
+            searched, names = self.known_templates()
+            known = [*names, *([] if role else schema.CONTAINERS)]
             self.report.append(problems.template_not_found(word, searched, known))
             return StateType(name=word.text, open=True), role or nested
         return found, role or ("StateMachine" if found.kind == "container" else nested)

@@ -5,6 +5,7 @@ from __future__ import annotations
 import difflib
 import re
 from collections.abc import Iterable
+from functools import lru_cache
 
 from smachac.diagnostics import Edit
 from smachac.source import Word
@@ -66,6 +67,12 @@ class Guesser:
                         self._shared.add(slip)
             self._index.update((name.casefold(), name) for name in reversed(self.names))
         return self._index
+
+
+@lru_cache(maxsize=8)
+def guesser_of(names: tuple[str, ...]) -> Guesser:
+    """The guesser of names that many words are held against."""
+    return Guesser(names)
 
 
 def slips(name: str) -> list[str]:

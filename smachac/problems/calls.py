@@ -7,7 +7,7 @@ from collections.abc import Iterable, Sequence
 from smachac.diagnostics import Finding, Related, Severity, did_you_mean, problem
 from smachac.problems.wording import listed
 from smachac.source import Span, Word
-from smachac.spelling import Guesser, respelt
+from smachac.spelling import guesser_of, respelt
 
 
 def _searched(word: Word, searched: Sequence[str], known: Sequence[str]) -> str:
@@ -47,7 +47,7 @@ def script_not_found(word: Word, searched: Sequence[str], known: Iterable[str]) 
         span=word.span,
         message=f"there is no script `{word.text}`",
         help=_searched(word, searched, names),
-        edits=respelt(word, Guesser(names).sure(word.text)),
+        edits=respelt(word, guesser_of(tuple(names)).sure(word.text)),
     )
 
 
@@ -125,7 +125,7 @@ def template_not_found(word: Word, searched: Sequence[str], known: Iterable[str]
         span=word.span,
         message=f"there is no template `{word.text}`",
         help=_searched(word, searched, names),
-        edits=respelt(word, Guesser(names).sure(word.text)),
+        edits=respelt(word, guesser_of(tuple(names)).sure(word.text)),
     )
 
 

@@ -4,8 +4,13 @@ from __future__ import annotations
 
 import random
 import tracemalloc
+from dataclasses import replace
+from pathlib import Path
 
 from smachac.diagnostics import did_you_mean
+from smachac.driver import analyse
+from smachac.files import disk_library
+from smachac.source import Source
 from smachac.spelling import LONGEST_SLIP, Guesser, slips
 
 
@@ -29,3 +34,19 @@ def test_a_long_name_takes_no_memory() -> None:
         assert tracemalloc.get_traced_memory()[1] < 2_000_000
     finally:
         tracemalloc.stop()
+
+
+def test_templates_are_looked_up_once_however_many_are_unknown() -> None:
+    """Three thousand states of one unknown type read the folders as often (found by fuzzing)."""
+    looked = []
+
+    def names() -> list[str]:
+        looked.append("names")
+        return ["ScriptedState"]
+
+    states = "".join(f"  - S{n}: {{template: Scriptedstat{n % 9}}}\n" for n in range(50))
+    text = f"name: sm\ntemplate: Base\noutcomes: [done]\nstates:\n{states}"
+    library = replace(disk_library(Path("main.yml"), []), template_names=names)
+    analysis = analyse(Source("main.yml", text), library, [])
+    assert sum(item.code.code == "SM013" for item in analysis.report) == 50
+    assert looked == ["names"]
