@@ -155,5 +155,7 @@ def _reason(way: Way, tree: Mapping[str, Container], steering: Steering) -> Reas
     if way.kind == "loop" and isinstance(around, nodes.Iterator) and count_of_items(around) == 1:
         return Reason("there is but one item")
     if node is not None and way.outcome == node.catches:
-        return Reason("exceptions in a concurrence or in an iterator itself are not played", False)
+        return Reason(
+            "exceptions deep in a concurrence or of an iterator itself are not played", False
+        )
     return UNKNOWN

@@ -28,11 +28,12 @@ class UnplayableError(Exception):
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Scene:
-    """What a player is to play: rows by path of every leaf that follows the scenario, the keys
-    that leaves tell of, what the machine finds in its userdata, and the most visits of leaves that
-    a run may take."""
+    """What a player is to play: rows by path of every leaf that follows the scenario, those that
+    do what they do (`live`), the keys that the others tell of, what the machine finds in its
+    userdata, and the most visits of leaves that a run may take."""
 
     rows: Mapping[str, Sequence[Row]]
+    live: frozenset[str]
     reads: Mapping[str, Sequence[str]]
     userdata: Mapping[str, object]
     most: int
@@ -49,12 +50,20 @@ def scenes_of(machine: Machine, paths: Sequence[Path], live: frozenset[str]) -> 
     reads, userdata = sure_reads(machine), given(machine)
     leaves = [path for path, node in walk(machine.root) if isinstance(node, Leaf)]
     scenes = []
+    told = {path: keys for path, keys in reads.items() if path not in live}
     for path in paths:
-        rows: dict[str, Sequence[Row]] = dict(plain_steps(path.scenario, machine))
-        for name in leaves:
-            if name not in rows and not (path.live and name in live):
-                rows[name] = ()
-        scenes.append(Scene(rows=rows, reads=reads, userdata=userdata, most=path.visits))
+        own = live if path.live else frozenset()
+        rows: dict[str, Sequence[Row]] = {name: () for name in leaves if name not in own}
+        rows |= plain_steps(path.scenario, machine)
+        scenes.append(
+            Scene(
+                rows=rows,
+                live=own,
+                reads=told if own else reads,
+                userdata=userdata,
+                most=path.visits,
+            )
+        )
     return scenes
 
 
@@ -74,7 +83,10 @@ def expected(machine: Machine, scenario: Scenario, scene: Scene) -> list[Event]:
 
 
 def see(events: list[Event], path: str, key: str, value: object) -> None:
-    """Add what a leaf reads to a trace. What JSON cannot say is told apart from nothing only."""
+    """Add what a leaf reads to a trace, unless that is nothing, which some targets do not tell
+    from a key that holds nothing. What JSON cannot say is told apart from nothing only."""
+    if value is None:
+        return
     try:
         json.dumps(value, allow_nan=False)
         told = trace_value(value)

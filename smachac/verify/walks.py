@@ -27,17 +27,23 @@ from smachac.verify.steering import Steering, Wanted, leaf_outcomes
 LIVE_TYPES = ("CallbacksState", "ConditionalOutcomeState")
 """State types whose own code is run on some paths: all of it is portable."""
 
+FAILURE = "a failure of the scenario"
+"""The error with which a leaf fails that is to."""
+
 CUT = "the scenario ends here"
 """The error with which a path ends that would have no end."""
 
 FAILS = ""
 """The option of a leaf to raise an exception, where something around it catches that."""
 
+FAILS_FIRST = "fails: "
+"""Before the name of a branch: the option of a concurrence that this one fails first."""
+
 Kind = Literal["covering", "simple", "random"]
 
 
 class Choice(NamedTuple):
-    """An outcome chosen for the leaf `place`, or the first branch to end for the concurrence."""
+    """An outcome chosen for the leaf `place`, or for the concurrence the branch to end first."""
 
     place: str
     options: tuple[str, ...]
@@ -70,6 +76,7 @@ class Attempt:
     choices: list[Choice] = field(default_factory=list)
     steps: dict[str, list[Step]] = field(default_factory=dict)
     first: dict[str, str] = field(default_factory=dict)
+    failing: dict[str, str] = field(default_factory=dict)
     visits: int = 0
     ended: dict[str, set[str]] = field(default_factory=dict)
 
@@ -161,16 +168,19 @@ class Walks:
         if PREEMPTED in outcome_names(leaf) and (wait or userdata.preempted):
             # Who does not hear of the request ends otherwise.
             row.append(Step(outcome=default_outcome(leaf), wait=wait, stop=stop))
+        elif path in attempt.failing.values():
+            row.append(Step(error=FAILURE, wait=wait, stop=stop))
         else:
             options = leaf_outcomes(leaf) or (default_outcome(leaf),)
             options += (FAILS,) * (path in self._caught and not leaf.catches)
             outcome = self._choose(attempt, path, options)
-            if outcome is None and not self._beside[path]:
+            if outcome is None and self._beside[path]:
+                outcome = self._aim(path) or default_outcome(leaf)
+            if outcome is None:
                 row.append(Step(error=CUT, stop=stop))
-            elif outcome == FAILS or (outcome and outcome == leaf.catches):
-                row.append(Step(error="a failure of the scenario", wait=wait, stop=stop))
+            elif outcome in (FAILS, leaf.catches):
+                row.append(Step(error=FAILURE, wait=wait, stop=stop))
             else:
-                outcome = outcome or self._aim(path) or default_outcome(leaf)
                 writes = self._constants.written(path, leaf, outcome, len(row))
                 row.append(Step(outcome=outcome, writes=writes, wait=wait, stop=stop))
         return follow(row[-1], leaf, userdata)
@@ -210,15 +220,29 @@ class Walks:
                 self.entries[path] = (attempt.choices, len(attempt.choices))
             node = self._tree[path]
             if isinstance(node, Concurrence):
-                attempt.ended[path] = set()
-                if node.join == "any":
-                    names = tuple(child.name for child in node.children)
-                    first = self._choose(attempt, path, names)
-                    attempt.first[path] = names[0] if first is None else first
-        elif event["event"] == "exit":
+                self._start(attempt, path, node)
+        elif event["event"] in ("exit", "error"):
             around, _, name = path.rpartition("/")
             if around in attempt.ended:
                 attempt.ended[around].add(name)
+
+    def _start(self, attempt: Attempt, path: str, node: Concurrence) -> None:
+        """A concurrence starts: which branch ends or fails first, where that is to be settled."""
+        attempt.ended[path] = set()
+        attempt.first.pop(path, None)
+        attempt.failing.pop(path, None)
+        options = [child.name for child in node.children] if node.join == "any" else [""]
+        if node.catches or path in self._caught:
+            able = (child for child in node.children if isinstance(child, Leaf))
+            options += [f"{FAILS_FIRST}{child.name}" for child in able if not child.catches]
+        if options == [""]:
+            return
+        taken = self._choose(attempt, path, tuple(options)) or options[0]
+        name = taken.removeprefix(FAILS_FIRST)
+        if name:
+            attempt.first[path] = name
+        if name != taken:
+            attempt.failing[path] = f"{path}/{name}"
 
     def home(self, place: str, options: Sequence[str]) -> str | None:
         """The choice by which the machine ends soonest; None where it cannot end."""
@@ -227,12 +251,14 @@ class Walks:
     def aimed(
         self, aim: Callable[[str], str | None], wanted: Wanted, place: str, options: Sequence[str]
     ) -> str | None:
-        """The outcome of a leaf, or the branch to end first, by which what is aimed at is had."""
+        """The outcome of a leaf, or the branch to end first (empty: all end), by which what is
+        aimed at is had."""
         if isinstance(self._tree[place], Leaf):
             return aim(place)
         goal = wanted.get(place, aim(place))
         ends = self.steering.combination(place, goal) if isinstance(goal, str) else goal
-        first = (name for name in options if (ends or {}).get(name) != PREEMPTED)
+        names = (name for name in options if not name.startswith(FAILS_FIRST))
+        first = (name for name in names if (ends or {}).get(name) != PREEMPTED)
         return next(first, options[0])
 
 
@@ -248,7 +274,7 @@ def _concurrences_around(machine: Machine) -> dict[str, tuple[tuple[str, str], .
 
 def _caught(machine: Machine) -> set[str]:
     """The states whose exceptions a container around them catches, with no concurrence in between:
-    how far its other branches come when one fails is for threads to decide."""
+    how far its other branches come when one fails is for threads to decide, unless these wait."""
     found: set[str] = set()
     for path, node in containers(machine.root):
         if (node.catches or path in found) and not isinstance(node, Concurrence):

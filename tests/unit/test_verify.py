@@ -11,7 +11,7 @@ import pytest
 
 import smachac
 from smachac.cli import main
-from smachac.runtime import trace
+from smachac.runtime import smach, trace
 from smachac.verify import verify
 from smachac.verify.python import player
 from smachac.verify.scenarios import Scenarios
@@ -164,7 +164,6 @@ def test_exceptions_that_are_caught_are_covered() -> None:
     assert verdict.disagreements == []
     assert [(way.path, why.never) for way, _, why in verdict.missing] == [
         ("fetch/CARRY", True),
-        ("fetch/BOTH", False),
         ("fetch/EACH", False),
     ]
 
@@ -327,6 +326,16 @@ def test_a_program_that_cannot_be_loaded_is_told(
     assert told.endswith(
         "the Python program cannot be loaded: ImportError: no module named robot\n"
     )
+
+
+def test_ctrl_c_ends_it(rounds: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    def interrupted(*_: object) -> None:
+        raise KeyboardInterrupt
+
+    monkeypatch.setattr("smachac.verify.expected", interrupted)
+    before = smach.loginfo
+    assert main(["verify", str(rounds)]) == 130
+    assert smach.loginfo is before
 
 
 def test_text_report(rounds: Path, capsys: pytest.CaptureFixture[str]) -> None:
