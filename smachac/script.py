@@ -334,7 +334,9 @@ class _Resolver:
             return None
         self.sources.setdefault(id(source), source)
         if tree is None:
-            if self.library.parse(source, broken := []) is None and not broken:
+            broken: Report = []
+            self.library.parse(source, broken)
+            if not broken:
                 span = Span(source, 0, 0)
                 message = "the sub-script is empty"
                 self.report.append(problems.bad_sub_script(span, message, word.span))

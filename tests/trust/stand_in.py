@@ -12,7 +12,7 @@ from smachac.ir.nodes import Leaf, Machine, Struct
 from smachac.ir.result import Behaviour, Event, Result
 from smachac.ir.run import run
 from smachac.ir.userdata import Userdata
-from smachac.ir.walk import PREEMPTED, containers, outcome_names
+from smachac.ir.walk import PREEMPTED, containers, outcome_names, walk
 
 MOST_STEPS = 150
 VALUE = [1, 2]
@@ -115,12 +115,15 @@ def contradictions(machine: Machine, report: Report, events: list[Event]) -> Ite
 
     SM201: the state is entered. SM301 and SM303, as errors: the state ends, though it must have
     found a key missing; a container may end before the state in it reads. SM202: its container ends
-    after it was entered. Of two states of one name (SM106) no event says which it is of.
+    after it was entered. Of two states of one name (SM106) no event says which it is of. A state
+    that catches its exceptions ends in spite of a missing key, a container in spite of a trap.
     """
     if any(item.code.code == "SM106" for item in report):
         return
     around = {path for path, _ in containers(machine.root)}
     entered = {each["path"] for each in events if each["event"] == "enter"}
+    catching = {(path, node.catches) for path, node in walk(machine.root) if node.catches}
+    events = [each for each in events if (each["path"], each.get("outcome")) not in catching]
     ended = {each["path"] for each in events if each["event"] == "exit"}
     for item in report:
         path = item.finding.node or ""

@@ -12,6 +12,7 @@ from typing import cast
 
 import damage_kinds
 import pytest
+from busy_strategies import busy_machines
 from correct import correct_project
 from damage import Victim
 from data_machines import data_machines
@@ -24,8 +25,10 @@ from test_ir_vectors import CASES
 from smachac.checks import check_machine
 from smachac.diagnostics import Report, Severity
 from smachac.ir.accesses import scripted_steps
+from smachac.ir.behaviours import built_in
 from smachac.ir.nodes import Key, Leaf, Machine, Node, StateMachine
-from smachac.ir.result import Result
+from smachac.ir.result import Event, Result
+from smachac.ir.run import run
 from smachac.source import NOWHERE
 
 PROJECTS = 24
@@ -131,6 +134,21 @@ def test_graphs_without_an_error_run_without_a_fault(machine: Machine) -> None:
     event("error" if found is None else "clean")
     if found is not None:
         assert failures(*found, RUNS) == []
+
+
+@settings(max_examples=150, phases=[Phase.generate], suppress_health_check=list(HealthCheck))
+@given(busy_machines())
+def test_what_is_said_holds_where_states_fail_and_catch(drawn: tuple[Machine, object]) -> None:
+    """States that raise, with and without somebody who catches it (`Node.catches`)."""
+    machine, _ = drawn
+    report = check_machine(machine)
+    events: list[Event] = []
+    run(machine, built_in(), events.append, max_steps=300)
+    assert list(contradictions(machine, report, events)) == []
+    missing = [each for each in events if "holds nothing" in each.get("message", "")]
+    told = {item.code.code for item in report} & {"SM301", "SM303", "SM307"}
+    event("caught" if any(each.get("outcome") == "error" for each in events) else "quiet")
+    assert told or not missing
 
 
 @pytest.mark.parametrize("name", CASES)
