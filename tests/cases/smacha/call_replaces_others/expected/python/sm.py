@@ -12,9 +12,9 @@ except ImportError:  # no ROS on this machine: the same names without it
 class SleepState(smach.State):
     """Waits for `time` seconds, a number or a function of userdata; a preempt request ends it."""
 
-    def __init__(self, time, input_keys=()):
+    def __init__(self, time, input_keys=(), outcomes=("succeeded", "preempted")):
         super().__init__(
-            outcomes=["succeeded", "preempted"],
+            outcomes=list(outcomes),
             input_keys=list(input_keys),
         )
         self.time = time
@@ -27,7 +27,7 @@ class SleepState(smach.State):
     def execute(self, userdata):
         self.woken.wait(self.time(userdata) if callable(self.time) else self.time)
         self.woken.clear()
-        if self.preempt_requested():
+        if self.preempt_requested() and "preempted" in self.get_registered_outcomes():
             self.service_preempt()
             return "preempted"
         return "succeeded"

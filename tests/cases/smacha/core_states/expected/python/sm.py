@@ -22,37 +22,59 @@ class CallbacksState(smach.State):
 
     def execute(self, userdata):
         for key in sorted(self.callbacks):
-            userdata[key] = self.callbacks[key](userdata)
+            function = self.callbacks[key]
+            if not smach.has_smach_interface(function):
+                userdata[key] = function(userdata)
+            else:  # it writes its keys itself
+                inputs = function.get_registered_input_keys()
+                outputs = function.get_registered_output_keys()
+                function(smach.Remapper(userdata, inputs, outputs, {}))
         return "succeeded"
 
 
 class ConditionalOutcomeState(smach.State):
     """Ends with the first of its outcomes whose condition holds, else the default."""
 
-    def __init__(self, outcomes, callbacks, default_outcome, input_keys=()):
-        super().__init__(outcomes=outcomes, input_keys=list(input_keys))
+    def __init__(
+        self, outcomes, callbacks, default_outcome, input_keys=(), output_keys=()
+    ):
+        super().__init__(
+            outcomes=outcomes,
+            input_keys=list(input_keys),
+            output_keys=list(output_keys),
+        )
+        self.tells = "outcome" in output_keys
         self.conditions = [
             (name, callbacks[name]) for name in outcomes if name in callbacks
         ]
         self.default_outcome = default_outcome
 
     def execute(self, userdata):
-        for outcome, holds in self.conditions:
-            if holds(userdata):
-                return outcome
-        return self.default_outcome
+        holding = (name for name, holds in self.conditions if holds(userdata))
+        outcome = next(holding, self.default_outcome)
+        if self.tells:
+            userdata["outcome"] = outcome
+        return outcome
 
 
 class RandomOutcomeState(smach.State):
     """Ends with one of its outcomes by chance; a seed makes the row repeatable."""
 
-    def __init__(self, outcomes, seed=0):
-        super().__init__(outcomes=outcomes)
+    def __init__(self, outcomes, seed=0, input_keys=(), output_keys=()):
+        super().__init__(
+            outcomes=outcomes,
+            input_keys=list(input_keys),
+            output_keys=list(output_keys),
+        )
+        self.tells = "outcome" in output_keys
         self.choices = list(outcomes)
         self.random = random.Random(seed)
 
     def execute(self, userdata):
-        return self.random.choice(self.choices)
+        outcome = self.random.choice(self.choices)
+        if self.tells:
+            userdata["outcome"] = outcome
+        return outcome
 
 
 class PrintUserdataState(smach.State):

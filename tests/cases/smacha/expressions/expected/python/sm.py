@@ -20,7 +20,13 @@ class CallbacksState(smach.State):
 
     def execute(self, userdata):
         for key in sorted(self.callbacks):
-            userdata[key] = self.callbacks[key](userdata)
+            function = self.callbacks[key]
+            if not smach.has_smach_interface(function):
+                userdata[key] = function(userdata)
+            else:  # it writes its keys itself
+                inputs = function.get_registered_input_keys()
+                outputs = function.get_registered_output_keys()
+                function(smach.Remapper(userdata, inputs, outputs, {}))
         return "succeeded"
 
 
