@@ -45,6 +45,7 @@ exit codes: 0 explained, 1 unreadable script, 2 wrong usage or no such name, 70 
 VERIFY_EXAMPLES = """\
 examples:
   smachac verify main.yml                        does the generated Python do what the script says?
+  smachac verify main.yml --targets python,cpp   and the generated C++ (wants a compiler)
   smachac verify main.yml --paths 2000           on more paths
   smachac verify main.yml --seed 7               on other random paths
   smachac verify main.yml --format json          for programs, with every transition not taken
@@ -188,7 +189,7 @@ def _verify(verb: argparse.ArgumentParser) -> None:
     verb.epilog = VERIFY_EXAMPLES
     verb.add_argument("script", type=path, help="a script (.yml, .yaml)")
     verb.add_argument("--targets", type=_names, default=["python"], metavar="A,B,...",
-                      help="what to compare with the interpreter (default: python)")  # fmt: skip
+                      help="python, cpp: what to compare (default: python)")  # fmt: skip
     verb.add_argument("--paths", type=_count, metavar="N",
                       help="at most (default: 200, or what all transitions take)")  # fmt: skip
     verb.add_argument("--seed", type=int, default=0, help="of the random paths (default 0)")

@@ -14,9 +14,11 @@ from smachac.streams import print_report, shown, usage, wants_colour
 if TYPE_CHECKING:
     from smachac.diagnostics import Report
     from smachac.driver import Analysis
+    from smachac.ir.nodes import Checked
     from smachac.report.state_types import Known
     from smachac.states import Library
     from smachac.targets import Target
+    from smachac.verify.scenes import Player
 
 OK, FINDINGS = 0, 1
 """Exit codes: clean; findings or a failed run."""
@@ -253,7 +255,7 @@ def _where(errors: list[dict[str, Any]]) -> str:
     return f" in {errors[0]['path']}{source}"
 
 
-PLAYED = ("python",)
+PLAYED = ("python", "cpp")
 """The targets whose programs `verify` can play."""
 
 
@@ -261,24 +263,22 @@ def _verify(arguments: argparse.Namespace) -> int:
     """Ends with 0 when every target does what the interpreter does."""
     import gc
 
-    from smachac.targets import load_target
     from smachac.verify import verify
-    from smachac.verify.python import player
     from smachac.verify.scenes import UnplayableError
     from smachac.verify.verdict import render_json, render_text
 
     for name in arguments.targets or [""]:
         if name not in PLAYED:
             return usage(f"`verify` cannot play the target `{name}`", name, list(PLAYED))
-    target = load_target("python")
-    assert target is not None
-    analysis, files = _compile(arguments, target, {})
-    machine = analysis.checked
-    if machine is None or files is None:
+    analysis, library = _load(arguments.script, arguments)
+    machine, report = analysis.checked, [*analysis.report]
+    players: dict[str, Player] = {}
+    if machine is not None and library is not None:
+        players = _players(arguments, machine, library, report)
+    print_report(shown(report), arguments, sys.stderr)
+    if machine is None or len(players) < len(arguments.targets):
         return FINDINGS
-    ((name, text),) = files.items()
     gc.enable()  # from here on it is the user's program that is loaded
-    players = {"python": player(name, text, machine, folder=arguments.script.parent)}
     try:
         verdict = verify(
             machine, players, script=machine.source, most=arguments.paths, seed=arguments.seed
@@ -289,6 +289,31 @@ def _verify(arguments: argparse.Namespace) -> int:
     render = render_json if arguments.format == "json" else render_text
     sys.stdout.write(render(verdict))
     return FINDINGS if verdict.disagreements else OK
+
+
+def _players(
+    arguments: argparse.Namespace, machine: Checked, library: Library, report: Report
+) -> dict[str, Player]:
+    """Those of the targets asked for that can say all of the machine; the others are reported."""
+    from smachac.driver import build
+    from smachac.targets import load_target
+    from smachac.verify import cpp, python
+
+    players: dict[str, Player] = {}
+    for name in arguments.targets:
+        found: Report = []
+        if name == "cpp":
+            player = cpp.player(machine, library, found)
+        else:
+            target = load_target(name)
+            assert target is not None
+            files = build(machine, target, library, found)
+            ((file, text),) = files.items() or [("", "")]
+            player = python.player(file, text, machine, folder=arguments.script.parent)
+        report += found
+        if not found:
+            players[name] = player
+    return players
 
 
 def _explain(arguments: argparse.Namespace) -> int:

@@ -4,22 +4,16 @@ from __future__ import annotations
 
 import functools
 import hashlib
-import importlib.util
 import os
-import shutil
 import subprocess
-import sys
 import tempfile
-from collections.abc import Sequence
 from dataclasses import dataclass
 from pathlib import Path
 
 import pytest
 
-import smachac
-
-HEADERS = Path(smachac.__file__).parent / "runtime" / "cpp"
-"""The folder that holds smachac/*.hpp."""
+from smachac.verify.compilers import HEADERS
+from smachac.verify.compilers import compilers as installed
 
 WARNINGS = (
     *("-Wall", "-Wextra", "-Wpedantic", "-Wconversion", "-Wshadow", "-Werror"),
@@ -77,20 +71,10 @@ class Compiler:
         return run.stdout
 
 
-def _first(kind: str, names: Sequence[str]) -> list[Compiler]:
-    found = next(filter(None, map(shutil.which, names)), None)
-    return [Compiler(kind, (found,))] if found else []
-
-
 @functools.cache
 def compilers() -> tuple[Compiler, ...]:
     """Those that are here, one of each kind."""
-    versions = [f"clang++-{number}" for number in range(22, 11, -1)]
-    found = [*_first("g++", ["g++"]), *_first("clang++", ["clang++", *versions])]
-    if not found and importlib.util.find_spec("ziglang"):
-        command = (sys.executable, "-m", "ziglang", "c++")
-        found = [Compiler("clang++", command)]
-    return tuple(found)
+    return tuple(Compiler(each.name, each.command) for each in installed())
 
 
 def last_with(*flags: str) -> Compiler:

@@ -13,7 +13,7 @@ from collections.abc import Callable
 from pathlib import Path
 
 import pytest
-from compiler import BARE, HEADERS, SANITIZED, Compiler, compilers
+from compiler import BARE, SANITIZED, Compiler, compilers
 from expression_batch import NAMES, Tally, cases, compare, portable, program
 from expression_strategies import NAMES_OF_VALUES, computations, expressions
 from hypothesis import given
@@ -26,6 +26,7 @@ from smachac.source import NOWHERE
 from smachac.targets.cpp.expressions import Spelling, cpp_condition, cpp_expression, cpp_function
 from smachac.targets.cpp.style import CLANG_FORMAT
 from smachac.targets.cpp.types import UnportableError, cpp_float, cpp_string, cpp_type, cpp_value
+from smachac.verify.compilers import HEADERS
 
 COMPILERS = [pytest.param(each, id=each.name) for each in compilers()] or [
     pytest.param(None, marks=pytest.mark.skip("no C++ compiler"))

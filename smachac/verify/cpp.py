@@ -1,0 +1,86 @@
+"""Plays scenes on a generated C++ program: compiled once, then all of them in one run."""
+
+from __future__ import annotations
+
+import json
+import subprocess
+import tempfile
+from collections.abc import Iterator, Sequence
+from pathlib import Path
+
+from smachac.diagnostics import Report
+from smachac.ir.nodes import Machine
+from smachac.states import Library
+from smachac.targets.cpp.plan import plan
+from smachac.verify.compilers import HEADERS, Compiler, compilers
+from smachac.verify.cpp_program import Program
+from smachac.verify.scenes import Event, Player, Scene, UnplayableError
+
+FLAGS = ("-std=c++17", "-O0", "-ffp-contract=off", "-pthread", f"-I{HEADERS}")
+"""Floats as Python computes them, also where the machine could fuse two operations."""
+
+DONE = "--"
+"""The line after each trace."""
+
+MOST_ERRORS = 5
+"""Lines of a compiler that are shown."""
+
+
+def player(machine: Machine, library: Library, report: Report) -> Player:
+    """A player of what the target prints; what C++ cannot say of the machine is reported.
+
+    It compiles when it gets its scenes. Raises UnplayableError where there is no compiler, or where
+    it does not compile.
+    """
+    planned = plan(machine)
+    report.extend(Program(planned, library, ()).refused())
+
+    def play(scenes: Sequence[Scene]) -> Iterator[list[Event]]:
+        found = compilers()
+        if not found:
+            words = "no C++ compiler is here: install g++ or clang++, or the Python package ziglang"
+            raise UnplayableError(words)
+        program = Program(planned, library, scenes)
+        yield from traces(program.text(), program.script(), found[0])
+
+    return play
+
+
+def traces(text: str, scenes: str, compiler: Compiler) -> Iterator[list[Event]]:
+    """What a program prints for scenes, one trace after the other, as it runs. One that breaks off
+    ends the last trace with an event that nobody expects."""
+    with tempfile.TemporaryDirectory() as folder, tempfile.TemporaryFile("w+") as given:
+        made = compiled(text, compiler, Path(folder))
+        given.write(scenes)
+        given.seek(0)
+        run = subprocess.Popen([made], stdin=given, stdout=subprocess.PIPE, text=True)
+        assert run.stdout is not None
+        events: list[Event] = []
+        try:
+            for line in run.stdout:
+                if line.strip() == DONE:
+                    yield events
+                    events = []
+                else:
+                    events.append(json.loads(line))
+            if run.wait() != 0:
+                how = f"the program ended with {run.returncode}"
+                yield [*events, {"event": "error", "path": "", "outcome": how}]
+        finally:
+            run.kill()
+            run.wait()
+            run.stdout.close()
+
+
+def compiled(text: str, compiler: Compiler, folder: Path) -> str:
+    """The program of a text. Raises UnplayableError with the first errors of the compiler."""
+    made = str(folder / "verify")
+    call = [*compiler.command, *FLAGS, "-x", "c++", "-", "-o", made]
+    run = subprocess.run(call, input=text, capture_output=True, text=True, check=False)
+    if run.returncode != 0:
+        lines = run.stderr.splitlines()
+        errors = [line for line in lines if "error" in line] or lines
+        raise UnplayableError(
+            "\n".join(["the C++ program does not compile:", *errors[:MOST_ERRORS]])
+        )
+    return made

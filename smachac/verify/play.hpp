@@ -1,0 +1,80 @@
+// What a program that plays scenes stands on: scenes are read from the input, traces printed.
+//
+// A scene is the most visits of leaves that it may take, and for each leaf its number, how often it
+// is visited and which of its cases each visit is.
+#include "smachac/smachac.hpp"
+
+#include <atomic>
+#include <cstdio>
+#include <iostream>
+#include <map>
+#include <stdexcept>
+#include <string>
+#include <vector>
+
+namespace verify {
+
+struct Row {
+  std::vector<std::size_t> steps;
+  std::size_t visits = 0;
+};
+inline std::map<std::size_t, Row> rows;
+inline std::atomic<long> left{0};
+inline smachac::Stop *machine = nullptr;
+inline smachac::Observer *observer = nullptr;
+
+/// What the leaf of that number does at this visit.
+inline std::size_t next(std::size_t leaf) {
+  const auto found = rows.find(leaf);
+  if (found == rows.end() || found->second.visits == found->second.steps.size() || --left < 0) {
+    throw std::runtime_error("is not in the script");
+  }
+  return found->second.steps[found->second.visits++];
+}
+/// Whether a leaf is asked to stop, now or, if it waits, before long.
+inline bool asked(smachac::Stop &stop, bool waits, bool asks) {
+  if (asks) {
+    machine->request();
+  }
+  if (waits && !stop.wait(5.0)) {
+    throw std::runtime_error("was not asked to stop");
+  }
+  return stop.requested();
+}
+inline void read(const smachac::Place &place, const char *key, const std::string &value) {
+  observer->tell({"read", place, nullptr, nullptr, key, value.c_str()});
+}
+
+/// Play the scene that comes next on the input.
+template <class States, class Userdata, class Given, class Run>
+void play(Given given, Run run) {
+  smachac::Stop stop;
+  smachac::TraceWriter trace(stdout);
+  States states{};
+  Userdata userdata;
+  given(userdata);
+  machine = &stop;
+  observer = &trace;
+  std::size_t leaves = 0;
+  long most = 0;
+  std::cin >> most >> leaves;
+  left = most;
+  rows.clear();
+  for (std::size_t i = 0; i < leaves; ++i) {
+    std::size_t leaf = 0;
+    std::size_t visits = 0;
+    std::cin >> leaf >> visits;
+    rows[leaf].steps.resize(visits);
+    for (auto &step : rows[leaf].steps) {
+      std::cin >> step;
+    }
+  }
+  try {
+    run(states, userdata, &trace, stop);
+  } catch (const std::exception &) {
+  }
+  std::puts("--");
+  std::fflush(stdout);
+}
+
+} // namespace verify
