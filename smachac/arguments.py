@@ -64,6 +64,20 @@ examples:
 exit codes: 0 done, 1 refused, or something to do (--check, --diff), 2 wrong usage, 70 a bug
 """
 
+MIGRATE_EXAMPLES = """\
+examples:
+  smachac migrate .                          every script and template below this folder
+  smachac migrate scripts templates          of two folders
+  smachac migrate . --format json > left.json   for other programs; md for a page
+
+what it says of each place:
+  edit      smachac cannot make a program of it as it is; SMACHA passed over it
+  changed   SMACHA made something else of it, or no program
+  told      it works as before, and `smachac check` has something to say about it
+
+exit codes: 0 nothing has to be edited, 1 something has, 2 wrong usage, 70 a bug in smachac
+"""
+
 RENAME_EXAMPLES = """\
 examples:
   smachac rename main.yml PICK_BLOCK GRASP        a state, and what leads to it
@@ -170,3 +184,12 @@ def _one_state(verb: argparse.ArgumentParser, what: str) -> None:
 def _dry_run(verb: argparse.ArgumentParser) -> None:
     verb.add_argument("--check", action="store_true", help="write nothing; 1 if it would")
     verb.add_argument("--diff", action="store_true", help="write nothing; print it as a patch")
+
+
+def migrate(verb: argparse.ArgumentParser) -> None:
+    verb.epilog = MIGRATE_EXAMPLES
+    verb.add_argument("folder", nargs="*", type=path, help="folders (default: this one)")
+    search_folders(verb)
+    verb.add_argument(
+        "--format", choices=("text", "json", "md"), default="text", help="of the report"
+    )

@@ -215,6 +215,7 @@ COMMANDS = {
     "extract": ("make a sub-script of a container", arguments.extract),
     "inline": ("put a sub-script in the place of its call", arguments.inline),
     "rename": ("give a state, outcome or key another name, everywhere", arguments.rename),
+    "migrate": ("what becomes of SMACHA's scripts and templates", arguments.migrate),
     "targets": ("list what can be built", _targets),
 }
 """Command to what it does and what adds its arguments; verbs.py holds what it does."""

@@ -377,6 +377,12 @@ def _targets(arguments: argparse.Namespace) -> int:
     return OK
 
 
+def _migrate(arguments: argparse.Namespace) -> int:
+    from smachac.migrate import migrate
+
+    return migrate(arguments)
+
+
 VERBS: dict[str, Callable[[argparse.Namespace], int]] = {
     "check": _check,
     "build": _build,
@@ -390,6 +396,7 @@ VERBS: dict[str, Callable[[argparse.Namespace], int]] = {
     "extract": _extract,
     "inline": _inline,
     "rename": _rename,
+    "migrate": _migrate,
     "targets": _targets,
 }
 """Command to function."""

@@ -75,6 +75,11 @@ class Blocks:
             self._sources[file] = found
         return self._sources[file]
 
+    def parsed(self, file: str) -> None:
+        """Raises BlockError where a template cannot be parsed."""
+        with self._located(file):
+            self._environment.get_template(file)
+
     def names(self, file: str) -> frozenset[str]:
         """The blocks that a template, those it extends and those it includes have."""
         with self._located(file):

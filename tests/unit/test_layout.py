@@ -24,6 +24,7 @@ TOUCHES = {
     "smachac/cli.py": "arguments and exit codes",
     "smachac/verbs.py": "prints what the commands say",
     "smachac/checkup.py": "prints reports",
+    "smachac/migrate.py": "prints a report",
     "smachac/rewriting.py": "prints diffs and what was written",
     "smachac/beginning.py": "prints what was made",
     "smachac/rework.py": "prints why something is refused",

@@ -1,0 +1,154 @@
+"""`smachac migrate`: what works, what means something else than for SMACHA, what must be edited."""
+
+from __future__ import annotations
+
+import json
+from pathlib import Path
+
+import pytest
+
+from smachac.cli import main
+from smachac.quirks import quirks
+from smachac.report.migration import render_migration
+from smachac.source import Source
+from smachac.syntax import parse
+
+SMACHA = Path(__file__).parents[1] / "smacha"
+
+STATE = """\
+name: sm
+template: Base
+outcomes: [done]
+states:
+  - A: {{template: ScriptedState, outcomes: [done], transitions: {{done: done}}, {more}}}
+"""
+
+QUIRKS = {
+    "key-renamed": ("userdata: {p: 1}", "p"),
+    "key-renamed in a value": ("userdata: {x: {t: 1}}", "t"),
+    "variable-look-up": ("speed: fast, input_keys: [speed]", "[speed]"),
+    "variable-look-up of a part": ("userdata: {a: 1}, other: [userdata, a]", "[userdata, a]"),
+    "deep-look-up": ("params: {x: 1}, userdata: {a: {b: [params, x]}}", "[params, x]"),
+    "key-case": ("userdata: {Pose: 1}", "Pose"),
+    "null-as-text": ("userdata: {x: null}", "null"),
+    "code-in-userdata": ('userdata: {x: "`1 + 1`"}', '"`1 + 1`"'),
+    "text-as-code": ("userdata: {x: 'a.b'}", "'a.b'"),
+    "text-as-code of a number": ("userdata: {x: '12'}", "'12'"),
+    "text-as-code of a file": ("userdata: {x: block.urdf}", "block.urdf"),
+    "text-as-code of brackets": ("userdata: {x: hi (there)}", "hi (there)"),
+    "text-with-quote": ("userdata: {x: it's}", "it's"),
+}
+
+NONE = [
+    "userdata: {x: 1, y: hello, z: Point(1), w: rospy.Time(0), v: [1, 2]}",
+    "params: {x: 1}, name_param: [params, x], userdata: {a: [params, x]}",
+    "params: {x: 1}, callbacks: {a: ['a_', [params, x], '_b'], b: [[x]]}",
+    "input_keys: [x], output_keys: [y]",
+    "p: {x: 1}, ud: {x: 1}, ik: [x]",
+    "userdata: {x: \"'a.b'\"}",
+]
+
+
+def found(text: str) -> list[tuple[str, str]]:
+    return [(quirk.name, quirk.span.text) for quirk in quirks(parse(Source("main.yml", text), []))]
+
+
+@pytest.mark.parametrize("name", QUIRKS)
+def test_each_quirk_is_found_at_its_place(name: str) -> None:
+    more, place = QUIRKS[name]
+    assert found(STATE.format(more=more)) == [(name.partition(" ")[0], place)]
+
+
+@pytest.mark.parametrize("more", NONE)
+def test_what_means_the_same_is_no_quirk(more: str) -> None:
+    assert found(STATE.format(more=more)) == []
+
+
+def test_quirks_of_names_calls_and_concurrences() -> None:
+    text = """\
+- TOP:
+    template: Concurrence
+    outcomes: [done]
+    default_outcome: done
+    states:
+      - T: {template: ScriptedState, userdata: {x: 1}}
+      - CALL: {script: other, outcomes: [done], params: {a: 1}, transitions: {done: done}}
+"""
+    assert found(text) == [
+        ("state-renamed", "T"),
+        ("userdata-in-concurrence", "{x: 1}"),
+        ("call-variable", "outcomes"),
+    ]
+
+
+@pytest.mark.parametrize("text", ["", "[]", "a", "{}", "- a", "- {}", "states: 1", "states: [1]"])
+def test_texts_that_are_no_scripts_have_no_quirks(text: str) -> None:
+    assert found(text) == []
+
+
+def migrated(capsys: pytest.CaptureFixture[str], *words: str) -> tuple[int, str]:
+    code = main(["migrate", *words])
+    return code, capsys.readouterr().out
+
+
+def test_a_folder_that_works(capsys: pytest.CaptureFixture[str]) -> None:
+    code, text = migrated(capsys, str(SMACHA))
+    assert code == 0
+    assert "two_arms.yml         " in text
+    assert "OldMove.tpl         " in text
+    assert "0 have to be edited; " in text
+
+
+def test_json_has_every_file_and_place(capsys: pytest.CaptureFixture[str]) -> None:
+    code, text = migrated(capsys, str(SMACHA), "--format", "json")
+    data = json.loads(text)
+    assert code == 0
+    kinds = {Path(file["name"]).name: (file["kind"], file["state"]) for file in data["files"]}
+    assert kinds["told_twice.yml"] == ("sub-script", "works")
+    assert kinds["whole.yml"] == ("script", "works")
+    assert kinds["OldBase.tpl"] == ("template", "works")
+    assert data["edit"] == 0
+    assert data["works"] == len(kinds)
+    (old,) = (file for file in data["files"] if file["name"].endswith("OldMove.tpl"))
+    assert {item["name"] for item in old["items"]} == {"SM606"}
+
+
+def test_what_must_be_edited_fails(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    (tmp_path / "scripts").mkdir()
+    (tmp_path / "templates").mkdir()
+    (tmp_path / "scripts" / "main.yml").write_text(
+        "name: sm\node_name: n\ntemplate: Base\noutcomes: [done]\nstates:\n"
+        "  - A: {template: Bad, transitions: {done: NOWHERE}}\n"
+    )
+    (tmp_path / "scripts" / "fine.yml").write_text(
+        "name: sm\ntemplate: Base\noutcomes: [done]\nstates:\n"
+        "  - A: {template: Bad, transitions: {done: done}}\n"
+    )
+    (tmp_path / "templates" / "Bad.tpl.py").write_text("{% block body %}{{ gone }}{% endblock %}")
+    (tmp_path / "templates" / "Unused.tpl").write_text("{% block body %}{% if %}")
+    code, text = migrated(capsys, str(tmp_path))
+    assert code == 1
+    for words in (
+        "main.yml:2:1: edit: `ode_name` is not a variable of the script [SM003]",
+        "[SM101]",
+        "Bad.tpl.py:1:1: edit: 'gone' is undefined [SM605]",
+        "Unused.tpl:1:",
+        "0 of 4 files work as they are, 4 have to be edited",
+    ):
+        assert words in text
+    code, table = migrated(capsys, str(tmp_path), "--format", "md")
+    assert code == 1
+    assert "| edit | SM003 | `ode_name` is not a variable of the script |" in table
+
+
+def test_the_same_report_each_time(capsys: pytest.CaptureFixture[str]) -> None:
+    assert migrated(capsys, str(SMACHA)) == migrated(capsys, str(SMACHA))
+
+
+def test_no_folder_and_nothing_in_it(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    assert migrated(capsys, str(tmp_path / "gone"))[0] == 2
+    assert migrated(capsys, str(tmp_path))[0] == 2
+
+
+def test_a_report_on_nothing() -> None:
+    assert render_migration([], "text").endswith("0 places mean something else here\n")
