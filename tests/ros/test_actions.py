@@ -48,7 +48,8 @@ def test_callbacks_change_the_goal_and_choose_the_outcome(graph: Graph) -> None:
     callbacks = (
         'input_keys=["goal"], outcomes=["odd"], result_key="all", '
         "goal_cb=lambda ud, goal, more: TestGoal(goal=ud.goal * more), goal_cb_args=[1], "
-        "result_cb=lambda ud, status, result: 'odd' if (status, result.result) == (3, 42) else None"
+        "result_cb=lambda ud, *given, word: word if given[::2] == (3, 'last') else None, "
+        "result_cb_args=['last'], result_cb_kwargs={'word': 'odd'}"
     )
     output = graph.run(client(callbacks, "all"))
     assert "all: result: 42\noutcome: odd\n" in output
@@ -106,6 +107,54 @@ def test_exec_timeout_cancels_the_goal_and_aborts(graph: Graph) -> None:
     assert "action 'work' is cancelled after 0.2 s" in output
     assert "outcome: aborted\n" in output
     server.expect("cancelled")
+
+
+def test_a_goal_that_is_recalled_on_request_is_preempted(graph: Graph) -> None:
+    server = graph.node("slow_server", "pending")
+    program = graph.start(client(work(1)))
+    server.expect("goal")
+    program.say("preempt")
+    assert program.end() == 0
+    assert "outcome: preempted\n" in program.output
+
+
+def test_a_goal_that_the_server_does_not_know_is_lost(graph: Graph) -> None:
+    graph.node("slow_server", "deaf")
+    impatient = client(work(1)).replace(
+        "client.node()", "smach_ros.watch.ACKNOWLEDGED = 0.2\nclient.node()"
+    )
+    output = graph.run(impatient)
+    assert "the goal of action 'work' is lost: the server does not know it" in output
+    assert "outcome: aborted\n" in output
+
+
+def test_each_goal_starts_from_what_was_given(graph: Graph) -> None:
+    server = graph.node("action_server")
+    once = client("goal_cb=lambda ud, goal: setattr(goal, 'goal', goal.goal + 1)")
+    output = graph.run(f"{once}\nclient.again(machine)")
+    assert output.count("outcome: succeeded\n") == 2
+    server.expect("goal 1")
+    server.expect("goal 1")
+
+
+NEXT = """
+with machine:
+    smach.StateMachine.add(
+        "NEXT", smach_ros.SimpleActionState("work", TestAction, TestGoal(goal=1))
+    )
+"""
+
+
+def test_a_request_that_the_server_does_not_heed_goes_on_to_the_next_state(graph: Graph) -> None:
+    server = graph.node("action_server")
+    text = client(work(7)).replace("))\nmachine.", f"), {{'succeeded': 'NEXT'}})\n{NEXT}machine.")
+    program = graph.start(text)
+    server.expect("goal 7")
+    program.say("preempt")
+    assert program.end() == 0
+    assert "transition 'WORK':'succeeded'-->'NEXT'" in program.output
+    assert "outcome: preempted\n" in program.output
+    assert "goal 1" not in server.output
 
 
 def test_timeouts_are_lengths_of_ros_time(graph: Graph) -> None:

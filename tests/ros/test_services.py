@@ -47,6 +47,16 @@ def test_a_fixed_request_and_a_response_key(graph: Graph) -> None:
     assert 'message: "no"\noutcome: succeeded\n' in output
 
 
+def test_slots_that_a_service_does_not_have_are_found_when_the_state_is_made(graph: Graph) -> None:
+    for arguments, fault in (
+        ("request_slots=['speed']", "the request has no slots ['speed']; it has ['data']"),
+        ("response_slots=['data']", "the response has no slots ['data']; it has ['success', "),
+    ):
+        program = graph.start(client("answer", arguments))
+        assert program.end() == 1
+        assert f"InvalidStateError: {fault}" in program.output
+
+
 def test_callbacks_change_the_request_and_choose_the_outcome(graph: Graph) -> None:
     graph.node("service_server")
     callbacks = (

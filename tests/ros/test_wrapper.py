@@ -69,6 +69,47 @@ client.run(machine, "result")
 """
 
 
+SLEEPER = """
+import threading
+import client
+from smachac.runtime import smach, smach_ros
+
+class Sleep(smach.State):
+    def __init__(self):
+        super().__init__(["preempted"])
+        self.woken = threading.Event()
+
+    def request_preempt(self):
+        super().request_preempt()
+        self.woken.set()
+
+    def execute(self, userdata):
+        client.say("sleeping")
+        self.woken.wait()
+        self.service_preempt()
+        return "preempted"
+
+client.node()
+both = smach.Concurrence(
+    ["preempted", "awake"], "awake", outcome_map={"preempted": {"ONE": "preempted"}}
+)
+with both:
+    smach.Concurrence.add("ONE", Sleep())
+    smach.Concurrence.add("TWO", Sleep())
+smach_ros.set_preempt_handler(both)
+client.again(both)
+"""
+
+
+def test_ctrl_c_preempts_a_concurrence_of_the_main_thread(graph: Graph) -> None:
+    program = graph.start(SLEEPER)
+    program.expect("sleeping")
+    program.expect("sleeping")
+    program.send(signal.SIGINT)
+    assert program.end() == 0
+    assert "outcome: preempted\n" in program.output
+
+
 def test_outcomes_of_the_machine_are_ends_of_goals(graph: Graph) -> None:
     graph.start(SERVER).expect("ready")
     assert "result: 42\noutcome: succeeded\n" in graph.run(CLIENT.format(goal=21))

@@ -16,6 +16,7 @@ from . import (
     service_state,
     simple_action_state,
     util,
+    watch,
 )
 from .action_server_wrapper import ActionServerWrapper
 from .condition_state import ConditionState
@@ -41,4 +42,5 @@ __all__ = [
     "set_preempt_handler",
     "simple_action_state",
     "util",
+    "watch",
 ]

@@ -98,7 +98,8 @@ class SimpleActionState(RosState):
         if self._preempted():
             return "preempted"
         if not found:
-            smach.logerr(f"there is no server for action '{self._name}'")
+            if not self._rospy.is_shutdown():
+                smach.logerr(f"there is no server for action '{self._name}'")
             return "aborted"
         try:
             goal = self._fill_goal(ud)
@@ -137,6 +138,8 @@ class SimpleActionState(RosState):
         goals = [reference() for reference in list(self._client.manager.statuses)]
         handle = ros.load("actionlib").ClientGoalHandle
         under_way = [handle(goal) for goal in goals if goal is not None]
+        if not under_way:
+            return
 
         def cancel() -> None:
             for goal in under_way:

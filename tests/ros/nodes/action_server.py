@@ -42,7 +42,20 @@ def preempt_itself() -> None:
     server.set_preempted(TestResult(result=6))
 
 
-WORK = {1: succeed, 2: abort, 3: until_cancelled, 4: deaf, 5: crash, 6: preempt_itself}
+def finish_when_cancelled() -> None:
+    CANCELLED.wait()
+    server.set_succeeded(TestResult(result=7))
+
+
+WORK = {
+    1: succeed,
+    2: abort,
+    3: until_cancelled,
+    4: deaf,
+    5: crash,
+    6: preempt_itself,
+    7: finish_when_cancelled,
+}
 
 
 def execute(goal: TestGoal) -> None:
