@@ -27,6 +27,7 @@ class ROSBagAPIThreadRecorder:
 
         subscribers = []
         for topic in topics:
+            topic = rospy.resolve_name(topic)
             kind, name, _ = rostopic.get_topic_class(topic, blocking=False)
             if kind is None:
                 smach.logwarn(f"nobody publishes {topic}: it is not recorded")

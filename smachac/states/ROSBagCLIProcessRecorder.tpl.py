@@ -1,6 +1,8 @@
 {% block imports %}
+import os
 import signal
 import subprocess
+import time
 import rospy
 {% endblock %}
 {% block class_defs %}
@@ -18,11 +20,27 @@ class ROSBagCLIProcessRecorder:
             rospy.on_shutdown(self.stop_all)
         command = ["rosbag", "record", "--output-name", file, *topics]
         try:
-            self._processes[file] = subprocess.Popen(command)
+            process = self._processes[file] = subprocess.Popen(command)
         except OSError as error:
             smach.logerr(f"rosbag does not start: {error}")
             return "aborted"
-        return "succeeded"
+        if self._comes_to(file, recording=True, process=process):
+            return "succeeded"
+        smach.logerr(f"rosbag does not record to {file}")
+        self.stop(file)
+        return "aborted"
+
+    def _comes_to(self, file, recording, process=None):
+        """Whether the recording begins, or ends; till then `.active` is added to its name."""
+        active = file if file.endswith(".bag") else f"{file}.bag"
+        end = time.monotonic() + 10.0
+        while process is None or process.poll() is None:
+            if os.path.exists(f"{active}.active") == recording:
+                return True
+            if time.monotonic() > end:
+                break
+            time.sleep(0.02)
+        return False
 
     def stop(self, file):
         """Stop a recording; its bag is whole when this returns."""
@@ -36,7 +54,8 @@ class ROSBagCLIProcessRecorder:
             process.kill()
             process.wait()
             return "aborted"
-        return "succeeded"
+        # `rosbag` ends before the recorder that it started.
+        return "succeeded" if self._comes_to(file, recording=False) else "aborted"
 
     def stop_all(self):
         """Stop all recordings."""

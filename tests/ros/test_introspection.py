@@ -92,9 +92,9 @@ def test_an_order_moves_the_start_but_what_came_pickled_is_dropped(
     graph: Graph, tmp_path: Path
 ) -> None:
     program = started(graph)
-    observer = graph.node("observer")
     trap = tmp_path / "trap"
     observer = graph.node("observer", str(trap))
+    observer.expect("status /ROOT ")
     observer.say("/ROOT/INNER THREE bomb")
     program.expect("unpickling it may run any code")
     observer.expect("REMOTE_INIT")
