@@ -6,7 +6,7 @@ import signal
 from pathlib import Path
 
 import pytest
-from live import Graph
+from live import ROOT, Graph
 
 import smachac
 
@@ -68,6 +68,16 @@ def outcome(graph: Graph, folder: Path, states: str) -> str:
     """The outcome of a script with these states."""
     line = graph.run(built(folder, states)).splitlines()[-1]
     return line.removeprefix("outcome: ")
+
+
+def test_the_script_of_the_docs_runs(graph: Graph, tmp_path: Path) -> None:
+    text = (ROOT / "docs/ros.md").read_text("utf-8")
+    path = tmp_path / "fetch.yml"
+    path.write_text(text.split("```yaml\n")[1].split("```")[0], encoding="utf-8")
+    (program,) = smachac.build(path, "python").values()
+    graph.node("action_server")
+    graph.node("service_server")
+    assert graph.run(program).endswith("outcome: succeeded\n")
 
 
 def test_a_service_gets_its_request_from_userdata_and_gives_its_response(

@@ -8,7 +8,7 @@ from typing import Any
 
 import rospy
 from client import say
-from std_srvs.srv import SetBool, SetBoolResponse
+from std_srvs.srv import SetBool, SetBoolResponse, Trigger, TriggerResponse
 
 
 def answer(request: Any) -> Any:
@@ -32,5 +32,6 @@ def hang(request: Any) -> Any:
 rospy.init_node("service_server")
 for service in (answer, fail, crash, hang):
     rospy.Service(service.__name__, SetBool, service)
+rospy.Service("gripper", Trigger, lambda request: TriggerResponse(success=True))
 say("ready")
 rospy.spin()
