@@ -168,10 +168,12 @@ states:
 """
 HIERARCHY_HAND = """
 namespace hand {
+// Each level has data of its own, as SMACH's have: what comes in and goes out is copied.
 using Outcome = bench::HandHit::Outcome;
 struct Inner {
   bench::HandHit A, B;
-  Outcome run(bench::Data &data) {
+  bench::Data data;
+  Outcome run() {
     enum class State { A, B } state = State::A;
     for (;;) switch (state) {
       case State::A: switch (A.execute(data)) {
@@ -184,21 +186,29 @@ struct Inner {
 struct Outer {
   Inner INNER;
   bench::HandHit LAST;
-  Outcome run(bench::Data &data) {
+  bench::Data data;
+  Outcome run() {
     enum class State { INNER, LAST } state = State::INNER;
     for (;;) switch (state) {
-      case State::INNER: switch (INNER.run(data)) {
+      case State::INNER: {
+        INNER.data.count = data.count;
+        const Outcome outcome = INNER.run();
+        data.count = INNER.data.count;
+        switch (outcome) {
         case Outcome::again: state = State::LAST; break;
         case Outcome::done: return Outcome::done; } break;
+      }
       case State::LAST: return LAST.execute(data);
     }
   }
 };
 void run(bench::Data &data) {
   Outer outer;
-  for (;;) switch (outer.run(data)) {
-    case Outcome::again: break;
-    case Outcome::done: return;
+  for (;;) {
+    outer.data.count = data.count;
+    const Outcome outcome = outer.run();
+    data.count = outer.data.count;
+    if (outcome == Outcome::done) return;
   }
 }
 }

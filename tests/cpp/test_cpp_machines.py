@@ -17,6 +17,7 @@ from smachac.driver import analyse
 from smachac.files import disk_library, read_source
 from smachac.ir.nodes import Concurrence, Machine
 from smachac.ir.walk import walk
+from smachac.targets.cpp import machines
 
 COMPILERS = pytest.mark.parametrize(
     "compiler",
@@ -24,7 +25,7 @@ COMPILERS = pytest.mark.parametrize(
     or [pytest.param(None, marks=pytest.mark.skip("no C++ compiler"))],
 )
 STANDARDS = {"g++": "c++17", "clang++": "c++20"}
-RANDOM = {"g++": 60, "clang++": 20}
+RANDOM = {"g++": 30, "clang++": 15}
 """How many random machines each compiler gets: clang is the second opinion."""
 
 SCRIPTS = [
@@ -97,6 +98,20 @@ def agree(expected: list[Expected], compiler: Compiler, folder: Path, *flags: st
 @COMPILERS
 def test_machines_do_what_the_interpreter_does(compiler: Compiler, tmp_path: Path) -> None:
     agree([*of_scripts(), *drawn(1, RANDOM[compiler.name])], compiler, tmp_path)
+
+
+def test_large_machines_become_several_functions(
+    monkeypatch: pytest.MonkeyPatch, tmp_path: Path
+) -> None:
+    monkeypatch.setattr(machines, "MOST_STATES", 2)
+    monkeypatch.setattr(machines, "PART", 2)
+    found: list[Expected] = []
+    for (machine, _, asked), ours in of_scripts():
+        text = header(machine)
+        assert text is not None
+        found.append(((machine, text, asked), ours))
+    assert sum("bool part_1(" in text for (_, text, _), _ in found) > 5
+    agree(found, last_with(), tmp_path)
 
 
 def test_sanitizers_find_nothing(tmp_path: Path) -> None:

@@ -54,15 +54,19 @@ void traced(const char *path, int visit, Run run) {
   Asking observer(path, visit, stop);
   States states{};
   Userdata userdata;
-#if defined(__cpp_exceptions)
-  try {
-    run(states, userdata, &observer, stop);
-  } catch (const smachac::StateError &) {
-  }
-#else
-  run(states, userdata, &observer, stop);
-#endif
+  SMACHAC_TRY { run(states, userdata, &observer, stop); }
+  SMACHAC_CATCH {}
   std::puts("--");
+  if (visit == 0) {
+    SMACHAC_TRY {
+      States others{};
+      Userdata other;
+      smachac::Stop never;
+      std::printf("%s", name(run(others, other, nullptr, never)));
+    }
+    SMACHAC_CATCH {}
+  }
+  std::puts("\\n--");
 }
 """
 
@@ -99,6 +103,10 @@ def traces(
     """What the compiled machines tell."""
     told = compiler.run(program(headers), folder, *flags, "-pthread", standard=standard)
     parts = [part.splitlines() for part in told.split("--\n")[:-1]]
-    assert len(parts) == len(headers)
+    assert len(parts) == 2 * len(headers)
     # States may print as well.
-    return [[json.loads(line) for line in part if line.startswith("{")] for part in parts]
+    found = [[json.loads(line) for line in part if line.startswith("{")] for part in parts[::2]]
+    for events, unobserved, (_, _, asked) in zip(found, parts[1::2], headers, strict=True):
+        ended = [event["outcome"] for event in events if event["event"] == "finish"]
+        assert asked != NOBODY or unobserved[-1] == [*ended, ""][0], unobserved
+    return found

@@ -34,7 +34,7 @@ def concurrence(inside: Inside) -> Lines:
         ways: Lines = []
         for name in results(child):
             ways.append(f"case {inside.outcome(child, name)}:")
-            ways += [f"  run.exit(places, state, {cpp_literal(name)});", "  break;"]
+            ways += [f"  run.exit(places, state, {cpp_literal(name)});", "  return;"]
         cases += case(inside, child, ways, f"ended.{identifier(child.name)}")
         if child.catches:
             exit_ = f"run.exit(places, state, {cpp_literal(child.catches)});"

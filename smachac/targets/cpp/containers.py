@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from smachac.ir.nodes import Concurrence, Iterator
 from smachac.targets.cpp.branches import concurrence
-from smachac.targets.cpp.inside import Inside, Lines, indented, used
+from smachac.targets.cpp.inside import Inside, Lines, indented, says, used
 from smachac.targets.cpp.machines import machine
 from smachac.targets.cpp.rounds import iterator
 
@@ -18,9 +18,8 @@ def execute(inside: Inside) -> Lines:
             body = concurrence(inside)
         case _:
             body = machine(inside)
-    text = "\n".join(body)
     states, userdata = used(body)
-    run = "around" if "around" in text else "run" if "run." in text or "run)" in text else ""
+    run = next((name for name in ("around", "run") if says(body, name)), "")
     return [
         "template <class Run>",
         f"Outcome execute(States &{states}, Userdata &{userdata}, Run &{run}) {{",

@@ -22,6 +22,16 @@ from smachac.targets.cpp.words import identifier
 
 Lines = list[str]
 
+STRICT = """// A class with more outcomes than its interface is an error, whatever the warnings are.
+#if defined(__GNUC__)
+#pragma GCC diagnostic push
+#pragma GCC diagnostic error "-Wswitch"
+#endif"""
+LENIENT = """#if defined(__GNUC__)
+#pragma GCC diagnostic pop
+#endif"""
+"""What stands around containers with classes of the user."""
+
 
 def header_text(plan: Plan, library: Library) -> tuple[str, tuple[str, ...]]:
     """The text of the header, and the parameters that the States of the machine are made with.
@@ -36,7 +46,9 @@ def header_text(plan: Plan, library: Library) -> tuple[str, tuple[str, ...]]:
     made = f"// {made_by(plan.machine)}\n#pragma once"
     includes = "\n".join(f'#include "{header}"' for header in headers)
     checks = ["\n".join(assertions(code)) for code in codes]
-    text = "\n\n".join([made, includes, *checks, *blocks]) + "\n"
+    if codes:
+        blocks = [STRICT, *checks, *blocks, LENIENT]
+    text = "\n\n".join([made, includes, *blocks]) + "\n"
     return text, printing.parameters.get(plan.machine.root.name, ())
 
 

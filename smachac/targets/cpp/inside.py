@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 from collections.abc import Mapping
 from dataclasses import dataclass
 
@@ -83,18 +84,20 @@ def called(inside: Inside, child: Node) -> tuple[Lines, str]:
         before.append(copied(f"{own}.", key.name, inside.scope, "ud.", outer))
     for key in child.outputs:
         outer = names.get(key.name, key.name)
-        after.append(copied("ud.", outer, inner, f"{own}.", key.name))
+        held = outer in inside.scope.sure
+        after.append(copied("ud.", outer, inner, f"{own}.", key.name, held=held))
     call = f"{identifier(child.name)}::execute(states.{member(child)}, {own}, run)"
     if not after:
         return before, call
     return [*before, f"const auto outcome = {call};", *after], "outcome"
 
 
-def copied(to: str, key: str, source: Scope, place: str, name: str) -> str:
-    """The statement that copies a key at the border of a container."""
+def copied(to: str, key: str, source: Scope, place: str, name: str, *, held: bool = False) -> str:
+    """The statement that copies a key at the border of a container. `held`: where it goes to,
+    there is a value already."""
     target, given = f"{to}{identifier(key)}", f"{place}{identifier(name)}"
     if name in source.sure:
-        return f"{target}.hold({given}.get());"
+        return f"{target}.{'replace' if held else 'hold'}({given}.get());"
     return f"{target}.take({given});"
 
 
@@ -138,6 +141,10 @@ def caught_switch(cases: Lines) -> Lines:
 
 def used(lines: Lines) -> tuple[str, str]:
     """The names of the states and of the userdata, as far as they are used."""
-    text = "\n".join(lines)
-    states = "states" if "states." in text or "(states" in text else ""
-    return states, "ud" if "ud." in text or "(ud" in text or ", ud" in text else ""
+    return "states" if says(lines, "states") else "", "ud" if says(lines, "ud") else ""
+
+
+def says(lines: Lines, name: str) -> bool:
+    """Whether statements use a name, beyond texts."""
+    code = (re.sub(r'"(?:[^"\\]|\\.)*"|//.*', "", line) for line in lines)
+    return any(re.search(rf"(?<![\w.:]){name}\b", line) for line in code)

@@ -48,6 +48,7 @@ def _caught_steps(inside: Inside, children: Iterable[Node], ended: str) -> Lines
     for child in children:
         if child.catches:
             ways = _way(inside, child, child.catches, ended)
+            ways = ["break;" if line == "continue;" else line for line in ways]
             lines += [f"case State::{identifier(child.name)}:", f"  {CAUGHT}", *indented(ways)]
     return caught_switch(lines)
 
@@ -109,6 +110,6 @@ def _way(inside: Inside, child: Node, name: str, ended: str) -> Lines:
     if edge is None:
         return [f"run.undeclared(places, state, {told});"]
     if leads_to_child(edge, inside.names):
-        return [f"run.go(places, state, {told}, State::{identifier(edge.target)});", "break;"]
+        return [f"run.go(places, state, {told}, State::{identifier(edge.target)});", "continue;"]
     end = f"run.end(places, state, {told}, {inside.ends(edge.target)});"
     return [f"{ended} = {end}", "return true;"] if ended else [f"return {end}"]

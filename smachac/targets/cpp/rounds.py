@@ -7,7 +7,15 @@ from collections.abc import Iterable
 from smachac.ir.nodes import Expression, Iterator
 from smachac.ir.types import Type
 from smachac.targets.cpp.expressions import cpp_expression, cpp_function
-from smachac.targets.cpp.inside import CAUGHT, Inside, Lines, called, guarded, indented, results
+from smachac.targets.cpp.inside import (
+    CAUGHT,
+    Inside,
+    Lines,
+    called,
+    guarded,
+    indented,
+    results,
+)
 from smachac.targets.cpp.plan import place
 from smachac.targets.cpp.types import UnportableError, cpp_literal, cpp_type, cpp_value
 from smachac.targets.cpp.words import identifier
@@ -33,7 +41,7 @@ def iterator(inside: Inside) -> Lines:
     if child.catches:
         told = _over(node, [child.catches])
         ways_out = _round(inside, node, child.catches)
-        caught = [CAUGHT, told, *(line for line in ways_out if line != "break;")]
+        caught = [CAUGHT, told, *(line for line in ways_out if line != "continue;")]
     before, outcome = called(inside, child)
     if outcome != "outcome":
         before, outcome = [*before, f"const auto outcome = {outcome};"], "outcome"
@@ -78,7 +86,7 @@ def _round(inside: Inside, node: Iterator, name: str) -> Lines:
     return [
         *("if (over) {", f"  {end}", "}"),
         *("if (round.last()) {", f"  return run.end(places, state, {told}, {done});", "}"),
-        *(f"run.again(places, state, {told});", "break;"),
+        *(f"run.again(places, state, {told});", "continue;"),
     ]
 
 

@@ -58,9 +58,11 @@ public:
 
   /// What containers do at their borders: no state has written it, so no trace tells of it.
   template <class U> void hold(const U &value) {
-    value_ = convert<T>(value);
+    replace(value);
     state_ = held;
   }
+  /// The same, where it holds a value already.
+  template <class U> void replace(const U &value) { value_ = convert<T>(value); }
   /// Hold what another key holds, if it does.
   template <class U> void take(const Key<U> &other) {
     if (other.set()) {
@@ -436,40 +438,31 @@ public:
     push(machine);
   }
   template <class Outcome> Outcome finish(Outcome outcome) {
-    const Place machine = pop();
+    const Place machine = stop.running_.back();
+    pop();
     observer_.tell({"finish", machine, name(outcome)});
     return outcome;
   }
 
   template <class State> void enter(const Place *places, State state) {
-    const Place &place = places[static_cast<std::size_t>(state)];
-    push(place);
-    observer_.tell({"enter", place});
+    entered(places[static_cast<std::size_t>(state)]);
   }
   template <class State>
   void go(const Place *places, State &state, const char *outcome, State next) {
-    const Place place = pop();
-    observer_.tell({"exit", place, outcome});
-    state = next;
     const char *to = places[static_cast<std::size_t>(next)].path;
-    observer_.tell({"transition", place, outcome, to});
+    moved(places[static_cast<std::size_t>(state)], outcome, to);
+    state = next;
   }
   template <class State> void again(const Place *places, State state, const char *outcome) {
     go(places, state, outcome, state);
   }
   template <class State, class Outcome>
   Outcome end(const Place *places, State state, const char *outcome, Outcome with) {
-    exit(places, state, outcome);
-    const Place &place = places[static_cast<std::size_t>(state)];
-    std::string to(place.path,
-                   static_cast<std::size_t>(std::strrchr(place.path, '/') - place.path));
-    to += std::string(":") + name(with);
-    observer_.tell({"transition", place, outcome, to.c_str()});
+    ended(places[static_cast<std::size_t>(state)], outcome, name(with));
     return with;
   }
-  template <class State> void exit(const Place *, State, const char *outcome) {
-    const Place place = pop();
-    observer_.tell({"exit", place, outcome});
+  template <class State> void exit(const Place *places, State state, const char *outcome) {
+    left(places[static_cast<std::size_t>(state)], outcome);
   }
 
   /// A key that a state may write: what it writes there is told when it has ended.
@@ -486,10 +479,7 @@ public:
     wrote_one(Output<T>{name, key});
   }
   template <class State> void caught(const Place *places, State state) {
-    if (detail::current_is_undeclared()) {
-      failed(places, state);
-    }
-    tell_error(places[static_cast<std::size_t>(state)], detail::message_of_current());
+    caught_at(places[static_cast<std::size_t>(state)]);
   }
   template <class State>
   [[noreturn]] void undeclared(const Place *places, State state, const char *outcome) {
@@ -497,11 +487,7 @@ public:
     detail::undeclared(outcome);
   }
   template <class State> [[noreturn]] void failed(const Place *places, State state) {
-    pop();
-    const Place &place = places[static_cast<std::size_t>(state)];
-    const std::string message = detail::message_of_current();
-    tell_error(place, message);
-    detail::throw_on(place, message);
+    failed_at(places[static_cast<std::size_t>(state)]);
   }
 
 private:
@@ -516,11 +502,38 @@ private:
       observer_.tell({"preempt", place});
     }
   }
-  Place pop() {
+  void pop() {
     const std::lock_guard<std::mutex> hold(stop.lock_);
-    const Place place = stop.running_.back();
     stop.running_.pop_back();
-    return place;
+  }
+  void entered(const Place &place) {
+    push(place);
+    observer_.tell({"enter", place});
+  }
+  void left(const Place &place, const char *outcome) {
+    pop();
+    observer_.tell({"exit", place, outcome});
+  }
+  void moved(const Place &place, const char *outcome, const char *to) {
+    left(place, outcome);
+    observer_.tell({"transition", place, outcome, to});
+  }
+  void ended(const Place &place, const char *outcome, const char *with) {
+    std::string to(place.path, std::strrchr(place.path, '/'));
+    to += std::string(":") + with;
+    moved(place, outcome, to.c_str());
+  }
+  void caught_at(const Place &place) {
+    if (detail::current_is_undeclared()) {
+      failed_at(place);
+    }
+    tell_error(place, detail::message_of_current());
+  }
+  [[noreturn]] void failed_at(const Place &place) {
+    pop();
+    const std::string message = detail::message_of_current();
+    tell_error(place, message);
+    detail::throw_on(place, message);
   }
   void tell_error(const Place &place, const std::string &message) {
     if (!message.empty()) {

@@ -130,7 +130,7 @@ Outcome execute(States &states, Userdata &ud, Run &run) {
         switch (CALL::execute(states.CALL_, ud.CALL_, run)) {
         case CALL::Outcome::done:
           run.go(places, state, "done", State::JUDGE);
-          break;
+          continue;
         }
         break;
       case State::JUDGE: // main.yml:14

@@ -84,14 +84,14 @@ Outcome execute(States &states, Userdata &, Run &run) {
         switch (states.FOO.execute()) {
         case types::FOO::Outcome::done:
           run.go(places, state, "done", State::BAR);
-          break;
+          continue;
         }
         break;
       case State::BAR: // main.yml:11
         switch (states.BAR.execute()) {
         case types::BAR::Outcome::done:
           run.go(places, state, "done", State::BAZ);
-          break;
+          continue;
         }
         break;
       case State::BAZ: // main.yml:16

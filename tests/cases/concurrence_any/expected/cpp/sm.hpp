@@ -80,7 +80,7 @@ Outcome execute(States &states, Userdata &, Run &around) {
         switch (ended.WORK) {
         case types::WORK::Outcome::done:
           run.exit(places, state, "done");
-          break;
+          return;
         }
         break;
       case State::WATCH: // main.yml:15
@@ -88,10 +88,10 @@ Outcome execute(States &states, Userdata &, Run &around) {
         switch (ended.WATCH) {
         case types::WATCH::Outcome::succeeded:
           run.exit(places, state, "succeeded");
-          break;
+          return;
         case types::WATCH::Outcome::preempted:
           run.exit(places, state, "preempted");
-          break;
+          return;
         }
         break;
       default:

@@ -78,10 +78,10 @@ Outcome execute(States &states, Userdata &, Run &around) {
         switch (ended.A) {
         case types::A::Outcome::done:
           run.exit(places, state, "done");
-          break;
+          return;
         case types::A::Outcome::failed:
           run.exit(places, state, "failed");
-          break;
+          return;
         }
         break;
       case State::B: // main.yml:37
@@ -89,10 +89,10 @@ Outcome execute(States &states, Userdata &, Run &around) {
         switch (ended.B) {
         case types::B::Outcome::done:
           run.exit(places, state, "done");
-          break;
+          return;
         case types::B::Outcome::failed:
           run.exit(places, state, "failed");
-          break;
+          return;
         }
         break;
       default:
@@ -182,7 +182,7 @@ Outcome execute(States &states, Userdata &ud, Run &run) {
           return run.end(places, state, "go", Outcome::finished);
         }
         run.again(places, state, "go");
-        break;
+        continue;
       case types::STEP::Outcome::stop:
         return run.end(places, state, "stop", Outcome::aborted);
       }
@@ -276,14 +276,14 @@ Outcome execute(States &states, Userdata &, Run &run) {
         switch (states.ONE.execute()) {
         case types::ONE::Outcome::succeeded:
           run.go(places, state, "succeeded", State::TWO);
-          break;
+          continue;
         }
         break;
       case State::TWO: // main.yml:14
         switch (states.TWO.execute()) {
         case types::TWO::Outcome::succeeded:
           run.go(places, state, "succeeded", State::THREE);
-          break;
+          continue;
         case types::TWO::Outcome::failed:
           return run.end(places, state, "failed", Outcome::aborted);
         }
@@ -361,7 +361,7 @@ Outcome execute(States &states, Userdata &ud, Run &run) {
         switch (ROUND::execute(states.ROUND_, ud.ROUND_, run)) {
         case ROUND::Outcome::finished:
           run.go(places, state, "finished", State::BOTH);
-          break;
+          continue;
         case ROUND::Outcome::aborted:
           return run.end(places, state, "aborted", Outcome::aborted);
         case ROUND::Outcome::go:
@@ -372,10 +372,10 @@ Outcome execute(States &states, Userdata &ud, Run &run) {
         switch (BOTH::execute(states.BOTH_, ud.BOTH_, run)) {
         case BOTH::Outcome::both:
           run.go(places, state, "both", State::LINE);
-          break;
+          continue;
         case BOTH::Outcome::one:
           run.go(places, state, "one", State::LINE);
-          break;
+          continue;
         case BOTH::Outcome::none:
           return run.end(places, state, "none", Outcome::aborted);
         }

@@ -4,6 +4,12 @@
 #include "smachac/arm.hpp"
 #include "smachac/smachac.hpp"
 
+// A class with more outcomes than its interface is an error, whatever the warnings are.
+#if defined(__GNUC__)
+#pragma GCC diagnostic push
+#pragma GCC diagnostic error "-Wswitch"
+#endif
+
 static_assert(::smachac::PoseToJointPositionsState::smachac_interface == 0xb36feb04U,
               "smachac::PoseToJointPositionsState was written for another PoseToJointPositionsState.yml: compare them, then set smachac_interface");
 static_assert(std::is_same_v<decltype(::smachac::PoseToJointPositionsState::In::pose), const smachac::Pose &>,
@@ -65,7 +71,7 @@ Outcome execute(States &states, Userdata &ud, Run &run) {
         switch (run.wrote(states.PLAN.execute({ud.pose.get(), smachac::maybe<std::optional<smachac::Pose>>(ud.offset)}, {run.out(ud.goal)}), smachac::Output{"joints", ud.goal})) {
         case ::smachac::PoseToJointPositionsState::Outcome::succeeded:
           run.go(places, state, "succeeded", State::MOVE);
-          break;
+          continue;
         case ::smachac::PoseToJointPositionsState::Outcome::aborted:
           return run.end(places, state, "aborted", Outcome::failed);
         }
@@ -149,7 +155,7 @@ Outcome execute(States &states, Userdata &ud, Run &run) {
           return run.end(places, state, "reached", Outcome::done);
         }
         run.again(places, state, "reached");
-        break;
+        continue;
       case GO::Outcome::failed:
         return run.end(places, state, "failed", Outcome::failed);
       }
@@ -273,7 +279,7 @@ Outcome execute(States &states, Userdata &ud, Run &run) {
         switch (EACH::execute(states.EACH_, ud.EACH_, run)) {
         case EACH::Outcome::done:
           run.go(places, state, "done", State::COUNT);
-          break;
+          continue;
         case EACH::Outcome::failed:
           return run.end(places, state, "failed", Outcome::failed);
         case EACH::Outcome::reached:
@@ -284,21 +290,21 @@ Outcome execute(States &states, Userdata &ud, Run &run) {
         switch (states.COUNT.execute(ud, run)) {
         case types::COUNT::Outcome::succeeded:
           run.go(places, state, "succeeded", State::USE);
-          break;
+          continue;
         }
         break;
       case State::USE: // main.yml:49
         switch (states.USE.execute(ud, run)) {
         case types::USE::Outcome::done:
           run.go(places, state, "done", State::AGAIN);
-          break;
+          continue;
         }
         break;
       case State::AGAIN: // main.yml:65
         switch (states.AGAIN.execute()) {
         case types::AGAIN::Outcome::done:
           run.go(places, state, "done", State::HOME);
-          break;
+          continue;
         }
         break;
       case State::HOME: // main.yml:70
@@ -332,3 +338,7 @@ inline Outcome run(States &states, Userdata &ud, smachac::Observer *observer,
 }
 
 } // namespace sm
+
+#if defined(__GNUC__)
+#pragma GCC diagnostic pop
+#endif

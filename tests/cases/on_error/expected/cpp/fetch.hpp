@@ -74,7 +74,7 @@ Outcome execute(States &states, Userdata &ud, Run &run) {
           return run.end(places, state, "succeeded", Outcome::succeeded);
         }
         run.again(places, state, "succeeded");
-        break;
+        continue;
       }
     }
     SMACHAC_CATCH {
@@ -177,10 +177,10 @@ Outcome execute(States &states, Userdata &ud, Run &around) {
         switch (*ended.LEFT) {
         case types::LEFT::Outcome::big:
           run.exit(places, state, "big");
-          break;
+          return;
         case types::LEFT::Outcome::small:
           run.exit(places, state, "small");
-          break;
+          return;
         }
         break;
       case State::RIGHT: // main.yml:49
@@ -188,10 +188,10 @@ Outcome execute(States &states, Userdata &ud, Run &around) {
         switch (ended.RIGHT) {
         case types::RIGHT::Outcome::succeeded:
           run.exit(places, state, "succeeded");
-          break;
+          return;
         case types::RIGHT::Outcome::preempted:
           run.exit(places, state, "preempted");
-          break;
+          return;
         }
         break;
       default:
@@ -474,7 +474,7 @@ Outcome execute(States &states, Userdata &ud, Run &run) {
           switch (states.FIND.execute()) {
           case types::FIND::Outcome::found:
             run.go(places, state, "found", State::PICK);
-            break;
+            continue;
           case types::FIND::Outcome::nothing:
             return run.end(places, state, "nothing", Outcome::aborted);
           }
@@ -486,7 +486,7 @@ Outcome execute(States &states, Userdata &ud, Run &run) {
           switch (outcome) {
           case PICK::Outcome::succeeded:
             run.go(places, state, "succeeded", State::OWN);
-            break;
+            continue;
           }
           break;
         }
@@ -494,7 +494,7 @@ Outcome execute(States &states, Userdata &ud, Run &run) {
           switch (states.OWN.execute()) {
           case types::OWN::Outcome::succeeded:
             run.go(places, state, "succeeded", State::CARRY);
-            break;
+            continue;
           case types::OWN::Outcome::error:
             return run.end(places, state, "error", Outcome::aborted);
           }
@@ -506,10 +506,10 @@ Outcome execute(States &states, Userdata &ud, Run &run) {
           switch (outcome) {
           case CARRY::Outcome::succeeded:
             run.go(places, state, "succeeded", State::BOTH);
-            break;
+            continue;
           case CARRY::Outcome::exhausted:
             run.go(places, state, "exhausted", State::BOTH);
-            break;
+            continue;
           }
           break;
         }
@@ -518,7 +518,7 @@ Outcome execute(States &states, Userdata &ud, Run &run) {
           switch (BOTH::execute(states.BOTH_, ud.BOTH_, run)) {
           case BOTH::Outcome::succeeded:
             run.go(places, state, "succeeded", State::EACH);
-            break;
+            continue;
           case BOTH::Outcome::failed:
             return run.end(places, state, "failed", Outcome::aborted);
           }
@@ -530,14 +530,14 @@ Outcome execute(States &states, Userdata &ud, Run &run) {
             return run.end(places, state, "succeeded", Outcome::succeeded);
           case EACH::Outcome::error:
             run.go(places, state, "error", State::LET_GO);
-            break;
+            continue;
           }
           break;
         case State::LET_GO: // main.yml:65
           switch (states.LET_GO.execute(ud, run)) {
           case types::LET_GO::Outcome::succeeded:
             run.go(places, state, "succeeded", State::OWN);
-            break;
+            continue;
           }
           break;
         default:

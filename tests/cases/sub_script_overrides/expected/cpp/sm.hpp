@@ -274,7 +274,7 @@ Outcome execute(States &states, Userdata &ud, Run &run) {
         switch (PLAIN::execute(states.PLAIN_, ud.PLAIN_, run)) {
         case PLAIN::Outcome::done:
           run.go(places, state, "done", State::OTHER);
-          break;
+          continue;
         case PLAIN::Outcome::aborted:
           return run.end(places, state, "aborted", Outcome::aborted);
         }
@@ -283,7 +283,7 @@ Outcome execute(States &states, Userdata &ud, Run &run) {
         switch (OTHER::execute(states.OTHER_, ud.OTHER_, run)) {
         case OTHER::Outcome::done:
           run.go(places, state, "done", State::THROUGH);
-          break;
+          continue;
         case OTHER::Outcome::aborted:
           return run.end(places, state, "aborted", Outcome::aborted);
         case OTHER::Outcome::extra:

@@ -89,7 +89,7 @@ Outcome execute(States &states, Userdata &ud, Run &run) {
           return run.end(places, state, "lost", Outcome::exhausted);
         }
         run.again(places, state, "lost");
-        break;
+        continue;
       case types::EACH::Outcome::preempted:
         return run.end(places, state, "preempted", Outcome::preempted);
       }
@@ -159,7 +159,7 @@ Outcome execute(States &states, Userdata &ud, Run &run) {
           return run.end(places, state, "exhausted", Outcome::exhausted);
         }
         run.again(places, state, "exhausted");
-        break;
+        continue;
       }
     }
     SMACHAC_CATCH { run.failed(places, state); }
@@ -341,7 +341,7 @@ Outcome execute(States &states, Userdata &ud, Run &run) {
           return run.end(places, state, "again", Outcome::exhausted);
         }
         run.again(places, state, "again");
-        break;
+        continue;
       case TRIES::Outcome::good:
         return run.end(places, state, "good", Outcome::good);
       }
@@ -437,10 +437,10 @@ Outcome execute(States &states, Userdata &, Run &around) {
         switch (ended.HASTE) {
         case types::HASTE::Outcome::succeeded:
           run.exit(places, state, "succeeded");
-          break;
+          return;
         case types::HASTE::Outcome::preempted:
           run.exit(places, state, "preempted");
-          break;
+          return;
         }
         break;
       case State::TIMER: // main.yml:21
@@ -448,10 +448,10 @@ Outcome execute(States &states, Userdata &, Run &around) {
         switch (ended.TIMER) {
         case types::TIMER::Outcome::succeeded:
           run.exit(places, state, "succeeded");
-          break;
+          return;
         case types::TIMER::Outcome::preempted:
           run.exit(places, state, "preempted");
-          break;
+          return;
         }
         break;
       default:
@@ -543,7 +543,7 @@ Outcome execute(States &states, Userdata &ud, Run &run) {
           return run.end(places, state, "succeeded", Outcome::succeeded);
         }
         run.again(places, state, "succeeded");
-        break;
+        continue;
       }
     }
     SMACHAC_CATCH { run.failed(places, state); }
@@ -646,13 +646,13 @@ Outcome execute(States &states, Userdata &, Run &around) {
         switch (ended.LOOK) {
         case types::LOOK::Outcome::succeeded:
           run.exit(places, state, "succeeded");
-          break;
+          return;
         case types::LOOK::Outcome::aborted:
           run.exit(places, state, "aborted");
-          break;
+          return;
         case types::LOOK::Outcome::preempted:
           run.exit(places, state, "preempted");
-          break;
+          return;
         }
         break;
       case State::TIMER: // main.yml:6
@@ -660,10 +660,10 @@ Outcome execute(States &states, Userdata &, Run &around) {
         switch (ended.TIMER) {
         case types::TIMER::Outcome::succeeded:
           run.exit(places, state, "succeeded");
-          break;
+          return;
         case types::TIMER::Outcome::preempted:
           run.exit(places, state, "preempted");
-          break;
+          return;
         }
         break;
       default:
@@ -754,7 +754,7 @@ Outcome execute(States &states, Userdata &ud, Run &run) {
         switch (states.PAUSE.execute(ud, run.stop)) {
         case types::PAUSE::Outcome::succeeded:
           run.go(places, state, "succeeded", State::LOOK);
-          break;
+          continue;
         case types::PAUSE::Outcome::preempted:
           return run.end(places, state, "preempted", Outcome::preempted);
         }
@@ -838,7 +838,7 @@ Outcome execute(States &states, Userdata &ud, Run &run) {
           return run.end(places, state, "aborted", Outcome::exhausted);
         }
         run.again(places, state, "aborted");
-        break;
+        continue;
       case TRY::Outcome::preempted:
         return run.end(places, state, "preempted", Outcome::preempted);
       case TRY::Outcome::timeout:
@@ -849,7 +849,7 @@ Outcome execute(States &states, Userdata &ud, Run &run) {
           return run.end(places, state, "timeout", Outcome::exhausted);
         }
         run.again(places, state, "timeout");
-        break;
+        continue;
       }
     }
     SMACHAC_CATCH { run.failed(places, state); }
@@ -940,7 +940,7 @@ Outcome execute(States &states, Userdata &ud, Run &run) {
         switch (LOOK::execute(states.LOOK_, ud.LOOK_, run)) {
         case LOOK::Outcome::succeeded:
           run.go(places, state, "succeeded", State::VISIT);
-          break;
+          continue;
         case LOOK::Outcome::preempted:
           return run.end(places, state, "preempted", Outcome::stopped);
         case LOOK::Outcome::exhausted:
@@ -951,11 +951,11 @@ Outcome execute(States &states, Userdata &ud, Run &run) {
         ud.VISIT_.total.hold(ud.count.get());
         ud.VISIT_.waypoints.hold(ud.waypoints.get());
         const auto outcome = VISIT::execute(states.VISIT_, ud.VISIT_, run);
-        ud.count.hold(ud.VISIT_.total.get());
+        ud.count.replace(ud.VISIT_.total.get());
         switch (outcome) {
         case VISIT::Outcome::succeeded:
           run.go(places, state, "succeeded", State::HASTE);
-          break;
+          continue;
         }
         break;
       }
@@ -967,7 +967,7 @@ Outcome execute(States &states, Userdata &ud, Run &run) {
           return run.end(places, state, "preempted", Outcome::stopped);
         case HASTE::Outcome::timeout:
           run.go(places, state, "timeout", State::TRIES);
-          break;
+          continue;
         }
         break;
       case State::TRIES: // main.yml:27
@@ -976,14 +976,14 @@ Outcome execute(States &states, Userdata &ud, Run &run) {
           return run.end(places, state, "good", Outcome::failed);
         case TRIES::Outcome::exhausted:
           run.go(places, state, "exhausted", State::WITHOUT);
-          break;
+          continue;
         }
         break;
       case State::WITHOUT: // main.yml:36
         switch (WITHOUT::execute(states.WITHOUT_, ud.WITHOUT_, run)) {
         case WITHOUT::Outcome::succeeded:
           run.go(places, state, "succeeded", State::EACH);
-          break;
+          continue;
         case WITHOUT::Outcome::preempted:
           return run.end(places, state, "preempted", Outcome::stopped);
         }
@@ -992,7 +992,7 @@ Outcome execute(States &states, Userdata &ud, Run &run) {
         switch (EACH::execute(states.EACH_, ud.EACH_, run)) {
         case EACH::Outcome::found:
           run.go(places, state, "found", State::SHOW);
-          break;
+          continue;
         case EACH::Outcome::preempted:
           return run.end(places, state, "preempted", Outcome::stopped);
         case EACH::Outcome::exhausted:

@@ -86,7 +86,7 @@ Outcome execute(States &states, Userdata &, Run &run) {
         switch (states.CHECK_BATTERY.execute()) {
         case types::CHECK_BATTERY::Outcome::full:
           run.go(places, state, "full", State::RELEASE_BRAKES);
-          break;
+          continue;
         case types::CHECK_BATTERY::Outcome::low:
           return run.end(places, state, "low", Outcome::aborted);
         }
@@ -95,7 +95,7 @@ Outcome execute(States &states, Userdata &, Run &run) {
         switch (states.RELEASE_BRAKES.execute()) {
         case types::RELEASE_BRAKES::Outcome::succeeded:
           run.go(places, state, "succeeded", State::GO_HOME);
-          break;
+          continue;
         case types::RELEASE_BRAKES::Outcome::aborted:
           return run.end(places, state, "aborted", Outcome::aborted);
         }

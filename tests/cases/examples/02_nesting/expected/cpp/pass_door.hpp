@@ -86,7 +86,7 @@ Outcome execute(States &states, Userdata &, Run &run) {
         switch (states.GRASP_HANDLE.execute()) {
         case types::GRASP_HANDLE::Outcome::held:
           run.go(places, state, "held", State::TURN_HANDLE);
-          break;
+          continue;
         case types::GRASP_HANDLE::Outcome::missed:
           return run.end(places, state, "missed", Outcome::stuck);
         }
@@ -95,7 +95,7 @@ Outcome execute(States &states, Userdata &, Run &run) {
         switch (states.TURN_HANDLE.execute()) {
         case types::TURN_HANDLE::Outcome::turned:
           run.go(places, state, "turned", State::PULL);
-          break;
+          continue;
         case types::TURN_HANDLE::Outcome::blocked:
           return run.end(places, state, "blocked", Outcome::stuck);
         }
@@ -205,7 +205,7 @@ Outcome execute(States &states, Userdata &ud, Run &run) {
         switch (states.DRIVE_TO_DOOR.execute()) {
         case types::DRIVE_TO_DOOR::Outcome::there:
           run.go(places, state, "there", State::OPEN_DOOR);
-          break;
+          continue;
         case types::DRIVE_TO_DOOR::Outcome::lost:
           return run.end(places, state, "lost", Outcome::aborted);
         }
@@ -214,10 +214,10 @@ Outcome execute(States &states, Userdata &ud, Run &run) {
         switch (OPEN_DOOR::execute(states.OPEN_DOOR_, ud.OPEN_DOOR_, run)) {
         case OPEN_DOOR::Outcome::open:
           run.go(places, state, "open", State::DRIVE_THROUGH);
-          break;
+          continue;
         case OPEN_DOOR::Outcome::stuck:
           run.go(places, state, "stuck", State::CALL_FOR_HELP);
-          break;
+          continue;
         }
         break;
       case State::DRIVE_THROUGH: // main.yml:30

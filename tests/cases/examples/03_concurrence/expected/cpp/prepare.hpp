@@ -81,10 +81,10 @@ Outcome execute(States &states, Userdata &, Run &around) {
         switch (ended.FIND_PART) {
         case types::FIND_PART::Outcome::found:
           run.exit(places, state, "found");
-          break;
+          return;
         case types::FIND_PART::Outcome::nothing:
           run.exit(places, state, "nothing");
-          break;
+          return;
         }
         break;
       case State::WARM_UP: // main.yml:18
@@ -92,10 +92,10 @@ Outcome execute(States &states, Userdata &, Run &around) {
         switch (ended.WARM_UP) {
         case types::WARM_UP::Outcome::succeeded:
           run.exit(places, state, "succeeded");
-          break;
+          return;
         case types::WARM_UP::Outcome::preempted:
           run.exit(places, state, "preempted");
-          break;
+          return;
         }
         break;
       default:
@@ -171,7 +171,7 @@ Outcome execute(States &states, Userdata &ud, Run &run) {
         switch (FIND_AND_WARM_UP::execute(states.FIND_AND_WARM_UP_, ud.FIND_AND_WARM_UP_, run)) {
         case FIND_AND_WARM_UP::Outcome::ready:
           run.go(places, state, "ready", State::PICK);
-          break;
+          continue;
         case FIND_AND_WARM_UP::Outcome::not_ready:
           return run.end(places, state, "not_ready", Outcome::aborted);
         }

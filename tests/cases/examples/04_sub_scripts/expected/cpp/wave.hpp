@@ -75,7 +75,7 @@ Outcome execute(States &states, Userdata &ud, Run &run) {
         switch (states.TELL.execute(ud)) {
         case types::TELL::Outcome::succeeded:
           run.go(places, state, "succeeded", State::MOVE);
-          break;
+          continue;
         }
         break;
       case State::MOVE: // wave.yml:14
@@ -168,7 +168,7 @@ Outcome execute(States &states, Userdata &ud, Run &run) {
         switch (states.TELL.execute(ud)) {
         case types::TELL::Outcome::succeeded:
           run.go(places, state, "succeeded", State::MOVE);
-          break;
+          continue;
         }
         break;
       case State::MOVE: // wave.yml:14
@@ -232,7 +232,7 @@ Outcome execute(States &states, Userdata &ud, Run &run) {
         switch (WAVE_LEFT::execute(states.WAVE_LEFT_, ud.WAVE_LEFT_, run)) {
         case WAVE_LEFT::Outcome::succeeded:
           run.go(places, state, "succeeded", State::WAVE_RIGHT);
-          break;
+          continue;
         case WAVE_LEFT::Outcome::aborted:
           return run.end(places, state, "aborted", Outcome::aborted);
         }

@@ -152,7 +152,7 @@ Outcome execute(States &states, Userdata &ud, Run &run) {
         switch (states.MEASURE_WIDTH.execute(ud, run)) {
         case types::MEASURE_WIDTH::Outcome::measured:
           run.go(places, state, "measured", State::JUDGE);
-          break;
+          continue;
         }
         break;
       case State::JUDGE: // main.yml:17
@@ -161,10 +161,10 @@ Outcome execute(States &states, Userdata &ud, Run &run) {
         switch (JUDGE::execute(states.JUDGE_, ud.JUDGE_, run)) {
         case JUDGE::Outcome::fits:
           run.go(places, state, "fits", State::TELL);
-          break;
+          continue;
         case JUDGE::Outcome::too_wide:
           run.go(places, state, "too_wide", State::TELL);
-          break;
+          continue;
         }
         break;
       case State::TELL: // main.yml:32

@@ -104,21 +104,21 @@ Outcome execute(States &states, Userdata &ud, Run &run) {
           return run.end(places, state, "succeeded", Outcome::succeeded);
         case types::TRY::Outcome::aborted:
           run.go(places, state, "aborted", State::COUNT);
-          break;
+          continue;
         }
         break;
       case State::COUNT: // main.yml:14
         switch (states.COUNT.execute(ud, run)) {
         case types::COUNT::Outcome::succeeded:
           run.go(places, state, "succeeded", State::DECIDE);
-          break;
+          continue;
         }
         break;
       case State::DECIDE: // main.yml:21
         switch (states.DECIDE.execute(ud)) {
         case types::DECIDE::Outcome::again:
           run.go(places, state, "again", State::TRY);
-          break;
+          continue;
         case types::DECIDE::Outcome::enough:
           return run.end(places, state, "enough", Outcome::aborted);
         }

@@ -73,7 +73,7 @@ Outcome execute(States &states, Userdata &ud, Run &run) {
         switch (states.DRIVE.execute()) {
         case types::DRIVE::Outcome::arrived:
           run.go(places, state, "arrived", State::LOOK);
-          break;
+          continue;
         case types::DRIVE::Outcome::blocked:
           return run.end(places, state, "blocked", Outcome::blocked);
         }
@@ -150,7 +150,7 @@ Outcome execute(States &states, Userdata &ud, Run &run) {
           return run.end(places, state, "seen", Outcome::all_seen);
         }
         run.again(places, state, "seen");
-        break;
+        continue;
       case VISIT::Outcome::blocked:
         return run.end(places, state, "blocked", Outcome::blocked);
       }

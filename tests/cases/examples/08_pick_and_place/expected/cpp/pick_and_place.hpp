@@ -4,6 +4,12 @@
 #include "smachac/arm.hpp"
 #include "smachac/smachac.hpp"
 
+// A class with more outcomes than its interface is an error, whatever the warnings are.
+#if defined(__GNUC__)
+#pragma GCC diagnostic push
+#pragma GCC diagnostic error "-Wswitch"
+#endif
+
 static_assert(::smachac::PoseToJointPositionsState::smachac_interface == 0xb36feb04U,
               "smachac::PoseToJointPositionsState was written for another PoseToJointPositionsState.yml: compare them, then set smachac_interface");
 static_assert(std::is_same_v<decltype(::smachac::PoseToJointPositionsState::In::pose), const smachac::Pose &>,
@@ -115,7 +121,7 @@ Outcome execute(States &states, Userdata &ud, Run &run) {
         switch (run.wrote(states.PLAN_HOVER.execute({ud.place_pose.get(), smachac::convert<std::optional<smachac::Pose>>(ud.hover_offset.get())}, {run.out(ud.hover_joints)}), smachac::Output{"joints", ud.hover_joints})) {
         case ::smachac::PoseToJointPositionsState::Outcome::succeeded:
           run.go(places, state, "succeeded", State::MOVE_TO_HOVER);
-          break;
+          continue;
         case ::smachac::PoseToJointPositionsState::Outcome::aborted:
           return run.end(places, state, "aborted", Outcome::aborted);
         }
@@ -124,7 +130,7 @@ Outcome execute(States &states, Userdata &ud, Run &run) {
         switch (states.MOVE_TO_HOVER.execute({smachac::need(ud.hover_joints, "positions")}, run.stop)) {
         case ::smachac::MoveToJointPositionsState::Outcome::succeeded:
           run.go(places, state, "succeeded", State::CHECK_GRASP);
-          break;
+          continue;
         case ::smachac::MoveToJointPositionsState::Outcome::aborted:
           return run.end(places, state, "aborted", Outcome::aborted);
         case ::smachac::MoveToJointPositionsState::Outcome::preempted:
@@ -135,7 +141,7 @@ Outcome execute(States &states, Userdata &ud, Run &run) {
         switch (states.CHECK_GRASP.execute()) {
         case ::smachac::CheckGraspState::Outcome::succeeded:
           run.go(places, state, "succeeded", State::MOVE_DOWN);
-          break;
+          continue;
         case ::smachac::CheckGraspState::Outcome::aborted:
           return run.end(places, state, "aborted", Outcome::aborted);
         }
@@ -144,7 +150,7 @@ Outcome execute(States &states, Userdata &ud, Run &run) {
         switch (states.MOVE_DOWN.execute({ud.place_pose.get(), smachac::maybe<std::optional<smachac::Pose>>(ud.offset)}, run.stop)) {
         case ::smachac::MoveAlongState::Outcome::succeeded:
           run.go(places, state, "succeeded", State::OPEN_GRIPPER);
-          break;
+          continue;
         case ::smachac::MoveAlongState::Outcome::aborted:
           return run.end(places, state, "aborted", Outcome::aborted);
         case ::smachac::MoveAlongState::Outcome::preempted:
@@ -155,7 +161,7 @@ Outcome execute(States &states, Userdata &ud, Run &run) {
         switch (run.wrote(states.OPEN_GRIPPER.execute({run.out(ud.width)}, run.stop), smachac::Output{"width", ud.width})) {
         case ::smachac::GripperState::Outcome::succeeded:
           run.go(places, state, "succeeded", State::MOVE_UP);
-          break;
+          continue;
         case ::smachac::GripperState::Outcome::aborted:
           return run.end(places, state, "aborted", Outcome::aborted);
         case ::smachac::GripperState::Outcome::preempted:
@@ -166,7 +172,7 @@ Outcome execute(States &states, Userdata &ud, Run &run) {
         switch (states.MOVE_UP.execute({ud.place_pose.get(), smachac::convert<std::optional<smachac::Pose>>(ud.hover_offset.get())}, run.stop)) {
         case ::smachac::MoveAlongState::Outcome::succeeded:
           run.go(places, state, "succeeded", State::CHECK_PLACED);
-          break;
+          continue;
         case ::smachac::MoveAlongState::Outcome::aborted:
           return run.end(places, state, "aborted", Outcome::aborted);
         case ::smachac::MoveAlongState::Outcome::preempted:
@@ -256,7 +262,7 @@ Outcome execute(States &states, Userdata &ud, Run &run) {
         switch (run.wrote(states.OPEN_GRIPPER.execute({run.out(ud.width)}, run.stop), smachac::Output{"width", ud.width})) {
         case ::smachac::GripperState::Outcome::succeeded:
           run.go(places, state, "succeeded", State::PLAN_HOVER);
-          break;
+          continue;
         case ::smachac::GripperState::Outcome::aborted:
           return run.end(places, state, "aborted", Outcome::aborted);
         case ::smachac::GripperState::Outcome::preempted:
@@ -267,7 +273,7 @@ Outcome execute(States &states, Userdata &ud, Run &run) {
         switch (run.wrote(states.PLAN_HOVER.execute({ud.pick_pose.get(), smachac::convert<std::optional<smachac::Pose>>(ud.hover_offset.get())}, {run.out(ud.hover_joints)}), smachac::Output{"joints", ud.hover_joints})) {
         case ::smachac::PoseToJointPositionsState::Outcome::succeeded:
           run.go(places, state, "succeeded", State::MOVE_TO_HOVER);
-          break;
+          continue;
         case ::smachac::PoseToJointPositionsState::Outcome::aborted:
           return run.end(places, state, "aborted", Outcome::aborted);
         }
@@ -276,7 +282,7 @@ Outcome execute(States &states, Userdata &ud, Run &run) {
         switch (states.MOVE_TO_HOVER.execute({smachac::need(ud.hover_joints, "positions")}, run.stop)) {
         case ::smachac::MoveToJointPositionsState::Outcome::succeeded:
           run.go(places, state, "succeeded", State::MOVE_DOWN);
-          break;
+          continue;
         case ::smachac::MoveToJointPositionsState::Outcome::aborted:
           return run.end(places, state, "aborted", Outcome::aborted);
         case ::smachac::MoveToJointPositionsState::Outcome::preempted:
@@ -287,7 +293,7 @@ Outcome execute(States &states, Userdata &ud, Run &run) {
         switch (states.MOVE_DOWN.execute({ud.pick_pose.get(), smachac::maybe<std::optional<smachac::Pose>>(ud.offset)}, run.stop)) {
         case ::smachac::MoveAlongState::Outcome::succeeded:
           run.go(places, state, "succeeded", State::CLOSE_GRIPPER);
-          break;
+          continue;
         case ::smachac::MoveAlongState::Outcome::aborted:
           return run.end(places, state, "aborted", Outcome::aborted);
         case ::smachac::MoveAlongState::Outcome::preempted:
@@ -298,7 +304,7 @@ Outcome execute(States &states, Userdata &ud, Run &run) {
         switch (run.wrote(states.CLOSE_GRIPPER.execute({run.out(ud.width)}, run.stop), smachac::Output{"width", ud.width})) {
         case ::smachac::GripperState::Outcome::succeeded:
           run.go(places, state, "succeeded", State::LIFT);
-          break;
+          continue;
         case ::smachac::GripperState::Outcome::aborted:
           return run.end(places, state, "aborted", Outcome::aborted);
         case ::smachac::GripperState::Outcome::preempted:
@@ -309,7 +315,7 @@ Outcome execute(States &states, Userdata &ud, Run &run) {
         switch (states.LIFT.execute({ud.pick_pose.get(), smachac::convert<std::optional<smachac::Pose>>(ud.hover_offset.get())}, run.stop)) {
         case ::smachac::MoveAlongState::Outcome::succeeded:
           run.go(places, state, "succeeded", State::CHECK_GRASP);
-          break;
+          continue;
         case ::smachac::MoveAlongState::Outcome::aborted:
           return run.end(places, state, "aborted", Outcome::aborted);
         case ::smachac::MoveAlongState::Outcome::preempted:
@@ -410,7 +416,7 @@ Outcome execute(States &states, Userdata &ud, Run &run) {
         switch (run.wrote(states.LOAD_TABLE.execute({ud.table_pose.get(), smachac::convert<std::optional<std::string>>(ud.table_frame.get())}, {run.out(ud.table_pose)}), smachac::Output{"pose", ud.table_pose})) {
         case ::smachac::LoadModelState::Outcome::succeeded:
           run.go(places, state, "succeeded", State::LOAD_BLOCK);
-          break;
+          continue;
         case ::smachac::LoadModelState::Outcome::aborted:
           return run.end(places, state, "aborted", Outcome::aborted);
         }
@@ -419,7 +425,7 @@ Outcome execute(States &states, Userdata &ud, Run &run) {
         switch (run.wrote(states.LOAD_BLOCK.execute({ud.block_pose.get(), smachac::maybe<std::optional<std::string>>(ud.reference_frame)}, {run.out(ud.block_pose)}), smachac::Output{"pose", ud.block_pose})) {
         case ::smachac::LoadModelState::Outcome::succeeded:
           run.go(places, state, "succeeded", State::LOAD_MARK);
-          break;
+          continue;
         case ::smachac::LoadModelState::Outcome::aborted:
           return run.end(places, state, "aborted", Outcome::aborted);
         }
@@ -428,7 +434,7 @@ Outcome execute(States &states, Userdata &ud, Run &run) {
         switch (run.wrote(states.LOAD_MARK.execute({ud.goal_pose.get(), smachac::maybe<std::optional<std::string>>(ud.reference_frame)}, {run.out(ud.goal_pose)}), smachac::Output{"pose", ud.goal_pose})) {
         case ::smachac::LoadModelState::Outcome::succeeded:
           run.go(places, state, "succeeded", State::MOVE_TO_START);
-          break;
+          continue;
         case ::smachac::LoadModelState::Outcome::aborted:
           return run.end(places, state, "aborted", Outcome::aborted);
         }
@@ -437,7 +443,7 @@ Outcome execute(States &states, Userdata &ud, Run &run) {
         switch (states.MOVE_TO_START.execute({smachac::convert<std::vector<double>>(ud.home.get())}, run.stop)) {
         case ::smachac::MoveToJointPositionsState::Outcome::succeeded:
           run.go(places, state, "succeeded", State::PICK_BLOCK);
-          break;
+          continue;
         case ::smachac::MoveToJointPositionsState::Outcome::aborted:
           return run.end(places, state, "aborted", Outcome::aborted);
         case ::smachac::MoveToJointPositionsState::Outcome::preempted:
@@ -450,10 +456,10 @@ Outcome execute(States &states, Userdata &ud, Run &run) {
         switch (PICK_BLOCK::execute(states.PICK_BLOCK_, ud.PICK_BLOCK_, run)) {
         case PICK_BLOCK::Outcome::succeeded:
           run.go(places, state, "succeeded", State::PLACE_BLOCK);
-          break;
+          continue;
         case PICK_BLOCK::Outcome::aborted:
           run.go(places, state, "aborted", State::LET_GO);
-          break;
+          continue;
         }
         break;
       case State::PLACE_BLOCK: // main.yml:50
@@ -462,10 +468,10 @@ Outcome execute(States &states, Userdata &ud, Run &run) {
         switch (PLACE_BLOCK::execute(states.PLACE_BLOCK_, ud.PLACE_BLOCK_, run)) {
         case PLACE_BLOCK::Outcome::succeeded:
           run.go(places, state, "succeeded", State::GO_HOME);
-          break;
+          continue;
         case PLACE_BLOCK::Outcome::aborted:
           run.go(places, state, "aborted", State::LET_GO);
-          break;
+          continue;
         }
         break;
       case State::GO_HOME: // main.yml:56
@@ -482,10 +488,10 @@ Outcome execute(States &states, Userdata &ud, Run &run) {
         switch (run.wrote(states.LET_GO.execute({run.out(ud.gripper_width)}, run.stop), smachac::Output{"width", ud.gripper_width})) {
         case ::smachac::GripperState::Outcome::succeeded:
           run.go(places, state, "succeeded", State::RETREAT);
-          break;
+          continue;
         case ::smachac::GripperState::Outcome::aborted:
           run.go(places, state, "aborted", State::RETREAT);
-          break;
+          continue;
         case ::smachac::GripperState::Outcome::preempted:
           return run.end(places, state, "preempted", Outcome::aborted);
         }
@@ -521,3 +527,7 @@ inline Outcome run(States &states, Userdata &ud, smachac::Observer *observer,
 }
 
 } // namespace pick_and_place
+
+#if defined(__GNUC__)
+#pragma GCC diagnostic pop
+#endif

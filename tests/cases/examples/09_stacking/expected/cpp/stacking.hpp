@@ -4,6 +4,12 @@
 #include "smachac/arm.hpp"
 #include "smachac/smachac.hpp"
 
+// A class with more outcomes than its interface is an error, whatever the warnings are.
+#if defined(__GNUC__)
+#pragma GCC diagnostic push
+#pragma GCC diagnostic error "-Wswitch"
+#endif
+
 static_assert(::smachac::PoseToJointPositionsState::smachac_interface == 0xb36feb04U,
               "smachac::PoseToJointPositionsState was written for another PoseToJointPositionsState.yml: compare them, then set smachac_interface");
 static_assert(std::is_same_v<decltype(::smachac::PoseToJointPositionsState::In::pose), const smachac::Pose &>,
@@ -115,7 +121,7 @@ Outcome execute(States &states, Userdata &ud, Run &run) {
         switch (run.wrote(states.PLAN_HOVER.execute({smachac::need(ud.place_pose, "pose"), smachac::convert<std::optional<smachac::Pose>>(ud.hover_offset.get())}, {run.out(ud.hover_joints)}), smachac::Output{"joints", ud.hover_joints})) {
         case ::smachac::PoseToJointPositionsState::Outcome::succeeded:
           run.go(places, state, "succeeded", State::MOVE_TO_HOVER);
-          break;
+          continue;
         case ::smachac::PoseToJointPositionsState::Outcome::aborted:
           return run.end(places, state, "aborted", Outcome::aborted);
         }
@@ -124,7 +130,7 @@ Outcome execute(States &states, Userdata &ud, Run &run) {
         switch (states.MOVE_TO_HOVER.execute({smachac::need(ud.hover_joints, "positions")}, run.stop)) {
         case ::smachac::MoveToJointPositionsState::Outcome::succeeded:
           run.go(places, state, "succeeded", State::CHECK_GRASP);
-          break;
+          continue;
         case ::smachac::MoveToJointPositionsState::Outcome::aborted:
           return run.end(places, state, "aborted", Outcome::aborted);
         case ::smachac::MoveToJointPositionsState::Outcome::preempted:
@@ -135,7 +141,7 @@ Outcome execute(States &states, Userdata &ud, Run &run) {
         switch (states.CHECK_GRASP.execute()) {
         case ::smachac::CheckGraspState::Outcome::succeeded:
           run.go(places, state, "succeeded", State::MOVE_DOWN);
-          break;
+          continue;
         case ::smachac::CheckGraspState::Outcome::aborted:
           return run.end(places, state, "aborted", Outcome::aborted);
         }
@@ -144,7 +150,7 @@ Outcome execute(States &states, Userdata &ud, Run &run) {
         switch (states.MOVE_DOWN.execute({smachac::need(ud.place_pose, "pose"), smachac::maybe<std::optional<smachac::Pose>>(ud.offset)}, run.stop)) {
         case ::smachac::MoveAlongState::Outcome::succeeded:
           run.go(places, state, "succeeded", State::OPEN_GRIPPER);
-          break;
+          continue;
         case ::smachac::MoveAlongState::Outcome::aborted:
           return run.end(places, state, "aborted", Outcome::aborted);
         case ::smachac::MoveAlongState::Outcome::preempted:
@@ -155,7 +161,7 @@ Outcome execute(States &states, Userdata &ud, Run &run) {
         switch (run.wrote(states.OPEN_GRIPPER.execute({run.out(ud.width)}, run.stop), smachac::Output{"width", ud.width})) {
         case ::smachac::GripperState::Outcome::succeeded:
           run.go(places, state, "succeeded", State::MOVE_UP);
-          break;
+          continue;
         case ::smachac::GripperState::Outcome::aborted:
           return run.end(places, state, "aborted", Outcome::aborted);
         case ::smachac::GripperState::Outcome::preempted:
@@ -166,7 +172,7 @@ Outcome execute(States &states, Userdata &ud, Run &run) {
         switch (states.MOVE_UP.execute({smachac::need(ud.place_pose, "pose"), smachac::convert<std::optional<smachac::Pose>>(ud.hover_offset.get())}, run.stop)) {
         case ::smachac::MoveAlongState::Outcome::succeeded:
           run.go(places, state, "succeeded", State::CHECK_PLACED);
-          break;
+          continue;
         case ::smachac::MoveAlongState::Outcome::aborted:
           return run.end(places, state, "aborted", Outcome::aborted);
         case ::smachac::MoveAlongState::Outcome::preempted:
@@ -256,7 +262,7 @@ Outcome execute(States &states, Userdata &ud, Run &run) {
         switch (run.wrote(states.OPEN_GRIPPER.execute({run.out(ud.width)}, run.stop), smachac::Output{"width", ud.width})) {
         case ::smachac::GripperState::Outcome::succeeded:
           run.go(places, state, "succeeded", State::PLAN_HOVER);
-          break;
+          continue;
         case ::smachac::GripperState::Outcome::aborted:
           return run.end(places, state, "aborted", Outcome::aborted);
         case ::smachac::GripperState::Outcome::preempted:
@@ -267,7 +273,7 @@ Outcome execute(States &states, Userdata &ud, Run &run) {
         switch (run.wrote(states.PLAN_HOVER.execute({ud.pick_pose.get(), smachac::convert<std::optional<smachac::Pose>>(ud.hover_offset.get())}, {run.out(ud.hover_joints)}), smachac::Output{"joints", ud.hover_joints})) {
         case ::smachac::PoseToJointPositionsState::Outcome::succeeded:
           run.go(places, state, "succeeded", State::MOVE_TO_HOVER);
-          break;
+          continue;
         case ::smachac::PoseToJointPositionsState::Outcome::aborted:
           return run.end(places, state, "aborted", Outcome::aborted);
         }
@@ -276,7 +282,7 @@ Outcome execute(States &states, Userdata &ud, Run &run) {
         switch (states.MOVE_TO_HOVER.execute({smachac::need(ud.hover_joints, "positions")}, run.stop)) {
         case ::smachac::MoveToJointPositionsState::Outcome::succeeded:
           run.go(places, state, "succeeded", State::MOVE_DOWN);
-          break;
+          continue;
         case ::smachac::MoveToJointPositionsState::Outcome::aborted:
           return run.end(places, state, "aborted", Outcome::aborted);
         case ::smachac::MoveToJointPositionsState::Outcome::preempted:
@@ -287,7 +293,7 @@ Outcome execute(States &states, Userdata &ud, Run &run) {
         switch (states.MOVE_DOWN.execute({ud.pick_pose.get(), smachac::maybe<std::optional<smachac::Pose>>(ud.offset)}, run.stop)) {
         case ::smachac::MoveAlongState::Outcome::succeeded:
           run.go(places, state, "succeeded", State::CLOSE_GRIPPER);
-          break;
+          continue;
         case ::smachac::MoveAlongState::Outcome::aborted:
           return run.end(places, state, "aborted", Outcome::aborted);
         case ::smachac::MoveAlongState::Outcome::preempted:
@@ -298,7 +304,7 @@ Outcome execute(States &states, Userdata &ud, Run &run) {
         switch (run.wrote(states.CLOSE_GRIPPER.execute({run.out(ud.width)}, run.stop), smachac::Output{"width", ud.width})) {
         case ::smachac::GripperState::Outcome::succeeded:
           run.go(places, state, "succeeded", State::LIFT);
-          break;
+          continue;
         case ::smachac::GripperState::Outcome::aborted:
           return run.end(places, state, "aborted", Outcome::aborted);
         case ::smachac::GripperState::Outcome::preempted:
@@ -309,7 +315,7 @@ Outcome execute(States &states, Userdata &ud, Run &run) {
         switch (states.LIFT.execute({ud.pick_pose.get(), smachac::convert<std::optional<smachac::Pose>>(ud.hover_offset.get())}, run.stop)) {
         case ::smachac::MoveAlongState::Outcome::succeeded:
           run.go(places, state, "succeeded", State::CHECK_GRASP);
-          break;
+          continue;
         case ::smachac::MoveAlongState::Outcome::aborted:
           return run.end(places, state, "aborted", Outcome::aborted);
         case ::smachac::MoveAlongState::Outcome::preempted:
@@ -400,7 +406,7 @@ Outcome execute(States &states, Userdata &ud, Run &run) {
         switch (run.wrote(states.PLAN_HOVER.execute({ud.place_pose.get(), smachac::convert<std::optional<smachac::Pose>>(ud.hover_offset.get())}, {run.out(ud.hover_joints)}), smachac::Output{"joints", ud.hover_joints})) {
         case ::smachac::PoseToJointPositionsState::Outcome::succeeded:
           run.go(places, state, "succeeded", State::MOVE_TO_HOVER);
-          break;
+          continue;
         case ::smachac::PoseToJointPositionsState::Outcome::aborted:
           return run.end(places, state, "aborted", Outcome::aborted);
         }
@@ -409,7 +415,7 @@ Outcome execute(States &states, Userdata &ud, Run &run) {
         switch (states.MOVE_TO_HOVER.execute({smachac::need(ud.hover_joints, "positions")}, run.stop)) {
         case ::smachac::MoveToJointPositionsState::Outcome::succeeded:
           run.go(places, state, "succeeded", State::CHECK_GRASP);
-          break;
+          continue;
         case ::smachac::MoveToJointPositionsState::Outcome::aborted:
           return run.end(places, state, "aborted", Outcome::aborted);
         case ::smachac::MoveToJointPositionsState::Outcome::preempted:
@@ -420,7 +426,7 @@ Outcome execute(States &states, Userdata &ud, Run &run) {
         switch (states.CHECK_GRASP.execute()) {
         case ::smachac::CheckGraspState::Outcome::succeeded:
           run.go(places, state, "succeeded", State::MOVE_DOWN);
-          break;
+          continue;
         case ::smachac::CheckGraspState::Outcome::aborted:
           return run.end(places, state, "aborted", Outcome::aborted);
         }
@@ -429,7 +435,7 @@ Outcome execute(States &states, Userdata &ud, Run &run) {
         switch (states.MOVE_DOWN.execute({ud.place_pose.get(), smachac::maybe<std::optional<smachac::Pose>>(ud.offset)}, run.stop)) {
         case ::smachac::MoveAlongState::Outcome::succeeded:
           run.go(places, state, "succeeded", State::OPEN_GRIPPER);
-          break;
+          continue;
         case ::smachac::MoveAlongState::Outcome::aborted:
           return run.end(places, state, "aborted", Outcome::aborted);
         case ::smachac::MoveAlongState::Outcome::preempted:
@@ -440,7 +446,7 @@ Outcome execute(States &states, Userdata &ud, Run &run) {
         switch (run.wrote(states.OPEN_GRIPPER.execute({run.out(ud.width)}, run.stop), smachac::Output{"width", ud.width})) {
         case ::smachac::GripperState::Outcome::succeeded:
           run.go(places, state, "succeeded", State::MOVE_UP);
-          break;
+          continue;
         case ::smachac::GripperState::Outcome::aborted:
           return run.end(places, state, "aborted", Outcome::aborted);
         case ::smachac::GripperState::Outcome::preempted:
@@ -451,7 +457,7 @@ Outcome execute(States &states, Userdata &ud, Run &run) {
         switch (states.MOVE_UP.execute({ud.place_pose.get(), smachac::convert<std::optional<smachac::Pose>>(ud.hover_offset.get())}, run.stop)) {
         case ::smachac::MoveAlongState::Outcome::succeeded:
           run.go(places, state, "succeeded", State::CHECK_PLACED);
-          break;
+          continue;
         case ::smachac::MoveAlongState::Outcome::aborted:
           return run.end(places, state, "aborted", Outcome::aborted);
         case ::smachac::MoveAlongState::Outcome::preempted:
@@ -541,7 +547,7 @@ Outcome execute(States &states, Userdata &ud, Run &run) {
         switch (run.wrote(states.OPEN_GRIPPER.execute({run.out(ud.width)}, run.stop), smachac::Output{"width", ud.width})) {
         case ::smachac::GripperState::Outcome::succeeded:
           run.go(places, state, "succeeded", State::PLAN_HOVER);
-          break;
+          continue;
         case ::smachac::GripperState::Outcome::aborted:
           return run.end(places, state, "aborted", Outcome::aborted);
         case ::smachac::GripperState::Outcome::preempted:
@@ -552,7 +558,7 @@ Outcome execute(States &states, Userdata &ud, Run &run) {
         switch (run.wrote(states.PLAN_HOVER.execute({ud.pick_pose.get(), smachac::convert<std::optional<smachac::Pose>>(ud.hover_offset.get())}, {run.out(ud.hover_joints)}), smachac::Output{"joints", ud.hover_joints})) {
         case ::smachac::PoseToJointPositionsState::Outcome::succeeded:
           run.go(places, state, "succeeded", State::MOVE_TO_HOVER);
-          break;
+          continue;
         case ::smachac::PoseToJointPositionsState::Outcome::aborted:
           return run.end(places, state, "aborted", Outcome::aborted);
         }
@@ -561,7 +567,7 @@ Outcome execute(States &states, Userdata &ud, Run &run) {
         switch (states.MOVE_TO_HOVER.execute({smachac::need(ud.hover_joints, "positions")}, run.stop)) {
         case ::smachac::MoveToJointPositionsState::Outcome::succeeded:
           run.go(places, state, "succeeded", State::MOVE_DOWN);
-          break;
+          continue;
         case ::smachac::MoveToJointPositionsState::Outcome::aborted:
           return run.end(places, state, "aborted", Outcome::aborted);
         case ::smachac::MoveToJointPositionsState::Outcome::preempted:
@@ -572,7 +578,7 @@ Outcome execute(States &states, Userdata &ud, Run &run) {
         switch (states.MOVE_DOWN.execute({ud.pick_pose.get(), smachac::maybe<std::optional<smachac::Pose>>(ud.offset)}, run.stop)) {
         case ::smachac::MoveAlongState::Outcome::succeeded:
           run.go(places, state, "succeeded", State::CLOSE_GRIPPER);
-          break;
+          continue;
         case ::smachac::MoveAlongState::Outcome::aborted:
           return run.end(places, state, "aborted", Outcome::aborted);
         case ::smachac::MoveAlongState::Outcome::preempted:
@@ -583,7 +589,7 @@ Outcome execute(States &states, Userdata &ud, Run &run) {
         switch (run.wrote(states.CLOSE_GRIPPER.execute({run.out(ud.width)}, run.stop), smachac::Output{"width", ud.width})) {
         case ::smachac::GripperState::Outcome::succeeded:
           run.go(places, state, "succeeded", State::LIFT);
-          break;
+          continue;
         case ::smachac::GripperState::Outcome::aborted:
           return run.end(places, state, "aborted", Outcome::aborted);
         case ::smachac::GripperState::Outcome::preempted:
@@ -594,7 +600,7 @@ Outcome execute(States &states, Userdata &ud, Run &run) {
         switch (states.LIFT.execute({ud.pick_pose.get(), smachac::convert<std::optional<smachac::Pose>>(ud.hover_offset.get())}, run.stop)) {
         case ::smachac::MoveAlongState::Outcome::succeeded:
           run.go(places, state, "succeeded", State::CHECK_GRASP);
-          break;
+          continue;
         case ::smachac::MoveAlongState::Outcome::aborted:
           return run.end(places, state, "aborted", Outcome::aborted);
         case ::smachac::MoveAlongState::Outcome::preempted:
@@ -732,7 +738,7 @@ Outcome execute(States &states, Userdata &ud, Run &run) {
         switch (run.wrote(states.LOAD_TABLE.execute({ud.table_pose.get(), smachac::convert<std::optional<std::string>>(ud.table_frame.get())}, {run.out(ud.table_pose)}), smachac::Output{"pose", ud.table_pose})) {
         case ::smachac::LoadModelState::Outcome::succeeded:
           run.go(places, state, "succeeded", State::LOAD_FIRST);
-          break;
+          continue;
         case ::smachac::LoadModelState::Outcome::aborted:
           return run.end(places, state, "aborted", Outcome::aborted);
         }
@@ -741,7 +747,7 @@ Outcome execute(States &states, Userdata &ud, Run &run) {
         switch (run.wrote(states.LOAD_FIRST.execute({ud.first_pose.get(), smachac::maybe<std::optional<std::string>>(ud.reference_frame)}, {run.out(ud.first_pose)}), smachac::Output{"pose", ud.first_pose})) {
         case ::smachac::LoadModelState::Outcome::succeeded:
           run.go(places, state, "succeeded", State::LOAD_SECOND);
-          break;
+          continue;
         case ::smachac::LoadModelState::Outcome::aborted:
           return run.end(places, state, "aborted", Outcome::aborted);
         }
@@ -750,7 +756,7 @@ Outcome execute(States &states, Userdata &ud, Run &run) {
         switch (run.wrote(states.LOAD_SECOND.execute({ud.second_pose.get(), smachac::maybe<std::optional<std::string>>(ud.reference_frame)}, {run.out(ud.second_pose)}), smachac::Output{"pose", ud.second_pose})) {
         case ::smachac::LoadModelState::Outcome::succeeded:
           run.go(places, state, "succeeded", State::LOAD_MARK);
-          break;
+          continue;
         case ::smachac::LoadModelState::Outcome::aborted:
           return run.end(places, state, "aborted", Outcome::aborted);
         }
@@ -759,7 +765,7 @@ Outcome execute(States &states, Userdata &ud, Run &run) {
         switch (run.wrote(states.LOAD_MARK.execute({ud.goal_pose.get(), smachac::maybe<std::optional<std::string>>(ud.reference_frame)}, {run.out(ud.goal_pose)}), smachac::Output{"pose", ud.goal_pose})) {
         case ::smachac::LoadModelState::Outcome::succeeded:
           run.go(places, state, "succeeded", State::PLAN_STACK);
-          break;
+          continue;
         case ::smachac::LoadModelState::Outcome::aborted:
           return run.end(places, state, "aborted", Outcome::aborted);
         }
@@ -768,14 +774,14 @@ Outcome execute(States &states, Userdata &ud, Run &run) {
         switch (states.PLAN_STACK.execute(ud, run)) {
         case types::PLAN_STACK::Outcome::succeeded:
           run.go(places, state, "succeeded", State::MOVE_TO_START);
-          break;
+          continue;
         }
         break;
       case State::MOVE_TO_START: // main.yml:60
         switch (states.MOVE_TO_START.execute({smachac::convert<std::vector<double>>(ud.home.get())}, run.stop)) {
         case ::smachac::MoveToJointPositionsState::Outcome::succeeded:
           run.go(places, state, "succeeded", State::PICK_FIRST);
-          break;
+          continue;
         case ::smachac::MoveToJointPositionsState::Outcome::aborted:
           return run.end(places, state, "aborted", Outcome::aborted);
         case ::smachac::MoveToJointPositionsState::Outcome::preempted:
@@ -788,10 +794,10 @@ Outcome execute(States &states, Userdata &ud, Run &run) {
         switch (PICK_FIRST::execute(states.PICK_FIRST_, ud.PICK_FIRST_, run)) {
         case PICK_FIRST::Outcome::succeeded:
           run.go(places, state, "succeeded", State::PLACE_FIRST);
-          break;
+          continue;
         case PICK_FIRST::Outcome::aborted:
           run.go(places, state, "aborted", State::LET_GO);
-          break;
+          continue;
         }
         break;
       case State::PLACE_FIRST: // main.yml:71
@@ -800,10 +806,10 @@ Outcome execute(States &states, Userdata &ud, Run &run) {
         switch (PLACE_FIRST::execute(states.PLACE_FIRST_, ud.PLACE_FIRST_, run)) {
         case PLACE_FIRST::Outcome::succeeded:
           run.go(places, state, "succeeded", State::PICK_SECOND);
-          break;
+          continue;
         case PLACE_FIRST::Outcome::aborted:
           run.go(places, state, "aborted", State::LET_GO);
-          break;
+          continue;
         }
         break;
       case State::PICK_SECOND: // main.yml:77
@@ -812,10 +818,10 @@ Outcome execute(States &states, Userdata &ud, Run &run) {
         switch (PICK_SECOND::execute(states.PICK_SECOND_, ud.PICK_SECOND_, run)) {
         case PICK_SECOND::Outcome::succeeded:
           run.go(places, state, "succeeded", State::PLACE_SECOND);
-          break;
+          continue;
         case PICK_SECOND::Outcome::aborted:
           run.go(places, state, "aborted", State::LET_GO);
-          break;
+          continue;
         }
         break;
       case State::PLACE_SECOND: // main.yml:83
@@ -824,20 +830,20 @@ Outcome execute(States &states, Userdata &ud, Run &run) {
         switch (PLACE_SECOND::execute(states.PLACE_SECOND_, ud.PLACE_SECOND_, run)) {
         case PLACE_SECOND::Outcome::succeeded:
           run.go(places, state, "succeeded", State::CHECK_FIRST);
-          break;
+          continue;
         case PLACE_SECOND::Outcome::aborted:
           run.go(places, state, "aborted", State::LET_GO);
-          break;
+          continue;
         }
         break;
       case State::CHECK_FIRST: // main.yml:89
         switch (run.wrote(states.CHECK_FIRST.execute({ud.goal_pose.get()}, {run.out(ud.first_error)}), smachac::Output{"error", ud.first_error})) {
         case ::smachac::CheckPlacedState::Outcome::succeeded:
           run.go(places, state, "succeeded", State::GO_HOME);
-          break;
+          continue;
         case ::smachac::CheckPlacedState::Outcome::aborted:
           run.go(places, state, "aborted", State::LET_GO);
-          break;
+          continue;
         }
         break;
       case State::GO_HOME: // main.yml:96
@@ -854,10 +860,10 @@ Outcome execute(States &states, Userdata &ud, Run &run) {
         switch (run.wrote(states.LET_GO.execute({run.out(ud.gripper_width)}, run.stop), smachac::Output{"width", ud.gripper_width})) {
         case ::smachac::GripperState::Outcome::succeeded:
           run.go(places, state, "succeeded", State::RETREAT);
-          break;
+          continue;
         case ::smachac::GripperState::Outcome::aborted:
           run.go(places, state, "aborted", State::RETREAT);
-          break;
+          continue;
         case ::smachac::GripperState::Outcome::preempted:
           return run.end(places, state, "preempted", Outcome::aborted);
         }
@@ -893,3 +899,7 @@ inline Outcome run(States &states, Userdata &ud, smachac::Observer *observer,
 }
 
 } // namespace stacking
+
+#if defined(__GNUC__)
+#pragma GCC diagnostic pop
+#endif

@@ -1,0 +1,127 @@
+"""Compiled C++ against what SMACH itself did, machine by recorded machine.
+
+The compilers share the machines; with SMACHAC_CPP=all in the environment each gets every one, and
+so do the sanitizers.
+"""
+
+from __future__ import annotations
+
+import functools
+import os
+from collections.abc import Iterable
+from pathlib import Path
+from typing import Any
+
+import pytest
+import test_ir_vectors as recorded
+from compiler import SANITIZED, THREADED, Compiler, compilers, last_with
+from ir_vectors import nodes_of
+from vectors import Part, Ran, part, replay
+
+Json = Any
+
+EVERYTHING = os.environ.get("SMACHAC_CPP") == "all"
+
+REFUSED = {
+    "h089-concurrence-empty": "it has no states",
+    "h116-iterator-items-from-userdata": "`jobs` is `any`, not a list of items",
+    "h120-iterator-items-key-missing": "`nope` is `any`, not a list of items",
+    "h121-iterator-without-child": "it has no states",
+}
+"""What C++ cannot say, and what it says of it."""
+
+NOTHING = "an enum is never None"
+DECLARED = "an enum has no outcome that it does not declare"
+KEYS = "a struct has no key that nobody declares"
+
+DEVIATIONS = {
+    "h066-reference-sharing": "containers copy values at their borders",
+    "h082-concurrence-unregistered-child-outcome": DECLARED,
+    "h097-concurrence-child-none": NOTHING,
+    "h114-iterator-child-none": NOTHING,
+    "h115-iterator-raw-userdata": KEYS,
+    "h131-preempt-nested-unserviced": "a request that was answered is gone everywhere",
+    "A20-006": KEYS,
+    "A20-034": DECLARED,
+    "A20-139": KEYS,
+    "A20-226": DECLARED,
+    "A20-338": DECLARED,
+    "A20-370": KEYS,
+}
+"""Where C++ does something else, and why."""
+
+NAMES = [name for name in recorded.RUN if name not in REFUSED]
+CHUNK = 100
+
+
+def shares() -> list[Any]:
+    """The machines of each compiler, in parts for a program each."""
+    found = []
+    for at, compiler in enumerate(compilers()):
+        names = NAMES if EVERYTHING else NAMES[at :: len(compilers())]
+        for start in range(0, len(names), CHUNK):
+            chunk = names[start : start + CHUNK]
+            found.append(pytest.param(compiler, chunk, id=f"{compiler.name}-{chunk[0]}"))
+    return found or [pytest.param(None, (), marks=pytest.mark.skip("no C++ compiler"))]
+
+
+@functools.cache
+def made(name: str) -> Part:
+    found = part(recorded.CASES[name], f"v{recorded.RUN.index(name)}")
+    assert isinstance(found, Part), found
+    return found
+
+
+def told(case: Json, ran: Ran) -> Json:
+    """One run in the form that is compared."""
+    nodes = dict(nodes_of(case))
+    concurrences = {path for path, node in nodes.items() if node["type"] == "concurrence"}
+    leaves = {path for path, node in nodes.items() if node["type"] == "leaf"}
+    result = {
+        "outcome": ran.outcome,
+        "category": ran.category,
+        "userdata": ran.userdata["/root"],
+        "scopes": {
+            path.removeprefix("/root"): held
+            for path, held in ran.userdata.items()
+            if path not in ("", "/root")
+        },
+        "events": recorded._nested(
+            ran.events, concurrences, leaves if case.get("preempt") else set()
+        ),
+    }
+    return result if "parent" not in case else {**result, "parent": ran.userdata[""]}
+
+
+def agree(names: Iterable[str], compiler: Compiler, folder: Path, *flags: str) -> None:
+    """Compare compiled machines with the interpreter, which does what was recorded."""
+    names = list(names)
+    runs = replay([made(name) for name in names], compiler, folder, *flags)
+    for name in names:
+        case = recorded.CASES[name]
+        ours, theirs = recorded.replay(case), [told(case, ran) for ran in runs[name]]
+        if name in DEVIATIONS:
+            assert theirs != ours, f"{name} does not deviate any more"
+        else:
+            assert theirs == ours, name
+
+
+@pytest.mark.parametrize(("compiler", "names"), shares())
+def test_machines_do_what_smach_did(compiler: Compiler, names: list[str], tmp_path: Path) -> None:
+    agree(names, compiler, tmp_path)
+
+
+@pytest.mark.parametrize("flags", [SANITIZED, THREADED], ids=["memory", "threads"])
+def test_sanitizers_find_nothing(flags: tuple[str, ...], tmp_path: Path) -> None:
+    names = [name for name in NAMES if flags == SANITIZED or has_branches(name)]
+    few = names if EVERYTHING else names[:: len(names) // 16]
+    agree(few, last_with(*flags), tmp_path, *flags)
+
+
+def has_branches(name: str) -> bool:
+    return any(node["type"] == "concurrence" for _, node in nodes_of(recorded.CASES[name]))
+
+
+@pytest.mark.parametrize("name", REFUSED)
+def test_what_cpp_cannot_say_is_refused(name: str) -> None:
+    assert part(recorded.CASES[name], "v") == [f"not for C++: {REFUSED[name]}"]
