@@ -377,7 +377,9 @@ class _Resolver:
             known = [*names, *([] if role else schema.CONTAINERS)]
             self.report.append(problems.template_not_found(word, searched, known))
             return StateType(name=word.text, open=True), role or nested
-        return found, role or ("StateMachine" if found.kind == "container" else nested)
+        # Some meta blocks call a state a container.
+        is_container = found.kind == "container" and not found.prints_itself
+        return found, role or ("StateMachine" if is_container else nested)
 
 
 def _unknown(name: Word, fields: Fields, place: _Place) -> State:

@@ -359,13 +359,15 @@ def _read_template(
     name: str, template: Source, file: str, library: Library, below: frozenset[str]
 ) -> StateType:
     """The state type of a template in SMACHA's style: its meta block, else the type it extends,
-    else an open one with the outcomes that stand in its code."""
+    else an open one. Outcomes that neither tells may stand in its code."""
     whole = _prints_itself(file, library)
     found = meta.read_meta(template)
+    extended = meta.extended(template).partition(".")[0]
+    known = _find(extended, library, [], below) if extended else None
+    outcomes = found.outcomes if found is not None else ()
+    outcomes = outcomes or (known.outcomes if known is not None else ())
+    outcomes = outcomes or meta.outcomes_in_code(template)
     if found is None:
-        extended = meta.extended(template).partition(".")[0]
-        known = _find(extended, library, [], below) if extended else None
-        outcomes = known.outcomes if known is not None else meta.outcomes_in_code(template)
         known = known or StateType(name=name, open=True)
         return replace(
             known, name=name, outcomes=outcomes, code={"python": file}, prints_itself=whole,
@@ -378,8 +380,9 @@ def _read_template(
         variables={key: VariableType(name=key, required=False) for key in found.variables},
         input_keys=tuple(Key(name=word.text, span=word.span) for word in found.input_keys),
         output_keys=tuple(Key(name=word.text, span=word.span) for word in found.output_keys),
-        outcomes=found.outcomes,
+        outcomes=outcomes,
         given=_ALL_GIVEN,
         code={"python": file},
         prints_itself=whole,
+        open=found.kind == "state" and not outcomes,
     )

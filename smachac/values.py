@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import ast
+
 from smachac.ir.expressions import looks_like_expression, parse_expression
 from smachac.ir.nodes import Data, Expression, Struct, Value
 from smachac.syntax import Scalar, Seq, Tree
@@ -20,8 +22,13 @@ def as_written(tree: Tree) -> Value:
 def _data(tree: Tree, code: bool, ticks: bool = False) -> Data:
     if isinstance(tree, Scalar):
         data = _scalar(tree, code)
-        ticked = ticks and isinstance(data, Expression) and tree.value != data.text
-        return str(tree.value).strip() if ticked else data
+        if not ticks or not isinstance(tree.value, str):
+            return data
+        if isinstance(data, Expression):
+            return data if tree.value == data.text else tree.value.strip()
+        if tree.plain and "(" in tree.value and _is_python(tree.value):
+            return Expression(text=tree.value.strip(), span=tree.span)
+        return data
     if isinstance(tree, Seq):
         return tuple([_data(item, code, ticks) for item in tree.items])
     return Struct(
@@ -29,6 +36,15 @@ def _data(tree: Tree, code: bool, ticks: bool = False) -> Data:
             (str(entry.key.value), _data(entry.value, code, ticks)) for entry in tree.entries
         )
     )
+
+
+def _is_python(text: str) -> bool:
+    """Whether a text is an expression of Python; SMACHA printed what has a call in it as code."""
+    try:
+        ast.parse(text.strip(), mode="eval")
+    except (SyntaxError, ValueError, RecursionError, MemoryError):
+        return False
+    return True
 
 
 def _scalar(tree: Scalar, code: bool) -> Data:

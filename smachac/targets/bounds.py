@@ -78,7 +78,7 @@ class Meter:
         """The characters of a value, counted no further than the meter goes."""
         if isinstance(value, str):
             return len(value)
-        if not isinstance(value, list | tuple | dict):
+        if type(value) not in (list, tuple, dict):  # what we pass of our own is not weighed
             return value.bit_length() // 3 + 1 if isinstance(value, int) else 1
         total, todo = 0, [value]
         while todo and total <= self.left:

@@ -31,6 +31,9 @@ class Anything(ModuleType):
     def __call__(self, *arguments: Any, **named: Any) -> Any:
         return self
 
+    def __add__(self, other: Any) -> Any:
+        return self
+
 
 MESSAGES = (
     *("actionlib.msg", "geometry_msgs", "geometry_msgs.msg", "my_msgs", "my_msgs.srv"),

@@ -22,7 +22,17 @@ from smachac.driver import build
 from smachac.targets import load_target
 
 SCRIPTS = [
-    *("callbacks", "core", "counting", "params", "recording", "ros_states", "services", "two_arms"),
+    *(
+        "callbacks",
+        "core",
+        "counting",
+        "loading",
+        "params",
+        "recording",
+        "ros_states",
+        "services",
+        "two_arms",
+    ),
     "whole",
 ]
 REWRITE = os.environ.get("SMACHAC_GOLDEN") == "rewrite"
@@ -77,6 +87,19 @@ def test_python_2_is_translated_and_told() -> None:
         "except (KeyError, AttributeError), e:",
         "print 'no such limb: %s' % e",
     ]
+
+
+def test_calls_in_plain_text_are_code_as_for_smacha() -> None:
+    text = text_of("loading")
+    assert "Load('cafe_table', rospkg.RosPack().get_path('my_robot')+'/models/x.sdf')" in text
+    assert "rospy.on_shutdown(lambda: delete('cafe_table'))" in text
+    assert "import rospkg" in text
+    assert "from geometry_msgs.msg import Point, Pose" in text
+
+
+def test_a_program_that_needs_a_node_is_one() -> None:
+    assert text_of("loading").count("rospy.init_node") == 1
+    assert "rospy.init_node" not in text_of("counting")  # it only logs
 
 
 def test_shared_objects_are_made_once_in_the_function_that_builds() -> None:

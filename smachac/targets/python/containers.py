@@ -13,7 +13,6 @@ from smachac.states import StateType, find_state_type
 from smachac.targets.blocks import BlockError, Page
 from smachac.targets.python import body
 from smachac.targets.python.gathered import (
-    APPENDED,
     KEYED,
     PREPENDED,
     Buffers,
@@ -26,6 +25,9 @@ from smachac.targets.python.smacha import adding, container_variables, state_var
 
 _PRESET = re.compile(r"\s*\w+\.userdata\.(\w+) = ")
 """A line by which a state's template sets userdata; the container has set it already."""
+
+DEFINED = "\n\n\n"
+"""Between definitions."""
 
 Headers = dict[str, dict[str, list[str]]]
 
@@ -158,13 +160,17 @@ def headers(inside: Inside) -> dict[str, object]:
 
 def joined(texts: Buffers) -> dict[str, str]:
     """Buffers as a template sees them."""
-    return {name: "\n\n".join(lines).strip() for name, lines in texts.items()}
+    return {
+        name: (DEFINED if name.endswith("defs") else "\n\n")
+        .join(reversed(lines) if name in PREPENDED else lines)
+        .strip()
+        for name, lines in texts.items()
+    }
 
 
 def _pass_on(inner: Buffers, outer: Buffers) -> None:
-    for name in (*APPENDED, *PREPENDED):
-        new = [text for text in inner[name] if text not in outer[name]]
-        outer[name] = [*new, *outer[name]] if name in PREPENDED else [*outer[name], *new]
+    for name, texts in inner.items():
+        outer[name].update(texts)
 
 
 def _function(
@@ -210,7 +216,7 @@ def _used(leaf: Leaf, gathered: Gathered) -> Used:
     code = type_.code.get("python", f"{leaf.type}.tpl.py")
     if ":" in code:
         module, _, class_name = code.partition(":")
-        gathered.buffers["imports"].append(f"from {module} import {class_name}")
+        gathered.buffers["imports"][f"from {module} import {class_name}"] = None
         used = Used(type=type_, class_name=class_name)
     elif gathered.blocks.source(code) is None:
         message = f"state type `{leaf.type}` has no code for Python"

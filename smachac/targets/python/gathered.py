@@ -26,11 +26,12 @@ PREPENDED = ("footer", "execute", "base_footer", "main")
 KEYED = ("header", "header_userdata")
 """Blocks that go to the container around the state, before its states."""
 
-Buffers = dict[str, list[str]]
+Buffers = dict[str, dict[str, None]]
+"""Texts by block, each once, in the order of the states."""
 
 
 def buffers() -> Buffers:
-    return {name: [] for name in (*APPENDED, *PREPENDED)}
+    return {name: {} for name in (*APPENDED, *PREPENDED)}
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -88,7 +89,7 @@ class Gathered:
             text = self.code(page, name, node, alone=True)
             buffer = self.buffers[name]
             if text.strip() and text not in buffer:  # templates share definitions by `extends`
-                buffer.insert(0 if name in PREPENDED else len(buffer), text)
+                buffer[text] = None
                 if name in ("defs", "class_defs", "cb_defs"):
                     self.define(text, page, name, node)
 

@@ -20,7 +20,7 @@ from smachac.targets.python.imports import import_lines, unbound_names
 from smachac.targets.python.python2 import modern
 from smachac.targets.python.smacha import FILTERS, TESTS, container_variables, plain
 
-ONE_FUNCTION = "Base.tpl.py"
+ONE_FUNCTION = {"Program.tpl.py": "Base.tpl.py", "ROSProgram.tpl.py": "ROSBase.tpl.py"}
 """What prints a program whose states bring code around its run: all of it in one function, where
 such code sees its own names, as in SMACHA."""
 
@@ -74,13 +74,15 @@ def _text(machine: Machine, context: Context, gathered: Gathered) -> str | None:
     if has_errors(gathered.faults):
         return None
     if any(node.catches for _, node in walk(machine.root)):
-        gathered.buffers["imports"].append("import traceback")
-        gathered.buffers["defs"].append(CATCHING)
+        gathered.buffers["imports"]["import traceback"] = None
+        gathered.buffers["defs"][CATCHING] = None
     lines = gathered.blocks.render("Container.tpl.py", "body", structure(inside, None, states))
     texts = joined(gathered.buffers)
-    if template == "Program.tpl.py" and any(texts[name] for name in PREPENDED):
-        template = ONE_FUNCTION
     parts = [*texts.values(), lines, *gathered.functions]
+    if template == "Program.tpl.py" and any(map(_NEEDS_NODE.search, parts)):
+        template = "ROSProgram.tpl.py"
+    if template in ONE_FUNCTION and any(texts[name] for name in PREPENDED):
+        template = ONE_FUNCTION[template]
     modules = unbound_names(parts)
     imports = [*gathered.buffers["imports"], *standard_imports(machine), *modules]
     variables: dict[str, object] = {
@@ -130,7 +132,7 @@ def _checked(text: str, template: str, machine: Machine, gathered: Gathered) -> 
         place = gathered.blocks.line_span(template, line) or machine.root.span
         gathered.note(problems.python_2_code(place, change))
     try:
-        before = ast.dump(ast.parse(text))
+        tree = ast.parse(text)
     except (SyntaxError, ValueError, RecursionError, MemoryError) as error:
         lines = text.splitlines()
         number = min(getattr(error, "lineno", None) or 1, len(lines))
@@ -141,13 +143,20 @@ def _checked(text: str, template: str, machine: Machine, gathered: Gathered) -> 
         help = f"the line it prints is `{line.strip()}`"
         raise BlockError(problems.template_error(place, message, help)) from error
     tidy = _TRAILING.sub("", _BLANKS.sub("\n\n\n", text))
-    text = tidy if ast.dump(ast.parse(tidy)) == before else text
+    if tidy != text and ast.dump(ast.parse(tidy)) == ast.dump(tree):
+        text = tidy
     mark = f"# {made_by(machine)}\n"
     if mark not in text:
         first = text.index("\n") + 1 if text.startswith("#!") else 0
         text = text[:first] + mark + text[first:]
     return text
 
+
+_NEEDS_NODE = re.compile(
+    r"\brospy\.(?:Publisher|Subscriber|Service|ServiceProxy|Timer|Rate|sleep|spin|on_shutdown"
+    r"|get_param|wait_for_\w+)\b|\bsmach_ros\.|\bTF2ListenerSingleton\b"
+)
+"""Code that works in a node alone. SMACHA's first base made one for every program."""
 
 _BLANKS = re.compile(r"\n(?:[ \t]*\n){3,}")
 _TRAILING = re.compile(r"[ \t]+$", re.M)

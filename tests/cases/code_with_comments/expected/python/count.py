@@ -10,7 +10,7 @@ except ImportError:  # no ROS on this machine: the same names without it
 class CallbacksState(smach.State):
     """Calls functions of the userdata, keeps what each returns under its own name."""
 
-    def __init__(self, callbacks, input_keys=(), output_keys=()):
+    def __init__(self, callbacks=(), input_keys=(), output_keys=()):
         super().__init__(
             outcomes=["succeeded"],
             input_keys=list(input_keys),
