@@ -321,7 +321,7 @@ def _explain(arguments: argparse.Namespace) -> int:
     if form in ("md", "csv") and not arguments.failures:
         return usage(f"--format {form} is for --failures")
     if arguments.all or (len(words) == 1 and not arguments.failures):
-        return _explain_code(*words) if not arguments.all else _explain_all()
+        return _explain_code(*words) if not arguments.all else _explain_code()
     if len(words) != (1 if arguments.failures else 2):
         return usage("name a code such as SM201, or a script with a state or key or --failures")
     analysis, _ = _load(Path(words[0]), arguments)
@@ -346,16 +346,13 @@ def _explain(arguments: argparse.Namespace) -> int:
     return OK
 
 
-def _explain_all() -> int:
-    from smachac.report.explain import render_rules
+def _explain_code(word: str = "") -> int:
+    """What a code means; without a word, all of them."""
+    from smachac.report.explain import CODES, render_code, render_rules
 
-    sys.stdout.write(render_rules())
-    return OK
-
-
-def _explain_code(word: str) -> int:
-    from smachac.report.explain import CODES, render_code
-
+    if not word:
+        sys.stdout.write(render_rules())
+        return OK
     code = CODES.get(word.upper())
     if code is None and Path(word).suffix:
         return usage(f"name a state or a key of {word}, or say --failures")
