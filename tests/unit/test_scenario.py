@@ -5,7 +5,7 @@ from __future__ import annotations
 from typing import Any
 
 import pytest
-from ir_machines import iterator, leaf, machine, ran, short
+from ir_machines import concurrence, iterator, leaf, machine, ran, short
 
 from smachac.ir.behaviours import built_in
 from smachac.ir.nodes import Machine
@@ -83,6 +83,8 @@ def test_the_forms_of_a_scenario() -> None:
             "sm/CHECK, step 1: a step is an outcome, or a mapping with `outcome` and `set`",
         ),
         ({"CHECK": {"set": 3}}, "sm/CHECK, step 1: `set` is a mapping of userdata keys to values"),
+        ({"CHECK": {"wait": 1}}, "sm/CHECK, step 1: `wait` is true or false"),
+        ({"CHECK": {"stop": "yes"}}, "sm/CHECK, step 1: `stop` is true or false"),
         ({"CHECK": []}, "`CHECK` has no steps"),
         (
             {"CHECK": True, "sm/CHECK": True},
@@ -127,6 +129,42 @@ def test_a_scenario_is_acted_out_and_the_rest_acts_itself() -> None:
     ]
     assert short(events).count("write sm/PICK/GRASP width [5]") == 2
     assert result.userdata == {"width": [5]}
+
+
+def stoppable() -> Machine:
+    """A race between a leaf that can be stopped and one that ends, and a leaf behind it."""
+    slow = leaf("SLOW", outcomes="done preempted")
+    race = concurrence(
+        "RACE",
+        "won over",
+        slow,
+        leaf("FAST", outcomes="done"),
+        default="over",
+        rules=(("won", {"SLOW": "preempted"}),),
+        join="any",
+        to={"won": "LAST", "over": "over"},
+    )
+    last = leaf("LAST", {"done": "done", "preempted": "stopped"})
+    return Machine(root=machine("sm", "done over stopped", race, last))
+
+
+@pytest.mark.parametrize(
+    ("states", "outcome"),
+    [
+        ({"SLOW": {"wait": True}}, "done"),
+        ({"SLOW": "done", "FAST": {"wait": True}}, "over"),
+        ({"SLOW": {"wait": True}, "LAST": {"stop": True}}, "stopped"),
+        ({"SLOW": {"wait": True}, "LAST": {"error": "no power"}}, None),
+    ],
+)
+def test_steps_that_wait_stop_the_machine_or_fail(states: Any, outcome: str | None) -> None:
+    given = stoppable()
+    scenario, problems = read_scenario({"states": states}, given)
+    assert problems == []
+    result, _ = ran(given.root, acted(scenario, given, built_in()))
+    assert result.outcome == outcome
+    told = result.error.message if result.error is not None else None
+    assert told == (None if outcome else "no power")
 
 
 def test_a_step_without_outcome_ends_as_usual() -> None:
