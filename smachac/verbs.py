@@ -278,7 +278,9 @@ def _verify(arguments: argparse.Namespace) -> int:
     print_report(shown(report), arguments, sys.stderr)
     if machine is None or len(players) < len(arguments.targets):
         return FINDINGS
-    gc.enable()  # from here on it is the user's program that is loaded
+    gc.freeze()  # what is there stays; each path makes a machine anew
+    gc.set_threshold(50_000)
+    gc.enable()
     try:
         verdict = verify(
             machine, players, script=machine.source, most=arguments.paths, seed=arguments.seed

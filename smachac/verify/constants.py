@@ -3,9 +3,10 @@
 from __future__ import annotations
 
 from smachac.ir.inference import infer
-from smachac.ir.nodes import Leaf, Machine
-from smachac.ir.types import Type
-from smachac.ir.walk import PREEMPTED, walk
+from smachac.ir.nodes import Iterator, Leaf, Machine
+from smachac.ir.types import ANY, Type
+from smachac.ir.userdata import remapping
+from smachac.ir.walk import PREEMPTED, containers, walk
 from smachac.verify.contention import contended
 
 FLAT = (0.0, 0.0, 0.0, 1.0)
@@ -92,7 +93,10 @@ class Constants:
     """
 
     def __init__(self, machine: Machine) -> None:
-        self._outputs = infer(machine).outputs
+        self._types = infer(machine)
+        self._iterators = {
+            path for path, node in containers(machine.root) if isinstance(node, Iterator)
+        }
         self._numbers = {path: number for number, (path, _) in enumerate(walk(machine.root))}
         self._alike = tuple(f"{path}/" for path in contended(machine))
 
@@ -104,7 +108,15 @@ class Constants:
         here = {key for name, keys in leaf.writes if name == outcome for key in keys}
         number = 1 if path.startswith(self._alike) else self._numbers[path] + visit
         return tuple(
-            (key.name, constant(self._outputs[path, key.name], number))
+            (key.name, constant(self._type(path, leaf, key.name), number))
             for key in leaf.outputs
             if (key.name in here if key.name in bound else outcome != PREEMPTED)
         )
+
+    def _type(self, path: str, leaf: Leaf, key: str) -> Type:
+        """The type of the key of the container, which the child of an iterator sees as it is
+        (smach-semantics I7); else what is known of the output."""
+        around = path.rpartition("/")[0]
+        outer = key if around in self._iterators else remapping(leaf).get(key, key)
+        type_ = self._types.keys.get((around, outer), ANY)
+        return self._types.outputs[path, key] if type_ == ANY else type_

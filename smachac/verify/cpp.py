@@ -12,6 +12,7 @@ from smachac.diagnostics import Report
 from smachac.ir.nodes import Machine
 from smachac.states import Library
 from smachac.targets.cpp.plan import plan
+from smachac.targets.cpp.types import UnportableError
 from smachac.verify.compilers import HEADERS, Compiler, compilers
 from smachac.verify.cpp_program import Program
 from smachac.verify.scenes import Event, Player, Scene, UnplayableError
@@ -41,7 +42,11 @@ def player(machine: Machine, library: Library, report: Report) -> Player:
             words = "no C++ compiler is here: install g++ or clang++, or the Python package ziglang"
             raise UnplayableError(words)
         program = Program(planned, library, scenes)
-        yield from traces(program.text(), program.script(), found[0])
+        try:
+            text = program.text()
+        except UnportableError as error:
+            raise UnplayableError(f"the C++ program cannot be printed: {error}") from error
+        yield from traces(text, program.script(), found[0])
 
     return play
 

@@ -8,11 +8,15 @@ from pathlib import Path
 from typing import Any
 
 import pytest
+from ir_machines import iterator, leaf
+from ir_machines import machine as state_machine
 
 import smachac
 from smachac.cli import main
+from smachac.ir.nodes import Machine
 from smachac.runtime import smach, trace
 from smachac.verify import verify
+from smachac.verify.constants import Constants
 from smachac.verify.python import player
 from smachac.verify.scenarios import Scenarios
 from smachac.verify.verdict import Verdict, render_json, render_text, scenario_text
@@ -224,6 +228,14 @@ def test_a_difference_shows_both_traces_and_a_scenario_to_replay(
     assert main(["run", str(rounds), "--mock", str(scenario), "-q"]) == 0
     last = verdict.disagreements[0].expected[-1]
     assert capsys.readouterr().out == f"outcome: {last['outcome']}\n"
+
+
+def test_a_value_has_the_type_of_the_key_that_holds_it() -> None:
+    child = leaf("LOOK", outcomes="seen", outs="n", remaps={"n": "other"})
+    each = iterator("EACH", "exhausted", child, held={"n": 1}, items=[0], loop="seen")
+    machine = Machine(root=state_machine("sm", "seen", each))
+    ((key, value),) = Constants(machine).written("sm/EACH/LOOK", child, "seen", 0)
+    assert (key, type(value)) == ("n", int)
 
 
 def test_the_same_seed_makes_the_same_paths() -> None:
