@@ -28,6 +28,13 @@ MAX_LEVELS = 100
 """The most levels of a value: what reads Python or C++ allows about 200 brackets in brackets."""
 
 
+def is_flat(tree: Tree) -> bool:
+    """Whether nothing can be looked up in a value, nor is it nested: true of most values."""
+    if isinstance(tree, Map):
+        return all(isinstance(entry.value, Scalar) for entry in tree.entries)
+    return isinstance(tree, Scalar)
+
+
 def is_too_deep(tree: Tree) -> bool:
     """Whether a value has more than MAX_LEVELS levels."""
     level = [tree]

@@ -7,7 +7,7 @@ import re
 from collections.abc import Iterable
 from dataclasses import replace
 from pathlib import PurePath
-from typing import Any
+from typing import Any, cast
 
 from smachac import schema, shapes
 from smachac.catching import if_asked, with_way_out
@@ -76,11 +76,15 @@ def _tree(state: State, name: str) -> Tree | None:
 
 
 def _words(state: State, name: str) -> tuple[Word, ...]:
+    if name in state.read:
+        return cast(tuple[Word, ...], state.read[name])
     tree = _tree(state, name)
     return shapes.as_names(tree, []) if tree is not None else ()
 
 
 def _pairs(state: State, name: str) -> tuple[tuple[Word, Word], ...]:
+    if name in state.read:
+        return cast(tuple[tuple[Word, Word], ...], state.read[name])
     tree = _tree(state, name)
     return shapes.as_pairs(tree, []) if tree is not None else ()
 

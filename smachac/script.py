@@ -6,6 +6,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
+from typing import Any
 
 from smachac import problems, schema, shapes
 from smachac.calls import overridden, sub_script_state
@@ -19,6 +20,7 @@ from smachac.lookups import (
     Scope,
     child_scope,
     fill_in,
+    is_flat,
     is_too_deep,
     size_up_to,
 )
@@ -47,6 +49,7 @@ class State:
 
     `owner` says which variables of the schema it may have: "base", a container type or "state".
     `via`: the calls of sub-scripts that led here, outermost first. `params`: those in scope.
+    `read`: what some of its fields say, names or pairs of names.
     """
 
     name: Word
@@ -56,6 +59,7 @@ class State:
     states: tuple[State, ...] = ()
     via: tuple[Span, ...] = ()
     params: Scope = field(default_factory=dict)
+    read: Mapping[str, Any] = field(default_factory=dict)
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -185,7 +189,7 @@ class _Resolver:
         self.uses.type(type_)
         if role != "base":
             self.count += 1
-        check_variables(name, fields, owner, type_, called.inner, self.report)
+        read = check_variables(name, fields, owner, type_, called.inner, self.report)
         children: tuple[State, ...] = ()
         if "states" in fields and place.depth > MAX_NESTED:
             message = f"more than {MAX_NESTED} containers stand inside one another here"
@@ -198,13 +202,12 @@ class _Resolver:
         self.uses.params(params, begin, self.report, place.via)
         return State(
             name=name, owner=owner, type=type_, fields=fields, states=children, via=place.via,
-            params=scope,
+            params=scope, read=read,
         )  # fmt: skip
 
     def filled(self, key: str, entry: Entry, scope: Scope) -> Entry:
-        value = entry.value
-        if isinstance(value, Scalar):
-            return entry
+        if is_flat(entry.value):
+            return typed(key, entry, self.aliases, self.report)
         row = schema.VARIABLES.get(key)
         names = row is not None and row.shape in ("names", "keys")
         entry = self.shallow(entry)

@@ -9,7 +9,7 @@ from __future__ import annotations
 
 import gc
 import re
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
 from dataclasses import dataclass, field
 from typing import Any, TypeAlias
 
@@ -243,27 +243,29 @@ class _Builder:
         self.end = 0
 
     def drive(self, events: Iterator[Any]) -> None:
+        steps: dict[str, Callable[[Any], None]] = {
+            "ScalarEvent": self._scalar,
+            "MappingStartEvent": self._open,
+            "SequenceStartEvent": self._open,
+            "MappingEndEvent": self._close,
+            "SequenceEndEvent": self._close,
+            "AliasEvent": self._alias,
+        }
         for event in events:
             self.seen = True
-            match type(event).__name__:
-                case "ScalarEvent":
-                    self._scalar(event)
-                case "MappingStartEvent" | "SequenceStartEvent":
-                    self._open(event)
-                case "MappingEndEvent" | "SequenceEndEvent":
-                    self._close(event)
-                case "AliasEvent":
-                    self._alias(event)
-                case "DocumentStartEvent" if self.root is not None:
-                    span = Span(self.source, event.start_mark.index, event.end_mark.index)
-                    self.report.append(
-                        problems.wrong_shape(
-                            span,
-                            "a second YAML document begins here",
-                            "a script is one document: remove the `---`",
-                        )
+            step = steps.get(type(event).__name__)
+            if step is not None:
+                step(event)
+            elif self.root is not None and type(event).__name__ == "DocumentStartEvent":
+                span = Span(self.source, event.start_mark.index, event.end_mark.index)
+                self.report.append(
+                    problems.wrong_shape(
+                        span,
+                        "a second YAML document begins here",
+                        "a script is one document: remove the `---`",
                     )
-                    break
+                )
+                break
 
     def _scalar(self, event: Any) -> None:
         text: str = event.value

@@ -8,7 +8,7 @@ from typing import TypeAlias
 
 from smachac.diagnostics import Report, has_errors
 from smachac.ir.nodes import Unused
-from smachac.lookups import look_up_word
+from smachac.lookups import is_flat, look_up_word
 from smachac.source import Span, Word
 from smachac.states import StateType
 from smachac.syntax import Entry, Map, Scalar, Tree
@@ -33,7 +33,8 @@ class Uses:
 
     def value(self, key: str, tree: Tree) -> None:
         """A variable of a state."""
-        self.asked += _names(tree)
+        if not is_flat(tree):
+            self.asked += _names(tree)
         self.types.update(type_words(key, tree))
 
     def type(self, type_: StateType) -> None:

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
+from typing import Any
 
 from smachac import problems, schema, shapes
 from smachac.diagnostics import Related, Report, did_you_mean
@@ -20,9 +21,10 @@ def check_variables(
     type_: StateType,
     inner: Word | None,
     report: Report,
-) -> None:
+) -> dict[str, Any]:
     """SM003, SM004 and SM005 over the variables of one state; `inner` is its name in the
-    sub-script that a call stands for."""
+    sub-script that a call stands for. Returns those that are names, or pairs of names, as read."""
+    read = {}
     for key, entry in fields.items():
         row = schema.VARIABLES.get(key)
         if key in type_.variables:
@@ -38,7 +40,9 @@ def check_variables(
             report.append(problems.unknown_variable(word, whose, known))
             continue
         if key not in ("template", "states"):
-            shapes.READERS[shape](entry.value, report)
+            value = shapes.READERS[shape](entry.value, report)
+            if shape in ("names", "pairs"):
+                read[key] = value
     check_sugar(fields, type_, report)
     if owner == "state" and not type_.open:
         _check_interface(fields, type_, report)
@@ -51,6 +55,7 @@ def check_variables(
             if inner is not None:
                 related = (Related(span=inner.span, message="nor does the sub-script give it"),)
             report.append(problems.missing_variable(name.span, key, whose, related))
+    return read
 
 
 def _check_interface(fields: Mapping[str, Entry], type_: StateType, report: Report) -> None:
