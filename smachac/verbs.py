@@ -14,11 +14,9 @@ from smachac.streams import print_report, shown, usage, wants_colour
 if TYPE_CHECKING:
     from smachac.diagnostics import Report
     from smachac.driver import Analysis
-    from smachac.ir.nodes import Checked
     from smachac.report.state_types import Known
     from smachac.states import Library
     from smachac.targets import Target
-    from smachac.verify.scenes import Player
 
 OK, FINDINGS = 0, 1
 """Exit codes: clean; findings or a failed run."""
@@ -255,67 +253,10 @@ def _where(errors: list[dict[str, Any]]) -> str:
     return f" in {errors[0]['path']}{source}"
 
 
-PLAYED = ("python", "cpp")
-"""The targets whose programs `verify` can play."""
-
-
 def _verify(arguments: argparse.Namespace) -> int:
-    """Ends with 0 when every target does what the interpreter does."""
-    import gc
+    from smachac.verify.command import check
 
-    from smachac.verify import verify
-    from smachac.verify.scenes import UnplayableError
-    from smachac.verify.verdict import render_json, render_text
-
-    for name in arguments.targets or [""]:
-        if name not in PLAYED:
-            return usage(f"`verify` cannot play the target `{name}`", name, list(PLAYED))
-    analysis, library = _load(arguments.script, arguments)
-    machine, report = analysis.checked, [*analysis.report]
-    players: dict[str, Player] = {}
-    if machine is not None and library is not None:
-        players = _players(arguments, machine, library, report)
-    print_report(shown(report), arguments, sys.stderr)
-    if machine is None or len(players) < len(arguments.targets):
-        return FINDINGS
-    gc.freeze()  # what is there stays; each path makes a machine anew
-    gc.set_threshold(50_000)
-    gc.enable()
-    try:
-        verdict = verify(
-            machine, players, script=machine.source, most=arguments.paths, seed=arguments.seed
-        )
-    except UnplayableError as error:
-        print(error, file=sys.stderr)
-        return FINDINGS
-    render = render_json if arguments.format == "json" else render_text
-    sys.stdout.write(render(verdict))
-    return FINDINGS if verdict.disagreements else OK
-
-
-def _players(
-    arguments: argparse.Namespace, machine: Checked, library: Library, report: Report
-) -> dict[str, Player]:
-    """Those of the targets asked for that can say all of the machine; the others are reported."""
-    from smachac.driver import build
-    from smachac.targets import load_target
-    from smachac.verify import cpp, python
-
-    players: dict[str, Player] = {}
-    for name in arguments.targets:
-        found: Report = []
-        if name == "cpp":
-            player = cpp.player(machine, library, found)
-        else:
-            target = load_target(name)
-            assert target is not None
-            files = build(machine, target, library, found)
-            ((file, text),) = files.items() or [("", "")]
-            player = python.player(file, text, machine, folder=arguments.script.parent)
-        report += found
-        if not found:
-            players[name] = player
-    return players
+    return check(arguments)
 
 
 def _explain(arguments: argparse.Namespace) -> int:

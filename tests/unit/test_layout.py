@@ -31,6 +31,7 @@ TOUCHES = {
     "smachac/streams.py": "prints reports",
     "smachac/runs.py": "opens the trace, shows progress",
     "smachac/execute.py": "runs what was built, and keeps its output",
+    "smachac/verify/command.py": "prints reports",
     "smachac/verify/python.py": "runs what was built, and keeps its output off the report",
     "smachac/runtime/record.py": "says that a trace broke off",
     "smachac/runtime/smach/log.py": "prints what SMACH prints",

@@ -318,6 +318,13 @@ def test_a_script_with_an_error_fails(tmp_path: Path, capsys: pytest.CaptureFixt
     assert "SM101" in capsys.readouterr().err
 
 
+def test_a_target_asked_for_twice_is_played_once(
+    rounds: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    assert main(["verify", str(rounds), "--targets", "python,python", "--paths", "9"]) == 0
+    assert capsys.readouterr().out.count("python: does the same") == 1
+
+
 def test_a_target_that_cannot_be_played_is_wrong_usage(capsys: pytest.CaptureFixture[str]) -> None:
     assert main(["verify", str(EXAMPLES[0]), "--targets", "pyhton"]) == 2
     assert "did you mean `python`?" in capsys.readouterr().err
