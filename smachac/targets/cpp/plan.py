@@ -16,7 +16,7 @@ from smachac.ir.walk import containers, outcome_names
 from smachac.source import NOWHERE, Span
 from smachac.targets.cpp.expressions import Spelling
 from smachac.targets.cpp.types import UnportableError, cpp_literal, cpp_type, plain
-from smachac.targets.cpp.words import clashes, identifier
+from smachac.targets.cpp.words import clashes, identifier, outermost
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -97,6 +97,11 @@ def _check(plan: Plan, scope: Scope, around: Scope | None) -> None:
         *(("state", child.name) for child in node.children),
         *(("key", key) for key in scope.keys),
     ]
+    members = [member(child) for child in node.children if not isinstance(child, Leaf)]
+    for key in scope.keys:
+        if identifier(key) in members:
+            text = f"the key `{key}` and a container in it would both be `{identifier(key)}`"
+            plan.refuse(_place_of(node, key), UnportableError(text))
     for kind in ("state", "key"):
         for name, other in clashes(name for what, name in names if what == kind):
             text = f"the {kind}s `{other}` and `{name}` would both be `{identifier(name)}`"
@@ -175,7 +180,8 @@ def place(node: Node) -> str:
 
 def scope_name(path: str) -> str:
     """The namespace of a container: `pick::LIFT`."""
-    return "::".join(identifier(name) for name in path.split("/"))
+    first, *others = path.split("/")
+    return "::".join([outermost(first), *map(identifier, others)])
 
 
 def member(child: Node) -> str:

@@ -28,6 +28,17 @@ MACROS = re.compile(
 )
 """Names that are macros where the headers of ours are included, so far as anybody may use them."""
 
+_SYSTEM = """
+    abort abs accept access acct alarm basename bind brk canonicalize ceil clock clone close connect
+    crypt daemon daylight div dup environ exit exp fabs finite floor fork free gamma index kill link
+    listen log mount nan nice open pause pipe poll pow printf profil puts raise rand random read
+    recv remainder remove rename revoke rewind rindex rint round scalb select send shutdown signal
+    significand sin sleep socket stat swab sync system tan time times timezone tm trunc truncate
+    uint ulong umount unlink unshare ushort wait write"""
+SYSTEM = frozenset(_SYSTEM.split())
+"""Names that the headers of C and POSIX give to functions and variables outside any namespace, as
+far as a machine may be called so."""
+
 _OURS = "Userdata States Outcome State In Out Run execute run name places types main std smachac"
 OURS = frozenset(_OURS.split())
 """What the header itself calls things that stand beside names of the script."""
@@ -44,6 +55,12 @@ def identifier(name: str) -> str:
         word = f"n{word}"
     taken = word in KEYWORDS or word in OURS or MACROS.fullmatch(word)
     return f"{word}_" if taken else word
+
+
+def outermost(name: str) -> str:
+    """The name of a machine as that of a namespace in no other one."""
+    word = identifier(name)
+    return f"{word}_" if word in SYSTEM else word
 
 
 def clashes(names: Iterable[str]) -> list[tuple[str, str]]:

@@ -225,9 +225,7 @@ public:
   CheckGraspState(Arm &arm, Limb limb, std::optional<std::string> body)
       : arm_(arm), limb_(std::move(limb)), body_(std::move(body)) {}
 
-  Outcome execute() {
-    return arm_.holds(limb_, body_) ? Outcome::succeeded : Outcome::aborted;
-  }
+  Outcome execute() { return arm_.holds(limb_, body_) ? Outcome::succeeded : Outcome::aborted; }
 
 private:
   Arm &arm_;
