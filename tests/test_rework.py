@@ -2,22 +2,29 @@
 
 from __future__ import annotations
 
+import contextlib
 import os
 import random
 import re
 import shlex
+import tempfile
 from collections import Counter
+from collections.abc import Iterator
 from pathlib import Path
 
 import pytest
 from correct import correct_project
+from hypothesis import given, settings
+from hypothesis import strategies as st
 from plain import written
 
 from smachac import analyse_file
 from smachac.cli import main
 from smachac.ir.nodes import Leaf, Machine, StateMachine
+from smachac.ir.run import run
 from smachac.ir.text import print_machine
-from smachac.ir.walk import walk
+from smachac.ir.userdata import Userdata, UserdataError
+from smachac.ir.walk import outcome_names, walk
 from smachac.refactor.alike import normal
 from smachac.refactor.layout import laid_out
 from smachac.source import Source
@@ -53,6 +60,17 @@ def test_cases(
 
 
 # --- laws
+
+
+@contextlib.contextmanager
+def inside(folder: str) -> Iterator[None]:
+    """Be in another folder for a while, as `contextlib.chdir` of Python 3.11 has it."""
+    before = Path.cwd()
+    os.chdir(folder)
+    try:
+        yield
+    finally:
+        os.chdir(before)
 
 
 @pytest.fixture
@@ -102,7 +120,7 @@ def texts() -> dict[str, str]:
     return {path.name: path.read_text("utf-8") for path in sorted(Path().glob("*.yml"))}
 
 
-def run(*words: str) -> int:
+def command(*words: str) -> int:
     code = main([*words])
     assert code in (0, 1)
     return code
@@ -116,13 +134,13 @@ def test_what_is_extracted_can_be_inlined_again(project: random.Random) -> None:
             if not isinstance(node, Leaf) and not node.sugar and not node.via]  # fmt: skip
     done = 0
     for path in project.sample(mine, min(len(mine), 2)):
-        assert run("extract", "main.yml", path, "--check") == 1
-        if run("extract", "main.yml", path, "--to", "new_one.yml"):
+        assert command("extract", "main.yml", path, "--check") == 1
+        if command("extract", "main.yml", path, "--to", "new_one.yml"):
             continue
         assert machine_text() == before
         assert comments() == remarks
-        assert run("extract", "main.yml", path) == 1  # it is one already
-        assert run("inline", "main.yml", path) == 0
+        assert command("extract", "main.yml", path) == 1  # it is one already
+        assert command("inline", "main.yml", path) == 0
         Path("new_one.yml").unlink()
         assert machine_text() == before
         assert comments() == remarks
@@ -139,7 +157,7 @@ def test_calls_can_be_inlined(project: random.Random) -> None:
     for path, node in list(walk(machine().root))[1:]:
         if not node.via or (not isinstance(node, Leaf) and node.sugar):
             continue
-        if node.span.source.name == "main.yml" and run("inline", "main.yml", path) == 0:
+        if node.span.source.name == "main.yml" and command("inline", "main.yml", path) == 0:
             assert machine_text() == before
 
 
@@ -162,7 +180,7 @@ def test_a_name_that_is_changed_twice_is_the_old_one(project: random.Random) -> 
         done[kind] += 1
         assert "brand_new" in machine_text()
         there = f"{path.rpartition('/')[0]}/brand_new" if "/" in path else "brand_new"
-        assert run("rename", "main.yml", there, name, "--kind", kind) == 0
+        assert command("rename", "main.yml", there, name, "--kind", kind) == 0
         assert normal(machine().root) == before
         files = texts()
     assert done["state"] or done["outcome"]
@@ -171,27 +189,126 @@ def test_a_name_that_is_changed_twice_is_the_old_one(project: random.Random) -> 
 @pytest.mark.parametrize("project", SEEDS, indirect=True)
 def test_states_that_are_contained_run_as_before(project: random.Random) -> None:
     remarks = comments()
-    before = leaves(machine())
+    before = machine()
+    found = [
+        (path, node)
+        for path, node in walk(before.root)
+        if isinstance(node, StateMachine) and not node.sugar and not node.via
+    ]
     done = 0
-    for path, node in list(walk(machine().root)):
-        if not isinstance(node, StateMachine) or node.sugar or node.via:
-            continue
+    for path, node in found * 3:
         first = project.randrange(len(node.children))
-        names = [child.name for child in node.children[first : first + project.randint(1, 3)]]
+        names = [child.name for child in node.children[first : first + project.randint(1, 4)]]
         paths = [f"{path}/{name}" for name in names]
-        if main(["contain", "main.yml", "CONTAINED", "StateMachine", *paths]) == 0:
-            assert comments() == remarks
-            assert leaves(machine()) == before
-            done += 1
+        done += main(["contain", "main.yml", f"NEW_{done}", "StateMachine", *paths]) == 0
+        if done == 3:
             break
-    if not done:
-        assert "CONTAINED" not in texts()["main.yml"]
+    assert comments() == remarks
+    after = machine()
+    for seed in range(20 if done else 0):
+        assert transcript(after, seed) == transcript(before, seed)
 
 
-def leaves(whole: Machine) -> Counter[str]:
-    """What the leaves are, whatever they are in."""
-    return Counter(
-        f"{node.name} {node.type} {[each.name for each in node.outcomes]} {node.variables}"
-        for _, node in walk(whole.root)
-        if isinstance(node, Leaf)
-    )
+def transcript(whole: Machine, seed: int) -> list[object]:
+    """What happens in a run: the leaves by name, what each finds in its userdata, and the end.
+
+    What a leaf does depends on its name and on how often it was there, not on where it stands.
+    """
+    told: list[object] = []
+    visits: Counter[str] = Counter()
+
+    def behave(path: str, leaf: Leaf, visit: int, userdata: Userdata) -> str:
+        visits[leaf.name] += 1
+        draw = random.Random(f"{seed}/{leaf.name}/{visits[leaf.name]}")
+        found: dict[str, object] = {}
+        for key in leaf.inputs:
+            try:
+                found[key.name] = userdata[key.name]
+            except UserdataError:
+                found[key.name] = "nothing"
+        told.append((leaf.name, found))
+        outcome = draw.choice([each for each in outcome_names(leaf) if each != "preempted"])
+        for key in leaf.outputs:
+            if draw.random() < 0.7:
+                userdata[key.name] = [leaf.name, visits[leaf.name]]
+        return outcome
+
+    result = run(whole, behave, max_steps=60)
+    return [*told, result.outcome, type(result.error).__name__]
+
+
+@settings(max_examples=60)
+@given(st.integers(0, 10**9))
+def test_a_concurrence_decides_as_the_states_did_in_a_row(seed: int) -> None:
+    draw = random.Random(seed)
+    names = ["A", "B", "C", "D", "E"][: draw.randint(2, 5)]
+    rows = ["name: sm", "template: Base", "outcomes: [done, aborted]", "states:"]
+    ends = ["done", "aborted", "OUT", "LAST"]
+    for at, name in enumerate(names):
+        outcomes = ["ok", "bad", "odd"][: draw.randint(1, 3)]
+        # Each state is reached from the one before it, so that there is one way in.
+        targets = [draw.choice([*names[at + 1 :], *ends]) for _ in outcomes]
+        targets[0] = names[at + 1] if at + 1 < len(names) else "done"
+        pairs = ", ".join(f"{one}: {to}" for one, to in zip(outcomes, targets, strict=True))
+        rows += [f"  - {name}: {{template: ScriptedState, outcomes: [{', '.join(outcomes)}],"
+                 f" transitions: {{{pairs}}}}}"]  # fmt: skip
+    for name, end in (("OUT", "done"), ("LAST", "aborted")):
+        rows += [f"  - {name}: {{template: ScriptedState, outcomes: [ok],"
+                 f" transitions: {{ok: {end}}}}}"]  # fmt: skip
+    with tempfile.TemporaryDirectory() as folder, inside(folder):
+        Path("main.yml").write_text("\n".join(rows) + "\n")
+        before = analyse_file("main.yml", (), ())[0].machine
+        chosen = names[draw.randrange(len(names)) :]
+        code = main(["contain", "main.yml", "ALL", "Concurrence", *chosen])
+        after = analyse_file("main.yml", (), ())[0].machine
+    assert before is not None
+    assert after is not None
+    for each in range(30 if code == 0 else 0):
+        assert ending(after, chosen, each) == ending(before, chosen, each)
+
+
+def ending(whole: Machine, mine: list[str], seed: int) -> list[str | None]:
+    """The leaves outside that are entered, and the outcome."""
+    told: list[str | None] = []
+
+    def behave(path: str, leaf: Leaf, visit: int, userdata: Userdata) -> str:
+        told.extend([leaf.name] if leaf.name not in mine else [])
+        return random.Random(f"{seed}/{leaf.name}").choice(list(outcome_names(leaf)))
+
+    return [*told, run(whole, behave, max_steps=50).outcome]
+
+
+WORDS = ("PICK_BLOCK", "sm", "A", "pick_pose", "succeeded", "TELL", "done", "LIFT", "LOAD_BLOCK")
+SCRIPTS = [
+    path
+    for folder in ("examples", "tests/cases", "tests/layouts")
+    for path in sorted((Path(__file__).parents[1] / folder).glob("*/*.yml"))
+    if 20 < path.stat().st_size < 5000
+]
+PIECES = ("{", "}", "[[x]]", ": ", "- ", "\n", "&a ", "*a", "#", "  ", "'", "|\n", "\t", "é")
+
+
+@settings(max_examples=150)
+@given(st.integers(0, 10**9))
+def test_nothing_escapes(seed: int) -> None:
+    draw = random.Random(seed)
+    source = draw.choice(SCRIPTS)
+    text = source.read_text("utf-8")
+    for _ in range(draw.randrange(3)):
+        at = draw.randrange(len(text))
+        text = text[:at] + draw.choice(PIECES) + text[at + draw.randrange(8) :]
+    known = re.findall(r"\b[A-Za-z_]\w*\b", text) or ["x"]
+    one, two, three = (draw.choice([*known, *WORDS]) for _ in range(3))
+    words = draw.choice([
+        ["rename", "main.yml", one, two], ["rename", "main.yml", f"{one}/{two}", three],
+        ["extract", "main.yml", one], ["inline", "main.yml", one],
+        ["contain", "main.yml", one, draw.choice(["StateMachine", "Concurrence"]), two, three],
+    ])  # fmt: skip
+    with tempfile.TemporaryDirectory() as folder, inside(folder):
+        for other in source.parent.glob("*.yml"):
+            Path(other.name).write_bytes(other.read_bytes())
+        Path("main.yml").write_text(text, "utf-8")
+        before = texts()
+        code = main(words)
+        assert code in (0, 1, 2)
+        assert code == 0 or texts() == before

@@ -83,27 +83,10 @@ class Renaming:
             spans += [child.span for child in node.children[:1]]
         for span in spans[-1:]:
             other = self.sheets(span.source)
-            for each in other.bodies():
-                if each.start <= span.start < each.end and each not in [b for _, b in found]:
-                    inner = variable(each, "states"), variable(each, "outcomes")
-                    if any(item and _holds(item.value, span.start) for item in inner):
-                        found.append((other, each))
+            inner = other.body_of(span)
+            if inner is not None and inner is not body:
+                found.append((other, inner))
         return found
-
-
-def _holds(node: Atom | Group, at: int) -> bool:
-    """Whether a place is that of an item of a list, not of something inside the item."""
-    if not isinstance(node, Group):
-        return False
-    for item in node.items:
-        value = item.value
-        if isinstance(value, Group) and value.mapping and value.items:
-            key = value.items[0].key
-            if key is not None and key.start == at:
-                return True
-        elif isinstance(value, Atom) and value.start == at:
-            return True
-    return False
 
 
 def _values(item: Item) -> Iterator[Atom]:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from bisect import bisect_left
 from collections.abc import Iterable
 from dataclasses import dataclass
 
@@ -39,6 +40,9 @@ class Sheet:
         self._words: dict[tuple[int, int], str] = {}
         self._anew: dict[int, tuple[Place, list[Item]]] = {}
         self._values: dict[int, Atom] = {}
+        self._owners: dict[int, Group] = {}
+        self._numbers: dict[int, int] = {}
+        self._sorted: list[tuple[int, int]] = []
         self._find()
 
     def _find(self) -> None:
@@ -61,15 +65,19 @@ class Sheet:
             raise RefusedError(span, "this state stands in brackets, or in an unusual place", help)
         return place
 
-    def bodies(self) -> list[Group]:
-        """The variables of the script itself and of every state in it."""
-        root = self.text.root
-        found = [root] if root.mapping else []
-        for place in self.places.values():
-            body = variables_of(place.item)
-            if body is not None:
-                found.append(body)
-        return found
+    def body_of(self, span: Span) -> Group | None:
+        """The variables among whose outcomes or states a name stands."""
+        if not self._owners:
+            root = self.text.root
+            bodies = [variables_of(place.item) for place in self.places.values()]
+            for body in [root, *bodies] if root.mapping else bodies:
+                for name in ("outcomes", "states") if body is not None else ():
+                    item = variable(body, name) if body is not None else None
+                    for inner in item.value.items if item and isinstance(item.value, Group) else ():
+                        atom = inner.value if isinstance(inner.value, Atom) else _name(inner)
+                        if atom is not None and body is not None:
+                            self._owners[atom.start] = body
+        return self._owners.get(span.start)
 
     def value_of(self, span: Span) -> Atom:
         """The scalar behind the key that stands there. Raises RefusedError."""
@@ -102,24 +110,25 @@ class Sheet:
         parts: list[str] = []
         at = 0
         words = sorted(self._words.items())
+        self._sorted = sorted(self._words)
         stretches = [(*self._stretch(place), place, items) for place, items in self._anew.values()]
         todo = [(start, end, new) for (start, end), new in words]
-        inside = 0
-        for begin, end, place, items in sorted(stretches, key=lambda each: each[:2]):
-            if begin < inside:
-                continue
-            inside = end
-            todo = [each for each in todo if not begin <= each[0] < end]
-            todo.append((begin, end, self._printed(place, items)))
-        for begin, end, new in sorted(todo):
-            parts += [text[at:begin], new]
-            at = end
+        todo += [
+            (begin, end, self._printed(place, items))
+            for begin, end, place, items in _outermost(stretches)
+        ]
+        for begin, end, new in sorted(todo, key=lambda each: (each[0], -each[1])):
+            if begin >= at:  # what stands in a stretch is in its print
+                parts += [text[at:begin], new]
+                at = end
         return "".join(parts) + text[at:]
 
     def _stretch(self, place: Place) -> tuple[int, int]:
         """The lines of a state, as far as the next one or the end of the list."""
         items = place.states.items
-        number = next(at for at, item in enumerate(items) if item is place.item)
+        if id(place.item) not in self._numbers:
+            self._numbers |= {id(item): number for number, item in enumerate(items)}
+        number = self._numbers[id(place.item)]
         if number + 1 < len(items):
             return place.item.start, items[number + 1].start
         end = self.source.text.find("\n", place.states.end)
@@ -151,13 +160,27 @@ class Sheet:
 
     def _changed(self, start: int, end: int) -> str | None:
         """The text between two places with its new words; None if there are none."""
+        if len(self._sorted) != len(self._words):
+            self._sorted = sorted(self._words)
         parts: list[str] = []
         at = start
-        for (begin, stop), new in sorted(self._words.items()):
-            if start <= begin and stop <= end:
-                parts += [self.source.text[at:begin], new]
-                at = stop
+        for begin, stop in self._sorted[bisect_left(self._sorted, (start, start)) :]:
+            if stop > end:
+                break
+            parts += [self.source.text[at:begin], self._words[begin, stop]]
+            at = stop
         return "".join(parts) + self.source.text[at:end] if parts else None
+
+
+def _outermost(
+    stretches: list[tuple[int, int, Place, list[Item]]],
+) -> Iterable[tuple[int, int, Place, list[Item]]]:
+    """The stretches that stand in no other one."""
+    inside = 0
+    for each in sorted(stretches, key=lambda each: (each[0], -each[1])):
+        if each[0] >= inside:
+            inside = each[1]
+            yield each
 
 
 def _lists(body: Group) -> list[Group]:

@@ -6,7 +6,7 @@ Two machines that differ by a renaming have one skeleton, and the same names but
 from __future__ import annotations
 
 import re
-from collections.abc import Iterable
+from collections.abc import Iterable, Mapping
 from dataclasses import dataclass, field
 from typing import Any
 
@@ -63,8 +63,8 @@ def _node(node: Node, around: dict[str, int], found: Skeleton) -> None:
     """The bones of a node, whose keys are numbered in the container `around`."""
     outer = remapping(node)
     inner = _Numbers()
-    own = [*outcome_names(node)]
-    found.names += own
+    own = _numbered(outcome_names(node))
+    found.names += outcome_names(node)
     found.bones.append((type(node).__name__, node.type, node.doc, len(own), node.claims))
     for keys in (node.inputs, node.outputs):
         found.names += [key.name for key in keys]
@@ -83,15 +83,17 @@ def _node(node: Node, around: dict[str, int], found: Skeleton) -> None:
     _container(node, inner, own, found)
 
 
-def _container(node: nodes.Container, inner: _Numbers, own: list[str], found: Skeleton) -> None:
+def _container(
+    node: nodes.Container, inner: _Numbers, own: Mapping[str, int], found: Skeleton
+) -> None:
     for preset in node.userdata:
         found.bones.append((inner[preset.key], str(preset.type)))
         found.names.append(preset.key)
         _data(preset.value.data, found)
-    names = [child.name for child in node.children]
-    found.names += names
-    found.bones.append((node.sugar, len(names)))
-    theirs = {child.name: list(outcome_names(child)) for child in reversed(node.children)}
+    names = _numbered(child.name for child in node.children)
+    found.names += [child.name for child in node.children]
+    found.bones.append((node.sugar, len(node.children)))
+    theirs = {child.name: _numbered(outcome_names(child)) for child in reversed(node.children)}
     match node:
         case nodes.StateMachine():
             found.bones.append((_at(node.initial, names), node.forever))
@@ -100,13 +102,13 @@ def _container(node: nodes.Container, inner: _Numbers, own: list[str], found: Sk
         case nodes.Concurrence():
             rules = [
                 (_at(rule.outcome, own), [(_at(each.child, names),
-                                           _at(each.outcome, theirs.get(each.child, [])))
+                                           _at(each.outcome, theirs.get(each.child, {})))
                                           for each in rule.when])
                 for rule in node.rules
             ]  # fmt: skip
             found.bones.append((_at(node.default_outcome, own), rules, node.join))
         case nodes.Iterator():
-            ends = theirs.get(names[0], []) if names else []
+            ends = theirs[node.children[0].name] if names else {}
             pairs = [(_at(a, ends), a == node.exhausted_outcome, _at(b, own))
                      for a, b in node.final_map]  # fmt: skip
             loops = [_at(name, ends) for name in node.loop_outcomes]
@@ -125,8 +127,13 @@ def _container(node: nodes.Container, inner: _Numbers, own: list[str], found: Sk
         _node(child, inner, found)
 
 
-def _at(name: str, names: Iterable[str]) -> int:
-    return next((at for at, each in enumerate(names) if each == name), -1)
+def _at(name: str, names: Mapping[str, int]) -> int:
+    return names.get(name, -1)
+
+
+def _numbered(names: Iterable[str]) -> dict[str, int]:
+    """The first place of each name."""
+    return {name: at for at, name in reversed(list(enumerate(names)))}
 
 
 def _data(data: Data, found: Skeleton) -> None:
