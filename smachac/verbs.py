@@ -14,7 +14,6 @@ from smachac.streams import print_report, shown, usage, wants_colour
 if TYPE_CHECKING:
     from smachac.diagnostics import Report
     from smachac.driver import Analysis
-    from smachac.report.state_types import Known
     from smachac.states import Library
     from smachac.targets import Target
 
@@ -39,47 +38,9 @@ def _fmt(arguments: argparse.Namespace) -> int:
 
 
 def _states(arguments: argparse.Namespace) -> int:
-    import json
+    from smachac.telling import states
 
-    from smachac.report import state_types as shown_types
-
-    known = _known_types(arguments.templates)
-    names = [each.type.name for each in known]
-    if arguments.name is not None and arguments.name not in names:
-        return usage(f"there is no state type `{arguments.name}`", arguments.name, names)
-    some = [each for each in known if arguments.name in (None, each.type.name)]
-    match arguments.format:
-        case "json":
-            rows = [shown_types.type_json(each) for each in some]
-            text = json.dumps(rows if arguments.name is None else rows[0], indent=2,
-                              ensure_ascii=False) + "\n"  # fmt: skip
-        case "md":
-            text = "\n".join(map(shown_types.type_markdown, some))
-        case _ if arguments.name is None:
-            text = shown_types.list_text(some)
-        case _:
-            text = shown_types.type_text(some[0])
-    sys.stdout.write(text)
-    return OK
-
-
-def _known_types(templates: list[Path]) -> list[Known]:
-    """The state types that a script in this folder may have: the user's, then the built-in ones."""
-    from smachac.files import disk_library
-    from smachac.report.state_types import CONTAINERS, Known, container_type
-    from smachac.states import find_state_type
-
-    found: Report = []
-    library = disk_library(Path("main.yml"), found, templates=templates)
-    known = []
-    for name in sorted(library.template_names()):
-        type_ = find_state_type(name, library, [])
-        mine = any(library.own_template(f"{name}{end}") for end in (".yml", ".tpl.py", ".tpl"))
-        if type_ is None or not (mine or library.template(f"{name}.yml")):
-            continue  # a piece that templates are made of
-        known.append(Known(type_, "of this project" if mine else "built-in"))
-    known += [Known(container_type(name), "built-in") for name in CONTAINERS]
-    return sorted(known, key=lambda each: (each.place == "built-in", each.type.name))
+    return states(arguments)
 
 
 def _new(arguments: argparse.Namespace) -> int:

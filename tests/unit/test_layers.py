@@ -33,7 +33,10 @@ LAYERS = (
     ("fixes", "verify"),
     ("checkup", "rewriting", "migrate"),
     ("rework", "scaffold"),
-    ("beginning",),
+    (
+        "beginning",
+        "telling",
+    ),
     ("verbs", "arguments"),
     ("cli",),
     ("__main__",),

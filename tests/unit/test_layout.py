@@ -27,6 +27,7 @@ TOUCHES = {
     "smachac/migrate.py": "prints a report",
     "smachac/rewriting.py": "prints diffs and what was written",
     "smachac/beginning.py": "prints what was made",
+    "smachac/telling.py": "prints what state types there are",
     "smachac/rework.py": "prints why something is refused",
     "smachac/streams.py": "prints reports",
     "smachac/runs.py": "opens the trace, shows progress",
