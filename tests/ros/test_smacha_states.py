@@ -1,0 +1,126 @@
+"""SMACHA's states for topics, tf and bags, run as a node."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import pytest
+from live import Graph
+
+import smachac
+
+pytestmark = pytest.mark.ros
+
+HEAD = """
+name: sm
+template: Base
+outcomes: [succeeded, aborted, preempted]
+states:
+"""
+
+TOPICS = """
+  - PUBLISH:
+      template: PublishMsgState
+      action: start
+      userdata: {point: [1.0, 2.0, 3.0], point_topic: smacha/point, often: 20.0}
+      remapping: {msg: point, topic: point_topic, rate: often}
+      transitions: {succeeded: OBSERVE, aborted: aborted}
+  - OBSERVE:
+      template: PublishObserverMsgState
+      action: add
+      sub_topic: smacha/point
+      userdata: {pose: [[1, 2, 3], [0, 0, 0, 1]], pose_topic: smacha/pose}
+      remapping: {msg: pose, topic: pose_topic}
+      transitions: {succeeded: READ, aborted: aborted}
+  - READ:
+      template: ReadTopicState
+      remapping: {topic: pose_topic}
+      output_keys: [msg]
+      transitions: {succeeded: SHOW, aborted: aborted}
+  - SHOW: {template: PrintUserdataState, input_keys: [msg], transitions: {succeeded: WAIT}}
+  - WAIT:
+      template: WaitForMsgState
+      topic: smacha/point
+      msg_type: geometry_msgs/PointStamped
+      msg_cb: "`lambda msg, ud: msg.point.x == 1.0`"
+      transitions: {succeeded: MOVE, aborted: aborted}
+  - MOVE:
+      template: TransformMsgState
+      userdata: {by: [[41, 0, 0], [0, 0, 0, 1]]}
+      input_keys: [transform]
+      remapping: {msg: point, transform: by, output_msg: moved}
+      output_keys: [output_msg]
+      transitions: {succeeded: SHOW_MOVED, aborted: aborted}
+  - SHOW_MOVED: {template: PrintUserdataState, input_keys: [moved], transitions: {succeeded: TF}}
+  - TF:
+      template: TF2ListenerState
+      timeout: 0.5
+      userdata: {target: base, source: tool}
+      transitions: {succeeded: aborted, aborted: STOP}
+  - STOP:
+      template: PublishMsgState
+      action: stop_all
+      transitions: {succeeded: LAST, aborted: aborted}
+  - LAST:
+      template: PublishObserverMsgState
+      action: remove_all
+      sub_topic: smacha/point
+      transitions: {succeeded: succeeded, aborted: aborted}
+"""
+
+BAG = """
+  - PUBLISH:
+      template: PublishMsgState
+      action: start
+      userdata: {point: Point(), topic: /smacha/point, rate: 50.0}
+      remapping: {msg: point}
+      transitions: {succeeded: SEEN, aborted: aborted}
+  - SEEN:
+      template: WaitForMsgState
+      topic: /smacha/point
+      msg_type: geometry_msgs/Point
+      transitions: {succeeded: RECORD, aborted: aborted}
+  - RECORD:
+      template: RecordROSBagState
+      recorder: ROSBagAPIThreadRecorder
+      action: start
+      userdata: {file: FILE, topics: [/smacha/point]}
+      transitions: {succeeded: AGAIN, aborted: aborted}
+  - AGAIN:
+      template: RecordROSBagState
+      recorder: ROSBagAPIThreadRecorder
+      action: start
+      transitions: {succeeded: aborted, aborted: SOME}
+  - SOME: {template: SleepState, time: 0.5, transitions: {succeeded: STOP}}
+  - STOP:
+      template: RecordROSBagState
+      recorder: ROSBagAPIThreadRecorder
+      action: stop
+      transitions: {succeeded: succeeded, aborted: aborted}
+"""
+
+READ = """
+import rosbag
+bag = rosbag.Bag("FILE")
+print(sorted({(topic, message._type) for topic, message, _ in bag.read_messages()}))
+"""
+
+
+def built(folder: Path, states: str) -> str:
+    path = folder / "main.yml"
+    path.write_text(HEAD + states, encoding="utf-8")
+    (text,) = smachac.build(path, "python").values()
+    return text
+
+
+def test_topics_are_published_observed_read_and_transformed(graph: Graph, tmp_path: Path) -> None:
+    output = graph.run(built(tmp_path, TOPICS))
+    assert output.endswith("outcome: succeeded\n")
+    assert "x: 42.0" in output
+    assert "no transform from tool to base in 0.5 s" in output
+
+
+def test_a_bag_holds_what_was_published(graph: Graph, tmp_path: Path) -> None:
+    file = str(tmp_path / "points.bag")
+    assert graph.run(built(tmp_path, BAG.replace("FILE", file))).endswith("outcome: succeeded\n")
+    assert graph.run(READ.replace("FILE", file)) == "[('/smacha/point', 'geometry_msgs/Point')]\n"
