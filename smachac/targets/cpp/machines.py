@@ -21,10 +21,10 @@ from smachac.targets.cpp.inside import (
 from smachac.targets.cpp.types import cpp_literal
 from smachac.targets.cpp.words import identifier
 
-MOST_STATES = 1000
+MOST_STATES = 500
 """Of one function: what compilers do with it is quadratic in its branches."""
 
-PART = 500
+PART = 100
 """States of each function of a container that has more than that."""
 
 
