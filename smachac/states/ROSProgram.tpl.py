@@ -1,5 +1,9 @@
 {% extends "Program.tpl.py" %}
 {%- block imports %}
+{%- if "import threading" not in imports %}
+
+import threading
+{%- endif %}
 {%- if "import rospy" not in imports %}
 
 import rospy
@@ -20,7 +24,8 @@ except ImportError:  # ROS without SMACH, as Debian has it
     """Run the state machine once as a node and return its outcome."""
     rospy.init_node({{ node_name | default(name) | literal }})
     {{ sm_name }} = build()
-    rospy.on_shutdown({{ sm_name }}.request_preempt)  # rospy takes Ctrl-C, and states may wait for long
+    # rospy takes Ctrl-C in the main thread, which may hold what a request to stop needs.
+    rospy.on_shutdown(threading.Thread(target={{ sm_name }}.request_preempt, daemon=True).start)
 {%- if introspection %}
     server = smach_ros.IntrospectionServer({{ node_name | default(name) | literal }}, {{ sm_name }}, {{ ("/" ~ name) | literal }})
     server.start()
