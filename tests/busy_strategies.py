@@ -73,8 +73,8 @@ class _Busy(Building):
         return drawn if first is None else [first, *(name for name in drawn if name != first)]
 
     def leaf(self, exits: list[str], *, stored: bool) -> Leaf:
-        kind = self.draw(st.integers(0, 4))
-        if kind == 1 and exits[0] == "succeeded":
+        kind = self.draw(st.integers(0, 6))
+        if kind in (1, 5, 6) and exits[0] == "succeeded":
             return self.made_leaf("CallbacksState", ["succeeded"], *self.callbacks())
         if kind == 2 and exits[0] == "succeeded":
             time = self.draw(st.sampled_from([0, 0.001]))
@@ -114,7 +114,7 @@ class _Busy(Building):
         return Expression(text=f"lambda ud: {text}", span=NOWHERE)
 
     def callbacks(self) -> tuple[dict[str, Data], list[str], list[str]]:
-        fails = not self.calm and self.draw(st.integers(0, 7)) == 0
+        fails = not self.calm and self.draw(BOOLEANS)
         entries = tuple(
             (key, self.expression(FAILING if fails else RESULTS))
             for key in ([self.writable()] if self.calm else self.draw(SOME_NUMBERS))
@@ -122,7 +122,7 @@ class _Busy(Building):
         return {"callbacks": Struct(entries=entries)}, self.readable(), [key for key, _ in entries]
 
     def readable(self) -> list[str]:
-        every = self.calm or self.draw(st.integers(0, 7))
+        every = self.calm or self.draw(st.integers(0, 3))
         return NUMBERS if every else self.draw(SOME_NUMBERS)
 
     def conditional(self, exits: list[str]) -> Leaf:
@@ -133,7 +133,7 @@ class _Busy(Building):
 
     def held(self) -> tuple[Preset, ...]:
         """Numbers that a container holds: all, or nearly all where something may fail."""
-        missing = "" if self.calm or self.draw(st.integers(0, 5)) else self.draw(NUMBER)
+        missing = "" if self.calm or self.draw(st.integers(0, 2)) else self.draw(NUMBER)
         return tuple(
             Preset(key=key, value=Value(data=self.draw(SMALL), span=NOWHERE), span=NOWHERE)
             for key in NUMBERS
@@ -182,8 +182,8 @@ class _Busy(Building):
         return found
 
     def caught(self, child: Node, targets: list[str]) -> Node:
-        """The child, in one of three cases with an outcome for its exceptions."""
-        if self.draw(st.integers(0, 2)):
+        """The child, in one of six cases with an outcome for its exceptions."""
+        if self.draw(st.integers(0, 5)) != 1:
             return child
         step = transition("error", self.draw(st.sampled_from(targets)), "written")
         return dataclasses.replace(
