@@ -15,6 +15,9 @@ from smachac.ir.walk import expressions, outcome_names
 from smachac.problems import listed
 from smachac.source import Word
 
+MAX_LEVELS = 500
+"""The most levels of an expression; Python compiles no more than about 1,000 frames deep."""
+
 
 @rule("SM016", "bad-expression", Severity.ERROR, firm=True)
 def bad_expression(machine: Machine) -> Iterator[Finding]:
@@ -68,12 +71,24 @@ def _fault(text: str) -> str:
     try:
         with warnings.catch_warnings():
             warnings.simplefilter("ignore", SyntaxWarning)
-            ast.parse(text, mode="eval")
+            tree = ast.parse(text, mode="eval")
     except SyntaxError as error:
         return (error.msg or "invalid syntax").lower()
     except (ValueError, RecursionError, MemoryError):
         return "it is too deep, or holds a character that code may not have"
+    # Every level takes a character or more.
+    if len(text) > MAX_LEVELS and _is_deeper(tree):
+        return f"it is nested deeper than {MAX_LEVELS} levels"
     return ""
+
+
+def _is_deeper(tree: ast.AST) -> bool:
+    level = [tree]
+    for _ in range(MAX_LEVELS):
+        level = [child for node in level for child in ast.iter_child_nodes(node)]
+        if not level:
+            return False
+    return True
 
 
 def _missing_code(leaf: Leaf, path: str) -> Iterator[Finding]:

@@ -82,3 +82,17 @@ def test_deep_machines_are_interpreted() -> None:
     analysis = analyse(Source("main.yml", HEAD + nested(998)), library({}), [])
     assert analysis.checked is not None
     assert run(analysis.checked, built_in()).outcome == "done"
+
+
+def test_too_deep_an_expression() -> None:
+    """Found by fuzzing: the program that was printed could not be compiled."""
+    state = '{T: CallbacksState, output_keys: [n], callbacks: {n: "lambda ud: CODE"}}'
+    for levels, found in ((490, set()), (600, {"SM016"}), (3000, {"SM016"})):
+        script = HEAD.replace("done", "succeeded") + state.replace("CODE", "-" * levels + "1")
+        assert codes(script) == found
+        analysis = analyse(Source("main.yml", script), library({}), [])
+        target = load_target("python")
+        assert target is not None
+        if analysis.checked is not None:
+            (text,) = build(analysis.checked, target, library({}), []).values()
+            compile(text, "x.py", "exec")
