@@ -124,7 +124,7 @@ class _Resolver:
         self.aliases: Aliases = {}
         self.sources: dict[int, Source] = {}
         self.types: dict[str, StateType | None] = {}
-        self.sub_scripts: dict[tuple[str, str], tuple[Source, Tree | None] | None] = {}
+        self.sub_scripts: dict[tuple[str, str], tuple[Source, Tree | None, bool] | None] = {}
         self.templates: tuple[Sequence[str], Sequence[str]] | None = None
         self.count = self.looked_up = 0
         self.uses = Uses()
@@ -321,8 +321,10 @@ class _Resolver:
         key = (word.text, place.source.name)
         if key not in self.sub_scripts:
             source = self.library.script(word.text, place.source.name)
+            told = len(self.report)
             tree = self.library.parse(source, self.report) if source else None
-            self.sub_scripts[key] = (source, tree) if source else None
+            broken = len(self.report) > told
+            self.sub_scripts[key] = (source, tree, broken) if source else None
         found = self.sub_scripts[key]
         if found is None:
             caller = place.source.name
@@ -330,19 +332,17 @@ class _Resolver:
             known = self.library.script_names(caller)
             self.report.append(problems.script_not_found(word, searched, known))
             return None
-        source, tree = found
+        source, tree, broken = found
         chain = [*place.calls, (source.name, word.span)]
         if source.name == self.main or source.name in [name for name, _ in place.calls]:
             self.report.append(problems.recursive_include(chain))
             return None
         self.sources.setdefault(id(source), source)
         if tree is None:
-            broken: Report = []
-            self.library.parse(source, broken)
             if not broken:
-                span = Span(source, 0, 0)
                 message = "the sub-script is empty"
-                self.report.append(problems.bad_sub_script(span, message, word.span))
+                report_at = Span(source, 0, 0)
+                self.report.append(problems.bad_sub_script(report_at, message, word.span))
             return None
         found_state = sub_script_state(tree, word, self.report)
         return None if found_state is None else (source, *found_state)

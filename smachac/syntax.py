@@ -11,6 +11,7 @@ import gc
 import re
 from collections.abc import Callable, Iterator
 from dataclasses import dataclass, field
+from itertools import accumulate
 from typing import Any, TypeAlias
 
 from smachac import problems
@@ -89,6 +90,7 @@ _FLOAT = re.compile(
     r"|[-+]?\.(?:inf|Inf|INF)"
     r"|\.(?:nan|NaN|NAN)"
 )
+_BRACKETS = re.compile(r"[][{}]")
 _MAYBE_NUMBER = frozenset("+-.0123456789")
 
 
@@ -182,8 +184,7 @@ def _build(source: Source, report: Report) -> Tree | None:
             try:
                 builder.drive(events(source.text))
             except YAMLError as error:
-                small = len(source.text) <= MOST_REREAD and builder.deepest <= DEEPEST_REREAD
-                if events is _c_events and small:
+                if events is _c_events and _is_reread(source.text, builder.deepest):
                     continue  # the words of such a syntax error are the pure parser's everywhere
                 builder.root = None
                 found.append(_syntax_error(source, error))
@@ -196,6 +197,14 @@ def _build(source: Source, report: Report) -> Tree | None:
         if collecting:
             gc.enable()
     return None
+
+
+def _is_reread(text: str, deepest: int) -> bool:
+    """Whether a text is small enough for the pure parser, in length, levels and open brackets."""
+    if len(text) > MOST_REREAD or deepest > DEEPEST_REREAD:
+        return False
+    depths = accumulate(1 if bracket in "[{" else -1 for bracket in _BRACKETS.findall(text))
+    return max(depths, default=0) <= DEEPEST_REREAD
 
 
 def _syntax_error(source: Source, error: Any) -> Diagnostic:

@@ -2,8 +2,12 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterator
+from typing import Any
+
 import pytest
 
+from smachac import syntax
 from smachac.diagnostics import Report
 from smachac.driver import analyse, build, memory_library
 from smachac.files import disk_library
@@ -96,3 +100,20 @@ def test_too_deep_an_expression() -> None:
         if analysis.checked is not None:
             (text,) = build(analysis.checked, target, library({}), []).values()
             compile(text, "x.py", "exec")
+
+
+def test_brackets_that_the_pure_parser_would_take_long_for(monkeypatch: pytest.MonkeyPatch) -> None:
+    """Found by fuzzing: 1,000 open brackets took it 0.3 s, in each of several readings."""
+    read: list[str] = []
+    pure = syntax._pure_events
+
+    def counted(text: str) -> Iterator[Any]:
+        read.append(text)
+        return pure(text)
+
+    monkeypatch.setattr(syntax, "_pure_events", counted)
+    assert codes("states:\n" + "{" * 1000) == {"SM001"}
+    assert codes("states:\n" + "{ " * 1000) == {"SM001"}
+    assert read == []
+    assert codes("states:\n" + "{ " * 50) == {"SM001"}
+    assert len(read) == 1
