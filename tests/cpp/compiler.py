@@ -21,7 +21,7 @@ WARNINGS = (
     "-ffp-contract=off",
 )
 SANITIZED = ("-fsanitize=address,undefined", "-fno-sanitize-recover=all")
-THREADED = ("-fsanitize=thread", "-O1")
+THREADED = ("-fsanitize=thread",)
 BARE = ("-fno-exceptions", "-fno-rtti")
 
 
