@@ -16,7 +16,7 @@ from smachac.driver import memory_library
 from smachac.ir.nodes import Leaf, Node, StateMachine
 from smachac.ir.walk import containers, walk
 from smachac.states import Library
-from smachac.targets.cpp.header import header_text
+from smachac.targets.cpp.header import header_of
 from smachac.targets.cpp.plan import Plan, scope_name
 from smachac.targets.cpp.types import cpp_value, script_data
 from smachac.targets.cpp.words import identifier
@@ -106,7 +106,7 @@ class Program:
             path: replace(self._plan.scopes[path], node=node) for path, node in containers(root)
         }
         planned = Plan(machine=machine, scopes=scopes, report=list(self._plan.report))
-        lines = header_text(planned, library)[0].splitlines()
+        lines = header_of(planned, library).text.splitlines()
         text = "\n".join(line for line in lines if not line.startswith("#"))
         return text, in_order(planned.report)
 

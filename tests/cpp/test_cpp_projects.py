@@ -34,6 +34,13 @@ states:
   - SIT: {template: SleepState, time: 1000.0, transitions: {succeeded: done, preempted: stopped}}
 """
 
+GREETING = """
+name: greeting
+outcomes: [done]
+states:
+  - GREET: {template: Greet, transitions: {said: done}}
+"""
+
 needs_cmake = pytest.mark.skipif(shutil.which("cmake") is None, reason="cmake is not installed")
 needs_ament = pytest.mark.skipif(not AMENT.is_dir(), reason="ament-cmake is not installed")
 
@@ -89,6 +96,39 @@ def test_a_package_for_colcon(tmp_path: Path) -> None:
     assert ran(installed / "lib" / "night_watch" / "patrol") == SPOKEN
     main = folder / "src" / "main.cpp"
     assert ran(uses(tmp_path / "user", "night_watch", main, installed)) == SPOKEN
+
+
+@needs_cmake
+def test_classes_of_the_user_are_found(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+) -> None:
+    folder = tmp_path / "mein Roboter für alles"
+    folder.mkdir()
+    monkeypatch.chdir(folder)
+    (folder / "main.yml").write_text(GREETING, "utf-8")
+    assert cli.main(["new", "state", "Greet", "--target", "cpp", "--outcome", "said"]) == 0
+    built(folder / "out", folder / "main.yml", "main=true", "cmake=true")
+    assert ran(made(folder / "out") / "greeting") == "outcome: done\n"
+    (folder / "include").rename(folder / "else where")
+    call = ("cmake", "-S", "out", "-B", "new")
+    told = subprocess.run(call, capture_output=True, text=True, check=False)
+    assert told.returncode != 0
+    assert "-D greeting_INCLUDE=FOLDER says where" in " ".join(told.stderr.split())
+    ran(*call, "-Dgreeting_INCLUDE=else where")
+    ran("cmake", "--build", "new")
+    assert ran("new/greeting") == "outcome: done\n"
+
+
+@pytest.mark.parametrize(
+    ("script", "options"), [(ARM, ()), (PATROL, ("main=true", "cmake=true", "package=night"))]
+)
+def test_what_was_written_can_be_written_again(
+    script: Path, options: Sequence[str], tmp_path: Path
+) -> None:
+    built(tmp_path, script, *options)
+    before = {path: path.read_bytes() for path in tmp_path.rglob("*") if path.is_file()}
+    built(tmp_path, script, *options)
+    assert {path: path.read_bytes() for path in before} == before
 
 
 def test_a_library_without_a_program(tmp_path: Path) -> None:

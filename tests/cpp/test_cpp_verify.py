@@ -11,7 +11,7 @@ from compiler import compilers
 
 from smachac.cli import main
 from smachac.states import Library
-from smachac.targets.cpp.header import header_text
+from smachac.targets.cpp.header import Header, header_of
 from smachac.targets.cpp.plan import Plan
 from smachac.verify import cpp
 from smachac.verify.compilers import Compiler
@@ -102,12 +102,12 @@ def test_a_wrong_header_is_found(
     script.write_text(ROUNDS, "utf-8")
     changed = []
 
-    def broken(planned: Plan, library: Library) -> tuple[str, tuple[str, ...]]:
-        text, parameters = header_text(planned, library)
-        changed.append(break_(text) != text)
-        return break_(text), parameters
+    def broken(planned: Plan, library: Library) -> Header:
+        header = header_of(planned, library)
+        changed.append(break_(header.text) != header.text)
+        return header._replace(text=break_(header.text))
 
-    monkeypatch.setattr("smachac.verify.cpp_program.header_text", broken)
+    monkeypatch.setattr("smachac.verify.cpp_program.header_of", broken)
     assert main(["verify", str(script), "--targets", "cpp", "--paths", "40"]) == 1
     assert any(changed)
     out = capsys.readouterr().out

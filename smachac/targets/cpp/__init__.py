@@ -10,7 +10,7 @@ from __future__ import annotations
 from smachac.diagnostics import Report, in_order
 from smachac.ir.nodes import Checked
 from smachac.targets import Context, Files, Target, stem
-from smachac.targets.cpp.header import header_text
+from smachac.targets.cpp.header import header_of
 from smachac.targets.cpp.plan import plan
 from smachac.targets.cpp.project import OPTIONS, project, project_files, runtime
 
@@ -19,12 +19,12 @@ def emit(machine: Checked, context: Context, report: Report) -> Files:
     """The header of a machine, `<name>.hpp`, and what options add."""
     wanted = project(context.options)
     planned = plan(machine)
-    text, parameters = header_text(planned, context.library)
+    header = header_of(planned, context.library)
     report.extend(in_order(planned.report))
     if planned.report:
         return {}
-    header = {wanted.path(f"{stem(machine)}.hpp"): text}
-    return header | project_files(machine, wanted, parameters)
+    files = {wanted.path(f"{stem(machine)}.hpp"): header.text}
+    return files | project_files(machine, wanted, header)
 
 
 TARGET = Target(

@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Mapping
 from collections.abc import Set as AbstractSet
 from dataclasses import dataclass, field
+from typing import NamedTuple
 
 from smachac import problems
 from smachac.ir.nodes import Leaf, Machine
@@ -33,9 +34,18 @@ LENIENT = """#if defined(__GNUC__)
 """What stands around containers with classes of the user."""
 
 
-def header_text(plan: Plan, library: Library) -> tuple[str, tuple[str, ...]]:
-    """The text of the header, and the parameters that the States of the machine are made with.
-    What C++ cannot say is in the plan's report afterwards, all of it."""
+class Header(NamedTuple):
+    """The text of a header, the parameters that the States of the machine are made with, and the
+    headers of the user's classes that it includes."""
+
+    text: str
+    parameters: tuple[str, ...]
+    classes: tuple[str, ...]
+
+
+def header_of(plan: Plan, library: Library) -> Header:
+    """The header of a machine. What C++ cannot say is in the plan's report afterwards, all of
+    it."""
     printing = _Printing(plan=plan, library=library)
     blocks = [
         "\n".join(_container(printing, scope)) for scope in reversed(list(plan.scopes.values()))
@@ -43,13 +53,14 @@ def header_text(plan: Plan, library: Library) -> tuple[str, tuple[str, ...]]:
     _refuse_missing(plan, printing.missing)
     codes = [code for code in printing.classes.values() if code is not None]
     headers = sorted({"smachac/smachac.hpp", *(code.header for code in codes)})
+    classes = tuple(header for header in headers if not header.startswith("smachac/"))
     made = f"// {made_by(plan.machine)}\n#pragma once"
     includes = "\n".join(f'#include "{header}"' for header in headers)
     checks = ["\n".join(assertions(code)) for code in codes]
     if codes:
         blocks = [STRICT, *checks, *blocks, LENIENT]
     text = "\n\n".join([made, includes, *blocks]) + "\n"
-    return text, printing.parameters.get(plan.machine.root.name, ())
+    return Header(text, printing.parameters.get(plan.machine.root.name, ()), classes)
 
 
 @dataclass(slots=True, kw_only=True)

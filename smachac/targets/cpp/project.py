@@ -3,11 +3,12 @@
 from __future__ import annotations
 
 import re
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 
 from smachac.ir.nodes import Machine
 from smachac.targets import Files, OptionError, made_by, stem
+from smachac.targets.cpp.header import Header
 from smachac.targets.cpp.plan import scope_name
 
 OPTIONS = {
@@ -58,16 +59,16 @@ def runtime(files: Files) -> dict[str, str]:
     return {f"{root}smachac/{name}": f"cpp/smachac/{name}" for name in (*RUNTIME, *parts)}
 
 
-def project_files(machine: Machine, wanted: Project, parameters: tuple[str, ...]) -> Files:
-    """The files beside the header; `parameters` are those of the machine's States.
+def project_files(machine: Machine, wanted: Project, header: Header) -> Files:
+    """The files beside the header.
 
     Raises OptionError where no program can be printed.
     """
     files: Files = {}
     name = stem(machine)
     if wanted.main:
-        if parameters:
-            told = " and ".join(f"`{each}`" for each in parameters)
+        if header.parameters:
+            told = " and ".join(f"`{each}`" for each in header.parameters)
             raise OptionError(f"main: its states are made with {told}, so write main.cpp yourself")
         folder = "src/" if wanted.package else ""
         files[f"{folder}main.cpp"] = _main(machine, f"{wanted.package}/" if wanted.package else "")
@@ -75,7 +76,7 @@ def project_files(machine: Machine, wanted: Project, parameters: tuple[str, ...]
         files["CMakeLists.txt"] = _ament(machine, wanted)
         files["package.xml"] = _package(machine, wanted.package)
     elif wanted.cmake:
-        files["CMakeLists.txt"] = _cmake(machine, name, wanted)
+        files["CMakeLists.txt"] = _cmake(machine, name, wanted, header)
     return files
 
 
@@ -97,7 +98,7 @@ int main(int count, char **arguments) {{
 """
 
 
-def _cmake(machine: Machine, name: str, wanted: Project) -> str:
+def _cmake(machine: Machine, name: str, wanted: Project, header: Header) -> str:
     program = (
         f"\nadd_executable({name}_main main.cpp)\n"
         f"set_target_properties({name}_main PROPERTIES OUTPUT_NAME {name})\n"
@@ -122,7 +123,7 @@ target_link_libraries({name} INTERFACE Threads::Threads)
 target_include_directories({name} INTERFACE
   $<BUILD_INTERFACE:${{CMAKE_CURRENT_SOURCE_DIR}}>
   $<INSTALL_INTERFACE:${{CMAKE_INSTALL_INCLUDEDIR}}/{name}>)
-{program}
+{_classes(name, header.classes)}{program}
 install(FILES {name}.hpp DESTINATION ${{CMAKE_INSTALL_INCLUDEDIR}}/{name})
 install(DIRECTORY smachac DESTINATION ${{CMAKE_INSTALL_INCLUDEDIR}}/{name})
 install(TARGETS {name} EXPORT {name}Targets)
@@ -135,6 +136,28 @@ include(\\${{CMAKE_CURRENT_LIST_DIR}}/{name}Targets.cmake)
 ")
 install(FILES ${{CMAKE_CURRENT_BINARY_DIR}}/{name}Config.cmake
   DESTINATION ${{CMAKE_INSTALL_LIBDIR}}/cmake/{name})
+"""
+
+
+def _classes(name: str, headers: Sequence[str]) -> str:
+    """Where a build finds the classes of the user. They are not installed: who uses the installed
+    header has them."""
+    if not headers:
+        return ""
+    listed = "".join(f"\n    {header}" for header in headers)
+    return f"""
+# The headers of your state types; -D {name}_INCLUDE=FOLDER says where they are.
+set({name}_INCLUDE ${{CMAKE_CURRENT_SOURCE_DIR}}/../include ${{CMAKE_CURRENT_SOURCE_DIR}}/include
+    CACHE PATH "the folders with the headers of the state types of {name}")
+foreach(header{listed})
+  find_path(folder ${{header}} HINTS ${{{name}_INCLUDE}})
+  if(NOT folder)
+    message(FATAL_ERROR
+      "no ${{header}} in ${{{name}_INCLUDE}}: -D {name}_INCLUDE=FOLDER says where")
+  endif()
+  target_include_directories({name} INTERFACE $<BUILD_INTERFACE:${{folder}}>)
+  unset(folder CACHE)
+endforeach()
 """
 
 

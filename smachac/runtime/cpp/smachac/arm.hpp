@@ -1,3 +1,5 @@
+// Made by smachac, as it is for every machine: do not edit.
+//
 // The state types of an arm (MoveAlongState, GripperState, ...) in C++, over a robot that is yours:
 // derive from `smachac::Arm` and `smachac::World`, and give both to the States of the machine.
 //

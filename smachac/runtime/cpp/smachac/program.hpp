@@ -1,3 +1,5 @@
+// Made by smachac, as it is for every machine: do not edit.
+//
 // A program around a machine: `--trace FILE`, Ctrl-C, and its outcome at the end. For POSIX.
 #ifndef SMACHAC_PROGRAM_HPP
 #define SMACHAC_PROGRAM_HPP
