@@ -94,10 +94,19 @@ def _text(tree: Map, name: str) -> str:
 
 
 def _names(tree: Tree, optional: bool) -> list[Word]:
-    """Names in a meta list: `- x: {...}` or `- x`; optional ones stand in a nested list."""
+    """Names in a meta list: `- x: {...}` or `- x`; optional ones stand in a nested list, and under
+    the name of a group stands the list of its names."""
     if isinstance(tree, Scalar):
         return [Word(str(tree.value), tree.span)] if tree.value is not None else []
     if isinstance(tree, Map):
-        return [Word(str(entry.key.value), entry.value.span) for entry in tree.entries]
+        return [
+            found
+            for entry in tree.entries
+            for found in (
+                _names(entry.value, optional)
+                if isinstance(entry.value, Seq)
+                else [Word(str(entry.key.value), entry.value.span)]
+            )
+        ]
     inner = (item for item in tree.items if optional or not isinstance(item, Seq))
     return [found for item in inner for found in _names(item, optional)]

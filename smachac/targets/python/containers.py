@@ -122,7 +122,7 @@ def _by_template(
 ) -> str:
     """A container that a template of SMACHA's kind prints, its states' blocks in its variables.
 
-    What the template has no block for goes on to the container around.
+    What the template has no block for, or does not print there, goes on to the container around.
     """
     _catches_nothing(node)
     variables = container_variables(node, parent.node, parent.variable, path)
@@ -139,15 +139,34 @@ def _by_template(
                 **headers(inside), "body": states, "defined_headers": gathered.defined_headers,
             },
         )  # fmt: skip
-        for name, lines in inner.items():
-            if name not in page.names:
-                gathered.buffers[name] = lines
         gathered.gather(page, node)
+        for name, lines in inner.items():
+            own = gathered.buffers[name]
+            if name not in page.names or lost("\n".join(lines), "\n".join(own)):
+                gathered.buffers[name] = {**lines, **own}
         _headers(page, parent, node, gathered)
-        return f"# {body.place(node)}\n{gathered.code(page, 'body', node)}"
+        text = gathered.code(page, "body", node)
+        if lost(states, text):
+            span = gathered.blocks.block_span(template, "body") or node.span
+            raise BlockError(problems.template_error(span, *NO_BODY))
+        return f"# {body.place(node)}\n{text}"
     finally:
         _pass_on(gathered.buffers, outer)
         gathered.buffers = outer
+
+
+def lost(inner: str, text: str) -> bool:
+    """Whether nothing of what the states of a container bring is in what its template prints."""
+    printed = {line.strip() for line in text.splitlines()}
+    lines = [line.strip() for line in inner.splitlines() if line.strip()]
+    return bool(lines) and printed.isdisjoint(lines)
+
+
+NO_BODY = (
+    "block `body` does not print `{{ body }}`: the states would be lost",
+    "print `{{ body | indent(4) }}` in the `with` of the container",
+)
+"""Message and help where a container or base leaves its states out."""
 
 
 def headers(inside: Inside) -> dict[str, object]:

@@ -13,7 +13,15 @@ from smachac.ir.walk import walk
 from smachac.states import find_state_type
 from smachac.targets import Context, made_by
 from smachac.targets.blocks import BlockError, Blocks
-from smachac.targets.python.containers import Inside, children, headers, joined, structure
+from smachac.targets.python.containers import (
+    NO_BODY,
+    Inside,
+    children,
+    headers,
+    joined,
+    lost,
+    structure,
+)
 from smachac.targets.python.expressions import standard_imports
 from smachac.targets.python.gathered import PREPENDED, Gathered
 from smachac.targets.python.imports import import_lines, unbound_names
@@ -107,6 +115,9 @@ def _text(machine: Machine, context: Context, gathered: Gathered) -> str | None:
         "introspection": context.options.get("introspection", "no") == "yes",
     }
     text = gathered.blocks.render_whole(template, variables) + "\n"
+    if lost(states, text):
+        span = gathered.blocks.block_span(template, "body") or machine.root.span
+        raise BlockError(problems.template_error(span, *NO_BODY))
     return _checked(text, template, machine, gathered)
 
 

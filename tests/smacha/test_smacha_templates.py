@@ -1,0 +1,495 @@
+"""What templates of SMACHA's kind may hold, one by one: blocks and where they go, variables, other
+templates, macros, tests and filters, meta blocks.
+
+Each test makes its templates itself; `docs/smacha.md` names the tests.
+"""
+
+# ruff: noqa: E501
+from __future__ import annotations
+
+import re
+from collections.abc import Callable
+from pathlib import Path
+
+import pytest
+
+import smachac
+from smachac.files import disk_library
+from smachac.states import StateType, find_state_type
+from smachac.targets.blocks import Blocks
+from smachac.targets.python.smacha import FILTERS, TESTS, Text, is_not_string
+
+Built = Callable[..., str]
+
+MAIN = """\
+name: SM
+template: Base
+outcomes: [done]
+states:
+  - A: {template: T, transitions: {done: B}}
+  - B: {template: T, transitions: {done: done}}
+"""
+
+CLASS = """\
+{% block class_defs %}
+{% if 'class_T' not in defined_headers %}
+class T(smach.State):
+    def __init__(self):
+        smach.State.__init__(self, outcomes=['done'])
+{% do defined_headers.append('class_T') %}
+{% endif %}
+{% endblock %}
+"""
+
+ADDED = """\
+{% from "Utils.tpl.py" import render_transitions %}
+{% block body %}
+smach.{{ parent_type }}.add('{{ name }}', T(){% if transitions is defined %},
+{{ render_transitions(transitions) }}{% endif %})
+{% endblock body %}
+"""
+
+NESTED = """\
+name: SM
+template: Base
+outcomes: [done]
+states:
+  - A: {template: T, transitions: {done: BOX}}
+  - BOX:
+      template: StateMachine
+      outcomes: [done]
+      transitions: {done: done}
+      states:
+        - B: {template: T, transitions: {done: done}}
+"""
+
+APPENDED = ("base_header", "imports", "defs", "class_defs", "cb_defs", "main_def", "body")
+PREPENDED = ("footer", "execute", "base_footer", "main")
+KEYED = ("header", "header_userdata")
+
+LABELLED = "".join(
+    f"{{% block {name} %}}\n# {name}:\n{{{{ {name} }}}}\n{{% endblock %}}\n"
+    for name in (*APPENDED, *PREPENDED)
+)
+"""A base that prints what it is given under the name of the block."""
+
+
+@pytest.fixture
+def built(tmp_path: Path) -> Built:
+    """The program of a script, with templates by file name."""
+
+    def build(script: str = MAIN, /, **templates: str) -> str:
+        (tmp_path / "main.yml").write_text(script)
+        (tmp_path / "templates").mkdir(exist_ok=True)
+        for name, text in templates.items():
+            (tmp_path / "templates" / f"{name}.tpl.py").write_text(text)
+        (text,) = smachac.build(tmp_path / "main.yml", "python").values()
+        return text
+
+    return build
+
+
+def errors(build: Built, script: str = MAIN, /, **templates: str) -> list[str]:
+    """What is said of templates that cannot be printed."""
+    with pytest.raises(smachac.ScriptError) as caught:
+        build(script, **templates)
+    return [item.finding.message for item in caught.value.report]
+
+
+# Blocks and where they go.
+
+
+def between(text: str, name: str) -> str:
+    """What LABELLED printed for a block."""
+    return re.split(r"# [a-z_]+:\n", text.partition(f"# {name}:\n")[2])[0]
+
+
+@pytest.mark.parametrize("block", [*APPENDED, *PREPENDED])
+def test_a_block_goes_to_the_variable_of_its_name(built: Built, block: str) -> None:
+    mark = f"{{% block {block} %}}\nof_{{{{ name | lower }}}} = 1\n{{% endblock %}}\n"
+    text = built(Base=LABELLED, T=mark if block == "body" else mark + ADDED)
+    order = re.findall(r"of_([ab]) = 1", between(text, block))
+    assert order == (["b", "a"] if block in PREPENDED else ["a", "b"])
+    assert text.count("of_a = 1") == text.count("of_b = 1") == 1
+
+
+@pytest.mark.parametrize("block", KEYED)
+def test_a_header_goes_to_the_container_around(built: Built, block: str) -> None:
+    mark = f"{{% block {block} %}}\nof_{{{{ name }}}} = 1\n{{% endblock %}}\n"
+    text = built(NESTED, T=CLASS + mark + ADDED)
+    order = ["sm = smach", "of_A = 1", "with sm:", "sm_box = smach", "of_B = 1", "with sm_box:"]
+    places = [text.index(part) for part in order]
+    assert places == sorted(places)
+    own = "{% block body %}\n# %s\n{{ %s[name] }}\n# the states\n{{ body }}\n{% endblock %}"
+    text = built(NESTED, T=CLASS + mark + ADDED, Base=own.replace("%s", block))
+    assert "of_A = 1" in text.partition("# the states")[0]
+    assert "of_B = 1" in text.partition("# the states")[2]
+
+
+def test_what_a_container_has_no_block_for_goes_on_to_the_one_around(built: Built) -> None:
+    box = "{% block body %}\n# {{ name }}\n{{ body }}\n{% endblock %}"
+    mark = "{% block defs %}\nof_{{ name | lower }} = 1\n{% endblock %}\n"
+    text = built(NESTED, T=mark + ADDED, StateMachine=box, Base=LABELLED)
+    assert re.findall(r"of_\w", between(text, "defs")) == ["of_a", "of_b"]
+
+
+def test_what_a_container_has_a_block_for_is_its_to_print(built: Built) -> None:
+    box = (
+        "{% block body %}\n# {{ name }}\n{{ body }}\n{% endblock %}"
+        "{% block defs %}\nfirst = 1\n{{ defs }}\nlast = 1\n{% endblock %}"
+    )
+    mark = "{% block defs %}\nof_{{ name | lower }} = 1\n{% endblock %}\n"
+    text = built(NESTED, T=mark + ADDED, StateMachine=box, Base=LABELLED)
+    words = [line for line in between(text, "defs").splitlines() if line]
+    assert words == ["of_a = 1", "first = 1", "of_b = 1", "last = 1"]
+
+
+def test_a_block_that_prints_nothing_of_the_states_loses_nothing(built: Built) -> None:
+    box = "{% block body %}\n{{ body }}\n{% endblock %}{% block defs %}\nown = 1\n{% endblock %}"
+    mark = "{% block defs %}\nof_{{ name | lower }} = 1\n{% endblock %}\n"
+    text = built(NESTED, T=mark + ADDED, StateMachine=box, Base=LABELLED)
+    words = [line for line in between(text, "defs").splitlines() if line]
+    assert words == ["of_a = 1", "of_b = 1", "own = 1"]
+
+
+@pytest.mark.parametrize("name", ["StateMachine", "Base"])
+def test_a_container_that_does_not_print_its_states_is_told(built: Built, name: str) -> None:
+    lost = "{% block body %}\n# no body\n{% endblock %}"
+    (message,) = errors(built, NESTED, T=CLASS + ADDED, **{name: lost})
+    assert message == "block `body` does not print `{{ body }}`: the states would be lost"
+
+
+def test_once_only_code_by_defined_headers(built: Built) -> None:
+    text = built(T=CLASS + ADDED)
+    assert text.count("class T(smach.State)") == 1
+    twice = CLASS.replace("class T", "class T_{{ name }}").replace("'class_T'", "name")
+    text = built(T=twice + ADDED.replace("T()", "T_{{ name }}()"))
+    assert re.findall(r"class (\w+)\(smach.State\)", text) == ["T_A", "T_B"]
+
+
+def test_a_base_is_rendered_whole(built: Built) -> None:
+    base = "{% set word = 'two' %}one = 1\n{% block defs %}{{ word }} = 2{% endblock %}\n{{ body }}\nend = 3"
+    lines = built(Base=base, T=CLASS + ADDED).splitlines()
+    assert lines[1:3] + lines[-1:] == ["one = 1", "two = 2", "end = 3"]
+
+
+# The variables.
+
+
+def test_every_variable_that_smacha_gave_to_a_state(built: Built) -> None:
+    asked = (
+        "name class_name parent_name parent_sm_name parent_type parent_template speed slots "
+        "userdata input_keys output_keys outcomes remapping transitions callbacks params"
+    )
+    said = "".join(f"# {word}={{{{ {word} }}}}\n" for word in asked.split())
+    script = """\
+name: SM
+template: Base
+outcomes: [done]
+params: {side: left}
+states:
+  - BOX:
+      template: StateMachine
+      outcomes: [done]
+      transitions: {done: done}
+      states:
+        - A:
+            template: T
+            params: {own: 1}
+            speed: fast
+            slots: [1, 2]
+            userdata: {k: text}
+            input_keys: [k]
+            output_keys: [k]
+            outcomes: [done]
+            remapping: {k: k}
+            callbacks: {k: "`lambda ud: 1`"}
+            transitions: {done: done}
+"""
+    text = built(script, T=CLASS + ADDED.replace("smach.{{", f"{said}smach.{{{{", 1))
+    found = dict(re.findall(r"# (\w+)=(.*)", text))
+    assert found == {
+        "name": "A", "class_name": "T", "parent_name": "BOX", "parent_sm_name": "sm_box",
+        "parent_type": "StateMachine", "parent_template": "StateMachine", "speed": "fast",
+        "slots": "[1, 2]", "userdata": "{'k': 'text'}", "input_keys": "['k']",
+        "output_keys": "['k']", "outcomes": "['done']", "remapping": "{'k': 'k'}",
+        "transitions": "{'done': 'done'}", "callbacks": "{'k': '`lambda ud: 1`'}",
+        "params": "{'side': 'left', 'own': 1}",
+    }  # fmt: skip
+
+
+def test_a_container_and_a_base_see_what_the_script_says_of_them(built: Built) -> None:
+    asked = "name outcomes userdata transitions parent_type parent_sm_name"
+    said = "".join(f"# box {word}={{{{ {word} }}}}\n" for word in asked.split())
+    box = f"{{% block body %}}\n{said}{{{{ body }}}}\n{{% endblock %}}"
+    script = NESTED.replace("template: StateMachine", "template: StateMachine\n      ud: {k: 1}")
+    script = script.replace("name: SM", "name: SM\nnode_name: n\nmanifest: m\nfunction_name: go")
+    words = "name node_name manifest function_name outcomes userdata"
+    base = "".join(f"# base {word}={{{{ {word} }}}}\n" for word in words.split()) + LABELLED
+    text = built(script + "userdata: {top: 2}\n", T=CLASS + ADDED, StateMachine=box, Base=base)
+    assert dict(re.findall(r"# box (\w+)=(.*)", text)) == {
+        "name": "BOX", "outcomes": "['done']", "userdata": "{'k': 1}",
+        "transitions": "{'done': 'done'}", "parent_type": "StateMachine", "parent_sm_name": "sm",
+    }  # fmt: skip
+    assert dict(re.findall(r"# base (\w+)=(.*)", text)) == {
+        "name": "SM", "node_name": "n", "manifest": "m", "function_name": "go",
+        "outcomes": "['done']", "userdata": "{'top': 2}",
+    }  # fmt: skip
+
+
+def test_a_uuid_is_that_of_the_path_in_each_build(built: Built) -> None:
+    said = ADDED.replace("smach.{{", "# uuid {{ uuid }}\nsmach.{{", 1)
+    first = re.findall(r"# uuid (\w+)", built(T=CLASS + said))
+    assert [len(each) for each in first] == [32, 32]
+    assert len({*first}) == 2
+    assert re.findall(r"# uuid (\w+)", built(T=CLASS + said)) == first
+    renamed = re.findall(
+        r"# uuid (\w+)",
+        built(MAIN.replace("- B", "- C").replace("done: B", "done: C"), T=CLASS + said),
+    )
+    assert (renamed[0] == first[0], renamed[1] == first[1]) == (True, False)
+
+
+def test_no_transitions_in_a_concurrence(built: Built) -> None:
+    script = """\
+name: SM
+template: Base
+outcomes: [done]
+states:
+  - ALL:
+      template: Concurrence
+      outcomes: [done]
+      default_outcome: done
+      outcome_map: {done: {A: done, BOX: done}}
+      transitions: {done: done}
+      states:
+        - A: {template: T}
+        - BOX:
+            template: StateMachine
+            outcomes: [done]
+            states:
+              - B: {template: T, transitions: {done: done}}
+"""
+    said = ADDED.replace("smach.{{", "# {{ name }} {{ transitions is defined }}\nsmach.{{", 1)
+    text = built(script, T=CLASS + said)
+    assert re.findall(r"# (\w) (True|False)", text) == [("A", "False"), ("B", "True")]
+    assert 'smach.Concurrence.add("BOX", sm_box)' in text
+
+
+def test_a_set_at_the_top_of_a_template_is_its_own(built: Built) -> None:
+    top = "{% if name == 'A' %}{% set speed = 'of_a' %}{% endif %}{% set local_vars = ['x'] %}\n"
+    said = ADDED.replace("smach.{{", "# {{ name }} {{ speed | default('none') }}\nsmach.{{", 1)
+    text = built(T=top + CLASS + said)
+    assert re.findall(r"# (\w) (\w+)\n", text) == [("A", "of_a"), ("B", "none")]
+
+
+# What templates use of one another.
+
+
+def test_extends_and_super(built: Built) -> None:
+    child = '{% extends "T.tpl.py" %}{% block defs %}\n{{ super() }}\nmore = 2\n{% endblock %}'
+    parent = "{% block defs %}\nfirst = 1\n{% endblock %}\n"
+    text = built(MAIN.replace("template: T", "template: U"), T=parent + CLASS + ADDED, U=child)
+    assert re.search(r"first = 1\n+more = 2", text)
+    assert text.count("first = 1") == 1
+
+
+def test_include_brings_the_blocks_of_a_template(built: Built) -> None:
+    shared = (
+        "{% block imports %}\nimport heapq\n{% endblock %}{% block defs %}\nx = 1\n{% endblock %}"
+    )
+    text = built(T='{% include "Shared.tpl.py" %}' + CLASS + ADDED, Shared=shared)
+    assert text.count("import heapq") == text.count("x = 1") == 1
+
+
+def test_import_and_from_import(built: Built) -> None:
+    macros = "{% macro said(word) %}word_{{ word }}{% endmacro %}"
+    used = (
+        '{% import "M.tpl.py" as m %}{% from "M.tpl.py" import said %}'
+        "{% block defs %}\n{{ m.said('a') }} = {{ said('b') | length }}\n{% endblock %}"
+    )
+    assert "word_a = 6" in built(T=used + CLASS + ADDED, M=macros)
+
+
+def test_do_is_there_and_text_outside_of_blocks_is_not_printed(built: Built) -> None:
+    loose = "loose = 1\n{% set words = [] %}{% do words.append('said') %}\n"
+    mark = "{% block defs %}\n{{ words[0] }} = 1\n{% endblock %}\n"
+    text = built(T=loose + mark + CLASS + ADDED)
+    assert "said = 1" in text
+    assert "loose" not in text
+
+
+def test_lines_of_statements_are_stripped_and_no_others(built: Built) -> None:
+    mark = (
+        "{% block defs %}\nif True:\n    {% if name %}\n    x = 1\n    {% endif %}\n{% endblock %}"
+    )
+    assert "if True:\n\n    x = 1\n" in built(T=mark + CLASS + ADDED)
+
+
+def test_what_the_user_has_comes_before_what_is_built_in(built: Built, tmp_path: Path) -> None:
+    own = "{% block body %}\nown_{{ name }} = {{ time }}\n{% endblock %}"
+    script = MAIN.replace("template: T", "template: SleepState, time: 1").replace(
+        "done: B", "succeeded: B"
+    )
+    (tmp_path / "other").mkdir()
+    (tmp_path / "other" / "SleepState.tpl.py").write_text(own.replace("own", "other"))
+    assert "class SleepState(" in built(script.replace("{done: done}", "{succeeded: done}"))
+    assert "own_A = 1" in built(script, SleepState=own)
+    text = smachac.build(tmp_path / "main.yml", "python", templates=[tmp_path / "other"])
+    assert "other_A = 1" in text["SM.py"]
+
+
+@pytest.mark.parametrize("include", ['{% include "State.tpl" %}', '{% include "State.tpl.py" %}'])
+def test_old_templates_include_state_and_print_their_own_body(built: Built, include: str) -> None:
+    script = MAIN.replace("template: T", "template: T, userdata: {k: 1}")
+    text = built(script, T=include + CLASS + ADDED)
+    assert text.count("smach.StateMachine.add('A'") == 1
+    assert text.count('.add("A"') == 0
+    assert "sm.userdata.k = 1" in text
+
+
+def test_state_adds_a_state_with_its_callbacks(built: Built) -> None:
+    script = MAIN.replace(
+        "template: T",
+        "template: T, input_keys: [k], userdata: {k: 1}, callbacks: {k: '`lambda ud: 2`'}",
+    )
+    init = CLASS.replace("__init__(self)", "__init__(self, input_keys=[], callbacks={})")
+    text = built(script, T='{% extends "State.tpl.py" %}' + init)
+    assert text.count("_lambda_cb(userdata):") == 2
+    assert re.findall(r'callbacks=\{"(k_[ab])_\w{32}_lambda_cb": \1_\w{32}_lambda_cb\}', text) == [
+        "k_a",
+        "k_b",
+    ]
+
+
+def test_a_name_that_nobody_defines_is_told(built: Built) -> None:
+    (message,) = errors(built, T=CLASS + ADDED.replace("'{{ name }}'", "'{{ nmae }}'"))
+    assert message == "'nmae' is undefined"
+
+
+# Utils.
+
+MACROS = {
+    "render_userdata('SM', {'b': 1, 'a': 'it'})": 'sm.userdata.a = "it"\nsm.userdata.b = 1',
+    "render_outcomes(['b', 'a'])": 'outcomes=["b", "a"]',
+    "render_input_keys(['a'], indent=0)": 'input_keys=["a"]',
+    "render_output_keys(['a'], indent=0)": 'output_keys=["a"]',
+    "render_goal_slots(['a'], indent=0)": 'goal_slots=["a"]',
+    "render_result_slots(['a'], indent=0)": 'result_slots=["a"]',
+    "render_request_slots(['a'], indent=0)": 'request_slots=["a"]',
+    "render_response_slots(['a'], indent=0)": 'response_slots=["a"]',
+    "render_transitions({'b': 'B', 'a': 'A'}, indent=0)": 'transitions={"a": "A",\n"b": "B"}',
+    "render_remapping({'b': 'B', 'a': 'A'}, indent=0)": 'remapping={"a": "A",\n"b": "B"}',
+    "render_outcome_map({'b': {'X': 'x', 'Y': 'y'}, 'a': 'd'}, indent=0)":
+        'outcome_map={"a": "d",\n"b": {"X": "x", "Y": "y"}}',
+    "render_callbacks('A', 'u', {'k': '`lambda ud: 1`', 'l': 'named'}, indent=0)":
+        'callbacks={"k_a_u_lambda_cb": k_a_u_lambda_cb, "named": named}',
+    "render_def_lambda_callbacks(heads, 'T', 'A', 'u', ['i'], outcomes, {'k': '`lambda ud: 1`', 'l': 'named'})":
+        '@smach.cb_interface(input_keys=["i"], output_keys=["k"], outcomes=["succeeded"])\n'
+        'def k_a_u_lambda_cb(userdata):\nuserdata["k"] = (lambda ud: 1)(userdata)\nreturn "succeeded"',
+    "import_module(heads, 'm')": "import m",
+    "import_module_as(heads, 'm', 'n')": "import m as n",
+    "from_import(heads, 'm', 'n')": "from m import n",
+    "from_import_as(heads, 'm', 'n', 'o')": "from m import n as o",
+}  # fmt: skip
+"""Calls of macros, and the lines that they print."""
+
+
+@pytest.mark.parametrize("call", MACROS)
+def test_the_macros_of_utils(call: str, tmp_path: Path) -> None:
+    name = call.partition("(")[0]
+    used = f'{{% from "Utils.tpl.py" import {name} %}}{{% block body %}}{{{{ {call} }}}}{{% endblock %}}'
+    (tmp_path / "templates").mkdir()
+    (tmp_path / "templates" / "T.tpl.py").write_text(used)
+    blocks = Blocks(disk_library(tmp_path / "main.yml", []).template, filters=FILTERS, tests=TESTS)
+    heads: list[str] = []
+    text = blocks.render("T.tpl.py", "body", {"heads": heads})
+    lines = [" ".join(line.split()) for line in text.splitlines() if line.strip()]
+    assert "\n".join(lines) == MACROS[call]
+    again = blocks.render("T.tpl.py", "body", {"heads": heads})
+    assert again.strip() == ("" if "heads" in call else text)
+
+
+@pytest.mark.parametrize(
+    ("value", "answer"),
+    [("3", True), ("2.5", True), ("a.b.c", True), ("f(1)", True), ("hi", False), ("'a.b'", False)],
+)
+def test_not_string_tells_what_is_printed_as_it_is(value: str, answer: bool) -> None:
+    assert is_not_string(value) is answer
+    assert not is_not_string(Text(value))
+    assert is_not_string([1])
+    assert is_not_string({"a": 1})
+
+
+def test_expression_and_exptostr(built: Built) -> None:
+    asked = "{% block defs %}\n{% if f is expression %}f = {{ f | exptostr }}{% else %}f = '{{ f }}'{% endif %}\n{% endblock %}"
+    for value, line in (("`1 + 1`", "f = 1 + 1"), ("plain", "f = 'plain'")):
+        script = MAIN.replace("template: T", f"template: T, f: '{value}'")
+        assert line in built(script, T=asked + CLASS + ADDED)
+
+
+# Meta blocks.
+
+
+def state_type(tmp_path: Path, meta: str) -> StateType:
+    (tmp_path / "templates").mkdir(exist_ok=True)
+    text = f"{{% block meta %}}\n{meta}{{% endblock meta %}}\n{CLASS}{ADDED}"
+    (tmp_path / "templates" / "T.tpl.py").write_text(text)
+    library = disk_library(tmp_path / "main.yml", [])
+    found = find_state_type("T", library, [])
+    assert found is not None
+    return found
+
+
+def test_a_meta_block_is_the_interface(tmp_path: Path) -> None:
+    meta = """\
+name: T
+description: Drives.
+language: Python
+framework: SMACH
+type: State
+tags: [core]
+includes: [State]
+extends: []
+variables:
+- speed: {description: How fast., type: float, units: m/s, values: [1, 2]}
+- - slow:
+      description: Whether it crawls.
+      type: [bool, str]
+- - goal: {description: Where to., type: str}
+  - goal_cb: {description: What makes it., type: function}
+input_keys:
+- pose: {description: Where., type: list of float}
+- - frame: {description: In what., type: str}
+- tools:
+  - left: {type: str}
+  - right: {type: str}
+output_keys:
+- - output: {type: str}
+  - msg: {type: str}
+outcomes:
+- succeeded
+- aborted
+"""
+    found = state_type(tmp_path, meta)
+    assert (found.name, found.kind, found.doc) == ("T", "state", "Drives.")
+    assert [*found.variables] == ["speed", "slow", "goal", "goal_cb"]
+    assert [key.name for key in found.input_keys] == ["pose", "left", "right"]
+    assert [key.name for key in found.output_keys] == []
+    assert {"input_keys", "output_keys"} <= found.given
+    assert [outcome.name for outcome in found.outcomes] == ["succeeded", "aborted"]
+
+
+@pytest.mark.parametrize(
+    ("kind", "ours"),
+    [("Base", "base"), ("Container", "container"), ("State", "state"), ("None", "state")],
+)
+def test_the_kinds_of_templates(tmp_path: Path, kind: str, ours: str) -> None:
+    assert state_type(tmp_path, f"name: T\ntype: {kind}\n").kind == ours
+
+
+@pytest.mark.parametrize(
+    "meta", ["", "nothing", "- a", "variables: 1\n", "outcomes: [{a: {}}, [b]]\n", "input_keys:\n"]
+)
+def test_a_loose_meta_block_is_read_as_far_as_it_goes(tmp_path: Path, meta: str) -> None:
+    assert state_type(tmp_path, meta).name == "T"
