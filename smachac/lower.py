@@ -213,8 +213,12 @@ def _leaf(state: State) -> Leaf:
             )
         if type_.open and not given:
             given += [key for key, _ in _pairs(state, "transitions")]
-        for word in given:
-            outcomes.setdefault(word.text, Outcome(name=word.text, span=word.span))
+    else:
+        # What the type does not have was told; its transition is no second fault.
+        led = {key.text for key, _ in _pairs(state, "transitions")}
+        given = [word for word in _words(state, "outcomes") if word.text in led]
+    for word in given:
+        outcomes.setdefault(word.text, Outcome(name=word.text, span=word.span))
     return Leaf(
         **fields,
         outcomes=tuple(outcomes.values()),
