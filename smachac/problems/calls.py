@@ -12,7 +12,8 @@ from smachac.spelling import guesser_of, respelt
 
 def _searched(word: Word, searched: Sequence[str], known: Sequence[str]) -> str:
     # Not every place is a folder of the user: "the built-in ones" is none to be quoted.
-    folders = ", ".join(at if at.startswith("the ") else f"`{at}`" for at in dict.fromkeys(searched))
+    once = dict.fromkeys(searched)
+    folders = ", ".join(at if at.startswith("the ") else f"`{at}`" for at in once)
     where = f"searched in {folders}" if folders else "there was no folder to search in"
     guess = did_you_mean(word.text, known)
     return f"{where}; {guess}" if guess else where

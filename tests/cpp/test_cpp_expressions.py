@@ -118,7 +118,7 @@ def test_expressions_are_printed_as_the_wanted_type(code: str, wanted: str, text
     [
         ("ud.thing + 1", "", "`ud.thing`: of this no type is known: declare that of its key"),
         ("ud.other", "", "`ud.other`: this is not known here"),
-        ("math.sin(ud.x)", "", "`math.sin(ud.x)`: this is no function known to C++, which are abs"),
+        ("math.sin(ud.x)", "", "`math.sin(ud.x)`: C++ knows no such function"),
         ("ud.n ** ud.m", "", "`ud.n ** ud.m`: the sign of the exponent says whether"),
         ("[1, 'a'][ud.n]", "", "one of two types here, `int` and `str`"),
         ("ud.flag and ud.n", "", "one of two types here, `bool` and `int`"),
@@ -134,7 +134,7 @@ def test_expressions_are_printed_as_the_wanted_type(code: str, wanted: str, text
         ("lambda u: lambda v: v", "", "a function is no value in C++"),
         ("ud.n + 9223372036854775808", "", "too large for the 64 bits"),
         ("ud.s == '\\ud800'", "", "half a code point"),
-        ("ud.s.upper()", "", "this is no function known to C++"),
+        ("ud.s.upper()", "", "C++ knows no such function"),
         ("[x for x in ud.whole]", "", "is Python code, not a portable expression"),
         ("ud.x", "int", "`ud.x`: this is a `float`, and a `int` is wanted"),
         ("[1, 2]", "float[3]", "this has 2 items, and 3 are wanted"),

@@ -102,16 +102,26 @@ def lowered(expr: Expr, names: Mapping[str, Spelling]) -> Term:
     return _term(expr, _Scope(names=names))
 
 
+PORTABLE = "docs/cpp.md lists the expressions it knows; for other code write a class"
+
+
 def cpp_function(code: str, keys: Mapping[str, Spelling]) -> tuple[Expr, dict[str, Spelling]]:
     """The body of a function of the script over userdata, and the names in it, for the functions
     above: a lambda, or an expression over `ud` or `userdata`. Raises UnportableError."""
     tree = parse_expression(code)
     if tree is None:
-        raise UnportableError(f"`{code}` is Python code, not a portable expression")
+        error = UnportableError(f"`{code}` is Python code, not a portable expression")
+        error.help = PORTABLE
+        raise error
     parameters: tuple[str, ...] = ("ud", "userdata")
     if isinstance(tree, Lambda):
         parameters = (tree.parameter,) if tree.parameter else ()
         tree = tree.body
+    name = dotted(tree)
+    if name is not None and name.split(".")[0] not in parameters:
+        error = UnportableError(f"`{name}` is a name of Python code, which C++ does not know")
+        error.help = PORTABLE
+        raise error
     return tree, {f"{p}.{key}": spelling for p in parameters for key, spelling in keys.items()}
 
 
@@ -120,7 +130,7 @@ def _told(expr: Expr, error: UnportableError) -> UnportableError:
     if error.told:
         return error
     told = UnportableError(f"`{print_expression(expr)}`: {error}")
-    told.told = True
+    told.told, told.help = True, error.help
     return told
 
 
@@ -232,7 +242,9 @@ def _call(
     name = dotted(function)
     if name is None or name not in functions.FUNCTIONS or name in scope.names:
         known = ", ".join(functions.FUNCTIONS)
-        raise UnportableError(f"this is no function known to C++, which are {known}")
+        error = UnportableError("C++ knows no such function")
+        error.help = f"it knows {known}"
+        raise error
     given = [_term(argument, scope) for argument in arguments]
     named: dict[str, Term] = {}
     for key, value in keywords:

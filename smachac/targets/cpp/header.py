@@ -81,7 +81,9 @@ class _Printing:
             type_ = find_state_type(leaf.type, self.library, [])
             self.classes[leaf.type] = class_code(type_) if type_ is not None else None
         code = self.classes[leaf.type]
-        return built_in(leaf, scope) if code is None else class_leaf(code, leaf, scope)
+        if code is not None:
+            return class_leaf(code, leaf, scope)
+        return built_in(leaf, scope, self.plan.refuse)
 
 
 def _refuse_missing(plan: Plan, types: AbstractSet[str]) -> None:

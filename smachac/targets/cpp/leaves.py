@@ -10,6 +10,7 @@ from smachac.ir.behaviours import default_outcome, variable
 from smachac.ir.nodes import Data, Expression, Iterator, Leaf, Struct
 from smachac.ir.types import Type
 from smachac.ir.walk import PREEMPTED, own_outcomes
+from smachac.source import Span
 from smachac.targets.cpp.expressions import (
     Spelling,
     cpp_condition,
@@ -22,6 +23,10 @@ from smachac.targets.cpp.words import identifier
 
 FLOAT = Type("float")
 LARGEST_WORD = 2**32
+
+
+Refuse = Callable[[Span, UnportableError], None]
+"""Notes what C++ cannot say, and where."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -49,12 +54,13 @@ class _Body:
     members: tuple[str, ...] = ()
 
 
-def built_in(leaf: Leaf, scope: Scope) -> LeafCode | None:
-    """The struct of a leaf of a built-in type; None for other types. Raises UnportableError."""
+def built_in(leaf: Leaf, scope: Scope, refuse: Refuse) -> LeafCode | None:
+    """The struct of a leaf of a built-in type; None for other types. What is wrong in one of its
+    expressions is refused there, and the struct lacks it. Raises UnportableError."""
     make = _BODIES.get(leaf.type)
     if make is None:
         return None
-    body = make(_Code(leaf=leaf, scope=scope))
+    body = make(_Code(leaf=leaf, scope=scope, refuse=refuse))
     return LeafCode(
         type=f"types::{identifier(leaf.name)}",
         call=f"states.{identifier(leaf.name)}.execute({', '.join(_parameters(body).values())})",
@@ -104,6 +110,7 @@ class _Code:
 
     leaf: Leaf
     scope: Scope
+    refuse: Refuse
 
     @property
     def raw(self) -> bool:
@@ -132,10 +139,14 @@ class _Code:
 
     def function(self, code: Expression, wanted: Type | None = None) -> str:
         """What a function of the script gives, as a value of the wanted type or else a truth."""
-        body, names = cpp_function(code.text, self.reads())
-        if wanted is None:
-            return cpp_condition(body, names)
-        return cpp_expression(body, names, wanted).text
+        try:
+            body, names = cpp_function(code.text, self.reads())
+            if wanted is None:
+                return cpp_condition(body, names)
+            return cpp_expression(body, names, wanted).text
+        except UnportableError as error:
+            self.refuse(code.span, error)
+            return ""
 
     def end(self, outcome: str) -> str:
         if outcome not in own_outcomes(self.leaf):

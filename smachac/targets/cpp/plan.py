@@ -57,7 +57,8 @@ class Plan:
     report: Report = field(default_factory=list)
 
     def refuse(self, span: Span, error: UnportableError) -> None:
-        self.report.append(problems.unsupported_by_target(span, "C++", str(error)))
+        found = problems.unsupported_by_target(span, "C++", str(error), error.help)
+        self.report.append(found)
 
 
 def plan(machine: Machine) -> Plan:

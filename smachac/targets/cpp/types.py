@@ -65,10 +65,11 @@ SCALARS = {
 class UnportableError(Exception):
     """Something of the script that C++ cannot say; the message says what, and why.
 
-    `told`: it names the part of an expression that it is about.
+    `told`: it names the part of an expression that it is about. `help`: what to do about it.
     """
 
     told = False
+    help: str | None = None
 
 
 def cpp_type(type_: Type) -> str:

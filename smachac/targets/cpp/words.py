@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import re
+import unicodedata
 from collections.abc import Iterable
 
 _KEYWORDS = """
@@ -47,14 +48,26 @@ OURS = frozenset(_OURS.split())
 def identifier(name: str) -> str:
     """A name as near to that of the script as C++ allows: letters, digits, single underscores.
 
-    Two names may become one; `clashes` finds them.
+    Letters lose their accents; those of other scripts are numbers of Unicode. Two names may become
+    one; `clashes` finds them.
     """
-    word = re.sub(r"[^0-9A-Za-z]+", "_", name.encode("ascii", "namereplace").decode())
+    word = re.sub(r"[^0-9A-Za-z]+", "_", "".join(map(_ascii, name)))
     word = word.strip("_") or "_"
     if word[0].isdigit():
         word = f"n{word}"
     taken = word in KEYWORDS or word in OURS or MACROS.fullmatch(word)
     return f"{word}_" if taken else word
+
+
+def _ascii(letter: str) -> str:
+    """A letter in ASCII: `ö` is `o`, `ß` is `ss`, `抓` is `u6293`."""
+    if letter.isascii():
+        return letter
+    parts = unicodedata.normalize("NFKD", "ss" if letter == "ß" else letter)
+    plain = "".join(each for each in parts if not unicodedata.combining(each))
+    if plain.isascii():
+        return plain
+    return f"u{ord(letter):04x}" if letter.isalnum() else "_"
 
 
 def outermost(name: str) -> str:

@@ -1,0 +1,80 @@
+# Made by smachac 0.1.0 from main.yml (sha256 28209bdff212cdee).
+"""The state machine `refused`."""
+
+from scales import Weigh
+
+try:
+    import smach
+except ImportError:  # no ROS on this machine: the same names without it
+    from smachac.runtime import smach
+
+
+class CallbacksState(smach.State):
+    """Calls functions of the userdata, keeps what each returns under its own name."""
+
+    def __init__(self, callbacks=(), input_keys=(), output_keys=()):
+        super().__init__(
+            outcomes=["succeeded"],
+            input_keys=list(input_keys),
+            output_keys=list(output_keys),
+        )
+        self.callbacks = callbacks
+
+    def execute(self, userdata):
+        for key in sorted(self.callbacks):
+            function = self.callbacks[key]
+            if not smach.has_smach_interface(function):
+                userdata[key] = function(userdata)
+            else:  # it writes its keys itself
+                inputs = function.get_registered_input_keys()
+                outputs = function.get_registered_output_keys()
+                function(smach.Remapper(userdata, inputs, outputs, {}))
+        return "succeeded"
+
+
+def build():
+    """Build the state machine `refused`."""
+    # main.yml:2
+    refused = smach.StateMachine(outcomes=["done"], output_keys=["n", "label"])
+    refused.userdata.n = 3
+    refused.userdata.label = "block"
+    with refused:
+        # main.yml:9
+        smach.StateMachine.add(
+            "MEASURE",
+            CallbacksState(
+                callbacks={
+                    "n": lambda ud: numpy.linalg.norm(ud.n),
+                    "label": lambda ud: [each for each in ud.label],
+                },
+                input_keys=["n", "label"],
+                output_keys=["n", "label"],
+            ),
+            transitions={"succeeded": "NAME"},
+        )
+
+        # main.yml:17
+        smach.StateMachine.add(
+            "NAME",
+            CallbacksState(
+                callbacks={"n": naming.number, "label": lambda ud: ud.label + ud.n},
+                input_keys=["n", "label"],
+                output_keys=["n", "label"],
+            ),
+            transitions={"succeeded": "WEIGH"},
+        )
+
+        # main.yml:23
+        smach.StateMachine.add("WEIGH", Weigh(), transitions={"weighed": "done"})
+    return refused
+
+
+def main():
+    """Run the state machine once and return its outcome."""
+    return build().execute()
+
+
+if __name__ == "__main__":
+    outcome = main()
+    print(f"outcome: {outcome}")
+    raise SystemExit(outcome is None)
