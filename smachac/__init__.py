@@ -96,7 +96,7 @@ def build(
     report: Report = []
     files = driver.build(analysis.checked, found, library, report, options)
     if has_errors(report):
-        raise ScriptError([*analysis.report, *report])
+        raise ScriptError(driver.together(analysis.report, report))
     return {**files, **runtime_files(found.runtime(files))}
 
 

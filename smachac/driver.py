@@ -8,7 +8,7 @@ from dataclasses import dataclass, replace
 
 from smachac import problems
 from smachac.checks import check_machine
-from smachac.diagnostics import Diagnostic, Finding, Report, has_errors, in_order
+from smachac.diagnostics import Diagnostic, Finding, Report, has_errors, identity, in_order
 from smachac.ir.depth import deep_recursion
 from smachac.ir.nodes import Checked, Machine
 from smachac.ir.walk import walk
@@ -17,7 +17,8 @@ from smachac.policy import Allowance, allowances, heeded, settled
 from smachac.script import resolve
 from smachac.source import Source, Span, Word
 from smachac.states import Library
-from smachac.targets import Context, Files, Target
+from smachac.targets import Context, Files, Target, load_target
+from smachac.targets.declared import code_faults, target_faults
 
 
 def load(source: Source, library: Library, report: Report) -> Machine | None:
@@ -63,6 +64,7 @@ def analyse(
         machine = lower(script) if script is not None else None
         if machine is not None:
             report.extend(check_machine(machine))
+            report.extend(code_faults(machine, library, load_target))
             report.extend(more(machine) if more is not None else ())
         sources = {id(text): text for text in (script.sources if script is not None else (source,))}
         sources |= {id(item.span.source): item.span.source for item in report}
@@ -167,11 +169,20 @@ def build(
     report: Report,
     options: Mapping[str, str] | None = None,
 ) -> Files:
-    """The files a target prints; none if a template is at fault (SM605)."""
+    """The files a target prints; none if templates or classes of the user are at fault."""
     context = Context(library=library, options=options or {})
     with deep_recursion():
-        files = target.emit(machine, context, report)
+        found = [*target_faults(machine, library, target)]
+        files = target.emit(machine, context, found)
+    report.extend(in_order(found))
     return {} if has_errors(report) else files
+
+
+def together(report: Report, built: Report) -> Report:
+    """What was found in a script and then in building it; a fault that both name is the latter's,
+    which knows how bad it is."""
+    said = set(map(identity, built))
+    return [*(item for item in report if identity(item) not in said), *built]
 
 
 def memory_library(files: Mapping[str, str], built_in: Library) -> Library:
@@ -189,6 +200,7 @@ def memory_library(files: Mapping[str, str], built_in: Library) -> Library:
         script=script,
         template=lambda name: own_template(name) or built_in.template(name),
         own_template=own_template,
+        code=lambda name: sources.get(name) or built_in.code(name),
         script_folders=lambda caller: ["."],
         template_folders=lambda: ["templates", *built_in.template_folders()],
         script_names=lambda caller: [name.removesuffix(".yml") for name in sources],

@@ -151,12 +151,15 @@ def disk_library(
 
     Scripts are looked for in the folder of the calling file, then in `scripts`, then in the
     project file's; templates in `templates`, the project file's, `templates/` beside the main
-    script, and the built-in ones. Nothing outside these folders is read.
+    script, and the built-in ones; modules and headers of the user in the project file's `code`, in
+    the folder of the main script and its `include/`. Nothing outside these folders is read.
     """
     disk = disk or Disk()
     project = find_project(main, report, disk)
     own_scripts = [*scripts, *project.scripts]
     template_folders = [*templates, *project.templates, main.parent / "templates", *BUILT_IN]
+
+    code_folders = [*project.code, main.parent, main.parent / "include"]
 
     def script_folders(caller: str) -> list[Path]:
         return list(dict.fromkeys([Path(caller).parent, *own_scripts]))
@@ -173,6 +176,7 @@ def disk_library(
         script=script,
         template=template,
         own_template=lambda name: template(name, template_folders[: -len(BUILT_IN)]),
+        code=lambda name: template(name, code_folders),
         script_folders=lambda caller: [str(folder) for folder in script_folders(caller)],
         template_folders=lambda: [
             *(str(folder) for folder in template_folders[: -len(BUILT_IN)]),

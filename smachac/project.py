@@ -14,7 +14,7 @@ from smachac.source import Source, Span
 
 assert checks is not None  # imported for the codes it files
 
-SETTINGS = ("scripts", "templates", "exclude", "severity")
+SETTINGS = ("scripts", "templates", "code", "exclude", "severity")
 LEVELS: Mapping[str, Severity | None] = {
     **{severity.value: severity for severity in Severity},
     "off": None,
@@ -30,6 +30,7 @@ class Project:
     folder: Path = Path()
     scripts: tuple[Path, ...] = ()
     templates: tuple[Path, ...] = ()
+    code: tuple[Path, ...] = ()
     exclude: tuple[str, ...] = ()
     policy: Policy = field(default_factory=Policy)
 
@@ -70,6 +71,7 @@ def read_project(source: Source, path: Path, report: Report) -> Project | None:
         folder=path.parent,
         scripts=folders.get("scripts", ()),
         templates=folders.get("templates", ()),
+        code=folders.get("code", ()),
         exclude=texts.get("exclude", ()),
         policy=policy,
     )

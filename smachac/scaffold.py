@@ -5,6 +5,7 @@ from __future__ import annotations
 import re
 from collections.abc import Sequence
 from dataclasses import dataclass
+from keyword import iskeyword
 
 from smachac.ir.types import Type, parse_type
 from smachac.states import StateType
@@ -110,11 +111,17 @@ def _python_stub(type_: StateType) -> str:
         *(f"        self.{name} = {name}" for name in type_.variables),
         "",
         "    def execute(self, userdata):",
-        *(f"        # userdata.{key.name}: {key.type}" for key in type_.input_keys),
-        *(f"        userdata.{key.name} = None  # {key.type}" for key in type_.output_keys),
+        *(f"        # {_access(key.name)}: {key.type}" for key in type_.input_keys),
+        *(f"        {_access(key.name)} = None  # {key.type}" for key in type_.output_keys),
         f"        return {outcomes[0]!r}",
     ]
     return "\n".join(lines) + "\n"
+
+
+def _access(key: str) -> str:
+    """A key of the userdata in Python."""
+    named = key.isidentifier() and not iskeyword(key)
+    return f"userdata.{key}" if named else f"userdata[{key!r}]"
 
 
 def _cpp_stub(type_: StateType) -> str:

@@ -29,14 +29,16 @@ class Library:
 
     `script(name, caller)` is the text of a sub-script named in the source `caller`;
     `template(file)` that of an interface or template by file name (`MoveTo.yml`,
-    `MoveTo.tpl.py`), `own_template` the same where it is the user's, not one of ours. The folders
-    and names serve messages. `policy` is that of the project; `parse` may remember the trees of
+    `MoveTo.tpl.py`), `own_template` the same where it is the user's, not one of ours; `code(file)`
+    that of a module or header of the user's by path (`my_robot/grasp.hpp`). The folders and names
+    serve messages. `policy` is that of the project; `parse` may remember the trees of
     texts that several scripts share.
     """
 
     script: Callable[[str, str], Source | None]
     template: Callable[[str], Source | None]
     own_template: Callable[[str], Source | None] = lambda file: None
+    code: Callable[[str], Source | None] = lambda file: None
     script_folders: Callable[[str], Sequence[str]] = lambda caller: ()
     template_folders: Callable[[], Sequence[str]] = lambda: ()
     script_names: Callable[[str], Sequence[str]] = lambda caller: ()

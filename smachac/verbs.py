@@ -100,7 +100,7 @@ def _compile(
 ) -> tuple[Analysis, dict[str, str] | None]:
     """The files of a target; none, with a report on stderr, where the script has errors."""
     from smachac.diagnostics import has_errors
-    from smachac.driver import build
+    from smachac.driver import build, together
 
     analysis, library = _load(arguments.script, arguments)
     files: dict[str, str] | None = None
@@ -108,7 +108,7 @@ def _compile(
     if analysis.checked is not None and library is not None:
         found: Report = []
         files = build(analysis.checked, target, library, found, options)
-        report = [*report, *found]
+        report = together(report, found)
         files = None if has_errors(found) else files
     print_report(shown(report), arguments, sys.stderr)
     return analysis, files

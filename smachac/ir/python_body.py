@@ -1,25 +1,13 @@
-"""What the Python code of a state type does, read with `ast` and never run.
-
-The code stands in a template: what Jinja fills in is a name of the same length here, so that places
-stay what they are, and nothing is said of what it touches. Code that cannot be read is not judged.
-"""
+"""What the Python code of a state type does, as its template says (python_text.py)."""
 
 from __future__ import annotations
 
 import ast
-import re
-import warnings
 from collections.abc import Iterator
 
 from smachac.ir.nodes import Body
+from smachac.ir.python_text import PythonText, python_text
 from smachac.source import Source, Span, Word
-
-LONGEST = 200_000
-"""Characters of the longest template that is read."""
-
-_JINJA = re.compile(r"\{#.*?#\}|\{%.*?%\}|\{\{.*?\}\}", re.DOTALL)
-_RAW = re.compile(r"\{%[-+]?\s*raw\b")
-_NOT_PORTABLE_LINES = re.compile(r"\r(?!\n)|[\f\v]")
 
 METHODS = frozenset(["extract", "keys", "merge", "update"])
 """What userdata has beside its keys (smach.user_data)."""
@@ -30,24 +18,12 @@ def python_body(source: Source, name: str) -> Body | None:
 
     The class is that of the type's name, or the only one with an `execute`.
     """
-    text = source.text
-    if len(text) > LONGEST or _RAW.search(text) or _NOT_PORTABLE_LINES.search(text):
-        return None
-    filled = [found.span() for found in _JINJA.finditer(text)]
     try:
-        with warnings.catch_warnings():
-            warnings.simplefilter("ignore", SyntaxWarning)
-            tree = ast.parse(_JINJA.sub(_stand_in, text))
-        function = _execute(tree, name)
-        return None if function is None else _Reader(source, filled).body(function)
-    except (SyntaxError, ValueError, RecursionError, MemoryError):
+        text = python_text(source, template=True)
+        function = _execute(text.tree, name) if text is not None else None
+        return _Reader(text).body(function) if text is not None and function is not None else None
+    except (RecursionError, MemoryError, ValueError):  # a name in letters of another width
         return None
-
-
-def _stand_in(found: re.Match[str]) -> str:
-    """A name for a value, space for the rest; of the same length and number of lines."""
-    text = found.group()
-    return re.sub(r"[^\n]", "_" if text.startswith("{{") else " ", text)
 
 
 def _execute(tree: ast.Module, name: str) -> ast.FunctionDef | None:
@@ -70,23 +46,21 @@ def _execute(tree: ast.Module, name: str) -> ast.FunctionDef | None:
 
 
 class _Reader:
-    """Reads a function out of a text, in which some stretches are filled in by Jinja."""
+    """Reads a function out of a text."""
 
-    def __init__(self, source: Source, filled: list[tuple[int, int]]) -> None:
-        self.source = source
-        self.filled = filled
+    def __init__(self, text: PythonText) -> None:
+        self.text = text
 
     def body(self, function: ast.FunctionDef) -> Body | None:
-        span = self.span(function)
-        inside = [self.source.text[start:end] for start, end in self.filled if start < span.end
-                  and end > span.start]  # fmt: skip
+        span = self.text.span(function)
+        inside = self.text.fillings(span)
         if any(text.startswith("{%") for text in inside):
             return None
         returns = list(_returns(function.body))
         silent = None
         if not inside and not _ends(function.body):
-            at = self.source.text.index("execute", span.start)
-            silent = Span(self.source, at, at + len("execute"))
+            at = span.source.text.index("execute", span.start)
+            silent = Span(span.source, at, at + len("execute"))
         reads, writes = self.accesses(function)
         return Body(
             returns=tuple(self.constants(returns)),
@@ -96,25 +70,12 @@ class _Reader:
             writes=writes,
         )
 
-    def span(self, node: ast.stmt | ast.expr) -> Span:
-        start = self.offset(node.lineno, node.col_offset)
-        end = self.offset(node.end_lineno or node.lineno, node.end_col_offset or 0)
-        return Span(self.source, start, end)
-
-    def offset(self, line: int, column: int) -> int:
-        """The offset in characters of a column in bytes of UTF-8, as `ast` counts them."""
-        before = self.source.line(line).encode("utf-8", "surrogatepass")[:column]
-        return self.source.line_starts[line - 1] + len(before.decode("utf-8", "surrogatepass"))
-
-    def is_filled(self, span: Span) -> bool:
-        return any(start < span.end and end > span.start for start, end in self.filled)
-
     def constants(self, returns: list[ast.Return]) -> Iterator[Word]:
         """The constants that are returned, with their places."""
         for each in returns:
             for value in _alternatives(each.value) if each.value is not None else (each,):
-                span = self.span(value)
-                if self.is_filled(span):
+                span = self.text.span(value)
+                if self.text.is_filled(span):
                     continue
                 if isinstance(value, ast.Return):
                     yield Word("None", span)
@@ -147,8 +108,8 @@ class _Reader:
             key = _key(node, name)
             if key is None or key in asked:
                 continue
-            span = self.span(node)
-            if self.is_filled(span):
+            span = self.text.span(node)
+            if self.text.is_filled(span):
                 continue
             if isinstance(node.ctx, ast.Load) or node in updated:
                 reads.append(Word(key, span))

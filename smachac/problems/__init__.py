@@ -17,7 +17,12 @@ from smachac.problems.calls import (
     template_not_found,
     unresolved_look_up,
 )
-from smachac.problems.targets import no_code_for_target, unsupported_by_target
+from smachac.problems.targets import (
+    interfaces_differ,
+    no_code_for_target,
+    stale_code,
+    unsupported_by_target,
+)
 from smachac.problems.templates import defined_twice, python_2_code
 from smachac.problems.text import (
     bad_type,
@@ -39,12 +44,14 @@ __all__ = [
     "bad_type",
     "defined_twice",
     "duplicate_key",
+    "interfaces_differ",
     "listed",
     "missing_variable",
     "no_code_for_target",
     "python_2_code",
     "recursive_include",
     "script_not_found",
+    "stale_code",
     "template_error",
     "template_not_found",
     "too_big",

@@ -2,8 +2,10 @@
 
 from __future__ import annotations
 
-from smachac.diagnostics import Finding, Severity, problem
-from smachac.source import Span
+from collections.abc import Sequence
+
+from smachac.diagnostics import Finding, Related, Severity, problem
+from smachac.source import Span, Word
 
 
 @problem("SM601", "unsupported-by-target", Severity.ERROR)
@@ -61,3 +63,125 @@ def no_code_for_target(span: Span, target: str, state_type: str, states: int) ->
     message = f"not for {target}: the state type `{state_type}` has no code in it{number}"
     help = f"name its class under `code` in `{state_type}.yml`"
     return Finding(span=span, message=message, help=help)
+
+
+@problem("SM603", "interfaces-differ", Severity.ERROR)
+def interfaces_differ(
+    span: Span, state_type: str, name: str, differences: Sequence[Word]
+) -> Finding:
+    """A class of a state type declares other outcomes or keys than the interface.
+
+    The checker judges by the interface, the robot runs the class. Classes are read, never run: of
+    Python what `__init__` hands to `smach.State`, of C++ the names in `Outcome`, `In` and `Out`;
+    what cannot be read is not judged. `check` warns; a build for the language of the class fails.
+
+    Wrong:
+        name: sm
+        outcomes: [done]
+        states:
+          - GRASP: {template: Grasp}
+        == templates/Grasp.yml ==
+        name: Grasp
+        outcomes: {done: {}}
+        code: {python: "robot_states.grasp:Grasp"}
+        == robot_states/grasp.py ==
+        import smach
+
+
+        class Grasp(smach.State):
+            def __init__(self):
+                super().__init__(outcomes=["done", "missed"])
+
+            def execute(self, userdata):
+                return "done"
+
+    Right:
+        name: sm
+        outcomes: [done, lost]
+        states:
+          - GRASP: {template: Grasp, transitions: {missed: lost}}
+        == templates/Grasp.yml ==
+        name: Grasp
+        outcomes: {done: {}, missed: {}}
+        code: {python: "robot_states.grasp:Grasp"}
+        == robot_states/grasp.py ==
+        import smach
+
+
+        class Grasp(smach.State):
+            def __init__(self):
+                super().__init__(outcomes=["done", "missed"])
+
+            def execute(self, userdata):
+                return "done"
+    """
+    others = f" (and {len(differences) - 1} more)" if differences[1:] else ""
+    return Finding(
+        span=span,
+        message=f"`{name}` is not what `{state_type}.yml` says: {differences[0].text}{others}",
+        related=_places(differences),
+        help=f"change the class, or the interface in `{state_type}.yml`",
+    )
+
+
+@problem("SM604", "stale-code", Severity.ERROR)
+def stale_code(
+    span: Span, state_type: str, name: str, number: Word, differences: Sequence[Word]
+) -> Finding:
+    """A class of C++ was written for an interface that has changed since.
+
+    `smachac_interface` in the class is the number of the interface it was written for. Another
+    number says that somebody has to compare the two. `check` warns; `build --target cpp` fails, as
+    the compiler would.
+
+    Wrong:
+        name: sm
+        outcomes: [done]
+        states:
+          - GRASP: {template: Grasp}
+        == templates/Grasp.yml ==
+        name: Grasp
+        outcomes: {done: {}}
+        code: {cpp: {header: robot_states/grasp.hpp, class: "robot_states::Grasp"}}
+        == include/robot_states/grasp.hpp ==
+        #include "smachac/smachac.hpp"
+        namespace robot_states {
+        class Grasp {
+        public:
+          enum class Outcome { done };
+          static constexpr std::uint32_t smachac_interface = 0x12345678U;
+          Outcome execute() { return Outcome::done; }
+        };
+        }
+
+    Right:
+        name: sm
+        outcomes: [done]
+        states:
+          - GRASP: {template: Grasp}
+        == templates/Grasp.yml ==
+        name: Grasp
+        outcomes: {done: {}}
+        code: {cpp: {header: robot_states/grasp.hpp, class: "robot_states::Grasp"}}
+        == include/robot_states/grasp.hpp ==
+        #include "smachac/smachac.hpp"
+        namespace robot_states {
+        class Grasp {
+        public:
+          enum class Outcome { done };
+          static constexpr std::uint32_t smachac_interface = 0xfad787a6U;
+          Outcome execute() { return Outcome::done; }
+        };
+        }
+    """
+    told = "".join(f"{word.text}; " for word in differences) or "compare the two, "
+    return Finding(
+        span=span,
+        message=f"`{name}` was written for another `{state_type}.yml`",
+        related=(Related(span=number.span, message="the number of that"), *_places(differences)),
+        help=f"{told}then set `smachac_interface` to {number.text}",
+    )
+
+
+def _places(differences: Sequence[Word]) -> tuple[Related, ...]:
+    return tuple(Related(span=word.span, message=word.text) for word in differences)

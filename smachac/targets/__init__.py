@@ -14,7 +14,8 @@ from keyword import iskeyword
 from smachac import __version__
 from smachac.diagnostics import Report
 from smachac.ir.nodes import Checked, Machine
-from smachac.states import Library
+from smachac.states import Library, StateType
+from smachac.targets.declared import Declared
 
 GROUP = "smachac.targets"
 
@@ -45,6 +46,14 @@ def _nothing(_: Files) -> Mapping[str, str]:
     return {}
 
 
+def _no_code(_type: StateType, _library: Library) -> bool:
+    return False
+
+
+def _unread(_type: StateType, _library: Library) -> Declared | None:
+    return None
+
+
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Target:
     """A target: its name, a line about it, and the function that prints.
@@ -52,7 +61,8 @@ class Target:
     `options` names the options it knows, each with a line of help. An emitter reports what is
     wrong in templates of the user and what its language cannot say; then it returns no files. It
     raises OptionError; the first file it returns is the main one. `runtime` tells what such files
-    stand on: file names beside them, with their paths under smachac/runtime.
+    stand on: file names beside them, with their paths under smachac/runtime. `has_code` tells
+    whether states of a type can be printed, `declared` what a class of the user says of itself.
     """
 
     name: str
@@ -60,6 +70,8 @@ class Target:
     emit: Emit
     options: Mapping[str, str] = field(default_factory=dict)
     runtime: Callable[[Files], Mapping[str, str]] = _nothing
+    has_code: Callable[[StateType, Library], bool] = _no_code
+    declared: Callable[[StateType, Library], Declared | None] = _unread
 
 
 def made_by(machine: Machine) -> str:

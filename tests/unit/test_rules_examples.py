@@ -17,7 +17,7 @@ from smachac.targets import load_target
 EVERY = [pytest.param(CODES[name], id=name) for name in sorted(CODES)]
 
 
-TARGETS = {"SM601": "cpp", "SM602": "cpp"}
+TARGETS = {"SM601": "cpp", "SM602": "cpp", "SM604": "cpp"}
 """What the examples of a code are built for, where that is not Python."""
 
 

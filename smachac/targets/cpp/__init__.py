@@ -10,6 +10,7 @@ from __future__ import annotations
 from smachac.diagnostics import Report, in_order
 from smachac.ir.nodes import Checked
 from smachac.targets import Context, Files, Target, stem
+from smachac.targets.cpp.declared import declared
 from smachac.targets.cpp.header import header_of
 from smachac.targets.cpp.plan import plan
 from smachac.targets.cpp.project import OPTIONS, project, project_files, runtime
@@ -33,4 +34,5 @@ TARGET = Target(
     emit=emit,
     options=OPTIONS,
     runtime=runtime,
+    declared=declared,
 )

@@ -10,6 +10,7 @@ from __future__ import annotations
 from smachac.diagnostics import Report
 from smachac.ir.nodes import Checked
 from smachac.targets import Context, Files, OptionError, Target, stem
+from smachac.targets.python.declared import declared
 
 OPTIONS = {
     "comments": "yes: print the comment blocks of templates (default: no)",
@@ -33,4 +34,5 @@ TARGET = Target(
     description="a Python module for SMACH, with or without ROS",
     emit=emit,
     options=OPTIONS,
+    declared=declared,
 )
