@@ -9,7 +9,7 @@ from smachac.checks.once import once, states
 from smachac.checks.types import types_of
 from smachac.ir import nodes
 from smachac.ir.accesses import callbacks
-from smachac.ir.behaviours import variable
+from smachac.ir.behaviours import CALLING, variable
 from smachac.ir.expression_faults import Fault, expression_faults, function_faults
 from smachac.ir.expression_types import keys_read, parsed
 from smachac.ir.fitting import record
@@ -94,7 +94,7 @@ def _functions(path: str, node: Node, types: Types) -> Iterator[tuple[int, Writt
         for name in outcome_names(node):
             if name in functions:
                 yield id(functions[name]), {}
-    elif node.type == "CallbacksState":
+    elif node.type in CALLING:
         names = remapping(node)
         written: Written = {}
         for key in sorted(functions):

@@ -12,6 +12,7 @@ from smachac.checks.once import containers, once
 from smachac.checks.outline import is_open, mended
 from smachac.ir import nodes
 from smachac.ir.accesses import callbacks, scripted_steps, userdata_fields
+from smachac.ir.behaviours import CALLING
 from smachac.ir.dataflow import Flow, data_flow
 from smachac.ir.nodes import (
     Container,
@@ -51,7 +52,7 @@ def unknown_remaps(node: Node) -> list[UnknownRemap]:
 def undeclared_writes(leaf: Leaf) -> tuple[str, ...]:
     """The keys that the script lets a leaf write though they are none of its outputs."""
     written: list[str] = []
-    if leaf.type == "CallbacksState":
+    if leaf.type in CALLING:
         written = sorted(callbacks(leaf) or ())
     elif leaf.type == "ScriptedState":
         written = [key for _, keys in scripted_steps(leaf) for key in keys]
@@ -61,7 +62,7 @@ def undeclared_writes(leaf: Leaf) -> tuple[str, ...]:
 
 def undeclared_reads(leaf: Leaf) -> Iterator[tuple[str, nodes.Expression]]:
     """The keys that code of the script reads though they are none of the leaf's inputs."""
-    if leaf.type not in ("CallbacksState", "ConditionalOutcomeState"):
+    if leaf.type not in CALLING and leaf.type != "ConditionalOutcomeState":
         return
     inputs = {key.name for key in leaf.inputs}
     order = outcome_names(leaf) if leaf.type == "ConditionalOutcomeState" else None

@@ -8,11 +8,14 @@ from collections.abc import Iterable, Mapping
 from functools import lru_cache
 from typing import NamedTuple
 
-from smachac.ir.behaviours import default_outcome, variable
+from smachac.ir.behaviours import CALLING, default_outcome, variable
 from smachac.ir.nodes import Expression, Leaf, Node, Struct
 from smachac.ir.walk import PREEMPTED
 
 NONE: frozenset[str] = frozenset()
+
+_ALL_CODE = ("CallbacksState", "ConditionalOutcomeState")
+"""State types that read nothing but what the functions of the script read."""
 
 
 class Writes(NamedTuple):
@@ -47,17 +50,16 @@ def leaf_reads(leaf: Leaf, *, raw: bool = False) -> tuple[str, ...]:
         return ()
     needed = tuple(key.name for key in leaf.inputs if key.type.name != "optional")
     functions = callbacks(leaf)
-    match leaf.type if functions is not None else "":
-        case "CallbacksState":
-            order = sorted(functions or {})
-        case "ConditionalOutcomeState":
-            order = [name for name in _names(leaf) if name in (functions or {})]
-        case _:
-            return needed
+    if functions is not None and leaf.type in CALLING:
+        order = sorted(functions)
+    elif functions is not None and leaf.type == "ConditionalOutcomeState":
+        order = [name for name in _names(leaf) if name in functions]
+    else:
+        return needed
     found: dict[str, None] = {}
     written: set[str] = set()
     for name in order:
-        code = (functions or {})[name]
+        code = functions[name]
         fields = userdata_fields(code.text)
         reads = needed if fields is None else fields.read
         optional = NONE if fields is None else fields.tested
@@ -67,6 +69,8 @@ def leaf_reads(leaf: Leaf, *, raw: bool = False) -> tuple[str, ...]:
             if key not in written and key not in optional and (raw or key in needed)
         }
         written.add(name)
+    if leaf.type not in _ALL_CODE:
+        found |= {key: None for key in needed if key not in written}
     return tuple(found)
 
 
@@ -85,19 +89,20 @@ def leaf_writes(leaf: Leaf, outcome: str, *, raw: bool = False) -> Writes:
             begun.update(callback_names(leaf), *(keys for _, keys in scripted_steps(leaf)))
         return Writes(perhaps=frozenset(begun))
     outputs = frozenset(key.name for key in leaf.outputs)
+    called = callback_names(leaf) if leaf.type in CALLING else NONE
     if leaf.type == "ScriptedState":
         return _scripted(leaf, outcome, outputs, raw)
-    functions = callbacks(leaf)
-    if leaf.type == "CallbacksState" and functions is not None:
-        names = callback_names(leaf)
-        keys = names if raw else outputs & names
-        return Writes(keys, keys, keys)
-    if not outputs:
+    called = called if raw else called & outputs
+    if leaf.type == "CallbacksState" and callbacks(leaf) is not None:
+        return Writes(called, called, called)
+    if not outputs and not called:
         return NOTHING
     told = frozenset(key for _, keys in leaf.writes for key in keys)
     here = frozenset(key for name, keys in leaf.writes for key in keys if name == outcome)
     untold = outputs - told
-    sure = here & outputs if outcome == PREEMPTED else untold | (here & outputs)
+    sure = called | (here & outputs)
+    if outcome != PREEMPTED:
+        sure |= untold
     return Writes(sure, sure, untold | sure)
 
 

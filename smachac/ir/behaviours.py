@@ -10,6 +10,21 @@ from smachac.ir.result import Behaviour
 from smachac.ir.userdata import BehaviourError, Userdata, called, python_data
 from smachac.ir.walk import GOOD_OUTCOMES, PREEMPTED, outcome_names, own_outcomes
 
+CALLING = frozenset(
+    [
+        "CallbacksState",
+        "DeleteFileState",
+        "PublishMsgState",
+        "PublishObserverMsgState",
+        "RandomOutcomeState",
+        "ReadTopicState",
+        "RecordROSBagState",
+        "TransformMsgState",
+        "WriteCSVFileState",
+    ]
+)
+"""The state types that first call the functions of `callbacks`, each for the key of its name."""
+
 
 def built_in(seed: int = 0) -> Behaviour:
     """The behaviour of every leaf by its state type.
@@ -22,6 +37,10 @@ def built_in(seed: int = 0) -> Behaviour:
 
     def behave(path: str, leaf: Leaf, visit: int, userdata: Userdata) -> str:
         behaviour = behaviours.get(leaf.type, stopping_when_asked(_default))
+        if leaf.type in CALLING:
+            callbacks = _callbacks(leaf)
+            for key in sorted(callbacks):
+                userdata[key] = called(callbacks[key], userdata)
         return behaviour(path, leaf, visit, userdata)
 
     return behave
@@ -84,13 +103,6 @@ def _callbacks(leaf: Leaf) -> dict[str, Expression]:
     return found
 
 
-def _run_callbacks(path: str, leaf: Leaf, visit: int, userdata: Userdata) -> str:
-    callbacks = _callbacks(leaf)
-    for key in sorted(callbacks):
-        userdata[key] = called(callbacks[key], userdata)
-    return default_outcome(leaf)
-
-
 def _first_true(path: str, leaf: Leaf, visit: int, userdata: Userdata) -> str:
     callbacks = _callbacks(leaf)
     for outcome in own_outcomes(leaf):
@@ -133,7 +145,7 @@ def _sleep(path: str, leaf: Leaf, visit: int, userdata: Userdata) -> str:
 
 _BEHAVIOURS: dict[str, Callable[[str, Leaf, int, Userdata], str]] = {
     "ScriptedState": stopping_when_asked(_scripted),
-    "CallbacksState": _run_callbacks,
+    "CallbacksState": _default,
     "ConditionalOutcomeState": _first_true,
     "SleepState": stopping_when_asked(_sleep),
 }

@@ -164,7 +164,7 @@ class _Inference:
             self.declare(place, key.type, place.span)
             if key.name in written:
                 for span, data in written[key.name]:
-                    if isinstance(data, Expression) and leaf.type == "CallbacksState":
+                    if isinstance(data, Expression) and leaf.type in _BY_CODE:
                         reads = {k: inputs[k] for k in keys_read(data) if k in inputs}
                         self.code(Code(place=place, span=span, reads=reads, expression=data))
                     else:
@@ -325,13 +325,18 @@ class _Inference:
         )
 
 
+_BY_CODE = ("CallbacksState", "DeleteFileState", "RandomOutcomeState")
+"""State types that write nothing but what functions of the script give, and `outcome`."""
+
+
 def _written(leaf: Leaf) -> dict[str, list[tuple[Span, Data]]]:
-    """What the script itself says that leaves of two built-in types write, by key."""
+    """What the script itself says that leaves of some built-in types write, by key."""
     found: dict[str, list[tuple[Span, Data]]] = {}
-    if leaf.type == "CallbacksState":
+    if leaf.type in _BY_CODE:
         callbacks = variable(leaf, "callbacks")
         for key, data in callbacks.entries if isinstance(callbacks, Struct) else ():
-            if isinstance(data, Expression):
+            own = key == "outcome" and leaf.type == "RandomOutcomeState"
+            if isinstance(data, Expression) and not own:
                 found.setdefault(key, []).append((data.span, data))
     elif leaf.type == "ScriptedState":
         for held in leaf.variables:

@@ -6,8 +6,12 @@ import os
 class DeleteFileState(smach.State):
     """Deletes the files that a pattern stands for."""
 
-    def __init__(self):
-        super().__init__(outcomes=["succeeded", "aborted"], input_keys=["file"])
+    def __init__(self, input_keys=("file",), output_keys=()):
+        super().__init__(
+            outcomes=["succeeded", "aborted"],
+            input_keys=list(input_keys),
+            output_keys=list(output_keys),
+        )
 
     def execute(self, userdata):
         paths = glob.glob(userdata["file"])

@@ -1,3 +1,4 @@
+{% extends "State.tpl.py" %}
 {% include "ROSHelp.tpl.py" %}
 {% include "ParseMessages.tpl.py" %}
 {% include "MsgPublisher.tpl.py" %}
@@ -6,24 +7,27 @@ import struct
 {% endblock %}
 {% block defs %}
 {% endblock %}
+{% block cb_defs %}{% endblock cb_defs %}
 {% block class_defs %}
+{% if "class_PublishMsgState" not in defined_headers %}
 class PublishMsgState(smach.State):
     """Starts or stops publishing a message again and again."""
 
     publisher = MsgPublisher()
 
-    def __init__(self, action, input_keys=(), output_keys=()):
+    def __init__(self, action, topic, input_keys=("msg", "topic", "rate"), output_keys=()):
         super().__init__(
             outcomes=["succeeded", "aborted"],
             input_keys=list(input_keys),
             output_keys=list(output_keys),
         )
         self.action = action
+        self.topic = topic
 
     def execute(self, userdata):
         if self.action == "stop_all":
             return self.publisher.stop_all()
-        topic = optional(userdata, "topic", "smacha/message")
+        topic = optional(userdata, "topic", self.topic)
         if self.action == "stop":
             return self.publisher.stop(topic)
         try:
@@ -39,4 +43,9 @@ class PublishMsgState(smach.State):
         give(userdata, outputs, ["msg", "output_msg", "msg_output"], message)
         give(userdata, outputs, ["topic", "output_topic", "topic_output"], topic)
         return outcome
-{% endblock %}
+{% do defined_headers.append("class_PublishMsgState") %}
+{% endif %}
+{% endblock class_defs %}
+{% block body %}
+{{ add("PublishMsgState", action, "smacha/" ~ name | lower, input_keys=input_keys, output_keys=output_keys) }}
+{% endblock body %}

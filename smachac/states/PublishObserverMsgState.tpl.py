@@ -1,28 +1,32 @@
+{% extends "State.tpl.py" %}
 {% include "ROSHelp.tpl.py" %}
 {% include "ParseMessages.tpl.py" %}
 {% include "MsgPublisherObserver.tpl.py" %}
 {% block imports %}
 import struct
 {% endblock %}
+{% block cb_defs %}{% endblock cb_defs %}
 {% block class_defs %}
+{% if "class_PublishObserverMsgState" not in defined_headers %}
 class PublishObserverMsgState(smach.State):
     """Publishes a message each time that one comes in on another topic; or stops that."""
 
     observers = {}
 
-    def __init__(self, action, sub_topic="tf", input_keys=(), output_keys=()):
+    def __init__(self, action, topic, sub_topic="tf", input_keys=("msg", "topic"), output_keys=()):
         super().__init__(
             outcomes=["succeeded", "aborted"],
             input_keys=list(input_keys),
             output_keys=list(output_keys),
         )
         self.action = action
+        self.topic = topic
         self.observer = self.observers.setdefault(sub_topic, MsgPublisherObserver(sub_topic))
 
     def execute(self, userdata):
         if self.action == "remove_all":
             return self.observer.remove_all()
-        topic = optional(userdata, "topic", "smacha/message")
+        topic = optional(userdata, "topic", self.topic)
         if self.action == "remove":
             return self.observer.remove(topic)
         try:
@@ -35,4 +39,9 @@ class PublishObserverMsgState(smach.State):
         give(userdata, outputs, ["msg", "output_msg", "msg_output"], message)
         give(userdata, outputs, ["topic", "output_topic", "topic_output"], topic)
         return outcome
-{% endblock %}
+{% do defined_headers.append("class_PublishObserverMsgState") %}
+{% endif %}
+{% endblock class_defs %}
+{% block body %}
+{{ add("PublishObserverMsgState", action, "smacha/" ~ name | lower, sub_topic=sub_topic, input_keys=input_keys, output_keys=output_keys) }}
+{% endblock body %}

@@ -2,6 +2,7 @@
 {% include "ROSHelp.tpl.py" %}
 {% set recorder = recorder | default("ROSBagCLIProcessRecorder") %}
 {% include recorder ~ ".tpl.py" %}
+{% block cb_defs %}{% endblock cb_defs %}
 {% block class_defs %}
 {% if "class_RecordROSBagState" not in defined_headers %}
 class RecordROSBagState(smach.State):

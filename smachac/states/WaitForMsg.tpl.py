@@ -51,7 +51,6 @@ class WaitForMsgState(smach.State):
         message = self.wait_for_message()
         if message is None:
             return given_up(self)
-        if self.msg_cb is not None and self.msg_cb(message, userdata) is False:
-            return "aborted"
-        return "succeeded"
+        answer = None if self.msg_cb is None else self.msg_cb(message, userdata)
+        return "succeeded" if answer is None or answer else "aborted"
 {% endblock %}

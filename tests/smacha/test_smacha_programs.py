@@ -19,6 +19,8 @@ from smacha_programs import FOLDER, TEMPLATES, machine_of, outline, stand_ins, t
 import smachac
 from smachac.diagnostics import Report, Severity
 from smachac.driver import build
+from smachac.ir.behaviours import built_in
+from smachac.ir.run import run
 from smachac.targets import load_target
 
 SCRIPTS = [
@@ -190,6 +192,49 @@ def test_core_states_do_what_their_names_say(
     machine["WRITE"].delimiter = ","
     machine.userdata.file = str(tmp_path / "nowhere" / "numbers.csv")
     assert machine.execute() == "aborted"
+
+
+def test_functions_are_called_before_a_state_does_its_work(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    path = FOLDER.parent / "cases" / "smacha" / "callbacks_first" / "main.yml"
+    machine = machine_of(smachac.build(path, "python")["sm.py"])
+    monkeypatch.chdir(tmp_path)
+    written: list[str] = []
+    delete = machine["DELETE"].execute
+
+    def look_and_delete(userdata: object) -> str:
+        written.append((tmp_path / "logs.csv").read_text("utf-8"))
+        outcome: str = delete(userdata)
+        return outcome
+
+    machine["DELETE"].execute = look_and_delete
+    assert machine.execute() == "succeeded"
+    assert written == [f"word,tries\naa,{machine.userdata.tries}\n"]
+    assert machine.userdata.tries > 0
+    assert [*tmp_path.iterdir()] == []
+    result = run(smachac.load(path), built_in())
+    assert result.outcome == "succeeded"
+    keys = machine.userdata.keys()
+    assert result.userdata == {key: machine.userdata[key] for key in keys}
+
+
+def test_functions_are_called_first_in_cpp_as_well(tmp_path: Path) -> None:
+    path = tmp_path / "main.yml"
+    path.write_text(
+        "name: sm\noutcomes: [a]\nuserdata: {n: 0}\nstates:\n  - A:\n"
+        "      template: RandomOutcomeState\n      outcomes: [a]\n"
+        "      input_keys: [n]\n      output_keys: [n]\n"
+        "      callbacks: {n: 'lambda ud: ud.n + 1'}\n"
+    )
+    text = smachac.build(path, "cpp")["sm.hpp"]
+    assert 0 < text.index('run.write("n", ud.n, ') < text.index("draws_.below(1)")
+
+
+def test_topics_are_named_after_their_states() -> None:
+    machine = machine_of(text_of("ros_states"))
+    assert machine["PUBLISH_MSG"].topic == "smacha/publish_msg"
+    assert machine["OBS"].topic == "smacha/obs"
 
 
 def test_rows_of_messages_field_by_field(tmp_path: Path) -> None:

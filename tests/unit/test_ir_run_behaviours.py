@@ -53,6 +53,16 @@ def test_a_scripted_state_takes_a_step_at_each_visit() -> None:
     ]
 
 
+@pytest.mark.parametrize("type", ["CallbacksState", "RandomOutcomeState", "DeleteFileState"])
+def test_callbacks_are_called_first_in_the_order_of_their_keys(type: str) -> None:
+    code = {"b": "`lambda ud: ud.a + 1`", "a": "`lambda ud: 1`"}
+    node = leaf("A", {"x": "end"}, type=type, ins="a", outs="a b", callbacks=code)
+    result, events = ran(machine("sm", "end", node, held={"a": 0}), built_in())
+    assert result.outcome == "end"
+    lines = [line for line in short(events) if line.startswith("write")]
+    assert lines == ["write sm/A a 1", "write sm/A b 2"]
+
+
 def test_the_last_step_repeats_and_no_steps_are_the_first_outcome() -> None:
     assert single("ScriptedState", "b succeeded").outcome == "b"
     node = leaf("A", {"x": "A"}, type="ScriptedState", steps=[{"outcome": "x"}])

@@ -168,18 +168,24 @@ class _Code:
 
 
 def _callbacks(code: _Code) -> _Body:
+    return _Body(lines=(*_calls(code), code.end(default_outcome(code.leaf))))
+
+
+def _calls(code: _Code) -> list[str]:
+    """The statements that call the functions of the script, each for the key of its name."""
     lines = []
     functions = code.functions()
     for key in sorted(functions):
         if not code.writes(key):
             raise UnportableError(f"it writes `{key}`, which is not one of its outputs")
         lines.append(code.write(key, lambda type_, f=functions[key]: code.function(f, type_)))  # type: ignore[misc]
-    return _Body(lines=(*lines, code.end(default_outcome(code.leaf))))
+    return lines
 
 
 def _conditional(code: _Code) -> _Body:
     functions = code.functions()
-    _tells_nothing(code)
+    if code.leaf.outputs:
+        raise UnportableError("it writes its outcome under a key")
     lines = []
     for outcome in own_outcomes(code.leaf):
         if outcome in functions:
@@ -226,13 +232,9 @@ def _sleep(code: _Code) -> _Body:
     return _Body(lines=(*lines, code.end(default_outcome(code.leaf))))
 
 
-def _tells_nothing(code: _Code) -> None:
-    if code.leaf.outputs:
-        raise UnportableError("it writes its outcome under a key")
-
-
 def _random(code: _Code) -> _Body:
-    _tells_nothing(code)
+    if {key.name for key in code.leaf.outputs} - {*code.functions()}:
+        raise UnportableError("it writes its outcome under a key")
     seed = variable(code.leaf, "seed")
     number = abs(seed) if isinstance(seed, int) else 0
     words: list[str] = []
@@ -241,7 +243,9 @@ def _random(code: _Code) -> _Body:
         number //= LARGEST_WORD
     names = own_outcomes(code.leaf)
     draw = f"return static_cast<Outcome>(draws_.below({len(names)}));"
-    return _Body(lines=(draw,), members=(f"smachac::Draws draws_{{{', '.join(words)}}};",))
+    return _Body(
+        lines=(*_calls(code), draw), members=(f"smachac::Draws draws_{{{', '.join(words)}}};",)
+    )
 
 
 def _print(code: _Code) -> _Body:

@@ -10,6 +10,7 @@ from keyword import iskeyword
 from smachac.ir.nodes import (
     Concurrence,
     Container,
+    Data,
     Key,
     Node,
     Sequence,
@@ -32,6 +33,9 @@ from smachac.targets.python.layout import (
     string,
 )
 
+OURS = ("smach", "build", "main", "error_as_outcome", "with_callbacks")
+"""Names of the module that containers must not take."""
+
 MOST_NESTED = 12
 """Containers nested deeper get a function of their own: Python allows 20 nested blocks."""
 
@@ -43,7 +47,7 @@ Arguments = list[tuple[str, Doc]]
 
 def variable_names() -> Callable[[str, bool], str]:
     """A function that makes a fresh variable name for a container, as SMACHA named them."""
-    taken: dict[str, int] = dict.fromkeys(["smach", "build", "main", "error_as_outcome"], 1)
+    taken: dict[str, int] = dict.fromkeys(OURS, 1)
 
     def fresh(name: str, root: bool) -> str:
         word = re.sub(r"\W+", "_", name.lower()).strip("_")
@@ -144,8 +148,11 @@ def initial(node: Container, variable: str) -> list[str]:
     return [f"{variable}.set_initial_state({flat(names([node.initial]))})"]
 
 
-def made(node: Node, state: Doc) -> Doc:
-    """What makes a state, which catches its exceptions where the script says so."""
+def made(node: Node, state: Doc, callbacks: Data = None) -> Doc:
+    """What makes a state, which calls functions first and catches its exceptions where the script
+    says so."""
+    if callbacks is not None:
+        state = call("with_callbacks", [("", state), ("", literal(callbacks))])
     if not node.catches:
         return state
     return call("error_as_outcome", [("", state), ("", string(node.catches))])

@@ -7,7 +7,8 @@ from dataclasses import dataclass, field
 from textwrap import indent
 
 from smachac import problems, schema
-from smachac.ir.nodes import Container, Iterator, Leaf, Node
+from smachac.ir.behaviours import CALLING, variable
+from smachac.ir.nodes import Container, Data, Iterator, Leaf, Node
 from smachac.ir.walk import own_outcomes
 from smachac.states import StateType, find_state_type
 from smachac.targets.blocks import BlockError, Page
@@ -25,6 +26,24 @@ from smachac.targets.python.smacha import adding, container_variables, state_var
 
 _PRESET = re.compile(r"\s*\w+\.userdata\.(\w+) = ")
 """A line by which a state's template sets userdata; the container has set it already."""
+
+WITH_CALLBACKS = '''def with_callbacks(state, callbacks):
+    """Let a state first call functions of its userdata, each for the key of its name."""
+
+    def call_and_execute(userdata):
+        for key in sorted(callbacks):
+            function = callbacks[key]
+            if not smach.has_smach_interface(function):
+                userdata[key] = function(userdata)
+            else:  # it writes its keys itself
+                inputs = function.get_registered_input_keys()
+                outputs = function.get_registered_output_keys()
+                function(smach.Remapper(userdata, inputs, outputs, {}))
+        return execute(userdata)
+
+    execute, state.execute = state.execute, call_and_execute
+    return state'''
+"""What stands in a module with a state of ours, other than CallbacksState, that has callbacks."""
 
 DEFINED = "\n\n\n"
 """Between definitions."""
@@ -216,14 +235,29 @@ def _leaf(leaf: Leaf, inside: Inside, path: str, gathered: Gathered) -> str:
     dropped = len(own_outcomes(leaf)) < len(used.type.outcomes)
     if "outcomes" in used.type.given or (used.type.optional and dropped):
         arguments.append(("outcomes=", names(own_outcomes(leaf))))
-    arguments += [(f"{one.name}=", literal(one.value.data)) for one in leaf.variables]
+    callbacks = _called_first(leaf, used, gathered)
+    arguments += [
+        (f"{one.name}=", literal(one.value.data))
+        for one in leaf.variables
+        if callbacks is None or one.name != "callbacks"
+    ]
     given = used.type.given
     arguments += body.key_arguments(
         leaf.inputs if "input_keys" in given else (),
         leaf.outputs if "output_keys" in given else (),
     )
-    made = body.made(leaf, call(used.class_name, arguments))
+    made = body.made(leaf, call(used.class_name, arguments), callbacks)
     return f"# {body.place(leaf)}\n{body.add(leaf, inside.node, made, inside.depth + 1)}"
+
+
+def _called_first(leaf: Leaf, used: Used, gathered: Gathered) -> Data:
+    """The functions that are called before a state of ours, which does not know of them."""
+    data = variable(leaf, "callbacks")
+    own = gathered.context.library.own_template(used.template) is not None
+    if own or data is None or leaf.type not in CALLING or leaf.type == "CallbacksState":
+        return None
+    gathered.buffers["defs"][WITH_CALLBACKS] = None
+    return data
 
 
 def _used(leaf: Leaf, gathered: Gathered) -> Used:
@@ -269,7 +303,8 @@ def _whole(leaf: Leaf, inside: Inside, path: str, used: Used, gathered: Gathered
         raise BlockError(problems.template_error(leaf.span, message, help))
     variables = state_variables(leaf, inside.node, inside.variable, path)
     variables["defined_headers"] = gathered.defined_headers
-    variables["add"] = adding(leaf, inside.node, inside.depth + 1)
+    callbacks = _called_first(leaf, used, gathered)
+    variables["add"] = adding(leaf, inside.node, inside.depth + 1, callbacks)
     page = gathered.blocks.page(used.template, variables)
     gathered.gather(page, leaf)
     _headers(page, inside, leaf, gathered)

@@ -159,10 +159,11 @@ def stable_id(path: str) -> str:
     return hashlib.sha256(path.encode("utf-8", "surrogatepass")).hexdigest()[:32]
 
 
-def adding(node: Node, parent: Container, depth: int) -> Callable[..., str]:
+def adding(node: Node, parent: Container, depth: int, callbacks: Data = None) -> Callable[..., str]:
     """A function for templates: the line that adds the state that a class makes.
 
-    Named arguments that are missing are left out; strings are printed as text, code as it is.
+    `callbacks` are called before it. Named arguments that are missing are left out; strings are
+    printed as text, code as it is.
     """
 
     def add(class_name: object, *values: object, **named: object) -> str:
@@ -174,7 +175,7 @@ def adding(node: Node, parent: Container, depth: int) -> Callable[..., str]:
             for name, value in named.items()
             if not isinstance(value, Undefined)
         ]
-        made = body.made(node, call(str(class_name), arguments))
+        made = body.made(node, call(str(class_name), arguments), callbacks)
         return body.add(node, parent, made, depth)
 
     return add

@@ -1,0 +1,186 @@
+# Made by smachac 0.1.0 from main.yml (sha256 33f5f5366237b367).
+"""The state machine `sm`."""
+
+import csv
+import glob
+import os
+import random
+
+try:
+    import smach
+except ImportError:  # no ROS on this machine: the same names without it
+    from smachac.runtime import smach
+
+
+def with_callbacks(state, callbacks):
+    """Let a state first call functions of its userdata, each for the key of its name."""
+
+    def call_and_execute(userdata):
+        for key in sorted(callbacks):
+            function = callbacks[key]
+            if not smach.has_smach_interface(function):
+                userdata[key] = function(userdata)
+            else:  # it writes its keys itself
+                inputs = function.get_registered_input_keys()
+                outputs = function.get_registered_output_keys()
+                function(smach.Remapper(userdata, inputs, outputs, {}))
+        return execute(userdata)
+
+    execute, state.execute = state.execute, call_and_execute
+    return state
+
+
+def columns(name, value, ignored):
+    """Pairs of a column's name and its value; a message has one for each field."""
+    fields = getattr(value, "__slots__", None)
+    if fields is None or isinstance(value, (str, int, float)):
+        return [(name, value)]
+    found = []
+    for field in fields:
+        if field not in ignored:
+            found += columns(f"{name}_{field}", getattr(value, field), ignored)
+    return found
+
+
+class RandomOutcomeState(smach.State):
+    """Ends with one of its outcomes by chance; a seed makes the row repeatable."""
+
+    def __init__(self, outcomes, seed=0, input_keys=(), output_keys=()):
+        super().__init__(
+            outcomes=outcomes,
+            input_keys=list(input_keys),
+            output_keys=list(output_keys),
+        )
+        self.tells = "outcome" in output_keys
+        self.choices = list(outcomes)
+        self.random = random.Random(seed)
+
+    def execute(self, userdata):
+        outcome = self.random.choice(self.choices)
+        if self.tells:
+            userdata["outcome"] = outcome
+        return outcome
+
+
+class WriteCSVFileState(smach.State):
+    """Writes keys of the userdata to a CSV file: a row, or one for each item of a lone list."""
+
+    def __init__(self, delimiter=",", input_keys=("file", "data_keys"), output_keys=()):
+        super().__init__(
+            outcomes=["succeeded", "aborted"],
+            input_keys=list(input_keys),
+            output_keys=list(output_keys),
+        )
+        self.delimiter = delimiter
+
+    def execute(self, userdata):
+        try:
+            rows = self.rows(userdata)
+            names = [name for name, _ in rows[0]] if rows else []
+            header = userdata["header"] if "header" in userdata else names
+            with open(userdata["file"], "w", newline="", encoding="utf-8") as file:
+                writer = csv.writer(file, delimiter=self.delimiter)
+                writer.writerow(header)
+                writer.writerows([value for _, value in row] for row in rows)
+        except (KeyError, OSError) as error:
+            smach.logwarn(f"the CSV file is not written: {error}")
+            return "aborted"
+        if "header" in self.get_registered_output_keys():
+            userdata["header"] = header
+        return "succeeded"
+
+    def rows(self, userdata):
+        """The rows as pairs of name and value."""
+        ignored = userdata["ignore"] if "ignore" in userdata else ["header"]
+        keys = userdata["data_keys"]
+        values = [(key, userdata[key]) for key in keys]
+        if len(values) == 1 and isinstance(values[0][1], (list, tuple)):
+            key, items = values[0]
+            return [columns(key, item, ignored) for item in items]
+        return [[pair for key, value in values for pair in columns(key, value, ignored)]]
+
+
+class DeleteFileState(smach.State):
+    """Deletes the files that a pattern stands for."""
+
+    def __init__(self, input_keys=("file",), output_keys=()):
+        super().__init__(
+            outcomes=["succeeded", "aborted"],
+            input_keys=list(input_keys),
+            output_keys=list(output_keys),
+        )
+
+    def execute(self, userdata):
+        paths = glob.glob(userdata["file"])
+        if not paths:
+            smach.logwarn(f"there is no file {userdata['file']}")
+            return "aborted"
+        try:
+            for path in sorted(paths):
+                os.remove(path)
+        except OSError as error:
+            smach.logwarn(f"a file cannot be deleted: {error}")
+            return "aborted"
+        return "succeeded"
+
+
+def build():
+    """Build the state machine `sm`."""
+    # main.yml:2
+    sm = smach.StateMachine(outcomes=["succeeded", "aborted"])
+    sm.userdata.folder = "logs"
+    sm.userdata.word = "a"
+    sm.userdata.tries = 0
+    with sm:
+        # main.yml:7
+        smach.StateMachine.add(
+            "DRAW",
+            with_callbacks(
+                RandomOutcomeState(
+                    outcomes=["again", "enough"],
+                    input_keys=["tries"],
+                    output_keys=["tries"],
+                ),
+                {"tries": lambda ud: ud.tries + 1},
+            ),
+            transitions={"again": "DRAW", "enough": "WRITE"},
+        )
+
+        # main.yml:14
+        smach.StateMachine.add(
+            "WRITE",
+            with_callbacks(
+                WriteCSVFileState(
+                    input_keys=["file", "data_keys", "folder", "word", "tries"],
+                    output_keys=["file", "data_keys", "word"],
+                ),
+                {
+                    "file": lambda ud: ud.folder + ".csv",
+                    "data_keys": lambda ud: ["word", "tries"],
+                    "word": lambda ud: ud.word + ud.word,
+                },
+            ),
+            transitions={"succeeded": "DELETE", "aborted": "aborted"},
+        )
+
+        # main.yml:23
+        smach.StateMachine.add(
+            "DELETE",
+            with_callbacks(
+                DeleteFileState(input_keys=["file", "folder"], output_keys=["file"]),
+                {"file": lambda ud: ud.folder + ".*"},
+            ),
+            transitions={"succeeded": "succeeded", "aborted": "aborted"},
+        )
+    return sm
+
+
+def main():
+    """Run the state machine once and return its outcome."""
+    return build().execute()
+
+
+if __name__ == "__main__":
+    outcome = main()
+    print(f"outcome: {outcome}")
+    raise SystemExit(outcome is None)
