@@ -259,9 +259,19 @@ def write_files(folder: Path, files: Mapping[str, str]) -> list[Path]:
     Raises OSError; nothing is left behind then.
     """
     paths = {folder / name: text.encode("utf-8") for name, text in files.items()}
-    for path in paths:
-        path.parent.mkdir(parents=True, exist_ok=True)
-    _put_all({path: (data, 0o644) for path, data in paths.items()})
+    made: list[Path] = []
+    try:
+        for path in paths:
+            missing = [each for each in path.parents if not each.exists()]
+            for each in reversed(missing):
+                each.mkdir(exist_ok=True)
+                made.append(each)
+        _put_all({path: (data, 0o644) for path, data in paths.items()})
+    except BaseException:
+        for each in reversed(made):
+            with contextlib.suppress(OSError):
+                each.rmdir()
+        raise
     return list(paths)
 
 

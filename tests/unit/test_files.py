@@ -105,6 +105,13 @@ def test_all_files_or_none(tmp_path: Path) -> None:
     assert [path.name for path in tmp_path.iterdir()] == ["b.py"]
 
 
+def test_folders_made_in_vain_are_taken_away(tmp_path: Path) -> None:
+    (tmp_path / "out").write_text("not a folder", "utf-8")
+    with pytest.raises((FileExistsError, NotADirectoryError)):
+        write_files(tmp_path, {"include/deep/a.hpp": "a", "out/b.hpp": "b"})
+    assert [path.name for path in tmp_path.rglob("*")] == ["out"]
+
+
 def test_writing_is_exact(tmp_path: Path) -> None:
     files = {"\u00fc b/a.py": "x\r\n\u2713\n"}
     write_files(tmp_path, files)
