@@ -75,6 +75,12 @@ def test_callbacks_run_by_name_and_lambdas_write_their_keys() -> None:
     assert machine.userdata.numbers == [1, 2, 3, 4, 123, 42]
 
 
+def test_params_come_from_the_call_and_from_the_sub_script() -> None:
+    sub = machine_of(text_of("params"))["SUB"]
+    states = [(sub[name]._name, sub[name]._outcome) for name in ("FOO_0", "FOO_1")]
+    assert states == [("FIRST", "left"), ("SECOND", "right")]
+
+
 def test_a_class_defined_twice_and_not_alike_is_told() -> None:
     path = FOLDER / "scripts" / "counting.yml"
     report = built_report(path)

@@ -10,6 +10,7 @@ from __future__ import annotations
 import re
 from collections.abc import Callable
 from pathlib import Path
+from types import ModuleType
 
 import pytest
 
@@ -493,3 +494,106 @@ def test_the_kinds_of_templates(tmp_path: Path, kind: str, ours: str) -> None:
 )
 def test_a_loose_meta_block_is_read_as_far_as_it_goes(tmp_path: Path, meta: str) -> None:
     assert state_type(tmp_path, meta).name == "T"
+
+
+# Sugar around states that their templates add.
+
+META = "{% block meta %}\nname: T\ntype: State\noutcomes: [done, aborted]\n{% endblock %}\n"
+FAILING = CLASS.replace("outcomes=['done']", "outcomes=['done', 'aborted']").replace(
+    "['done', 'aborted'])\n",
+    "['done', 'aborted'])\n        self.visits = 0\n\n"
+    "    def execute(self, userdata):\n        self.visits += 1\n"
+    "        raise_or_say(self.visits)\n"
+    "        return 'done' if self.visits == 3 else 'aborted'\n",
+)
+SAYS = "{% block defs %}\ndef raise_or_say(visits):\n    print('visit', visits)\n{% endblock %}\n"
+RAISES = "{% block defs %}\ndef raise_or_say(visits):\n    raise ValueError('no')\n{% endblock %}\n"
+
+
+def ran(text: str) -> str:
+    """The outcome of a program."""
+    module = ModuleType("program")
+    exec(compile(text, "program.py", "exec"), module.__dict__)
+    outcome: str = module.__dict__["main"]()
+    return outcome
+
+
+@pytest.mark.parametrize(
+    ("more", "transitions", "outcome"),
+    [
+        ("retry: {on: [aborted], max: 3}", "done: good, exhausted: bad", "good"),
+        ("retry: {on: [aborted], max: 2}", "done: good, exhausted: bad", "bad"),
+        ("retry: {on: [aborted], max: 3, delay: 1ms}", "done: good, exhausted: bad", "good"),
+        ("timeout: 10s", "done: good, aborted: bad, timeout: good", "bad"),
+        ("for_each: {item: x, in: three, on: [aborted]}", "done: good, aborted: bad", "good"),
+        ("doc: as it is", "done: good, aborted: A", "good"),
+    ],
+)
+def test_sugar_around_a_state_that_its_template_adds(
+    built: Built, more: str, transitions: str, outcome: str
+) -> None:
+    script = (
+        "name: SM\ntemplate: Base\noutcomes: [good, bad]\nuserdata: {three: [1, 2, 3]}\nstates:\n"
+        f"  - A: {{template: T, {more}, transitions: {{{transitions}}}}}\n"
+    )
+    assert ran(built(script, T=META + SAYS + FAILING + ADDED)) == outcome
+
+
+@pytest.mark.parametrize("added", [ADDED, '{% extends "State.tpl.py" %}', "keywords"])
+@pytest.mark.parametrize("on", ["on_error: FIX", "error: FIX"])
+def test_a_state_that_its_template_adds_catches(built: Built, added: str, on: str) -> None:
+    script = f"""\
+name: SM
+template: Base
+outcomes: [good, bad]
+{on if on.startswith("on_error") else "doc: no"}
+states:
+  - A: {{template: T, transitions: {{done: bad, aborted: bad{", error: FIX" if on == "error: FIX" else ""}}}}}
+  - FIX: {{template: ScriptedState, outcomes: [done], transitions: {{done: good}}}}
+"""
+    if added == "keywords":
+        added = ADDED.replace("add('{{ name }}', T()", "add(state=T(), label='{{ name }}'")
+    extends = added if "extends" in added else ""
+    text = built(script, T=extends + META + RAISES + FAILING + ("" if extends else added))
+    assert ran(text) == "good"
+
+
+def test_a_container_that_its_template_adds_catches(built: Built) -> None:
+    box = (
+        "{% from 'Utils.tpl.py' import render_outcomes, render_transitions %}"
+        "{% block body %}\nsm_box = smach.StateMachine({{ render_outcomes(outcomes) }})\n"
+        "with sm_box:\n    {{ body | indent(4) }}\n\n"
+        "smach.{{ parent_type }}.add('{{ name }}', sm_box,\n{{ render_transitions(transitions) }})\n{% endblock %}"
+    )
+    script = NESTED.replace("{done: done}\n      states", "{done: A, error: done}\n      states")
+    script = script.replace(
+        "- A: {template: T, transitions: {done: BOX}}",
+        "- A: {template: ScriptedState, outcomes: [done], transitions: {done: BOX}}",
+    )
+    script = script.replace(
+        "template: T, transitions: {done: done}",
+        "template: T, transitions: {done: done, aborted: done}",
+    )
+    assert ran(built(script, T=META + RAISES + FAILING + ADDED, StateMachine=box)) == "done"
+
+
+@pytest.mark.parametrize(
+    ("body", "words"),
+    [
+        (
+            "state = T()\nsmach.StateMachine.add(*['A', state])",
+            "prints no line `smach.{{ parent_type }}.add('{{ name }}', ...)`",
+        ),
+        (
+            "smach.StateMachine.add('A', T(), transitions={'done': 'done'})",
+            "does not print the transition of `error`",
+        ),
+    ],
+)
+def test_what_cannot_be_wrapped_is_told(built: Built, body: str, words: str) -> None:
+    script = MAIN.replace("transitions: {done: B}", "transitions: {done: B, aborted: B, error: B}")
+    script = script.replace("B: {template: T,", "B: {template: ScriptedState, outcomes: [done],")
+    (message,) = errors(
+        built, script, T=f"{META}{FAILING}{{% block body %}}\n{body}\n{{% endblock %}}"
+    )
+    assert message == f"the template of `T` {words}, so that `A` cannot end with its exceptions"

@@ -13,6 +13,7 @@ from smachac.ir.walk import own_outcomes
 from smachac.states import StateType, find_state_type
 from smachac.targets.blocks import BlockError, Page
 from smachac.targets.python import body
+from smachac.targets.python.added import NotAddedError, adapted
 from smachac.targets.python.gathered import (
     KEYED,
     PREPENDED,
@@ -143,7 +144,6 @@ def _by_template(
 
     What the template has no block for, or does not print there, goes on to the container around.
     """
-    _catches_nothing(node)
     variables = container_variables(node, parent.node, parent.variable, path)
     variable = str(variables.get("sm_name", f"sm_{node.name.lower()}"))
     inside = Inside(node=node, variable=variable, path=path, depth=parent.depth + 1)
@@ -164,7 +164,7 @@ def _by_template(
             if name not in page.names or lost("\n".join(lines), "\n".join(own)):
                 gathered.buffers[name] = {**lines, **own}
         _headers(page, parent, node, gathered)
-        text = gathered.code(page, "body", node)
+        text = _adapted(gathered.code(page, "body", node), node, parent)
         if lost(states, text):
             span = gathered.blocks.block_span(template, "body") or node.span
             raise BlockError(problems.template_error(span, *NO_BODY))
@@ -295,12 +295,6 @@ def _used(leaf: Leaf, gathered: Gathered) -> Used:
 def _whole(leaf: Leaf, inside: Inside, path: str, used: Used, gathered: Gathered) -> str:
     """A state whose template prints itself, with the variables SMACHA gave it."""
     own = gathered.context.library.own_template(used.template) is not None
-    if own:
-        _catches_nothing(leaf)
-    if isinstance(inside.node, Iterator) and own:
-        message = f"the template of `{leaf.name}` cannot add it to an Iterator: SMACH has no `add`"
-        help = "put the state into a StateMachine, and iterate over that"
-        raise BlockError(problems.template_error(leaf.span, message, help))
     variables = state_variables(leaf, inside.node, inside.variable, path)
     variables["defined_headers"] = gathered.defined_headers
     callbacks = _called_first(leaf, used, gathered)
@@ -308,16 +302,21 @@ def _whole(leaf: Leaf, inside: Inside, path: str, used: Used, gathered: Gathered
     page = gathered.blocks.page(used.template, variables)
     gathered.gather(page, leaf)
     _headers(page, inside, leaf, gathered)
-    return f"# {body.place(leaf)}\n{gathered.code(page, 'body', leaf)}"
+    text = gathered.code(page, "body", leaf)
+    return f"# {body.place(leaf)}\n{_adapted(text, leaf, inside) if own else text}"
 
 
-def _catches_nothing(node: Node) -> None:
-    """A state that its template adds cannot be wrapped into what catches its exceptions."""
-    if node.catches:
-        message = f"the template of `{node.type}` prints its states itself, so that `{node.name}`"
-        help = "take the block `body` out of the template, or put the state into a StateMachine"
-        message += " cannot end with its exceptions"
-        raise BlockError(problems.template_error(node.span, message, help))
+def _adapted(text: str, node: Node, inside: Inside) -> str:
+    """What a template of the user's prints for a state, where that has to stand in an Iterator or
+    to catch its exceptions."""
+    try:
+        return adapted(text, node, inside.node, inside.depth + 1)
+    except NotAddedError as error:
+        message = f"the template of `{node.type}` {error}, so that `{node.name}` cannot"
+        message += " stand in an Iterator" if isinstance(inside.node, Iterator) else ""
+        message += "" if isinstance(inside.node, Iterator) else " end with its exceptions"
+        help = "let it extend `State.tpl.py` without a block `body`, or print that line"
+        raise BlockError(problems.template_error(node.span, message, help)) from error
 
 
 def _headers(page: Page, inside: Inside, node: Node, gathered: Gathered) -> None:

@@ -192,15 +192,26 @@ def place_variables(parent: Container, parent_sm_name: str, path: str) -> dict[s
     }
 
 
+def edges(node: Node, parent: Container | None) -> dict[str, object]:
+    """The `transitions` and `remapping` of a state, where it has any. In a Concurrence there are no
+    transitions: its `add` takes none."""
+    steps = {edge.outcome: edge.target for edge in node.transitions if edge.origin == "written"}
+    remaps = {remap.key: remap.to for remap in node.remaps}
+    found = {"transitions": {} if isinstance(parent, Concurrence) else steps, "remapping": remaps}
+    return {name: value for name, value in found.items() if value}
+
+
 def state_variables(
     leaf: Leaf, parent: Container, parent_sm_name: str, path: str
 ) -> dict[str, object]:
     """The variables of a leaf's template: those that its script writes, and where it stands."""
     variables = written(leaf.written)
-    if isinstance(parent, Concurrence):
-        variables.pop("transitions", None)  # smach.Concurrence.add takes none
+    # What a script says of both stands at the container that sugar makes around a state.
+    variables.pop("transitions", None)
+    variables.pop("remapping", None)
     return {
         **variables,
+        **edges(leaf, parent),
         **place_variables(parent, parent_sm_name, path),
         "name": leaf.name,
         "class_name": leaf.type,
@@ -216,19 +227,14 @@ def container_variables(
         "input_keys": [key.name for key in node.inputs],
         "output_keys": [key.name for key in node.outputs],
         "userdata": {preset.key: plain(preset.value.data) for preset in node.userdata},
-        "transitions": {
-            edge.outcome: edge.target for edge in node.transitions if edge.origin == "written"
-        },
-        "remapping": {remap.key: remap.to for remap in node.remaps},
     }
     if isinstance(node, Concurrence):
         variables["default_outcome"] = node.default_outcome or node.rules[-1].outcome
         variables["outcome_map"] = {
             rule.outcome: {one.child: one.outcome for one in rule.when} for rule in node.rules
         }
-    if isinstance(parent, Concurrence):
-        variables["transitions"] = {}
     variables = {name: value for name, value in variables.items() if value or name == "outcomes"}
     around = place_variables(parent, parent_sm_name, path) if parent is not None else {}
     own = {"name": node.name, "class_name": node.type}
+    variables |= edges(node, parent)
     return {**written(node.written), **variables, **around, **own}
