@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 from collections.abc import Mapping
 from pathlib import Path
 
@@ -284,6 +285,28 @@ def test_the_number_may_be_spelt_otherwise(spelling: str) -> None:
     assert said(files(cpp=changed(CPP, (number, same)))) == []
     assert said(files(cpp=changed(CPP, (f" = {number}", f"{{{number}}}")))) == []
     assert len(said(files(cpp=changed(CPP, (number, "0x1U"))))) == 1
+
+
+@pytest.mark.parametrize("number", ["0777", "089", "0x", "9" * 5000, "0x" + "f" * 5000, "1''2"])
+def test_any_number_is_read_or_left_alone(number: str) -> None:
+    found = said(
+        files(cpp=changed(CPP, ("smachac_interface = 0x", f"smachac_interface = {number}; //")))
+    )
+    assert len(found) <= 1
+
+
+@settings(max_examples=200)
+@given(st.data())
+def test_damaged_code_is_judged_without_a_crash(data: st.DataObject) -> None:
+    """Pieces of a class taken out, doubled or exchanged for others."""
+    text = data.draw(st.sampled_from([PYTHON, CPP]))
+    pieces = re.findall(r"\w+|\s+|.", text)
+    for _ in range(data.draw(st.integers(1, 6))):
+        at = data.draw(st.integers(0, len(pieces) - 1))
+        new = data.draw(st.sampled_from([*pieces, "", "{{", "'", '"', "/*", "\\", "0", "\0", "é"]))
+        pieces[at] = new
+    damaged = "".join(pieces)
+    said(files(cpp=damaged) if text is CPP else files(damaged))
 
 
 def test_a_fault_stops_a_build_for_its_language_and_is_told_once() -> None:

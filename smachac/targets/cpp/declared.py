@@ -28,7 +28,7 @@ _NO_CODE = re.compile(
 _CLASS = r"(?<!enum )\b(?:class|struct)\s+(?:\w+\s+)?(?P<name>{})\b(?P<base>[^;(){{}}=]*)\{{"
 _OUTCOME = r"\benum\s+(?:class|struct)\s+Outcome\b[^;{]*\{"
 _STRUCT = r"\bstruct\s+{}\s*\{{"
-_NUMBER = r"\bsmachac_interface\s*[={]\s*(0[xX][\da-fA-F']+|\d[\d']*)[uUlL]*\s*\}?\s*;"
+_NUMBER = r"\bsmachac_interface\s*[={]\s*(0[xX][\da-fA-F']{1,20}|\d[\d']{0,20})[uUlL]*\s*\}?\s*;"
 _ENUMERATOR = re.compile(r"\s*(?P<name>[A-Za-z_]\w*)\s*(?:=[^,]*)?")
 _LAST_WORD = re.compile(r"\b[A-Za-z_]\w*$")
 _ARGUMENTS = re.compile(r"<[^<>]*>")
@@ -122,9 +122,20 @@ def _blank(found: re.Match[str]) -> str:
 def _stale(body: _Part, wanted: str) -> Word | None:
     """The place of the number of another interface, and the number of the one there is."""
     found = body.member(_NUMBER)
-    if found is None or int(found[1].replace("'", ""), 0) == int(wanted.rstrip("U"), 0):
+    number = _number(found[1]) if found is not None else None
+    if found is None or number is None or number == _number(wanted.rstrip("U")):
         return None
     return body.word(wanted, *found.span(1))
+
+
+def _number(text: str) -> int | None:
+    """A whole number as C++ reads it."""
+    digits = text.lower().replace("'", "")
+    base = 16 if digits.startswith("0x") else 8 if digits.startswith("0") else 10
+    try:
+        return int(digits, base)
+    except ValueError:
+        return None
 
 
 def _outcomes(body: _Part, names: Iterable[str]) -> Words | None:
