@@ -30,6 +30,8 @@ from smachac.targets.cpp import TARGET
 from smachac.targets.cpp.classes import interface_hash
 
 INCLUDE = Path(__file__).parents[1] / "smachac" / "runtime" / "cpp"
+PLACED = "-falign-functions=32"
+"""Where code comes to lie by chance moves the times of so short loops by a third."""
 STEPS = 20_000_000
 ROUNDS = 9
 COUNTED = 1_000_000
@@ -243,7 +245,7 @@ def compiled(folder: Path, script: str, hand: str, compiler: str) -> Path:
         text.replace("#pragma once\n", "") + hand + MAIN.replace("ROUNDS", str(ROUNDS))
     )
     program = folder / "program"
-    call = [compiler, "-std=c++17", "-O2", f"-I{INCLUDE}", f"-I{folder}", "-pthread"]
+    call = [compiler, "-std=c++17", "-O2", PLACED, f"-I{INCLUDE}", f"-I{folder}", "-pthread"]
     files = [str(folder / "main.cpp"), str(folder / "bodies.cpp")]
     subprocess.run([*call, *files, "-o", str(program)], check=True)
     return program

@@ -68,6 +68,21 @@ int main() {
   return outcome == ping::Outcome::done && userdata.count.get() == 5 ? 0 : 1;
 }
 """
+CAUGHT = """
+#include <cstdio>
+#include "ping.hpp"
+int main() {
+  const game::Rules rules{5};
+  ping::States states(rules);
+  ping::Userdata userdata;
+  smachac::Stop stop;
+  try {
+    ping::run(states, userdata, nullptr, stop);
+  } catch (const smachac::StateError &error) {
+    std::puts(error.what());
+  }
+}
+"""
 
 
 def made(files: Mapping[str, str]) -> tuple[Report, str]:
@@ -104,6 +119,13 @@ def test_a_class_is_made_and_called(compiler: Compiler, tmp_path: Path) -> None:
     told = compiler.run(MAIN, tmp_path, *flags)
     assert [line for line in told.splitlines() if '"write"' in line][-1].count('"value": 5') == 1
     assert told.count('"event": "enter"') == 3
+
+
+@COMPILERS
+def test_a_class_that_returns_no_outcome_fails(compiler: Compiler, tmp_path: Path) -> None:
+    header = HEADER.replace("Outcome::again : ", "Outcome{7} : ").replace("HASH", number(HIT))
+    told = compiler.run(CAUGHT, tmp_path, *prepared(tmp_path, header))
+    assert told == "ping/PING (main.yml:6): ended without an outcome\n"
 
 
 @COMPILERS

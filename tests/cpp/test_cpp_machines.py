@@ -104,7 +104,6 @@ def test_large_machines_become_several_functions(
     monkeypatch: pytest.MonkeyPatch, tmp_path: Path
 ) -> None:
     monkeypatch.setattr(machines, "MOST_STATES", 2)
-    monkeypatch.setattr(machines, "PART", 2)
     found: list[Expected] = []
     for (machine, _, asked), ours in of_scripts():
         text = header(machine)

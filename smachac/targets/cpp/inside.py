@@ -18,6 +18,10 @@ Lines = list[str]
 NEVER = ["default:", "  smachac::never();"]
 """With it compilers know that there are no other states, and look a state up without a test."""
 
+NO_OUTCOME = "run.no_outcome(places, state);"
+"""Where a state gets to that ended with none of its outcomes, a number cast to one. As this never
+returns, compilers need not keep what it takes to run the state again."""
+
 CAUGHT = "run.caught(places, state);"
 GOES_ON = "SMACHAC_CATCH { run.failed(places, state); }"
 """What is done about an exception where it is caught, and where it is not."""
@@ -115,13 +119,14 @@ def case(inside: Inside, child: Node, cases: Lines, result: str = "") -> Lines:
     return [f"{head}{where}", *indented(body)]
 
 
-def switch(cases: Lines, otherwise: Lines = NEVER) -> Lines:
+def switch(cases: Lines) -> Lines:
     """The switch over the states, as the body of a loop."""
     return [
         "  run.enter(places, state);",
         "  switch (state) {",
-        *indented([*cases, *otherwise]),
+        *indented([*cases, *NEVER]),
         "  }",
+        f"  {NO_OUTCOME}",
     ]
 
 

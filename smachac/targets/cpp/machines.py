@@ -21,11 +21,9 @@ from smachac.targets.cpp.inside import (
 from smachac.targets.cpp.types import cpp_literal
 from smachac.targets.cpp.words import identifier
 
-MOST_STATES = 500
-"""Of one function: what compilers do with it is quadratic in its branches."""
-
-PART = 100
-"""States of each function of a container that has more than that."""
+MOST_STATES = 40
+"""Of one function. Of as many, compilers go from state to state by jumps; with more they look each
+up in a table, and the time they take themselves is quadratic in the branches of a function."""
 
 
 def machine(inside: Inside) -> Lines:
@@ -62,14 +60,14 @@ def parts(inside: Inside) -> Lines:
     if len(node.children) <= MOST_STATES or not isinstance(node, StateMachine | Sequence):
         return []
     lines: Lines = []
-    for number, start in enumerate(range(0, len(node.children), PART)):
-        children = node.children[start : start + PART]
+    for number, start in enumerate(range(0, len(node.children), MOST_STATES)):
+        children = node.children[start : start + MOST_STATES]
         cases = [line for child in children for line in _step(inside, child, "ended")]
         states, userdata = used(cases)
         ends = [*cases, *_caught_steps(inside, children, "ended")]
         ended = "ended" if any(line.endswith("return true;") for line in ends) else ""
-        here = f"while (static_cast<std::size_t>(state) / {PART} == {number}) {{"
-        loop = [here, *switch(cases, ["default:", "  break;"]), "}"]
+        here = f"while (static_cast<std::size_t>(state) / {MOST_STATES} == {number}) {{"
+        loop = [here, *switch(cases), "}"]
         caught = _caught_steps(inside, children, "ended")
         steps = guarded(loop, caught)
         lines += [
@@ -86,10 +84,10 @@ def parts(inside: Inside) -> Lines:
 
 def _dispatch(count: int) -> Lines:
     cases = []
-    for number in range(-(-count // PART)):
+    for number in range(-(-count // MOST_STATES)):
         cases += [f"case {number}:", f"  if (part_{number}(states, ud, run, state, ended)) {{"]
         cases += ["    return ended;", "  }", "  break;"]
-    head = f"switch (static_cast<std::size_t>(state) / {PART}) {{"
+    head = f"switch (static_cast<std::size_t>(state) / {MOST_STATES}) {{"
     return ["for (;;) {", f"  {head}", *indented(cases), "  default:", "    break;", "  }", "}"]
 
 

@@ -9,6 +9,7 @@ from smachac.ir.types import Type
 from smachac.targets.cpp.expressions import cpp_expression, cpp_function
 from smachac.targets.cpp.inside import (
     CAUGHT,
+    NO_OUTCOME,
     Inside,
     Lines,
     called,
@@ -52,6 +53,7 @@ def iterator(inside: Inside) -> Lines:
         "switch (outcome) {",
         *ways,
         "}",
+        NO_OUTCOME,
     ]
     return [
         *items,

@@ -340,12 +340,25 @@ struct Undeclared : Error {
   using Error::Error;
 };
 
+/// A state ended with a value that is no outcome at all: a number cast to one.
+struct NoOutcome : Undeclared {
+  NoOutcome() : Undeclared("ended without an outcome") {}
+};
+
 [[noreturn]] inline void undeclared(const char *outcome) {
   const std::string text = std::string("ended with `") + outcome + "`, which leads nowhere";
 #if defined(__cpp_exceptions)
   throw Undeclared(text);
 #else
   fail(text.c_str());
+#endif
+}
+
+[[noreturn]] inline void no_outcome() {
+#if defined(__cpp_exceptions)
+  throw NoOutcome();
+#else
+  fail(NoOutcome().what());
 #endif
 }
 
@@ -407,6 +420,10 @@ struct Run {
   /// The state ended as it should not: with an outcome that its container knows nothing of.
   template <class State> [[noreturn]] void undeclared(const Place *, State, const char *outcome) {
     detail::undeclared(outcome);
+  }
+  /// The state ended with a value that is none of its outcomes.
+  template <class State> [[noreturn]] void no_outcome(const Place *, State) {
+    detail::no_outcome();
   }
   /// To be called in SMACHAC_CATCH: what was thrown goes on as a StateError.
   template <class State> [[noreturn]] void failed(const Place *places, State state) {
@@ -485,6 +502,9 @@ public:
   [[noreturn]] void undeclared(const Place *places, State state, const char *outcome) {
     observer_.tell({"exit", places[static_cast<std::size_t>(state)], outcome});
     detail::undeclared(outcome);
+  }
+  template <class State> [[noreturn]] void no_outcome(const Place *, State) {
+    detail::no_outcome();
   }
   template <class State> [[noreturn]] void failed(const Place *places, State state) {
     failed_at(places[static_cast<std::size_t>(state)]);

@@ -59,6 +59,7 @@ Outcome execute(States &states, Userdata &, Run &run) {
       default:
         smachac::never();
       }
+      run.no_outcome(places, state);
     }
   }
   SMACHAC_CATCH { run.failed(places, state); }
@@ -146,6 +147,7 @@ Outcome execute(States &states, Userdata &ud, Run &run) {
       default:
         smachac::never();
       }
+      run.no_outcome(places, state);
     }
   }
   SMACHAC_CATCH { run.failed(places, state); }

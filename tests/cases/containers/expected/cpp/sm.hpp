@@ -98,6 +98,7 @@ Outcome execute(States &states, Userdata &, Run &around) {
       default:
         smachac::never();
       }
+      run.no_outcome(places, state);
     }
     SMACHAC_CATCH { run.failed(places, state); }
   });
@@ -186,6 +187,7 @@ Outcome execute(States &states, Userdata &ud, Run &run) {
       case types::STEP::Outcome::stop:
         return run.end(places, state, "stop", Outcome::aborted);
       }
+      run.no_outcome(places, state);
     }
     SMACHAC_CATCH { run.failed(places, state); }
   }
@@ -299,6 +301,7 @@ Outcome execute(States &states, Userdata &, Run &run) {
       default:
         smachac::never();
       }
+      run.no_outcome(places, state);
     }
   }
   SMACHAC_CATCH { run.failed(places, state); }
@@ -383,6 +386,7 @@ Outcome execute(States &states, Userdata &ud, Run &run) {
       default:
         smachac::never();
       }
+      run.no_outcome(places, state);
     }
   }
   SMACHAC_CATCH { run.failed(places, state); }

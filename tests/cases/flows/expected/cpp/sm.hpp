@@ -89,6 +89,7 @@ Outcome execute(States &states, Userdata &ud, Run &run) {
       default:
         smachac::never();
       }
+      run.no_outcome(places, state);
     }
   }
   SMACHAC_CATCH { run.failed(places, state); }
@@ -159,6 +160,7 @@ Outcome execute(States &states, Userdata &ud, Run &run) {
       case GO::Outcome::failed:
         return run.end(places, state, "failed", Outcome::failed);
       }
+      run.no_outcome(places, state);
     }
     SMACHAC_CATCH { run.failed(places, state); }
   }
@@ -320,6 +322,7 @@ Outcome execute(States &states, Userdata &ud, Run &run) {
       default:
         smachac::never();
       }
+      run.no_outcome(places, state);
     }
   }
   SMACHAC_CATCH { run.failed(places, state); }

@@ -76,6 +76,7 @@ Outcome execute(States &states, Userdata &ud, Run &run) {
         run.again(places, state, "succeeded");
         continue;
       }
+      run.no_outcome(places, state);
     }
     SMACHAC_CATCH {
       run.caught(places, state);
@@ -197,6 +198,7 @@ Outcome execute(States &states, Userdata &ud, Run &around) {
       default:
         smachac::never();
       }
+      run.no_outcome(places, state);
     }
     SMACHAC_CATCH {
       switch (state) {
@@ -283,6 +285,7 @@ Outcome execute(States &states, Userdata &ud, Run &run) {
       case types::CARRY::Outcome::succeeded:
         return run.end(places, state, "succeeded", Outcome::succeeded);
       }
+      run.no_outcome(places, state);
     }
     SMACHAC_CATCH {
       run.caught(places, state);
@@ -362,6 +365,7 @@ Outcome execute(States &states, Userdata &ud, Run &run) {
       default:
         smachac::never();
       }
+      run.no_outcome(places, state);
     }
   }
   SMACHAC_CATCH { run.failed(places, state); }
@@ -543,6 +547,7 @@ Outcome execute(States &states, Userdata &ud, Run &run) {
         default:
           smachac::never();
         }
+        run.no_outcome(places, state);
       }
     }
     SMACHAC_CATCH {

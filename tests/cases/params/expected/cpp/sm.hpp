@@ -62,6 +62,7 @@ Outcome execute(States &states, Userdata &, Run &run) {
       default:
         smachac::never();
       }
+      run.no_outcome(places, state);
     }
   }
   SMACHAC_CATCH { run.failed(places, state); }
@@ -116,6 +117,7 @@ Outcome execute(States &states, Userdata &ud, Run &run) {
       default:
         smachac::never();
       }
+      run.no_outcome(places, state);
     }
   }
   SMACHAC_CATCH { run.failed(places, state); }

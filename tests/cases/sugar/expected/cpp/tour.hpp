@@ -93,6 +93,7 @@ Outcome execute(States &states, Userdata &ud, Run &run) {
       case types::EACH::Outcome::preempted:
         return run.end(places, state, "preempted", Outcome::preempted);
       }
+      run.no_outcome(places, state);
     }
     SMACHAC_CATCH { run.failed(places, state); }
   }
@@ -161,6 +162,7 @@ Outcome execute(States &states, Userdata &ud, Run &run) {
         run.again(places, state, "exhausted");
         continue;
       }
+      run.no_outcome(places, state);
     }
     SMACHAC_CATCH { run.failed(places, state); }
   }
@@ -281,6 +283,7 @@ Outcome execute(States &states, Userdata &, Run &run) {
       default:
         smachac::never();
       }
+      run.no_outcome(places, state);
     }
   }
   SMACHAC_CATCH { run.failed(places, state); }
@@ -345,6 +348,7 @@ Outcome execute(States &states, Userdata &ud, Run &run) {
       case TRIES::Outcome::good:
         return run.end(places, state, "good", Outcome::good);
       }
+      run.no_outcome(places, state);
     }
     SMACHAC_CATCH { run.failed(places, state); }
   }
@@ -457,6 +461,7 @@ Outcome execute(States &states, Userdata &, Run &around) {
       default:
         smachac::never();
       }
+      run.no_outcome(places, state);
     }
     SMACHAC_CATCH { run.failed(places, state); }
   });
@@ -545,6 +550,7 @@ Outcome execute(States &states, Userdata &ud, Run &run) {
         run.again(places, state, "succeeded");
         continue;
       }
+      run.no_outcome(places, state);
     }
     SMACHAC_CATCH { run.failed(places, state); }
   }
@@ -669,6 +675,7 @@ Outcome execute(States &states, Userdata &, Run &around) {
       default:
         smachac::never();
       }
+      run.no_outcome(places, state);
     }
     SMACHAC_CATCH { run.failed(places, state); }
   });
@@ -774,6 +781,7 @@ Outcome execute(States &states, Userdata &ud, Run &run) {
       default:
         smachac::never();
       }
+      run.no_outcome(places, state);
     }
   }
   SMACHAC_CATCH { run.failed(places, state); }
@@ -851,6 +859,7 @@ Outcome execute(States &states, Userdata &ud, Run &run) {
         run.again(places, state, "timeout");
         continue;
       }
+      run.no_outcome(places, state);
     }
     SMACHAC_CATCH { run.failed(places, state); }
   }
@@ -1008,6 +1017,7 @@ Outcome execute(States &states, Userdata &ud, Run &run) {
       default:
         smachac::never();
       }
+      run.no_outcome(places, state);
     }
   }
   SMACHAC_CATCH { run.failed(places, state); }

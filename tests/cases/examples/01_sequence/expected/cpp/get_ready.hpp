@@ -111,6 +111,7 @@ Outcome execute(States &states, Userdata &, Run &run) {
       default:
         smachac::never();
       }
+      run.no_outcome(places, state);
     }
   }
   SMACHAC_CATCH { run.failed(places, state); }

@@ -111,6 +111,7 @@ Outcome execute(States &states, Userdata &, Run &run) {
       default:
         smachac::never();
       }
+      run.no_outcome(places, state);
     }
   }
   SMACHAC_CATCH { run.failed(places, state); }
@@ -237,6 +238,7 @@ Outcome execute(States &states, Userdata &ud, Run &run) {
       default:
         smachac::never();
       }
+      run.no_outcome(places, state);
     }
   }
   SMACHAC_CATCH { run.failed(places, state); }

@@ -101,6 +101,7 @@ Outcome execute(States &states, Userdata &, Run &around) {
       default:
         smachac::never();
       }
+      run.no_outcome(places, state);
     }
     SMACHAC_CATCH { run.failed(places, state); }
   });
@@ -187,6 +188,7 @@ Outcome execute(States &states, Userdata &ud, Run &run) {
       default:
         smachac::never();
       }
+      run.no_outcome(places, state);
     }
   }
   SMACHAC_CATCH { run.failed(places, state); }

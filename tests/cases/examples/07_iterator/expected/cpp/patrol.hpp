@@ -87,6 +87,7 @@ Outcome execute(States &states, Userdata &ud, Run &run) {
       default:
         smachac::never();
       }
+      run.no_outcome(places, state);
     }
   }
   SMACHAC_CATCH { run.failed(places, state); }
@@ -154,6 +155,7 @@ Outcome execute(States &states, Userdata &ud, Run &run) {
       case VISIT::Outcome::blocked:
         return run.end(places, state, "blocked", Outcome::blocked);
       }
+      run.no_outcome(places, state);
     }
     SMACHAC_CATCH { run.failed(places, state); }
   }
@@ -212,6 +214,7 @@ Outcome execute(States &states, Userdata &ud, Run &run) {
       default:
         smachac::never();
       }
+      run.no_outcome(places, state);
     }
   }
   SMACHAC_CATCH { run.failed(places, state); }

@@ -190,6 +190,7 @@ Outcome execute(States &states, Userdata &ud, Run &run) {
       default:
         smachac::never();
       }
+      run.no_outcome(places, state);
     }
   }
   SMACHAC_CATCH { run.failed(places, state); }
@@ -333,6 +334,7 @@ Outcome execute(States &states, Userdata &ud, Run &run) {
       default:
         smachac::never();
       }
+      run.no_outcome(places, state);
     }
   }
   SMACHAC_CATCH { run.failed(places, state); }
@@ -509,6 +511,7 @@ Outcome execute(States &states, Userdata &ud, Run &run) {
       default:
         smachac::never();
       }
+      run.no_outcome(places, state);
     }
   }
   SMACHAC_CATCH { run.failed(places, state); }
