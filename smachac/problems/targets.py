@@ -39,7 +39,9 @@ def unsupported_by_target(
 
 
 @problem("SM602", "no-code-for-target", Severity.ERROR)
-def no_code_for_target(span: Span, target: str, state_type: str, states: int) -> Finding:
+def no_code_for_target(
+    span: Span, target: str, option: str, state_type: str, states: int
+) -> Finding:
     """A state has code, but none in the language of the target.
 
     The interface of the state type tells, under `code`, where its code is for each language.
@@ -61,7 +63,8 @@ def no_code_for_target(span: Span, target: str, state_type: str, states: int) ->
     """
     number = f" ({states} states)" if states > 1 else ""
     message = f"not for {target}: the state type `{state_type}` has no code in it{number}"
-    help = f"name its class under `code` in `{state_type}.yml`"
+    help = f"name its class under `code` in `{state_type}.yml`;"
+    help += f" `smachac new state {state_type} --target {option}` begins one"
     return Finding(span=span, message=message, help=help)
 
 

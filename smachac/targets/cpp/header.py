@@ -94,7 +94,7 @@ def _refuse_missing(plan: Plan, types: AbstractSet[str]) -> None:
             leaves.setdefault(node.type, []).append(node)
     for name, states in leaves.items():
         place = states[0].span
-        plan.report.append(problems.no_code_for_target(place, "C++", name, len(states)))
+        plan.report.append(problems.no_code_for_target(place, "C++", "cpp", name, len(states)))
 
 
 def _container(printing: _Printing, scope: Scope) -> Lines:
