@@ -10,14 +10,15 @@
 
 try:
     import smach
-{% if smach_ros or introspection %}
+{%- if smach_ros or introspection %}
     import smach_ros
-{% endif %}
+{%- endif %}
+
 except ImportError:  # SMACH is not on this machine: the same names without it
     from smachac.runtime import smach
-{% if smach_ros or introspection %}
+{%- if smach_ros or introspection %}
     from smachac.runtime import smach_ros
-{% endif %}
+{%- endif %}
 {% endblock imports %}
 
 
@@ -43,6 +44,9 @@ except ImportError:  # SMACH is not on this machine: the same names without it
 def {{ function_name | default("main") | lower }}():
     """Build the state machine, run it once and tell its outcome."""
 {% block node %}
+{% if is_node %}
+    rospy.init_node({{ node_name | default(name) | literal }})
+{% endif %}
 {% endblock node %}
     {{ main_def | indent(4) }}
 {% endblock main_def %}
@@ -64,6 +68,9 @@ def {{ function_name | default("main") | lower }}():
 {% endblock introspection_server %}
 
 {% block execute %}
+{% if is_node %}
+    rospy.on_shutdown(threading.Thread(target={{ sm_name }}.request_preempt, daemon=True).start)
+{% endif %}
     {{ execute | indent(4) }}
     outcome = {{ sm_name }}.execute()
     print(f"outcome: {outcome}")

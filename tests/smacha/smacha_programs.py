@@ -36,7 +36,8 @@ class Anything(ModuleType):
 
 
 MESSAGES = (
-    *("actionlib.msg", "geometry_msgs", "geometry_msgs.msg", "my_msgs", "my_msgs.srv"),
+    *("actionlib.msg", "actionlib_msgs", "actionlib_msgs.msg", "geometry_msgs"),
+    *("geometry_msgs.msg", "my_msgs", "my_msgs.msg", "my_msgs.srv"),
     *("roslib.message", "sensor_msgs", "sensor_msgs.msg", "std_msgs", "std_msgs.msg"),
     *("std_srvs", "std_srvs.srv", "tf2_geometry_msgs"),
 )

@@ -32,6 +32,7 @@ SCRIPTS = [
         "params",
         "recording",
         "ros_states",
+        "served",
         "services",
         "two_arms",
     ),
@@ -108,6 +109,20 @@ def test_calls_in_plain_text_are_code_as_for_smacha() -> None:
 def test_a_program_that_needs_a_node_is_one() -> None:
     assert text_of("loading").count("rospy.init_node") == 1
     assert "rospy.init_node" not in text_of("counting")  # it only logs
+
+
+def test_a_base_of_the_user_gets_what_its_own_code_needs() -> None:
+    text = text_of("served")
+    assert text.count("import rospy\n") == 1
+    assert "from actionlib import SimpleActionServer\n" in text
+    assert "import GoalStatus" not in text  # `import *` brings it
+    places = [
+        text.index(part) for part in ("init_node", "rospy.Service(", "on_shutdown", "execute")
+    ]
+    assert places == sorted(places)
+    for line in ("from my_msgs.srv import Door", "def main():"):
+        assert text.count(line) == 1
+    machine_of(text)
 
 
 def test_shared_objects_are_made_once_in_the_function_that_builds() -> None:

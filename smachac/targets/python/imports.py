@@ -28,8 +28,10 @@ MESSAGES = {
     "trajectory_msgs.msg": "JointTrajectory JointTrajectoryPoint",
     "nav_msgs.msg": "OccupancyGrid Odometry Path",
     "actionlib_msgs.msg": "GoalID GoalStatus",
+    "actionlib": "ActionClient ActionServer SimpleActionClient SimpleActionServer",
 }
-"""The messages of ROS's common packages, by module: names that scripts call to make one."""
+"""The messages of ROS's common packages, by module: names that scripts call to make one. SMACHA's
+template for actions imported all of actionlib for everybody."""
 
 _MODULE_OF = {name: module for module, names in MESSAGES.items() for name in names.split()}
 
@@ -68,10 +70,12 @@ def _from_import(module: str, names: list[str]) -> str:
 
 def unbound_names(parts: Iterable[str]) -> list[str]:
     """Imports for what code uses and nothing binds: modules by their attributes (`rospy.loginfo`),
-    messages by their names (`Point()`). Code with `import *` may bind any message."""
+    messages by their names (`Point()`). `import *` binds what its module is known to have; out of
+    other modules it may bind any message."""
     used: set[str] = set()
     named: set[str] = set()
     bound: set[str] = set()
+    everything: set[str] = set()
     for part in parts:
         try:
             tree = ast.parse(part)
@@ -87,16 +91,17 @@ def unbound_names(parts: Iterable[str]) -> list[str]:
                     bound.add(name)
                 case ast.FunctionDef(name=name) | ast.ClassDef(name=name):
                     bound.add(name)
+                case ast.ImportFrom(module=str(module), names=[ast.alias(name="*")]):
+                    everything.add(module)
                 case ast.Import(names=names) | ast.ImportFrom(names=names):
                     bound |= {each.asname or each.name.partition(".")[0] for each in names}
     modules = sys.stdlib_module_names | set(ROS_MODULES)
     found = [f"import {name}" for name in sorted(used - bound) if name in modules]
-    if "*" in bound or not any(
-        name in used | named | bound for name in (*ROS_MODULES, "smach_ros")
-    ):
+    unknown = any(module not in MESSAGES for module in everything)
+    if unknown or not any(name in used | named | bound for name in (*ROS_MODULES, "smach_ros")):
         return found
     return found + [
         f"from {_MODULE_OF[name]} import {name}"
         for name in sorted(named - bound)
-        if name in _MODULE_OF
+        if name in _MODULE_OF and _MODULE_OF[name] not in everything
     ]

@@ -114,11 +114,35 @@ def _text(machine: Machine, context: Context, gathered: Gathered) -> str | None:
         "smach_ros": any("smach_ros." in part for part in parts),
         "introspection": context.options.get("introspection", "no") == "yes",
     }
-    text = gathered.blocks.render_whole(template, variables) + "\n"
+    text = _rendered(template, variables, imports, gathered) + "
+"
     if lost(states, text):
         span = gathered.blocks.block_span(template, "body") or machine.root.span
         raise BlockError(problems.template_error(span, *NO_BODY))
     return _checked(text, template, machine, gathered)
+
+
+def _rendered(
+    template: str, variables: dict[str, object], imports: list[str], gathered: Gathered
+) -> str:
+    """The base's template as a whole; once more where its own code, known only now, lacks imports
+    or works in a node alone."""
+    printed = gathered.defined_headers.copy()
+    text = gathered.blocks.render_whole(template, variables)
+    if template in ONE_FUNCTION:
+        return text
+    is_node = _NEEDS_NODE.search(text) is not None and "init_node" not in text
+    more = ["import rospy", "import threading"] if is_node else []
+    lacking = unbound_names([modern(text)[0], *more])
+    if not lacking and not is_node:
+        return text
+    again = {
+        **variables,
+        "imports": import_lines([*imports, *lacking, *more]),
+        "is_node": is_node,
+        "defined_headers": printed,
+    }
+    return gathered.blocks.render_whole(template, again)
 
 
 def _title(machine: Machine) -> str:

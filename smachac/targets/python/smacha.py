@@ -33,9 +33,13 @@ class Text(str):
 class Headers(list[str]):
     """`defined_headers`: what has been printed once. Asking is as quick with thousands of them."""
 
-    def __init__(self) -> None:
-        super().__init__()
-        self._known: set[str] = set()
+    def __init__(self, names: Iterable[str] = ()) -> None:
+        super().__init__(names)
+        self._known = set(self)
+
+    def copy(self) -> Headers:
+        """Another that knows the same."""
+        return Headers(self)
 
     def append(self, name: str) -> None:
         self._known.add(name)
