@@ -19,6 +19,7 @@ _META = re.compile(r"\{%-?\s*block\s+meta\s*-?%\}(.*?)\{%-?\s*endblock", re.DOTA
 _BODY = re.compile(r"\{%[-+]?\s*block\s+body\b")
 _EXTENDS = re.compile(r"\{%[-+]?\s*extends\s+[\"']([^\"']+)[\"']")
 _OUTCOMES = re.compile(r"\boutcomes\s*=\s*\[([^\[\]{}]*)\]")
+_KEYS = re.compile(r"\b(input|output)_keys\s*=\s*\[([^\[\]{}]*)\]")
 _QUOTED = re.compile(r"([\"'])(\w+)\1")
 
 
@@ -85,6 +86,15 @@ def outcomes_in_code(template: Source) -> tuple[Outcome, ...]:
         )
         for word in words
     )
+
+
+def keys_in_code(template: Source) -> tuple[tuple[str, ...], tuple[str, ...]]:
+    """The keys that the code of a template reads and writes, as far as it lists them."""
+    found: dict[str, dict[str, None]] = {"input": {}, "output": {}}
+    for keys in _KEYS.finditer(template.text):
+        for word in _QUOTED.finditer(keys.group(2)):
+            found[keys.group(1)][word.group(2)] = None
+    return tuple(found["input"]), tuple(found["output"])
 
 
 def _text(tree: Map, name: str) -> str:

@@ -7,6 +7,7 @@ import sys
 from argparse import Namespace
 from collections import Counter
 from collections.abc import Callable, Container, Iterator, Mapping
+from functools import partial
 from pathlib import Path
 
 from smachac.diagnostics import (
@@ -22,9 +23,10 @@ from smachac.discover import scripts_of
 from smachac.driver import Analysis, analyse
 from smachac.files import Disk, disk_library
 from smachac.ir.depth import deep_recursion
-from smachac.ir.nodes import Leaf, Machine, Node
+from smachac.ir.nodes import Leaf, Machine, Node, StateMachine
 from smachac.ir.userdata import remapping
 from smachac.ir.walk import walk
+from smachac.meta import keys_in_code
 from smachac.problems import listed
 from smachac.refactor.alike import same_machine
 from smachac.refactor.concrete import Atom, UnusualError
@@ -35,9 +37,11 @@ from smachac.refactor.renaming_keys import rename_key
 from smachac.refactor.sheet import RefusedError, Sheet
 from smachac.refactor.skeleton import renamed_alike
 from smachac.refactor.subscripts import extract, inline
+from smachac.refactor.unknown import Told, completed
 from smachac.rewriting import FINDINGS, put
 from smachac.source import Source, Span
 from smachac.spelling import is_plain
+from smachac.states import Library, find_state_type
 from smachac.streams import print_report, usage
 from smachac.syntax import Map
 
@@ -71,6 +75,11 @@ class Desk:
         library = disk_library(path, report, scripts=self.arguments.scripts,
                                templates=self.arguments.templates, disk=disk)  # fmt: skip
         return analyse(source, library, report)
+
+    def library(self) -> Library:
+        """What the script may call and use, as it was before."""
+        return disk_library(self.path, [], scripts=self.arguments.scripts,
+                            templates=self.arguments.templates, disk=self.disk)  # fmt: skip
 
     @property
     def machine(self) -> Machine:
@@ -323,6 +332,8 @@ def run_contain(arguments: Namespace) -> int:
             raise RefusedError(before.root.span, "this is the whole script")
         _, parent = find_state(before, above)
         assert not isinstance(parent, Leaf)
+        if isinstance(parent, StateMachine):
+            parent = completed(parent, partial(_told, desk.library()))
         known = {child.name: child for child in parent.children}
         names = [each.rpartition("/")[2] for each in arguments.states]
         for name in names:
@@ -338,6 +349,17 @@ def run_contain(arguments: Namespace) -> int:
         return desk.written()
 
     return perform(arguments, "contain", change)
+
+
+def _told(library: Library, leaf: Leaf) -> Told:
+    """What the template of a state without an interface tells."""
+    type_ = find_state_type(leaf.type, library, [])
+    template = library.template(type_.code.get("python", "")) if type_ is not None else None
+    if type_ is None or template is None:
+        return Told()
+    reads, writes = keys_in_code(template)
+    listed = any(variable.name == "outcomes" for variable in leaf.written)
+    return Told(reads=reads, writes=writes, outcomes=listed or bool(type_.outcomes))
 
 
 def _no_worse(before: Analysis, after: Analysis, span: Span) -> None:
@@ -366,9 +388,7 @@ def _called(desk: Desk, node: Node) -> Source:
         help = "`smachac extract` is what goes the other way"
         raise RefusedError(node.span, f"`{node.name}` calls no sub-script", help)
     words = script.value.text.strip("'\"") if isinstance(script.value, Atom) else ""
-    library = disk_library(desk.path, [], scripts=desk.arguments.scripts,
-                           templates=desk.arguments.templates, disk=desk.disk)  # fmt: skip
-    found = library.script(words, node.span.source.name)
+    found = desk.library().script(words, node.span.source.name)
     if found is None:
         message = "the name of the sub-script comes from a look-up"
         raise RefusedError(node.span, message, "write it out first")

@@ -11,6 +11,9 @@ import tempfile
 from collections import Counter
 from collections.abc import Iterator
 from pathlib import Path
+from types import ModuleType
+from typing import Any
+from unittest.mock import patch
 
 import pytest
 from correct import correct_project
@@ -18,6 +21,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 from plain import written
 
+import smachac
 from smachac import analyse_file
 from smachac.cli import main
 from smachac.ir.nodes import Leaf, Machine, StateMachine
@@ -27,6 +31,7 @@ from smachac.ir.userdata import Userdata, UserdataError
 from smachac.ir.walk import outcome_names, walk
 from smachac.refactor.alike import normal
 from smachac.refactor.layout import laid_out
+from smachac.runtime import smach
 from smachac.source import Source
 
 CASES = sorted(path.parent for path in (Path(__file__).parent / "reworked").glob("*/command"))
@@ -39,7 +44,8 @@ def test_cases(
 ) -> None:
     """A case is a command, the files before it, and in `expected` what it prints and changes."""
     monkeypatch.chdir(tmp_path)
-    before = {path.name: path.read_bytes() for path in case.glob("*.yml")}
+    files = (*case.glob("*.yml"), *case.glob("*.tpl.py"))
+    before = {path.name: path.read_bytes() for path in files}
     for name, data in before.items():
         (tmp_path / name).write_bytes(data)
     code = main(shlex.split((case / "command").read_text("utf-8")))
@@ -207,6 +213,53 @@ def test_states_that_are_contained_run_as_before(project: random.Random) -> None
     after = machine()
     for seed in range(20 if done else 0):
         assert transcript(after, seed) == transcript(before, seed)
+
+
+def test_a_state_without_interface_leaves_a_container_as_before(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    case = next(case for case in CASES if case.name == "contain_without_interface")
+    monkeypatch.chdir(tmp_path)
+    for path in (*case.glob("*.yml"), *case.glob("*.tpl.py")):
+        (tmp_path / path.name).write_bytes(path.read_bytes())
+
+    def ends() -> list[str | None]:
+        (text,) = smachac.build("main.yml", "python", templates=["."]).values()
+        return [outcome_of(text, end) for end in ("succeeded", "aborted", "preempted", "there")]
+
+    before = ends()
+    assert before == ["succeeded", "aborted", "preempted", "succeeded"]
+    assert main(shlex.split((case / "command").read_text("utf-8"))) == 0
+    assert ends() == before
+
+
+def outcome_of(text: str, end: str) -> str | None:
+    """How a program ends whose class `Mover`, which comes from elsewhere, ends in this way."""
+
+    class Mover(smach.State):
+        def __init__(self, output_keys: list[str]) -> None:
+            ends = ["there", "succeeded", "aborted", "preempted"]
+            super().__init__(ends, input_keys=["limit", "target"], output_keys=output_keys)
+
+        def execute(self, userdata: Any) -> str:
+            userdata.place = [userdata.target, userdata.limit]
+            return end
+
+    def execute(self: Any, userdata: Any) -> str:
+        if "pose" in userdata:
+            userdata.joints = userdata.pose
+            return "found"
+        assert userdata.where == [[0.4, 0.1, 0.2], 0.5]
+        return "good"
+
+    movers = ModuleType("movers")
+    movers.Mover = Mover  # type: ignore[attr-defined]
+    module = ModuleType("program")
+    with patch.dict("sys.modules", {"movers": movers, "smach": smach}):
+        exec(text, module.__dict__)
+    module.Solver.execute = module.Looker.execute = execute
+    outcome: str | None = module.build().execute()
+    return outcome
 
 
 @settings(max_examples=80)

@@ -46,7 +46,8 @@ class Plan:
 
 def plan(parent: Node, inside: Sequence[Node], presets: set[str], name: str, kind: str) -> Plan:
     """How some states of a container are put into one of their own; `presets` are the keys of the
-    userdata that comes with them. Raises RefusedError."""
+    userdata that comes with them. All of the container's states are completed, where they have no
+    interface. Raises RefusedError."""
     if not isinstance(parent, StateMachine) or parent.sugar:
         message = f"`{parent.name}` is no state machine: transitions do not lead what is in it"
         raise RefusedError(parent.span, message)
@@ -104,9 +105,6 @@ def _leads(parent: StateMachine, inside: Iterable[Node]) -> Leads:
     names = frozenset(child.name for child in parent.children)
     found: dict[tuple[str, str], Exit] = {}
     for child in inside:
-        if isinstance(child, Leaf) and child.open:
-            help = "give its state type an interface first"
-            raise RefusedError(child.span, f"the outcomes of `{child.name}` are not known", help)
         for step in child.transitions:
             place = (step.target, leads_to_child(step, names))
             found.setdefault((child.name, step.outcome), place)

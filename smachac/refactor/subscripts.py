@@ -8,8 +8,8 @@ from smachac.refactor.order import long_name, sort_variables, variables_of
 from smachac.refactor.sheet import RefusedError, Sheet, variable, word
 from smachac.source import Span
 
-AT_THE_CALL = ("transitions", "remapping")
-"""What stays with the call of a sub-script: the names around it."""
+AT_THE_CALL = ("params", "userdata", "remapping", "transitions")
+"""What stays with the call of a sub-script, as SMACHA had it: other calls may have others."""
 
 
 def extract(sheet: Sheet, span: Span, script: str) -> str:

@@ -114,8 +114,7 @@ def _text(machine: Machine, context: Context, gathered: Gathered) -> str | None:
         "smach_ros": any("smach_ros." in part for part in parts),
         "introspection": context.options.get("introspection", "no") == "yes",
     }
-    text = _rendered(template, variables, imports, gathered) + "
-"
+    text = _rendered(template, variables, imports, gathered) + "\n"
     if lost(states, text):
         span = gathered.blocks.block_span(template, "body") or machine.root.span
         raise BlockError(problems.template_error(span, *NO_BODY))
