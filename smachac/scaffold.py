@@ -126,7 +126,7 @@ def _access(key: str) -> str:
 
 def _cpp_stub(type_: StateType) -> str:
     """A class as the target `cpp` wants it (docs/cpp.md). Raises UnportableError."""
-    from smachac.targets.cpp.classes import interface_hash, parameter_type, stops
+    from smachac.targets.cpp.classes import field_type, interface_hash, parameter_type, stops
     from smachac.targets.cpp.types import cpp_type
     from smachac.targets.cpp.words import identifier
 
@@ -160,7 +160,7 @@ def _cpp_stub(type_: StateType) -> str:
         fields = "; ".join(parameter(key.name, key.type) for key in type_.input_keys)
         lines.append(f"  struct In {{ {fields}; }};")
     if type_.output_keys:
-        keys = (f"smachac::Key<{cpp_type(key.type)}> &{identifier(key.name)}"
+        keys = (f"{field_type('Out', key.type)}{identifier(key.name)}"
                 for key in type_.output_keys)  # fmt: skip
         lines.append(f"  struct Out {{ {'; '.join(keys)}; }};")
     lines += [

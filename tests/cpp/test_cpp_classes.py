@@ -147,6 +147,85 @@ def test_a_class_for_another_interface_does_not_compile(
         compiler.compile(MAIN, tmp_path, *flags, "-fsyntax-only", warnings=False)
 
 
+SORT = """
+name: sm
+outcomes: [done]
+input_keys: {here: Pose, there: Pose, first: bool, last: bool, count: int, note: any}
+states:
+  - SORT: {template: Hit, transitions: {done: done}}
+"""
+SORTER = """
+name: Hit
+input_keys: {here: Pose, there: Pose, first: bool, last: bool, count: int, note: any}
+output_keys: {left: str, right: str}
+outcomes: {done: {}}
+code: {cpp: {header: game/hit.hpp, class: "game::Hit"}}
+"""
+IN = [
+    "const smachac::Pose &here", "const smachac::Pose &there", "bool first", "bool last",
+    "std::int64_t count", "const std::any &note",
+]  # fmt: skip
+OUT = ["smachac::Key<std::string> &left", "smachac::Key<std::string> &right"]
+SORTING = """
+#include "smachac/smachac.hpp"
+namespace game {
+struct Hit {
+  enum class Outcome { done };
+  struct In { IN; };
+  struct Out { OUT; };
+  static constexpr std::uint32_t smachac_interface = HASH;
+  Outcome execute(In in, Out out) {
+    out.left = in.first ? "first" : "";
+    out.right = in.last ? "last" : "";
+    return Outcome::done;
+  }
+};
+}
+#include "sm.hpp"
+int main() { return 0; }
+"""
+
+
+@COMPILERS
+@pytest.mark.parametrize(
+    ("part", "one", "other"),
+    [
+        ("", 0, 0),
+        ("In", 0, 1),
+        ("In", 2, 3),
+        ("In", 3, 4),
+        ("In", 0, 5),
+        ("In", 4, 5),
+        ("Out", 0, 1),
+    ],
+)
+def test_the_order_of_fields_is_that_of_the_interface(
+    compiler: Compiler, part: str, one: int, other: int, tmp_path: Path
+) -> None:
+    """Two of one type would be taken for one another: nothing but their names tells them apart."""
+    fields = {"In": [*IN], "Out": [*OUT]}
+    if part:
+        some = fields[part]
+        some[one], some[other] = some[other], some[one]
+    report, text = made({"main.yml": SORT, "templates/Hit.yml": SORTER})
+    assert report == []
+    (tmp_path / "game").mkdir()
+    (tmp_path / "game" / "hit.hpp").write_text("#pragma once\n")
+    (tmp_path / "sm.hpp").write_text(text)
+    program = SORTING.replace("HASH", number(SORTER))
+    for name, texts in fields.items():
+        program = program.replace(f"{name.upper()};", f"{'; '.join(texts)};")
+    if not part:
+        compiler.run(program, tmp_path, f"-I{tmp_path}", "-pthread")
+        return
+    with pytest.raises(
+        AssertionError, match=f"game::Hit::{part} must have its fields in the order"
+    ):
+        compiler.compile(
+            program, tmp_path, f"-I{tmp_path}", "-fsyntax-only", "-pthread", warnings=False
+        )
+
+
 @pytest.mark.parametrize(
     "other",
     [

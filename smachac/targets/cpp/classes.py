@@ -117,6 +117,11 @@ def parameter_type(type_: Type) -> str:
     return text if plain(type_).name in BY_VALUE else f"const {text} &"
 
 
+def field_type(part: str, type_: Type) -> str:
+    """The type of a field of `In` or `Out`."""
+    return parameter_type(type_) if part == "In" else f"smachac::Key<{cpp_type(type_)}> &"
+
+
 def interface_hash(type_: StateType) -> str:
     """A number that changes with everything of an interface that its class depends on."""
     told = [
@@ -140,13 +145,18 @@ def assertions(code: ClassCode) -> list[str]:
         f'smachac_interface");',
     ]
     for part, keys in (("In", type_.input_keys), ("Out", type_.output_keys)):
-        for key in keys:
-            wanted = f"smachac::Key<{cpp_type(key.type)}> &"
-            if part == "In":
-                wanted = parameter_type(key.type)
-            field = f"{part}::{identifier(key.name)}"
+        wanted = {identifier(key.name): field_type(part, key.type) for key in keys}
+        for field, text in wanted.items():
             lines += [
-                f"static_assert(std::is_same_v<decltype({name}::{field}), {wanted}>,",
-                f'              "{short}::{field} must be {wanted}");',
+                f"static_assert(std::is_same_v<decltype({name}::{part}::{field}), {text}>,",
+                f'              "{short}::{part}::{field} must be {text}");',
+            ]
+        if len(set(wanted.values())) < len(wanted):
+            fields = ", ".join(f"keys.{field}" for field in wanted)
+            types, order = ", ".join(wanted.values()), ", ".join(wanted)
+            lines += [
+                f"static_assert(smachac::in_order<{name}::{part}, {types}>(",
+                f"                  [](auto keys) {{ return smachac::before_mark({fields}); }}),",
+                f'              "{short}::{part} must have its fields in the order {order}");',
             ]
     return lines

@@ -13,8 +13,8 @@ from dataclasses import dataclass
 from smachac.ir.nodes import Key
 from smachac.source import Source, Span, Word
 from smachac.states import Library, StateType
-from smachac.targets.cpp.classes import class_code, interface_hash, parameter_type
-from smachac.targets.cpp.types import UnportableError, cpp_type
+from smachac.targets.cpp.classes import class_code, field_type, interface_hash
+from smachac.targets.cpp.types import UnportableError
 from smachac.targets.cpp.words import identifier
 from smachac.targets.declared import Declared, Words
 
@@ -199,7 +199,7 @@ def _other_fields(
     for each in fields:
         name = each.word.text
         try:
-            right = _spelt(part, wanted[name]) if name in wanted else ""
+            right = field_type(part, wanted[name].type) if name in wanted else ""
         except UnportableError:
             continue
         if right and _surely_other(each.type, right):
@@ -208,10 +208,6 @@ def _other_fields(
     if have != [*wanted] and sorted(have) == sorted(wanted):
         order = ", ".join(f"`{name}`" for name in wanted)
         yield Word(f"the fields of `{part}` must be in the order {order}", fields[0].word.span)
-
-
-def _spelt(part: str, key: Key) -> str:
-    return parameter_type(key.type) if part == "In" else f"smachac::Key<{cpp_type(key.type)}> &"
 
 
 def _surely_other(text: str, wanted: str) -> bool:

@@ -108,6 +108,66 @@ template <class Optional, class T> Optional maybe(const Key<T> &key) {
   return key.set() ? convert<Optional>(key.get()) : Optional();
 }
 
+#if defined(__clang__)
+#pragma clang diagnostic push
+#pragma clang diagnostic ignored "-Wundefined-var-template"
+#endif
+
+/// What the compiler tells the fields of a class apart by: objects that are nowhere defined, as
+/// only their places are looked at, and only while compiling.
+template <class T> struct Marks {
+  static T one;
+  static T other;
+};
+
+/// A value for a field of the type `T`, marked or not.
+template <class T> constexpr T with_mark(bool marked) {
+  if constexpr (std::is_reference_v<T>) {
+    using Object = std::remove_const_t<std::remove_reference_t<T>>;
+    return marked ? Marks<Object>::one : Marks<Object>::other;
+  } else {
+    return marked ? T(1) : T(0);
+  }
+}
+
+template <class T> constexpr bool is_marked(const T &field) {
+  if constexpr (std::is_arithmetic_v<T>) {
+    return field == T(1);
+  } else {
+    return &field == &Marks<T>::one;
+  }
+}
+
+#if defined(__clang__)
+#pragma clang diagnostic pop
+#endif
+
+/// How many fields stand before the one that is marked.
+template <class... Fields> constexpr std::size_t before_mark(const Fields &...fields) {
+  std::size_t count = 0;
+  static_cast<void>((... || (is_marked(fields) || (++count, false))));
+  return count;
+}
+
+template <std::size_t at, class Keys, class... Types, class Fields, std::size_t... all>
+constexpr auto has_at(Fields fields, std::index_sequence<all...>)
+    -> decltype(Keys{with_mark<Types>(all == at)...}, true) {
+  return fields(Keys{with_mark<Types>(all == at)...}) == at;
+}
+template <std::size_t at, class Keys, class... Types, class Fields>
+constexpr bool has_at(Fields, ...) {
+  return false;
+}
+template <class Keys, class... Types, class Fields, std::size_t... all>
+constexpr bool in_order(Fields fields, std::index_sequence<all...> each) {
+  return (has_at<all, Keys, Types...>(fields, each) && ...);
+}
+
+/// Whether the class `Keys` has its fields in the order of `Types`, which `fields` tells by name.
+template <class Keys, class... Types, class Fields> constexpr bool in_order(Fields fields) {
+  return in_order<Keys, Types...>(fields, std::index_sequence_for<Types...>());
+}
+
 /// A state in the script: its path, `sm/PICK/OPEN`, and where it stands, `main.yml:12`.
 struct Place {
   const char *path;

@@ -1,0 +1,37 @@
+# Made by smachac 0.1.0 from main.yml (sha256 4fc28c8251492587).
+"""The state machine `code_in_both`."""
+
+from skills.carry import Carry
+
+try:
+    import smach
+except ImportError:  # no ROS on this machine: the same names without it
+    from smachac.runtime import smach
+
+
+def build():
+    """Build the state machine `code_in_both`."""
+    # main.yml:2
+    code_in_both = smach.StateMachine(outcomes=["done", "lost"])
+    code_in_both.userdata.shelf = [[0.5, 0.0, 0.1], [0.0, 0.0, 0.0, 1.0]]
+    code_in_both.userdata.table = [[0.5, 0.3, 0.0], [0.0, 0.0, 0.0, 1.0]]
+    with code_in_both:
+        # main.yml:10
+        smach.StateMachine.add(
+            "CARRY",
+            Carry(speed=0.5),
+            transitions={"done": "done", "not-found": "lost", "preempted": "lost"},
+            remapping={"from": "shelf", "into": "table"},
+        )
+    return code_in_both
+
+
+def main():
+    """Run the state machine once and return its outcome."""
+    return build().execute()
+
+
+if __name__ == "__main__":
+    outcome = main()
+    print(f"outcome: {outcome}")
+    raise SystemExit(outcome is None)
