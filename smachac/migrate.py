@@ -13,13 +13,15 @@ from smachac.diagnostics import Diagnostic, Report, Severity, in_order
 from smachac.discover import NothingFoundError, scripts_of
 from smachac.driver import analyse, analyse_alone, build
 from smachac.files import Disk, disk_library
-from smachac.quirks import quirks
+from smachac.quirks import Quirk, quirks
 from smachac.report.migration import File, Item, render_migration
+from smachac.schema import LONG
 from smachac.source import Source, Span
 from smachac.streams import usage
-from smachac.syntax import Seq
+from smachac.syntax import Map, Seq, Tree
 from smachac.targets import load_target
 from smachac.targets.blocks import BlockError, Blocks
+from smachac.template_quirks import template_quirks, top_level_sets
 
 TEMPLATE = re.compile(r"[^.].*\.tpl(\.py)?$")
 
@@ -84,17 +86,26 @@ def _files(
             fails=faults or _has_errors(found, path),
             items=tuple(_items(found, path, text, disk)),
         )
-    for path in templates:
-        source = disk.read(path, [])
-        fault = _syntax_fault(source) if source is not None else None
+    trees = [disk.parse(text, []) for _, text in texts if text is not None]
+    given = frozenset(name for tree in trees if tree is not None for name in _keys(tree))
+    sources = [source for path in templates if (source := disk.read(path, [])) is not None]
+    sets = {"sm_name": "Base.tpl.py"} | {
+        name: Path(source.name).name for source in sources for name in top_level_sets(source)
+    }
+    for source in sources:
+        path = Path(source.name)
+        library = disk_library(path, [], templates=_near(path, templates), disk=disk)
         known = [item for item in found if _is_at(item.span, path)]
+        fault = _syntax_fault(source)
         if fault is not None and not any(item.code.code == "SM605" for item in known):
             known.append(fault)
+        told = [] if fault is not None else template_quirks(source, library.template, given, sets)
+        items = [*map(_item, known), *_untold(told, known)]
         yield File(
             name=str(path),
             kind="template",
-            fails=any(item.severity is Severity.ERROR for item in known),
-            items=tuple(map(_item, known)),
+            fails=any(item.what == "edit" for item in items),
+            items=tuple(sorted(items, key=lambda item: (item.line, item.column, item.name))),
         )
 
 
@@ -137,6 +148,40 @@ def _near(path: Path, files: Iterable[Path]) -> list[Path]:
     return sorted(folders, key=lambda folder: (-len(own & set(folder.parts)), str(folder)))
 
 
+def _keys(tree: Tree) -> Iterator[str]:
+    """The names of all that a script gives, in their long form."""
+    todo = [tree]
+    while todo:
+        each = todo.pop()
+        if isinstance(each, Map):
+            yield from (LONG.get(name, name) for name in (str(e.key.value) for e in each.entries))
+            todo += [entry.value for entry in each.entries]
+        elif isinstance(each, Seq):
+            todo += each.items
+
+
+def _untold(told: Iterable[Quirk], known: Report) -> Iterator[Item]:
+    """The quirks of a template of which building a program has not spoken."""
+    lines = {item.span.line for item in known if item.code.code == "SM606"}
+    missing = " ".join(item.finding.message for item in known if item.code.code == "SM605")
+    for quirk in told:
+        if quirk.name == "python-2" and quirk.what == "told" and quirk.span.line in lines:
+            continue
+        if quirk.name == "unknown-name" and f"'{quirk.span.text}' is undefined" in missing:
+            continue
+        yield _quirk(quirk)
+
+
+def _quirk(quirk: Quirk) -> Item:
+    return Item(
+        line=quirk.span.line,
+        column=quirk.span.column,
+        what=quirk.what,
+        name=quirk.name,
+        message=quirk.message,
+    )
+
+
 def _syntax_fault(source: Source) -> Diagnostic | None:
     """Why a template cannot be read at all."""
     name = Path(source.name).name
@@ -159,12 +204,7 @@ def _items(found: Report, path: Path, source: Source | None, disk: Disk) -> Iter
     """Of one script: what must be edited, and the quirks of SMACHA that it has."""
     items = [_item(item) for item in found if _is_at(item.span, path)]
     for quirk in quirks(disk.parse(source, [])) if source is not None else ():
-        items.append(
-            Item(
-                line=quirk.span.line, column=quirk.span.column, what="changed", name=quirk.name,
-                message=quirk.message,
-            )
-        )  # fmt: skip
+        items.append(_quirk(quirk))
     yield from sorted(items, key=lambda item: (item.line, item.column, item.name))
 
 

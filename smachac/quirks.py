@@ -9,10 +9,14 @@ from __future__ import annotations
 import re
 from collections.abc import Iterator
 from dataclasses import dataclass
+from typing import Literal
 
 from smachac.schema import LONG
 from smachac.source import Span
 from smachac.syntax import Entry, Map, Scalar, Seq, Tree
+
+What = Literal["edit", "changed", "told"]
+"""It has to be edited; it means something else here; it is told and works as before."""
 
 SMACHA_SHORT = frozenset(LONG) - {"k"}
 """The words that SMACHA replaced by others."""
@@ -28,11 +32,13 @@ _NUMBER = re.compile(r"[-+]?(\d+(\.\d*)?|\.\d+)([eE][-+]?\d+)?|[-+]?(inf|nan|inf
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Quirk:
-    """A place, the name of the quirk, what SMACHA did there and what happens here."""
+    """A place, the name of the quirk, what SMACHA did there and what happens here; `what` it is to
+    the reader."""
 
     span: Span
     name: str
     message: str
+    what: What = "changed"
 
 
 def quirks(tree: Tree | None) -> Iterator[Quirk]:
@@ -91,6 +97,12 @@ def _state(entries: tuple[Entry, ...], *, base: bool) -> list[Quirk]:
         name = LONG.get(str(entry.key.value), str(entry.key.value))
         if name == "states":
             continue
+        if base and name == "manifest":
+            message = (
+                "SMACHA called `roslib.load_manifest` with this, which does nothing for packages of"
+                " catkin; here it has no effect"
+            )
+            found.append(Quirk(span=entry.key.span, name="manifest", message=message, what="told"))
         if calls and name not in _MERGED:
             message = (
                 f"SMACHA passed `{name}` of a call over, or lost the state for it; here it counts"

@@ -5,12 +5,10 @@ from __future__ import annotations
 import json
 from collections.abc import Iterator, Sequence
 from dataclasses import asdict, dataclass
-from typing import Literal
+
+from smachac.quirks import What
 
 FORMATS = ("text", "json", "md")
-
-What = Literal["edit", "changed", "told"]
-"""It has to be edited; it means something else here; it is told and works as before."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)

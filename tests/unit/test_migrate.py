@@ -1,5 +1,6 @@
 """`smachac migrate`: what works, what means something else than for SMACHA, what must be edited."""
 
+# ruff: noqa: E501
 from __future__ import annotations
 
 import json
@@ -12,6 +13,7 @@ from smachac.quirks import quirks
 from smachac.report.migration import render_migration
 from smachac.source import Source
 from smachac.syntax import parse
+from smachac.template_quirks import template_quirks
 
 SMACHA = Path(__file__).parents[1] / "smacha"
 
@@ -81,9 +83,106 @@ def test_quirks_of_names_calls_and_concurrences() -> None:
     ]
 
 
+def test_a_manifest_is_told() -> None:
+    text = "name: sm\nm: my_robot\ntemplate: Base\nstates:\n  - A: {template: T, manifest: x}\n"
+    assert found(text) == [("manifest", "m")]
+
+
 @pytest.mark.parametrize("text", ["", "[]", "a", "{}", "- a", "- {}", "states: 1", "states: [1]"])
 def test_texts_that_are_no_scripts_have_no_quirks(text: str) -> None:
     assert found(text) == []
+
+
+BODY = "{% block body %}smach.{{ parent_type }}.add('{{ name }}', T()){% endblock %}\n"
+
+TEMPLATES = {
+    "python-2": (
+        "{% block defs %}\nfor k in d.iteritems(): pass\n{% endblock %}",
+        "edit",
+        "for k in d.iteritems(): pass",
+    ),
+    "python-2 of a name": (
+        "{% block defs %}\nx = xrange(3)\n{% endblock %}",
+        "edit",
+        "x = xrange(3)",
+    ),
+    "python-2 of a statement": (
+        "{% block defs %}\nraise A, b\n{% endblock %}",
+        "told",
+        "raise A, b",
+    ),
+    "python-2 of an exception": (
+        "{% block defs %}\n    except A, e:\n{% endblock %}",
+        "told",
+        "except A, e:",
+    ),
+    "lost-block": ("{% block class_def %}x = 1{% endblock %}", "changed", "class_def"),
+    "unknown-name": ("{% block defs %}{{ sped }}{% endblock %}", "changed", "sped"),
+    "leaked-set": ("{% block defs %}{{ shared }}{% endblock %}", "changed", "shared"),
+    "leaked-set of a container": (
+        "{% block defs %}{{ sm_name }}{% endblock %}",
+        "changed",
+        "sm_name",
+    ),
+    "own-params": ("{% block defs %}{{ params }}{% endblock %}", "changed", "params"),
+    "stable-uuid": ("{% block defs %}x_{{ uuid }} = 1{% endblock %}", "told", "uuid"),
+    "old-style": ('{% include "State.tpl" %}', "told", '{% include "State.tpl" %}'),
+    "text-outside": ("\n# said\n{% block defs %}x = 1{% endblock %}", "changed", "# said"),
+}
+
+SAME = [
+    "{% block defs %}{{ speed }}{{ slots }}{% endblock %}",
+    "{% block defs %}{% if x is defined %}{{ x }}{% endif %}{{ y | default(1) }}{% endblock %}",
+    "{% set x = 1 %}{% macro m(a) %}{{ a }}{% endmacro %}{% block defs %}{{ x }}{{ m(1) }}{% endblock %}",
+    "{% block meta %}\nvariables:\n- x: {}\n{% endblock %}{% block defs %}{{ x }}{% endblock %}",
+    "{% block defs %}{% block part %}x = 1{% endblock %}{% for a in [1] %}{{ a }}{{ loop.index }}{% endfor %}{% endblock %}",
+    "{% block defs %}{% for k, v in userdata.iteritems() %}{{ k }}{% endfor %}\nprint('x')\n# for i in xrange\n{% endblock %}",
+    '{% extends "Parent.tpl.py" %}{% block part %}{{ made }}{% endblock %}',
+    '{% extends "Base.tpl.py" %}{% block more %}{{ body }}{% endblock %}',
+    "{% block defs %}{% if %}{% endblock %}",
+]
+
+OTHERS = {
+    "Parent.tpl.py": "{% set made = 1 %}{% block defs %}{% block part %}{% endblock %}{% endblock %}",
+    "Base.tpl.py": "{% block main %}{% endblock %}",
+}
+
+
+def told_of(text: str) -> list[tuple[str, str, str]]:
+    sources = {name: Source(name, each) for name, each in OTHERS.items()}
+    source, sets = Source("T.tpl.py", text), {"sm_name": "Base.tpl.py", "shared": "Shared.tpl.py"}
+    told = template_quirks(source, sources.get, frozenset(["speed", "slots"]), sets)
+    return [(quirk.name, quirk.what, quirk.span.text) for quirk in told]
+
+
+@pytest.mark.parametrize("name", TEMPLATES)
+def test_each_quirk_of_a_template_is_found_at_its_place(name: str) -> None:
+    text, what, place = TEMPLATES[name]
+    assert told_of(text + BODY) == [(name.partition(" ")[0], what, place)]
+
+
+@pytest.mark.parametrize("text", SAME)
+def test_templates_that_mean_the_same_have_no_quirks(text: str) -> None:
+    assert told_of(text) == []
+
+
+def test_quirks_of_templates_are_in_the_report(
+    tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    (tmp_path / "A.tpl.py").write_text("{% set side = 1 %}" + BODY)
+    (tmp_path / "B.tpl.py").write_text(
+        "{% block defs %}\n{{ side }}\nfor i in xrange(3): pass\n{% endblock %}" + BODY
+    )
+    (tmp_path / "C.tpl").write_text('{% include "State.tpl" %}' + BODY)
+    code, text = migrated(capsys, str(tmp_path))
+    assert code == 1
+    assert "B.tpl.py:3:1: edit: `xrange` is Python 2: " in text
+    assert "B.tpl.py:2:4: changed: SMACHA took `side` from `A.tpl.py`, which sets it, " in text
+    assert "C.tpl     template    works  1 told" in text
+    data = json.loads(migrated(capsys, str(tmp_path), "--format", "json")[1])
+    assert [[item["name"] for item in file["items"]] for file in data["files"]] == [
+        [], ["leaked-set", "python-2"], ["old-style"],
+    ]  # fmt: skip
 
 
 def migrated(capsys: pytest.CaptureFixture[str], *words: str) -> tuple[int, str]:
@@ -110,7 +209,7 @@ def test_json_has_every_file_and_place(capsys: pytest.CaptureFixture[str]) -> No
     assert data["edit"] == 0
     assert data["works"] == len(kinds)
     (old,) = (file for file in data["files"] if file["name"].endswith("OldMove.tpl"))
-    assert {item["name"] for item in old["items"]} == {"SM606"}
+    assert [item["name"] for item in old["items"]] == ["old-style", "SM606", "SM606"]
 
 
 def test_what_must_be_edited_fails(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:

@@ -25,9 +25,8 @@ def modern(text: str) -> tuple[str, list[Change]]:
     changes: list[Change] = []
     lines = text.split("\n")
     for number, line in enumerate(lines):
-        found = _EXCEPT.match(line)
-        if found:
-            lines[number] = f"{found[1]} as {found[2]}:{found[3]}"
+        if _EXCEPT.match(line):
+            lines[number] = translated(line) or line
             changes.append((line, f"`{line.strip()}` is Python 2; it is printed with `as`"))
     text = "\n".join(lines)
     if _is_python(text):
@@ -40,6 +39,12 @@ def modern(text: str) -> tuple[str, list[Change]]:
             more.append((line, f"`{line.strip()}` is Python 2; it is printed as `{new.strip()}`"))
     tried = "\n".join(lines)
     return (tried, [*changes, *more]) if more and _is_python(tried) else (text, changes)
+
+
+def translated(line: str) -> str | None:
+    """A line as Python 3, if it is Python 2 of a kind that can be told."""
+    found = _EXCEPT.match(line)
+    return f"{found[1]} as {found[2]}:{found[3]}" if found else _line(line)
 
 
 def _line(line: str) -> str | None:
