@@ -24,6 +24,11 @@ except ImportError:  # SMACH is not on this machine: the same names without it
 
 {% block defs %}
 {{ defs }}
+{% if is_node %}
+
+
+{% include "ROSNode.tpl.py" %}
+{% endif %}
 {% endblock defs %}
 
 
@@ -45,7 +50,7 @@ def {{ function_name | default("main") | lower }}():
     """Build the state machine, run it once and tell its outcome."""
 {% block node %}
 {% if is_node %}
-    rospy.init_node({{ node_name | default(name) | literal }})
+    start_node({{ node_name | default(name) | literal }})
 {% endif %}
 {% endblock node %}
     {{ main_def | indent(4) }}
@@ -69,7 +74,7 @@ def {{ function_name | default("main") | lower }}():
 
 {% block execute %}
 {% if is_node %}
-    rospy.on_shutdown(threading.Thread(target={{ sm_name }}.request_preempt, daemon=True).start)
+    preempt_at_shutdown({{ sm_name }})
 {% endif %}
     {{ execute | indent(4) }}
     outcome = {{ sm_name }}.execute()

@@ -111,6 +111,11 @@ class Program:
     def send(self, number: signal.Signals) -> None:
         self._process.send_signal(number)
 
+    def halt(self) -> None:
+        """Stop it as it is until it is sent SIGCONT; it has stopped when this returns."""
+        self.send(signal.SIGSTOP)
+        os.waitid(os.P_PID, self.pid, os.WSTOPPED)
+
     def end(self) -> int:
         """The exit code, waited for; and all output is there."""
         try:
@@ -175,10 +180,10 @@ class Graph:
             return "no" if master._process.poll() is not None else ""
         return "up" if pid == master.pid else "no"
 
-    def ask(self, question: str) -> Any:
+    def ask(self, question: str, *arguments: Any) -> Any:
         """What the master answers."""
         with xmlrpc.client.ServerProxy(self.environment["ROS_MASTER_URI"]) as master:
-            code, text, value = getattr(master, question)("/test")
+            code, text, value = getattr(master, question)("/test", *arguments)
         assert code == 1, text
         return value
 
@@ -198,6 +203,10 @@ class Graph:
         path = self._folder / f"program{len(self._programs)}.py"
         path.write_text(text, encoding="utf-8")
         return self._launch([PYTHON, str(path), *arguments])
+
+    def simulate(self) -> None:
+        """Let the time of nodes that start from now on stand still until `clock` runs."""
+        self.ask("setParam", "/use_sim_time", True)
 
     def run(self, text: str) -> str:
         """Run a program to its end; its output."""

@@ -75,19 +75,29 @@ def test_a_monitor_without_messages_is_preempted(graph: Graph) -> None:
     assert "last: None\noutcome: preempted\n" in program.output
 
 
-def test_a_condition_is_asked_until_it_is_true_or_patience_ends(graph: Graph) -> None:
+def test_a_condition_is_asked_until_it_is_true_or_often_enough(graph: Graph) -> None:
     cases = [
         ("{}", 1, "false"),
         ("dict(max_checks=2)", 2, "false"),
-        ("dict(max_checks=3)", 3, "true"),
+        ("dict(max_checks=3, timeout=rospy.Duration(0))", 3, "true"),
         ("dict(max_checks=-1, poll_rate=rospy.Duration(0.01))", 3, "true"),
-        ("dict(max_checks=-1, poll_rate=0.2, timeout=rospy.Duration(0.1))", 1, "false"),
     ]
     output = graph.run(CONDITION.format(cases=", ".join(case for case, _, _ in cases)))
     told = [line for line in output.splitlines() if line.startswith(("asked", "outcome"))]
     assert told == [
         line for _, asked, outcome in cases for line in (f"asked: {asked}", f"outcome: {outcome}")
     ]
+
+
+def test_a_condition_is_asked_no_more_when_its_time_is_over(graph: Graph) -> None:
+    graph.simulate()
+    case = "dict(max_checks=-1, poll_rate=2000, timeout=rospy.Duration(1000))"
+    text = CONDITION.format(cases=case).replace("return", "client.say('asking'); return")
+    program = graph.start(text)
+    program.expect("asking")
+    graph.node("clock")
+    assert program.end() == 0
+    assert "asked: 1\noutcome: false\n" in program.output
 
 
 def test_a_condition_that_waits_is_preempted(graph: Graph) -> None:

@@ -91,7 +91,16 @@ BAG = """
       recorder: ROSBagAPIThreadRecorder
       action: start
       transitions: {succeeded: aborted, aborted: SOME}
-  - SOME: {template: SleepState, time: 0.5, transitions: {succeeded: STOP}}
+  - SOME:
+      template: WaitForMsgState
+      topic: /smacha/point
+      msg_type: geometry_msgs/Point
+      transitions: {succeeded: MORE, aborted: aborted}
+  - MORE:
+      template: WaitForMsgState
+      topic: /smacha/point
+      msg_type: geometry_msgs/Point
+      transitions: {succeeded: STOP, aborted: aborted}
   - STOP:
       template: RecordROSBagState
       recorder: ROSBagAPIThreadRecorder

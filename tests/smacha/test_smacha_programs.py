@@ -117,7 +117,7 @@ def test_a_base_of_the_user_gets_what_its_own_code_needs() -> None:
     assert "from actionlib import SimpleActionServer\n" in text
     assert "import GoalStatus" not in text  # `import *` brings it
     places = [
-        text.index(part) for part in ("init_node", "rospy.Service(", "on_shutdown", "execute")
+        text.index(part) for part in ("  start_node(", "rospy.Service(", "  preempt_at", "execute")
     ]
     assert places == sorted(places)
     for line in ("from my_msgs.srv import Door", "def main():"):

@@ -34,7 +34,7 @@ class ConditionState(RosState):
             self.register_input_keys(cond_cb.get_registered_input_keys())
             self.register_output_keys(cond_cb.get_registered_output_keys())
         self._pause = ros.seconds(poll_rate)
-        self._limit = ros.seconds(timeout)
+        self._limit = ros.limit(timeout)
         self._max_checks = max_checks
 
     def execute(self, ud: Any, /) -> str:

@@ -52,6 +52,11 @@ def seconds(time: Time | None) -> float | None:
     return time.to_sec()
 
 
+def limit(time: Time | None) -> float | None:
+    """A length of time as a number of seconds; None, and 0 as in smach_ros, is without limit."""
+    return seconds(time) or None
+
+
 def is_gone(node: str) -> bool:
     """Whether a node is known to have ended: unknown to the master, or nobody at its address."""
     master = load("rosgraph").Master(rospy().get_name())

@@ -13,8 +13,11 @@ from smachac.runtime.smach import has_smach_interface
 
 from .waiting import RosState, callback, check_slots, is_outcome
 
-CONTACT = 0.1
-"""Seconds for one try to reach a service; rospy rests 0.3 s after each."""
+CONTACT = 0.5
+"""Seconds to reach a service before it is said that it is waited for."""
+
+SLOW = 5.0
+"""Seconds for each further try, on the slowest machine; rospy looks three times a second."""
 
 
 class ServiceState(RosState):
@@ -52,6 +55,7 @@ class ServiceState(RosState):
         self._name = service_name
         self._type = service_spec
         self._proxy: Any = None
+        self._search: threading.Thread | None = None
         self._request = service_spec._request_class() if request is None else request
         self._request_key = request_key
         self._response_key = response_key
@@ -74,13 +78,8 @@ class ServiceState(RosState):
         """Call the service once."""
         if self._preempted():
             return "preempted"
-        if self._proxy is None:
-            self._wait(self._is_up)
-            if self._preempted():
-                return "preempted"
-            if self._rospy.is_shutdown():
-                return "aborted"
-            self._proxy = self._rospy.ServiceProxy(self._name, self._type)
+        if not self._find_service():
+            return "preempted" if self._preempted() else "aborted"
         request = self._fill_request(ud)
         if request is None:
             return "aborted"
@@ -91,13 +90,26 @@ class ServiceState(RosState):
             return "aborted"
         return "aborted" if response is None else self._take_response(ud, response)
 
-    def _is_up(self) -> bool:
-        try:
-            self._rospy.wait_for_service(self._name, CONTACT)
-        except self._rospy.ROSException:
-            self._rospy.logwarn_throttle(5, f"waiting for service '{self._name}'")
-            return False
-        return True
+    def _find_service(self) -> bool:
+        """Wait for the service, in a thread of its own: rospy's wait cannot be broken off."""
+        if self._proxy is None and (self._search is None or not self._search.is_alive()):
+            self._search = threading.Thread(target=self._look, daemon=True)
+            self._search.start()
+        return self._wait(lambda: self._proxy is not None)
+
+    def _look(self) -> None:
+        limit = CONTACT
+        while not self._rospy.is_shutdown():
+            try:
+                self._rospy.wait_for_service(self._name, limit)
+            except self._rospy.ROSException:
+                if not self._rospy.is_shutdown():
+                    smach.logwarn(f"waiting for service '{self._name}'")
+                limit = SLOW
+                continue
+            self._proxy = self._rospy.ServiceProxy(self._name, self._type)
+            self._tell()
+            break
 
     def _call(self, request: Any) -> Any:
         """What the service answers, None at a shutdown. Raises what rospy raises.

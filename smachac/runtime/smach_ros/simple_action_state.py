@@ -86,11 +86,12 @@ class SimpleActionState(RosState):
         self.register_outcomes(outcomes)
         self.register_input_keys([*filter(None, [goal_key]), *self._goal_slots, *keys[0]])
         self.register_output_keys([*filter(None, [result_key]), *self._result_slots, *keys[1]])
-        self._exec_timeout = ros.seconds(exec_timeout)
+        self._exec_timeout = ros.limit(exec_timeout)
         self._preempt_timeout = ros.seconds(preempt_timeout)
         self._server_wait_timeout = ros.seconds(server_wait_timeout)
         self._client: Any = None
         self._search: threading.Thread | None = None
+        self._guarded = False
 
     def execute(self, ud: Any, /) -> str:
         """Send one goal and wait for its end."""
@@ -121,13 +122,18 @@ class SimpleActionState(RosState):
         """Wait for the server, in a thread of its own: rospy's wait cannot be broken off."""
         if self._client is None:
             self._client = ros.load("actionlib").ActionClient(self._name, self._type)
-            self._rospy.on_shutdown(self._stop)
         if self._search is None or not self._search.is_alive():
-            self._search = threading.Thread(target=self._client.wait_for_server, daemon=True)
+            self._search = threading.Thread(target=self._look, daemon=True)
             self._search.start()
         thread = self._search
         gone = self._wait(lambda: not thread.is_alive(), self._server_wait_timeout)
         return gone and not self._rospy.is_shutdown()
+
+    def _look(self) -> None:
+        if not self._guarded:  # not in the main thread: at a shutdown this may wait for its end
+            self._rospy.on_shutdown(self._stop)
+            self._guarded = True
+        self._client.wait_for_server()
 
     def _stop(self) -> None:
         """Cancel the goal as the node shuts down, while there is still a way to tell the server.

@@ -33,7 +33,10 @@ from smachac.targets.python.layout import (
     string,
 )
 
-OURS = ("smach", "build", "main", "error_as_outcome", "with_callbacks")
+OURS = (
+    *("smach", "build", "main", "error_as_outcome", "with_callbacks"),
+    *("rospy", "smach_ros", "start_node", "preempt_at_shutdown", "server", "sis"),
+)
 """Names of the module that containers must not take."""
 
 MOST_NESTED = 12

@@ -32,6 +32,8 @@ ONE_FUNCTION = {"Program.tpl.py": "Base.tpl.py", "ROSProgram.tpl.py": "ROSBase.t
 """What prints a program whose states bring code around its run: all of it in one function, where
 such code sees its own names, as in SMACHA."""
 
+NODE_IMPORTS = [f"import {name}" for name in ("queue", "rospy", "signal", "threading", "time")]
+"""What ROSNode.tpl.py uses."""
 
 CATCHING = '''def error_as_outcome(state, outcome):
     """Let a state end with an outcome where it would raise an exception, which is logged."""
@@ -93,6 +95,8 @@ def _text(machine: Machine, context: Context, gathered: Gathered) -> str | None:
         template = ONE_FUNCTION[template]
     modules = unbound_names(parts)
     imports = [*gathered.buffers["imports"], *standard_imports(machine), *modules]
+    if template in ("ROSProgram.tpl.py", "ROSBase.tpl.py"):
+        imports += NODE_IMPORTS
     variables: dict[str, object] = {
         **{variable.name: plain(variable.value.data) for variable in machine.variables},
         **container_variables(machine.root, None, "", machine.root.name),
@@ -131,7 +135,7 @@ def _rendered(
     if template in ONE_FUNCTION:
         return text
     is_node = _NEEDS_NODE.search(text) is not None and "init_node" not in text
-    more = ["import rospy", "import threading"] if is_node else []
+    more = NODE_IMPORTS if is_node else []
     lacking = unbound_names([modern(text)[0], *more])
     if not lacking and not is_node:
         return text

@@ -1,4 +1,4 @@
-"""Services that answer, raise, crash and hang."""
+"""Services that answer, raise, crash, hang, and answer when they are told to."""
 
 from __future__ import annotations
 
@@ -7,7 +7,7 @@ import threading
 from typing import Any
 
 import rospy
-from client import say
+from client import say, wait_for_line
 from std_srvs.srv import SetBool, SetBoolResponse, Trigger, TriggerResponse
 
 
@@ -29,8 +29,14 @@ def hang(request: Any) -> Any:
     threading.Event().wait()
 
 
+def ponder(request: Any) -> Any:
+    say("called")
+    wait_for_line()
+    return answer(request)
+
+
 rospy.init_node("service_server")
-for service in (answer, fail, crash, hang):
+for service in (answer, fail, crash, hang, ponder):
     rospy.Service(service.__name__, SetBool, service)
 rospy.Service("gripper", Trigger, lambda request: TriggerResponse(success=True))
 say("ready")

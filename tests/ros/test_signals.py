@@ -1,0 +1,88 @@
+"""Ctrl-C and SIGTERM in programs that smachac prints, whatever the state in which they are does."""
+
+from __future__ import annotations
+
+import signal
+from pathlib import Path
+
+import pytest
+from live import Graph, wait_for
+
+import smachac
+
+pytestmark = pytest.mark.ros
+
+SCRIPT = """
+name: deeds
+template: ROSBase
+outcomes: [succeeded, preempted]
+states:
+  - DO:
+      template: Deed
+      deed: {deed}
+      transitions: {{succeeded: NEXT}}
+  - NEXT:
+      template: SleepState
+      time: 0
+      transitions: {{succeeded: succeeded, preempted: preempted}}
+"""
+
+TYPE = """
+name: Deed
+variables: {deed: {type: str}}
+outcomes: {succeeded: {}}
+code: {python: "deeds:Deed"}
+"""
+
+SIGNALS = pytest.mark.parametrize("number", [signal.SIGINT, signal.SIGTERM])
+
+
+def deed(folder: Path, name: str) -> str:
+    """A program whose first state does this deed, and whose second can be preempted."""
+    (folder / "templates").mkdir()
+    (folder / "templates/Deed.yml").write_text(TYPE, encoding="utf-8")
+    path = folder / "main.yml"
+    path.write_text(SCRIPT.format(deed=name), encoding="utf-8")
+    (text,) = smachac.build(path, "python").values()
+    return text
+
+
+def wait_for_end(graph: Graph, node: str) -> None:
+    """Wait until the node has taken its leave of the master."""
+    wait_for(lambda: "" if node in str(graph.ask("getSystemState")) else "gone")
+
+
+@SIGNALS
+def test_a_signal_while_the_master_is_asked(
+    graph: Graph, tmp_path: Path, number: signal.Signals
+) -> None:
+    program = graph.start(deed(tmp_path, "ask"))
+    program.expect("begins to ask")
+    graph.master.halt()
+    program.say("go")
+    program.expect("asked")
+    program.send(number)
+    graph.master.send(signal.SIGCONT)
+    assert program.end() == 0
+    assert program.output.endswith("outcome: preempted\n")
+
+
+@SIGNALS
+def test_a_signal_in_a_state_that_looks_only_for_a_shutdown(
+    graph: Graph, tmp_path: Path, number: signal.Signals
+) -> None:
+    program = graph.start(deed(tmp_path, "listen"))
+    program.expect("begins to listen")
+    program.send(number)
+    assert program.end() == 0
+    assert program.output.endswith("outcome: preempted\n")
+
+
+def test_a_second_signal_in_a_state_that_looks_at_nothing(graph: Graph, tmp_path: Path) -> None:
+    program = graph.start(deed(tmp_path, "wait"))
+    program.expect("begins to wait")
+    program.send(signal.SIGINT)
+    wait_for_end(graph, "/deeds")
+    program.send(signal.SIGINT)
+    assert program.end() == -signal.SIGINT
+    assert "KeyboardInterrupt" in program.output
