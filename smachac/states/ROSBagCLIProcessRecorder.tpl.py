@@ -33,7 +33,7 @@ class ROSBagCLIProcessRecorder:
     def _comes_to(self, file, recording, process=None):
         """Whether the recording begins, or ends; till then `.active` is added to its name."""
         active = file if file.endswith(".bag") else f"{file}.bag"
-        end = time.monotonic() + 10.0
+        end = time.monotonic() + 30.0
         while process is None or process.poll() is None:
             if os.path.exists(f"{active}.active") == recording:
                 return True
@@ -49,7 +49,7 @@ class ROSBagCLIProcessRecorder:
             return "aborted"
         process.send_signal(signal.SIGINT)
         try:
-            process.wait(10)
+            process.wait(30)
         except subprocess.TimeoutExpired:
             process.kill()
             process.wait()

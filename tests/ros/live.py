@@ -21,7 +21,7 @@ NODES = Path(__file__).with_name("nodes")
 PYTHON = os.environ.get("SMACHAC_ROS_PYTHON", "/usr/bin/python3")
 """The Python that Debian's ROS belongs to: its compiled parts fit no other version."""
 
-PATIENCE = 60.0
+PATIENCE = 120.0
 """Seconds after which what a test waits for will not come, on the slowest machine."""
 
 PORTS = 20

@@ -7,7 +7,7 @@ from pathlib import Path
 
 import pytest
 from live import Graph
-from test_generated import built
+from test_generated import built, outcome
 
 pytestmark = pytest.mark.ros
 
@@ -16,35 +16,37 @@ WAITS = {
       template: ServiceState
       service_namespace: absent
       service: std_srvs/SetBool
-      transitions: {succeeded: succeeded, aborted: aborted, preempted: preempted}
+      transitions: ENDS
 """,
     "action": """
       template: SimpleActionState
       action_server_namespace: absent
       action: actionlib/TestAction
       goal: TestGoal(goal=1)
-      transitions: {succeeded: succeeded, aborted: aborted, preempted: preempted}
+      transitions: ENDS
 """,
     "topic": """
       template: WaitForMsgState
       topic: silent
       msg_type: std_msgs/Int32
-      transitions: {succeeded: succeeded, aborted: aborted, preempted: preempted}
+      transitions: ENDS
 """,
     "topic of the userdata": """
       template: ReadTopicState
       userdata: {topic: silent, msg_type: std_msgs/Int32}
       input_keys: [topic, msg_type]
       output_keys: [msg]
-      transitions: {succeeded: succeeded, aborted: aborted, preempted: preempted}
+      transitions: ENDS
 """,
     "frame": """
       template: TF2ListenerState
       userdata: {target: base, source: nowhere}
       timeout: 1000
-      transitions: {succeeded: succeeded, aborted: aborted, preempted: preempted}
+      transitions: ENDS
 """,
 }
+
+ENDS = "{succeeded: succeeded, aborted: aborted, preempted: preempted}"
 
 EACH = pytest.mark.parametrize("what", WAITS)
 
@@ -69,7 +71,8 @@ BOTH = """
 
 @EACH
 def test_a_signal_ends_a_wait(graph: Graph, tmp_path: Path, what: str) -> None:
-    program = graph.start(built(tmp_path, f"  - WAIT:{WAITS[what]}"))
+    waiting = WAITS[what].replace("ENDS", ENDS)
+    program = graph.start(built(tmp_path, f"  - WAIT:{waiting}"))
     program.expect("starting in 'WAIT'")
     program.send(signal.SIGINT)
     assert program.end() == 0
@@ -85,6 +88,18 @@ def test_another_branch_ends_a_wait(graph: Graph, tmp_path: Path, what: str) -> 
     graph.node("service_server")
     assert program.end() == 0
     assert program.output.endswith("outcome: succeeded\n")
+
+
+@pytest.mark.parametrize("what", ["service", "action"])
+def test_a_time_limit_of_the_script_ends_a_wait(graph: Graph, tmp_path: Path, what: str) -> None:
+    ends = "{succeeded: aborted, aborted: aborted, preempted: preempted, timeout: succeeded}"
+    waiting = WAITS[what].replace("ENDS", f"{ends}\n      timeout: 300ms")
+    assert outcome(graph, tmp_path, f"  - WAIT:{waiting}") == "succeeded"
+
+
+def test_a_time_limit_of_the_state_ends_its_wait(graph: Graph, tmp_path: Path) -> None:
+    waiting = WAITS["topic"].replace("ENDS", f"{ENDS}\n      timeout: 0.3")
+    assert outcome(graph, tmp_path, f"  - WAIT:{waiting}") == "aborted"
 
 
 CALL = """

@@ -16,7 +16,7 @@ from . import ros
 from .waiting import RosState, callback, check_slots, is_outcome
 from .watch import Watch
 
-STOPPING = 1.0
+STOPPING = 5.0
 """Seconds that a node which shuts down waits for the server to confirm that it stopped."""
 
 
