@@ -23,7 +23,6 @@ from smachac.ir.nodes import (
     Node,
     Outcome,
     OutcomeRule,
-    Preset,
     Remap,
     Sequence,
     StateMachine,
@@ -33,11 +32,11 @@ from smachac.ir.nodes import (
     Variable,
 )
 from smachac.ir.types import ANY, parse_type
+from smachac.presets import presets
 from smachac.script import Script, State
 from smachac.source import Word
 from smachac.sugar import NAMES, has_sugar, is_own, read_sugar
-from smachac.syntax import Map, Scalar, Tree
-from smachac.typed import is_long_form
+from smachac.syntax import Scalar, Tree
 from smachac.values import as_value, as_written
 
 _NOT_VARIABLES = frozenset(schema.names_for("state")) | {"script"}
@@ -121,22 +120,6 @@ def _keys(state: State, name: str, known: tuple[Key, ...]) -> tuple[Key, ...]:
             span=word.span,
         )
     return tuple(keys.values())
-
-
-def _presets(state: State) -> Iterable[Preset]:
-    """Userdata in the short form `key: value` or the long one `key: {type: T, value: V}`."""
-    tree = _tree(state, "userdata")
-    for entry in shapes.as_map(tree, []) if tree is not None else ():
-        value, type_ = entry.value, ANY
-        if isinstance(value, Map) and is_long_form(value):
-            inner = {item.key.value: item.value for item in value.entries}
-            named = inner.get("type")
-            if isinstance(named, Scalar) and isinstance(named.value, str):
-                type_ = parse_type(named.value) or ANY
-            value = inner["value"]
-        yield Preset(
-            key=str(entry.key.value), value=as_value(value), type=type_, span=entry.key.span
-        )
 
 
 def _interface(state: State) -> dict[str, Any]:
@@ -257,15 +240,11 @@ def _without_optional(child: Node, state: State, outcomes: frozenset[str]) -> No
 
 def _container(state: State, owner: str) -> Container:
     children = tuple([_node(child) for child in state.states])
-    lifted = [
-        preset for child in state.states if child.owner == "state" for preset in _presets(child)
-    ]
-    presets = {preset.key: preset for preset in (*_presets(state), *lifted)}
     fields = _interface(state)
     fields["outcomes"] = tuple(
         Outcome(name=word.text, span=word.span) for word in _words(state, "outcomes")
     )
-    fields["userdata"] = tuple(presets.values())
+    fields["userdata"] = presets(state)
     outcomes = frozenset(outcome.name for outcome in fields["outcomes"])
     match owner:
         case "Concurrence":

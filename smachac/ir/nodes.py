@@ -62,14 +62,27 @@ class Key:
     span: Span = field(compare=False, repr=False)
 
 
+class Given(NamedTuple):
+    """A value that a state gives a key of its container, or `own`: the container itself."""
+
+    state: Word
+    value: Value
+    span: Span
+    own: bool
+
+
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Preset:
-    """Userdata that a container holds before it runs: `sm.userdata.key = value`."""
+    """Userdata that a container holds before it runs: `sm.userdata.key = value`.
+
+    `given` is all that was given, in order, where that was more than once; the last one counts.
+    """
 
     key: str
     value: Value
     type: Type = ANY
     span: Span = field(compare=False, repr=False)
+    given: tuple[Given, ...] = field(default=(), compare=False, repr=False)
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)

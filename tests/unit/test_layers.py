@@ -29,6 +29,7 @@ LAYERS = (
     ),
     (
         "lower",
+        "presets",
         "quirks",
         "template_quirks",
         "desugar",
@@ -80,6 +81,8 @@ WITHIN = {
     ("robots", "urdf"),
     ("sugar", "states"),
     ("lower", "values"),
+    ("lower", "presets"),
+    ("presets", "values"),
     ("targets", "values"),
     ("lower", "desugar"),
     ("lower", "catching"),

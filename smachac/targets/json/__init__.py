@@ -47,8 +47,8 @@ def _node(path: str, node: Node) -> dict[str, Any]:
 def _entries(value: Any) -> Iterator[tuple[str, Any]]:
     """The fields of a value of the IR; spans are places, children are names."""
     for field in fields(value):
-        if field.name in ("body", "written"):
-            # Not of the script, but of code that is not printed.
+        if field.name in ("body", "given", "written"):
+            # Not of the graph, but for rules and templates.
             continue
         content = getattr(value, field.name)
         if isinstance(content, Span):

@@ -1,0 +1,62 @@
+# Made by smachac 0.1.0 from main.yml (sha256 b8f8a767cb97a2e5).
+"""The state machine `bad_presets`."""
+
+try:
+    import smach
+except ImportError:  # no ROS on this machine: the same names without it
+    from smachac.runtime import smach
+
+
+class PrintUserdataState(smach.State):
+    """Prints its input keys, one a line."""
+
+    def __init__(self, input_keys=()):
+        super().__init__(outcomes=["succeeded"], input_keys=list(input_keys))
+        self.printed_keys = sorted(input_keys)
+
+    def execute(self, userdata):
+        for key in self.printed_keys:
+            print(f"{key}: {userdata[key]}")
+        return "succeeded"
+
+
+def build():
+    """Build the state machine `bad_presets`."""
+    # main.yml:2
+    bad_presets = smach.StateMachine(outcomes=["done"])
+    bad_presets.userdata.height = 0.4
+    bad_presets.userdata.limit = 3
+    bad_presets.userdata.speed = 1.0
+    with bad_presets:
+        # main.yml:8
+        smach.StateMachine.add(
+            "NEAR",
+            PrintUserdataState(input_keys=["speed", "height", "limit"]),
+            transitions={"succeeded": "FAR"},
+        )
+
+        # main.yml:14
+        smach.StateMachine.add(
+            "FAR",
+            PrintUserdataState(input_keys=["speed", "height", "limit"]),
+            transitions={"succeeded": "LAST"},
+        )
+
+        # main.yml:20
+        smach.StateMachine.add(
+            "LAST",
+            PrintUserdataState(input_keys=["height"]),
+            transitions={"succeeded": "done"},
+        )
+    return bad_presets
+
+
+def main():
+    """Run the state machine once and return its outcome."""
+    return build().execute()
+
+
+if __name__ == "__main__":
+    outcome = main()
+    print(f"outcome: {outcome}")
+    raise SystemExit(outcome is None)
