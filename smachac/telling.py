@@ -11,8 +11,10 @@ from smachac.diagnostics import Report
 from smachac.files import disk_library
 from smachac.report import state_types as shown_types
 from smachac.report.state_types import CONTAINERS, Known, container_type
-from smachac.states import find_state_type
+from smachac.states import StateType, find_state_type
 from smachac.streams import usage
+from smachac.targets import load_target, target_names
+from smachac.targets.declared import languages
 
 OK = 0
 
@@ -43,12 +45,19 @@ def _known_types(templates: list[Path]) -> list[Known]:
     """The state types that a script in this folder may have: the user's, then the built-in ones."""
     found: Report = []
     library = disk_library(Path("main.yml"), found, templates=templates)
+    targets = [target for name in target_names() if (target := load_target(name)) is not None]
+
+    def row(type_: StateType, place: str) -> Known:
+        able = [each.name for each in targets if each.has_code(type_, library)]
+        others = set(languages(type_)) - {each.name for each in targets}
+        return Known(type_, place, tuple(sorted({*able, *others})))
+
     known = []
     for name in sorted(library.template_names()):
         type_ = find_state_type(name, library, [])
         mine = any(library.own_template(f"{name}{end}") for end in (".yml", ".tpl.py", ".tpl"))
         if type_ is None or not (mine or library.template(f"{name}.yml")):
             continue  # a piece that templates are made of
-        known.append(Known(type_, "of this project" if mine else "built-in"))
-    known += [Known(container_type(name), "built-in") for name in CONTAINERS]
+        known.append(row(type_, "of this project" if mine else "built-in"))
+    known += [row(container_type(name), "built-in") for name in CONTAINERS]
     return sorted(known, key=lambda each: (each.place == "built-in", each.type.name))

@@ -9,8 +9,13 @@ from pathlib import Path
 import pytest
 
 from smachac.cli import main
+from smachac.diagnostics import Report
+from smachac.files import disk_library
+from smachac.ir.nodes import Checked, Leaf, Machine, Outcome, StateMachine
 from smachac.report.state_types import CONTAINERS
 from smachac.scaffold import BadNameError, file_stem, key_and_type
+from smachac.source import NOWHERE
+from smachac.targets import Context, load_target
 
 
 @pytest.fixture
@@ -179,8 +184,55 @@ def test_one_state_type(
         "  width: float<m>  Between the fingers.\n\noutcomes:\n  succeeded\n"
         "  aborted    It did not open, or closed on nothing.\n  preempted\n\n"
         "It claims gripper.{limb} while it runs.\nIt waits for the outside world.\n"
-        "It has code for: python, cpp.\n"
+        "It has code for: cpp, python.\n"
     )
+
+
+@pytest.mark.parametrize("target_name", ["python", "cpp"])
+def test_the_languages_of_a_type_are_those_that_print_it(
+    target_name: str,
+    tmp_path: Path,
+    monkeypatch: pytest.MonkeyPatch,
+    capsys: pytest.CaptureFixture[str],
+) -> None:
+    """Its states may want more than their name, but they are not refused for want of code."""
+    monkeypatch.chdir(tmp_path)
+    (tmp_path / "templates").mkdir()
+    for name, code in CODE.items():
+        text = f"name: {name}\ndoc: One.\noutcomes: {{done: {{}}}}\ncode: {code}\n"
+        (tmp_path / "templates" / f"{name}.yml").write_text(text)
+    (tmp_path / "templates" / "InTemplate.tpl.py").write_text("{# a state #}")
+    assert main(["states", "--format", "json"]) == 0
+    every = json.loads(capsys.readouterr().out)
+    library, target = disk_library(Path("main.yml"), []), load_target(target_name)
+    assert target is not None
+    refused: list[str] = []
+    states = [each for each in every if each["kind"] == "state"]
+    for each in states:
+        state = Leaf(name="A", type=each["name"], outcomes=DONE, span=NOWHERE)
+        root = StateMachine(
+            name="sm", type="Base", outcomes=DONE, children=(state,), initial="A", span=NOWHERE
+        )
+        report: Report = []
+        target.emit(Checked(Machine(root=root)), Context(library=library), report)
+        if any("has no code" in item.finding.message for item in report):
+            refused.append(each["name"])
+    assert [one["name"] for one in states if target_name not in one["languages"]] == refused
+    assert {"InNothing", "InRust"} < set(refused)
+    languages = {one["name"]: one["languages"] for one in every}
+    assert languages["InRust"] == ["rust"]
+    assert languages["Iterator"] == ["cpp", "python"]
+    assert languages["Base"] == ["python"]
+
+
+DONE = (Outcome(name="done", span=NOWHERE),)
+CODE = {
+    "InBoth": '{python: "a.b:C", cpp: {header: a/b.hpp, class: "a::C"}}',
+    "InCpp": '{cpp: {header: a/b.hpp, class: "a::C"}}',
+    "InTemplate": "{python: InTemplate.tpl.py}",
+    "InNothing": "{}",
+    "InRust": "{rust: a::C}",
+}
 
 
 def test_an_unknown_state_type(

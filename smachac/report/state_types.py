@@ -26,10 +26,11 @@ WIDTH = 90
 
 
 class Known(NamedTuple):
-    """A state type, and whose it is: a folder of the user's, or `built-in`."""
+    """A state type; whose it is: a folder of the user's, or `built-in`; and what it has code in."""
 
     type: StateType
     place: str
+    languages: tuple[str, ...] = ()
 
 
 def container_type(name: str) -> StateType:
@@ -88,7 +89,7 @@ def type_text(known: Known) -> str:
         width = max(len(name) for name, _ in rows)
         for name, doc in rows:
             lines.append(f"  {name:<{width}}  {doc}".rstrip())
-    facts = _facts(type_)
+    facts = _facts(known)
     lines += ["", *facts] if facts else []
     return "\n".join(lines) + "\n"
 
@@ -101,7 +102,7 @@ def type_markdown(known: Known, level: int = 2) -> str:
         lines += [f"| {title} | |", "| --- | --- |"]
         lines += [f"| `{_cell(name)}` | {_cell(doc)} |" for name, doc in rows]
         lines.append("")
-    lines += [f"- {fact}" for fact in _facts(type_)]
+    lines += [f"- {fact}" for fact in _facts(known)]
     return "\n".join(lines).rstrip("\n") + "\n"
 
 
@@ -152,15 +153,15 @@ def _named(name: str, type_: Type) -> str:
     return name if type_ == ANY else f"{name}: {type_}"
 
 
-def _facts(type_: StateType) -> list[str]:
-    facts = []
+def _facts(known: Known) -> list[str]:
+    type_ = known.type
+    facts: list[str] = []
     if type_.claims:
         facts.append(f"It claims {', '.join(type_.claims)} while it runs.")
     if type_.blocking:
         facts.append("It waits for the outside world.")
-    languages = dict.fromkeys((*type_.code, *type_.classes))
-    if languages:
-        facts.append(f"It has code for: {', '.join(languages)}.")
+    if known.languages:
+        facts.append(f"It has code for: {', '.join(known.languages)}.")
     return facts
 
 
@@ -190,7 +191,7 @@ def type_json(known: Known) -> dict[str, Any]:
         "given_by_script": sorted(type_.given),
         "claims": list(type_.claims),
         "blocking": type_.blocking,
-        "languages": list(dict.fromkeys((*type_.code, *type_.classes))),
+        "languages": list(known.languages),
     }
 
 

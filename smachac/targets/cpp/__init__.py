@@ -9,9 +9,12 @@ from __future__ import annotations
 
 from smachac.diagnostics import Report, in_order
 from smachac.ir.nodes import Checked
+from smachac.states import Library, StateType
 from smachac.targets import Context, Files, Target, stem
+from smachac.targets.cpp.classes import class_code, left_to_scripts
 from smachac.targets.cpp.declared import declared
 from smachac.targets.cpp.header import header_of
+from smachac.targets.cpp.leaves import is_built_in
 from smachac.targets.cpp.plan import plan
 from smachac.targets.cpp.project import OPTIONS, project, project_files, runtime
 
@@ -28,11 +31,21 @@ def emit(machine: Checked, context: Context, report: Report) -> Files:
     return files | project_files(machine, wanted, header)
 
 
+def has_code(type_: StateType, _: Library) -> bool:
+    """Whether a header can have states of a type; containers are printed whatever they hold."""
+    if type_.kind != "state":
+        return type_.kind == "container"
+    if is_built_in(type_.name):
+        return True
+    return class_code(type_) is not None and not left_to_scripts(type_)
+
+
 TARGET = Target(
     name="cpp",
     description="a C++17 header, with typed userdata",
     emit=emit,
     options=OPTIONS,
     runtime=runtime,
+    has_code=has_code,
     declared=declared,
 )

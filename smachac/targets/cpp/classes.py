@@ -49,11 +49,17 @@ def class_code(type_: StateType) -> ClassCode | None:
     )
 
 
+def left_to_scripts(type_: StateType) -> list[str]:
+    """What a type leaves to the script though a class cannot."""
+    return sorted(type_.given - {"variables"})
+
+
 def class_leaf(code: ClassCode, leaf: Leaf, scope: Scope) -> LeafCode:
     """A leaf that is an object of a class. Raises UnportableError."""
     type_ = code.type
-    if type_.given - {"variables"}:
-        what = ", ".join(sorted(type_.given - {"variables"}))
+    left = left_to_scripts(type_)
+    if left:
+        what = ", ".join(left)
         raise UnportableError(f"`{type_.name}` leaves its {what} to scripts, a class cannot")
     state = f"states.{identifier(leaf.name)}"
     names = scope.names(leaf)

@@ -54,6 +54,11 @@ class _Body:
     members: tuple[str, ...] = ()
 
 
+def is_built_in(type_: str) -> bool:
+    """Whether leaves of a type are printed from the script."""
+    return type_ in _BODIES
+
+
 def built_in(leaf: Leaf, scope: Scope, refuse: Refuse) -> LeafCode | None:
     """The struct of a leaf of a built-in type; None for other types. What is wrong in one of its
     expressions is refused there, and the struct lacks it. Raises UnportableError."""

@@ -9,6 +9,7 @@ from __future__ import annotations
 
 from smachac.diagnostics import Report
 from smachac.ir.nodes import Checked
+from smachac.states import Library, StateType
 from smachac.targets import Context, Files, OptionError, Target, stem
 from smachac.targets.python.declared import declared
 
@@ -29,10 +30,18 @@ def emit(machine: Checked, context: Context, report: Report) -> Files:
     return {} if text is None else {f"{stem(machine)}.py": text}
 
 
+def has_code(type_: StateType, library: Library) -> bool:
+    """Whether a module can have states of a type: by a class of the user's, or a template."""
+    code = type_.code.get("python", f"{type_.name}.tpl.py")
+    in_language = type_.kind == "container" and "python" not in type_.code
+    return in_language or ":" in code or library.template(code) is not None
+
+
 TARGET = Target(
     name="python",
     description="a Python module for SMACH, with or without ROS",
     emit=emit,
     options=OPTIONS,
+    has_code=has_code,
     declared=declared,
 )
