@@ -96,6 +96,15 @@ def test_the_class_of_the_documentation_is_one(compiler: Compiler, tmp_path: Pat
     compiler.run(MAIN, tmp_path, f"-I{tmp_path}", "-pthread")
 
 
+@COMPILERS
+def test_the_program_of_the_documentation_runs(compiler: Compiler, tmp_path: Path) -> None:
+    page = (ROOT / "docs" / "targets.md").read_text("utf-8")
+    program = re.findall(r"^```cpp\n(.*?)^```$", page, re.DOTALL | re.MULTILINE)[0]
+    (header,) = (path for path in GOLDEN if "06_callbacks" in path.parts)
+    (tmp_path / "three_tries.hpp").write_text(header.read_text("utf-8"))
+    assert "finish" in compiler.run(program, tmp_path, f"-I{tmp_path}", "-pthread")
+
+
 HARD = """
 name: default
 outcomes: [class, "true", Outcome]

@@ -204,7 +204,8 @@ def _states(printing: _Printing, scope: Scope, leaves: Mapping[str, LeafCode]) -
         return ["struct States {", *lines, "};"]
     explicit = "explicit " if len(parameters) == 1 else ""
     head = f"  {explicit}States({', '.join(parameters)})"
-    return ["struct States {", head, f"      : {', '.join(made)} {{}}", "", *lines, "};"]
+    initial = ",\n        ".join(made)
+    return ["struct States {", head, f"      : {initial} {{}}", "", *lines, "};"]
 
 
 def _places(scope: Scope) -> Lines:

@@ -44,7 +44,8 @@ struct Userdata {
 
 struct States {
   explicit States(smachac::Arm &arm)
-      : PLAN(arm, std::optional<std::string>{}, false), MOVE(arm, std::optional<std::string>{}, 1.0) {}
+      : PLAN(arm, std::optional<std::string>{}, false),
+        MOVE(arm, std::optional<std::string>{}, 1.0) {}
 
   ::smachac::PoseToJointPositionsState PLAN;
   ::smachac::MoveToJointPositionsState MOVE;
@@ -244,7 +245,8 @@ struct AGAIN {
 
 struct States {
   explicit States(smachac::Arm &arm)
-      : EACH_(arm), HOME(arm, std::optional<std::string>{}, 1.0) {}
+      : EACH_(arm),
+        HOME(arm, std::optional<std::string>{}, 1.0) {}
 
   EACH::States EACH_;
   types::COUNT COUNT;

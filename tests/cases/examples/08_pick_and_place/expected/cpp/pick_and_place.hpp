@@ -79,7 +79,13 @@ struct Userdata {
 
 struct States {
   States(smachac::Arm &arm, smachac::World &world)
-      : PLAN_HOVER(arm, std::optional<std::string>{}, true), MOVE_TO_HOVER(arm, std::optional<std::string>{}, 1.0), CHECK_GRASP(arm, std::optional<std::string>{}, std::optional<std::string>{std::string("block")}), MOVE_DOWN(arm, std::optional<std::string>{}, true, 1.0), OPEN_GRIPPER(arm, std::optional<std::string>{}, std::string("open")), MOVE_UP(arm, std::optional<std::string>{}, true, 1.0), CHECK_PLACED(world, std::string("block"), 0.002) {}
+      : PLAN_HOVER(arm, std::optional<std::string>{}, true),
+        MOVE_TO_HOVER(arm, std::optional<std::string>{}, 1.0),
+        CHECK_GRASP(arm, std::optional<std::string>{}, std::optional<std::string>{std::string("block")}),
+        MOVE_DOWN(arm, std::optional<std::string>{}, true, 1.0),
+        OPEN_GRIPPER(arm, std::optional<std::string>{}, std::string("open")),
+        MOVE_UP(arm, std::optional<std::string>{}, true, 1.0),
+        CHECK_PLACED(world, std::string("block"), 0.002) {}
 
   ::smachac::PoseToJointPositionsState PLAN_HOVER;
   ::smachac::MoveToJointPositionsState MOVE_TO_HOVER;
@@ -221,7 +227,13 @@ struct Userdata {
 
 struct States {
   explicit States(smachac::Arm &arm)
-      : OPEN_GRIPPER(arm, std::optional<std::string>{}, std::string("open")), PLAN_HOVER(arm, std::optional<std::string>{}, true), MOVE_TO_HOVER(arm, std::optional<std::string>{}, 1.0), MOVE_DOWN(arm, std::optional<std::string>{}, true, 1.0), CLOSE_GRIPPER(arm, std::optional<std::string>{}, std::string("close")), LIFT(arm, std::optional<std::string>{}, true, 1.0), CHECK_GRASP(arm, std::optional<std::string>{}, std::optional<std::string>{std::string("block")}) {}
+      : OPEN_GRIPPER(arm, std::optional<std::string>{}, std::string("open")),
+        PLAN_HOVER(arm, std::optional<std::string>{}, true),
+        MOVE_TO_HOVER(arm, std::optional<std::string>{}, 1.0),
+        MOVE_DOWN(arm, std::optional<std::string>{}, true, 1.0),
+        CLOSE_GRIPPER(arm, std::optional<std::string>{}, std::string("close")),
+        LIFT(arm, std::optional<std::string>{}, true, 1.0),
+        CHECK_GRASP(arm, std::optional<std::string>{}, std::optional<std::string>{std::string("block")}) {}
 
   ::smachac::GripperState OPEN_GRIPPER;
   ::smachac::PoseToJointPositionsState PLAN_HOVER;
@@ -370,7 +382,15 @@ struct Userdata {
 
 struct States {
   States(smachac::World &world, smachac::Arm &arm)
-      : LOAD_TABLE(world, std::string("table"), std::optional<std::string>{}, std::optional<std::string>{}, std::array<double, 3>{{0.0, 0.0, 0.0}}, std::map<std::string, double>{}), LOAD_BLOCK(world, std::string("block"), std::optional<std::string>{}, std::optional<std::string>{}, std::array<double, 3>{{0.14, 0.28, 3.1416}}, std::map<std::string, double>{}), LOAD_MARK(world, std::string("goal"), std::optional<std::string>{}, std::optional<std::string>{}, std::array<double, 3>{{0.14, 0.28, 0.0}}, std::map<std::string, double>{{std::string("block"), 0.15}}), MOVE_TO_START(arm, std::optional<std::string>{}, 1.0), PICK_BLOCK_(arm), PLACE_BLOCK_(arm, world), GO_HOME(arm, std::optional<std::string>{}, 1.0), LET_GO(arm, std::optional<std::string>{}, std::string("open")), RETREAT(arm, std::optional<std::string>{}, 1.0) {}
+      : LOAD_TABLE(world, std::string("table"), std::optional<std::string>{}, std::optional<std::string>{}, std::array<double, 3>{{0.0, 0.0, 0.0}}, std::map<std::string, double>{}),
+        LOAD_BLOCK(world, std::string("block"), std::optional<std::string>{}, std::optional<std::string>{}, std::array<double, 3>{{0.14, 0.28, 3.1416}}, std::map<std::string, double>{}),
+        LOAD_MARK(world, std::string("goal"), std::optional<std::string>{}, std::optional<std::string>{}, std::array<double, 3>{{0.14, 0.28, 0.0}}, std::map<std::string, double>{{std::string("block"), 0.15}}),
+        MOVE_TO_START(arm, std::optional<std::string>{}, 1.0),
+        PICK_BLOCK_(arm),
+        PLACE_BLOCK_(arm, world),
+        GO_HOME(arm, std::optional<std::string>{}, 1.0),
+        LET_GO(arm, std::optional<std::string>{}, std::string("open")),
+        RETREAT(arm, std::optional<std::string>{}, 1.0) {}
 
   ::smachac::LoadModelState LOAD_TABLE;
   ::smachac::LoadModelState LOAD_BLOCK;

@@ -79,7 +79,13 @@ struct Userdata {
 
 struct States {
   States(smachac::Arm &arm, smachac::World &world)
-      : PLAN_HOVER(arm, std::optional<std::string>{}, true), MOVE_TO_HOVER(arm, std::optional<std::string>{}, 1.0), CHECK_GRASP(arm, std::optional<std::string>{}, std::optional<std::string>{std::string("second")}), MOVE_DOWN(arm, std::optional<std::string>{}, true, 1.0), OPEN_GRIPPER(arm, std::optional<std::string>{}, std::string("open")), MOVE_UP(arm, std::optional<std::string>{}, true, 1.0), CHECK_PLACED(world, std::string("second"), 0.002) {}
+      : PLAN_HOVER(arm, std::optional<std::string>{}, true),
+        MOVE_TO_HOVER(arm, std::optional<std::string>{}, 1.0),
+        CHECK_GRASP(arm, std::optional<std::string>{}, std::optional<std::string>{std::string("second")}),
+        MOVE_DOWN(arm, std::optional<std::string>{}, true, 1.0),
+        OPEN_GRIPPER(arm, std::optional<std::string>{}, std::string("open")),
+        MOVE_UP(arm, std::optional<std::string>{}, true, 1.0),
+        CHECK_PLACED(world, std::string("second"), 0.002) {}
 
   ::smachac::PoseToJointPositionsState PLAN_HOVER;
   ::smachac::MoveToJointPositionsState MOVE_TO_HOVER;
@@ -221,7 +227,13 @@ struct Userdata {
 
 struct States {
   explicit States(smachac::Arm &arm)
-      : OPEN_GRIPPER(arm, std::optional<std::string>{}, std::string("open")), PLAN_HOVER(arm, std::optional<std::string>{}, true), MOVE_TO_HOVER(arm, std::optional<std::string>{}, 1.0), MOVE_DOWN(arm, std::optional<std::string>{}, true, 1.0), CLOSE_GRIPPER(arm, std::optional<std::string>{}, std::string("close")), LIFT(arm, std::optional<std::string>{}, true, 1.0), CHECK_GRASP(arm, std::optional<std::string>{}, std::optional<std::string>{std::string("second")}) {}
+      : OPEN_GRIPPER(arm, std::optional<std::string>{}, std::string("open")),
+        PLAN_HOVER(arm, std::optional<std::string>{}, true),
+        MOVE_TO_HOVER(arm, std::optional<std::string>{}, 1.0),
+        MOVE_DOWN(arm, std::optional<std::string>{}, true, 1.0),
+        CLOSE_GRIPPER(arm, std::optional<std::string>{}, std::string("close")),
+        LIFT(arm, std::optional<std::string>{}, true, 1.0),
+        CHECK_GRASP(arm, std::optional<std::string>{}, std::optional<std::string>{std::string("second")}) {}
 
   ::smachac::GripperState OPEN_GRIPPER;
   ::smachac::PoseToJointPositionsState PLAN_HOVER;
@@ -366,7 +378,13 @@ struct Userdata {
 
 struct States {
   States(smachac::Arm &arm, smachac::World &world)
-      : PLAN_HOVER(arm, std::optional<std::string>{}, true), MOVE_TO_HOVER(arm, std::optional<std::string>{}, 1.0), CHECK_GRASP(arm, std::optional<std::string>{}, std::optional<std::string>{std::string("first")}), MOVE_DOWN(arm, std::optional<std::string>{}, true, 1.0), OPEN_GRIPPER(arm, std::optional<std::string>{}, std::string("open")), MOVE_UP(arm, std::optional<std::string>{}, true, 1.0), CHECK_PLACED(world, std::string("first"), 0.002) {}
+      : PLAN_HOVER(arm, std::optional<std::string>{}, true),
+        MOVE_TO_HOVER(arm, std::optional<std::string>{}, 1.0),
+        CHECK_GRASP(arm, std::optional<std::string>{}, std::optional<std::string>{std::string("first")}),
+        MOVE_DOWN(arm, std::optional<std::string>{}, true, 1.0),
+        OPEN_GRIPPER(arm, std::optional<std::string>{}, std::string("open")),
+        MOVE_UP(arm, std::optional<std::string>{}, true, 1.0),
+        CHECK_PLACED(world, std::string("first"), 0.002) {}
 
   ::smachac::PoseToJointPositionsState PLAN_HOVER;
   ::smachac::MoveToJointPositionsState MOVE_TO_HOVER;
@@ -508,7 +526,13 @@ struct Userdata {
 
 struct States {
   explicit States(smachac::Arm &arm)
-      : OPEN_GRIPPER(arm, std::optional<std::string>{}, std::string("open")), PLAN_HOVER(arm, std::optional<std::string>{}, true), MOVE_TO_HOVER(arm, std::optional<std::string>{}, 1.0), MOVE_DOWN(arm, std::optional<std::string>{}, true, 1.0), CLOSE_GRIPPER(arm, std::optional<std::string>{}, std::string("close")), LIFT(arm, std::optional<std::string>{}, true, 1.0), CHECK_GRASP(arm, std::optional<std::string>{}, std::optional<std::string>{std::string("first")}) {}
+      : OPEN_GRIPPER(arm, std::optional<std::string>{}, std::string("open")),
+        PLAN_HOVER(arm, std::optional<std::string>{}, true),
+        MOVE_TO_HOVER(arm, std::optional<std::string>{}, 1.0),
+        MOVE_DOWN(arm, std::optional<std::string>{}, true, 1.0),
+        CLOSE_GRIPPER(arm, std::optional<std::string>{}, std::string("close")),
+        LIFT(arm, std::optional<std::string>{}, true, 1.0),
+        CHECK_GRASP(arm, std::optional<std::string>{}, std::optional<std::string>{std::string("first")}) {}
 
   ::smachac::GripperState OPEN_GRIPPER;
   ::smachac::PoseToJointPositionsState PLAN_HOVER;
@@ -679,7 +703,19 @@ struct PLAN_STACK {
 
 struct States {
   States(smachac::World &world, smachac::Arm &arm)
-      : LOAD_TABLE(world, std::string("table"), std::optional<std::string>{}, std::optional<std::string>{}, std::array<double, 3>{{0.0, 0.0, 0.0}}, std::map<std::string, double>{}), LOAD_FIRST(world, std::string("block"), std::optional<std::string>{}, std::optional<std::string>{std::string("first")}, std::array<double, 3>{{0.14, 0.28, 3.1416}}, std::map<std::string, double>{}), LOAD_SECOND(world, std::string("block"), std::optional<std::string>{}, std::optional<std::string>{std::string("second")}, std::array<double, 3>{{0.14, 0.28, 3.1416}}, std::map<std::string, double>{{std::string("first"), 0.15}}), LOAD_MARK(world, std::string("goal"), std::optional<std::string>{}, std::optional<std::string>{}, std::array<double, 3>{{0.14, 0.28, 0.0}}, std::map<std::string, double>{{std::string("first"), 0.15}, {std::string("second"), 0.15}}), MOVE_TO_START(arm, std::optional<std::string>{}, 1.0), PICK_FIRST_(arm), PLACE_FIRST_(arm, world), PICK_SECOND_(arm), PLACE_SECOND_(arm, world), CHECK_FIRST(world, std::string("first"), 0.002), GO_HOME(arm, std::optional<std::string>{}, 1.0), LET_GO(arm, std::optional<std::string>{}, std::string("open")), RETREAT(arm, std::optional<std::string>{}, 1.0) {}
+      : LOAD_TABLE(world, std::string("table"), std::optional<std::string>{}, std::optional<std::string>{}, std::array<double, 3>{{0.0, 0.0, 0.0}}, std::map<std::string, double>{}),
+        LOAD_FIRST(world, std::string("block"), std::optional<std::string>{}, std::optional<std::string>{std::string("first")}, std::array<double, 3>{{0.14, 0.28, 3.1416}}, std::map<std::string, double>{}),
+        LOAD_SECOND(world, std::string("block"), std::optional<std::string>{}, std::optional<std::string>{std::string("second")}, std::array<double, 3>{{0.14, 0.28, 3.1416}}, std::map<std::string, double>{{std::string("first"), 0.15}}),
+        LOAD_MARK(world, std::string("goal"), std::optional<std::string>{}, std::optional<std::string>{}, std::array<double, 3>{{0.14, 0.28, 0.0}}, std::map<std::string, double>{{std::string("first"), 0.15}, {std::string("second"), 0.15}}),
+        MOVE_TO_START(arm, std::optional<std::string>{}, 1.0),
+        PICK_FIRST_(arm),
+        PLACE_FIRST_(arm, world),
+        PICK_SECOND_(arm),
+        PLACE_SECOND_(arm, world),
+        CHECK_FIRST(world, std::string("first"), 0.002),
+        GO_HOME(arm, std::optional<std::string>{}, 1.0),
+        LET_GO(arm, std::optional<std::string>{}, std::string("open")),
+        RETREAT(arm, std::optional<std::string>{}, 1.0) {}
 
   ::smachac::LoadModelState LOAD_TABLE;
   ::smachac::LoadModelState LOAD_FIRST;

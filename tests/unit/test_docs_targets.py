@@ -1,0 +1,68 @@
+"""docs/targets.md shows generated C++ as it is: what stands between elisions is in the header."""
+
+from __future__ import annotations
+
+import re
+from pathlib import Path
+
+import pytest
+
+import smachac
+
+ROOT = Path(__file__).parents[2]
+PAGE = (ROOT / "docs" / "targets.md").read_text("utf-8")
+ELISION = re.compile(r"^ *// \.\.\.\n", re.MULTILINE)
+
+
+def shown() -> list[tuple[str, str]]:
+    """The blocks of C++ behind the name of an example, each with the folder of that example."""
+    found, folder = [], ""
+    pattern = r"\]\(\.\./examples/(\w+)\)|^```cpp\n(.*?)^```$"
+    for match in re.finditer(pattern, PAGE, re.MULTILINE | re.DOTALL):
+        folder = match[1] or folder
+        if match[2] and folder:
+            found.append((folder, match[2]))
+    return found
+
+
+def missing(block: str, header: str) -> str | None:
+    """The first part of a block that is not in a header where it should be, whole lines long; a
+    part behind an elision stands somewhere after the part before, with something between."""
+    at = 0
+    for number, part in enumerate(ELISION.split(block)):
+        text = part.strip("\n")
+        if not text:
+            continue
+        place = re.compile(f"^{re.escape(text)}$", re.MULTILINE).search(header, at)
+        if place is None or (number and not header[at : place.start()].strip()):
+            return text
+        at = place.end()
+    return None
+
+
+def test_blocks_are_found() -> None:
+    folders = [folder for folder, _ in shown()]
+    assert folders.count("06_callbacks") == 2
+    assert folders.count("08_pick_and_place") == 1
+
+
+@pytest.mark.parametrize(("folder", "block"), shown())
+def test_a_header_holds_what_is_shown_of_it(folder: str, block: str) -> None:
+    files = smachac.build(ROOT / "examples" / folder / "main.yml", "cpp")
+    assert missing(block, next(iter(files.values()))) is None
+
+
+@pytest.mark.parametrize(
+    ("block", "wrong"),
+    [
+        ("one\n// ...\nthree\n", None),
+        ("  // ...\ntwo\n\nthree\n// ...\n", None),
+        ("one\nthree\n", "one\nthree"),
+        ("three\n// ...\none\n", "one"),
+        ("one\n// ...\ntwo\n", "two"),
+        ("on\n", "on"),
+        ("wo\n", "wo"),
+    ],
+)
+def test_what_is_not_there_is_found(block: str, wrong: str | None) -> None:
+    assert missing(block, "one\ntwo\n\nthree\nfour\n") == wrong
