@@ -17,8 +17,10 @@ Kind = Literal["base", "container", "state"]
 
 _META = re.compile(r"\{%-?\s*block\s+meta\s*-?%\}(.*?)\{%-?\s*endblock", re.DOTALL)
 _BODY = re.compile(r"\{%[-+]?\s*block\s+body\b")
+_AROUND = re.compile(r"\{\{[-+]?\s*(?:body\b|super\s*\()")
 _EXTENDS = re.compile(r"\{%[-+]?\s*extends\s+[\"']([^\"']+)[\"']")
 _OUTCOMES = re.compile(r"\boutcomes\s*=\s*\[([^\[\]{}]*)\]")
+_DEFAULT = re.compile(r"\bdef\s+\w+\([^()]*$")
 _KEYS = re.compile(r"\b(input|output)_keys\s*=\s*\[([^\[\]{}]*)\]")
 _QUOTED = re.compile(r"([\"'])(\w+)\1")
 
@@ -57,9 +59,8 @@ def read_meta(template: Source) -> Meta | None:
         entry = tree.get(part)
         return tuple(_names(entry.value, optional)) if entry else ()
 
-    kind = _text(tree, "type")
     return Meta(
-        kind="base" if kind == "Base" else "container" if kind == "Container" else "state",
+        kind=_kind(_text(tree, "type"), template),
         doc=_text(tree, "description"),
         variables=tuple(word.text for word in listed("variables", optional=True)),
         input_keys=listed("input_keys", optional=False),
@@ -72,9 +73,19 @@ def read_meta(template: Source) -> Meta | None:
     )
 
 
+def _kind(word: str, template: Source) -> Kind:
+    """The kind that a meta block names. SMACHA calls some of its states containers, though they do
+    not print what stands in them."""
+    alone = has_body(template) and _AROUND.search(template.text) is None
+    return "base" if word == "Base" else "container" if word == "Container" and not alone else "state"
+
+
 def outcomes_in_code(template: Source) -> tuple[Outcome, ...]:
-    """The outcomes of the one class of states in a template, where they are all written out."""
+    """The outcomes of the one class of states in a template, where they are all written out, not as
+    what a parameter is by default."""
     found = list(_OUTCOMES.finditer(template.text))
+    if found and _DEFAULT.search(template.text, 0, found[0].start()) is not None:
+        return ()
     words = list(_QUOTED.finditer(found[0].group(1))) if len(found) == 1 else []
     if not words or _QUOTED.sub("", found[0].group(1)).strip(", \n\t"):
         return ()
