@@ -77,7 +77,9 @@ def _kind(word: str, template: Source) -> Kind:
     """The kind that a meta block names. SMACHA calls some of its states containers, though they do
     not print what stands in them."""
     alone = has_body(template) and _AROUND.search(template.text) is None
-    return "base" if word == "Base" else "container" if word == "Container" and not alone else "state"
+    return (
+        "base" if word == "Base" else "container" if word == "Container" and not alone else "state"
+    )
 
 
 def outcomes_in_code(template: Source) -> tuple[Outcome, ...]:

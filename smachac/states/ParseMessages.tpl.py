@@ -10,11 +10,13 @@ from sensor_msgs.msg import PointCloud, PointCloud2, PointField
 {% endblock %}
 {% block defs %}
 def parse_point(data):
-    """A Point of `[x, y, z]`, a Point or a PointStamped."""
+    """A Point of `[x, y, z]`, a Point, a Point32 or a PointStamped."""
     if isinstance(data, PointStamped):
         return data.point
     if isinstance(data, Point):
         return data
+    if isinstance(data, Point32):
+        return Point(data.x, data.y, data.z)
     x, y, z = map(float, data)
     return Point(x, y, z)
 
@@ -110,7 +112,12 @@ PARSERS = {
 
 
 def parse_message(data, kind=None):
-    """A message: as it is, or made of lists of numbers; without a type by their shape."""
+    """A message: as it is, or made of lists of numbers; without a type by their shape, and with a
+    time stamp where there is a message of the kind that has one."""
+    if kind is None and isinstance(data, (Point, Point32)):
+        return parse_pointstamped(data)
+    if kind is None and isinstance(data, Pose):
+        return parse_posestamped(data)
     if hasattr(data, "_type") and kind in (None, data._type):
         return data
     if kind is not None:

@@ -78,7 +78,7 @@ BAG = """
   - SEEN:
       template: WaitForMsgState
       topic: /smacha/point
-      msg_type: geometry_msgs/Point
+      msg_type: geometry_msgs/PointStamped
       transitions: {succeeded: RECORD, aborted: aborted}
   - RECORD:
       template: RecordROSBagState
@@ -94,12 +94,12 @@ BAG = """
   - SOME:
       template: WaitForMsgState
       topic: /smacha/point
-      msg_type: geometry_msgs/Point
+      msg_type: geometry_msgs/PointStamped
       transitions: {succeeded: MORE, aborted: aborted}
   - MORE:
       template: WaitForMsgState
       topic: /smacha/point
-      msg_type: geometry_msgs/Point
+      msg_type: geometry_msgs/PointStamped
       transitions: {succeeded: STOP, aborted: aborted}
   - STOP:
       template: RecordROSBagState
@@ -132,4 +132,7 @@ def test_topics_are_published_observed_read_and_transformed(graph: Graph, tmp_pa
 def test_a_bag_holds_what_was_published(graph: Graph, tmp_path: Path) -> None:
     file = str(tmp_path / "points.bag")
     assert graph.run(built(tmp_path, BAG.replace("FILE", file))).endswith("outcome: succeeded\n")
-    assert graph.run(READ.replace("FILE", file)) == "[('/smacha/point', 'geometry_msgs/Point')]\n"
+    assert (
+        graph.run(READ.replace("FILE", file))
+        == "[('/smacha/point', 'geometry_msgs/PointStamped')]\n"
+    )

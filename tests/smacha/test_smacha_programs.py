@@ -12,6 +12,8 @@ import subprocess
 import sys
 from collections import deque
 from pathlib import Path
+from types import ModuleType
+from unittest.mock import patch
 
 import pytest
 from smacha_programs import FOLDER, TEMPLATES, machine_of, outline, stand_ins, text_of
@@ -19,8 +21,11 @@ from smacha_programs import FOLDER, TEMPLATES, machine_of, outline, stand_ins, t
 import smachac
 from smachac.diagnostics import Report, Severity
 from smachac.driver import build
+from smachac.files import disk_library
 from smachac.ir.behaviours import built_in
 from smachac.ir.run import run
+from smachac.runtime import smach
+from smachac.states import find_state_type
 from smachac.targets import load_target
 
 SCRIPTS = [
@@ -123,6 +128,56 @@ def test_a_base_of_the_user_gets_what_its_own_code_needs() -> None:
     for line in ("from my_msgs.srv import Door", "def main():"):
         assert text.count(line) == 1
     machine_of(text)
+
+
+def test_imports_of_smach_do_without_it() -> None:
+    text = text_of("whole")  # its base imports SMACH itself
+    tree = ast.parse(text)
+    tried = [ast.unparse(each) for each in tree.body if isinstance(each, ast.Try)]
+    for name in ("smach", "smach_ros"):
+        (found,) = (each for each in tried if f"import {name}\n" in each)
+        assert f"from smachac.runtime import {name}" in found
+    module = ModuleType("program")
+    with patch.dict("sys.modules", dict.fromkeys(("smach", "smach_ros"), None)):  # there is none
+        exec("\n".join(tried), module.__dict__)
+    assert module.__dict__["smach"] is smach
+
+
+@pytest.mark.parametrize("given", ["", "outcomes: [a, b]"])
+def test_outcomes_that_are_a_default_are_not_all(tmp_path: Path, given: str) -> None:
+    (tmp_path / "T.tpl.py").write_text(CHOOSING)
+    rest = "transitions: {a: done, b: A}}" if given else "transitions: {c: done}}"
+    states = f"states:\n  - A: {{template: T, {given}{', ' if given else ''}{rest}\n"
+    (tmp_path / "main.yml").write_text("name: sm\ntemplate: Base\noutcomes: [done]\n" + states)
+    analysis, _ = smachac.analyse_file(tmp_path / "main.yml", (), (tmp_path,))
+    assert analysis.checked is not None, [item.finding.message for item in analysis.report]
+
+
+CHOOSING = """
+{% block class_defs %}
+class T(smach.State):
+    def __init__(self, input_keys = [], outcomes=['succeeded']):
+        smach.State.__init__(self, input_keys=input_keys, outcomes=outcomes)
+{% endblock class_defs %}
+
+{% block body %}
+smach.{{ parent_type }}.add('{{ name }}', T(), transitions={{ transitions }})
+{% endblock body %}
+"""
+
+
+def test_a_state_whose_meta_block_calls_it_a_container(tmp_path: Path) -> None:
+    meta = "{% block meta %}\nname: T\ntype: Container\n{% endblock meta %}\n"
+    library = disk_library(tmp_path / "main.yml", [], templates=[tmp_path])
+    kinds = {}
+    for name, body in (("T", "{{ transitions }}"), ("U", "with x:\n    {{ body | indent(4) }}")):
+        (tmp_path / f"{name}.tpl.py").write_text(
+            f"{meta}{{% block body %}}\n{body}\n{{% endblock %}}"
+        )
+        kinds[name] = find_state_type(name, library, [])
+    assert [kind.kind for kind in kinds.values() if kind is not None] == ["state", "container"]
+    assert kinds["T"] is not None
+    assert kinds["T"].open  # nothing is told of its outcomes
 
 
 def test_shared_objects_are_made_once_in_the_function_that_builds() -> None:

@@ -483,7 +483,7 @@ outcomes:
 
 @pytest.mark.parametrize(
     ("kind", "ours"),
-    [("Base", "base"), ("Container", "container"), ("State", "state"), ("None", "state")],
+    [("Base", "base"), ("Container", "state"), ("State", "state"), ("None", "state")],
 )
 def test_the_kinds_of_templates(tmp_path: Path, kind: str, ours: str) -> None:
     assert state_type(tmp_path, f"name: T\ntype: {kind}\n").kind == ours

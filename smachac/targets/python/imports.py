@@ -36,6 +36,26 @@ template for actions imported all of actionlib for everybody."""
 _MODULE_OF = {name: module for module, names in MESSAGES.items() for name in names.split()}
 
 
+FALLBACK = """
+try:
+    import {0}
+except ImportError:  # it is not on this machine: the same names without it
+    from smachac.runtime import {0}
+
+"""
+
+
+def with_fallback(text: str, tree: ast.Module) -> str:
+    """A module whose own imports of SMACH, as bases of SMACHA's kind have them, do without it."""
+    lines = text.splitlines(keepends=True)
+    for node in tree.body:
+        match node:
+            case ast.Import(names=[ast.alias(name="smach" | "smach_ros" as name, asname=None)]):
+                if lines[node.lineno - 1].strip() == f"import {name}":
+                    lines[node.lineno - 1] = FALLBACK.format(name)
+    return "".join(lines)
+
+
 def import_lines(texts: Iterable[str]) -> str:
     """Imports, each once: modules first, then names out of modules, then what is more than that."""
     modules: set[str] = set()
@@ -68,10 +88,10 @@ def _from_import(module: str, names: list[str]) -> str:
     return f"from {module} import (\n" + "".join(f"    {name},\n" for name in stars) + ")"
 
 
-def unbound_names(parts: Iterable[str]) -> list[str]:
+def unbound_names(parts: Iterable[str], also: Iterable[str] = ()) -> list[str]:
     """Imports for what code uses and nothing binds: modules by their attributes (`rospy.loginfo`),
-    messages by their names (`Point()`). `import *` binds what its module is known to have; out of
-    other modules it may bind any message."""
+    messages by their names (`Point()`); `also` are further modules. `import *` binds what its
+    module is known to have; out of other modules it may bind any message."""
     used: set[str] = set()
     named: set[str] = set()
     bound: set[str] = set()
@@ -95,7 +115,7 @@ def unbound_names(parts: Iterable[str]) -> list[str]:
                     everything.add(module)
                 case ast.Import(names=names) | ast.ImportFrom(names=names):
                     bound |= {each.asname or each.name.partition(".")[0] for each in names}
-    modules = sys.stdlib_module_names | set(ROS_MODULES)
+    modules = sys.stdlib_module_names | {*ROS_MODULES, *also}
     found = [f"import {name}" for name in sorted(used - bound) if name in modules]
     unknown = any(module not in MESSAGES for module in everything)
     if unknown or not any(name in used | named | bound for name in (*ROS_MODULES, "smach_ros")):

@@ -24,7 +24,7 @@ from smachac.targets.python.containers import (
 )
 from smachac.targets.python.expressions import standard_imports
 from smachac.targets.python.gathered import PREPENDED, Gathered
-from smachac.targets.python.imports import import_lines, unbound_names
+from smachac.targets.python.imports import import_lines, unbound_names, with_fallback
 from smachac.targets.python.python2 import modern
 from smachac.targets.python.smacha import FILTERS, TESTS, container_variables, plain
 
@@ -134,9 +134,10 @@ def _rendered(
     text = gathered.blocks.render_whole(template, variables)
     if template in ONE_FUNCTION:
         return text
-    is_node = _NEEDS_NODE.search(text) is not None and "init_node" not in text
+    can_be = "node" in gathered.blocks.names(template) and "init_node" not in text
+    is_node = can_be and _NEEDS_NODE.search(text) is not None
     more = NODE_IMPORTS if is_node else []
-    lacking = unbound_names([modern(text)[0], *more])
+    lacking = unbound_names([modern(text)[0], *more], ["smach", "smach_ros"])
     if not lacking and not is_node:
         return text
     again = {
@@ -180,6 +181,8 @@ def _checked(text: str, template: str, machine: Machine, gathered: Gathered) -> 
         message = f"the base `{machine.base}` makes no Python: {words}"
         help = f"the line it prints is `{line.strip()}`"
         raise BlockError(problems.template_error(place, message, help)) from error
+    text = with_fallback(text, tree)
+    tree = ast.parse(text)
     tidy = _TRAILING.sub("", _BLANKS.sub("\n\n\n", text))
     if tidy != text and ast.dump(ast.parse(tidy)) == ast.dump(tree):
         text = tidy
