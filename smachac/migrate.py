@@ -34,7 +34,8 @@ def migrate(arguments: Namespace) -> int:
     folders: list[Path] = arguments.folder or [Path()]
     for folder in folders:
         if not folder.is_dir():
-            return usage(f"`{folder}` is no folder")
+            what = "is a file: name the folder that it is in" if folder.exists() else "is no folder"
+            return usage(f"`{folder}` {what}")
     templates = [path for folder in folders for path in template_files(folder)]
     try:
         scripts = scripts_of(folders, disk)

@@ -6,7 +6,7 @@ import os
 import sys
 from argparse import Namespace
 from collections import Counter
-from collections.abc import Callable, Container, Iterator, Mapping
+from collections.abc import Callable, Container, Iterable, Iterator, Mapping
 from functools import partial
 from pathlib import Path
 
@@ -47,7 +47,7 @@ from smachac.syntax import Map
 
 Texts = Mapping[str, str]
 
-NO_ERRORS = "it has errors: mend them first, for nobody knows what the machine would be"
+NO_ERRORS = "mend these errors first, for nobody knows what the machine would be"
 
 
 class NotFoundError(Exception):
@@ -194,7 +194,8 @@ def perform(arguments: Namespace, verb: str, change: Callable[[Desk], int]) -> i
             return usage(str(error))
         except RefusedError as error:
             if error.message == NO_ERRORS and has_errors(desk.analysis.report):
-                print(f"nothing was changed: {error.message}", file=sys.stderr)
+                if desk.analysis.machine is not None:
+                    print(f"nothing was changed: {error.message}", file=sys.stderr)
                 return FINDINGS
             code = Code(code=verb, name=verb, severity=Severity.ERROR, explanation="")
             finding = Finding(span=error.span, message=error.message, help=error.help)
@@ -216,9 +217,9 @@ def run_extract(arguments: Namespace) -> int:
         target = folder / name
         if name.suffix not in (".yml", ".yaml") or len(name.parts) != 1:
             return usage("--to wants the name of a file beside the script, such as `pick.yml`")
+        text = extract(sheet, node.span, name.stem)
         if target.exists() or desk.disk.is_file(target):
             raise RefusedError(node.span, f"{target} is there already", "choose another: --to")
-        text = extract(sheet, node.span, name.stem)
         desk.made[os.path.realpath(target)] = text
         desk.proven(node.span, same_machine)
         return desk.written()
@@ -338,8 +339,7 @@ def run_contain(arguments: Namespace) -> int:
         names = [each.rpartition("/")[2] for each in arguments.states]
         for name in names:
             if name not in known:
-                near = did_you_mean(name, known) or f"it has {listed(known)}"
-                raise NotFoundError(f"`{above}` has no state `{name}`\n{near}")
+                raise _not_beside(before, above, name, known)
         inside = [child for child in parent.children if child.name in names]
         presets = presets_of(desk.sheet(inside[0].span.source), inside)
         made = plan(parent, inside, presets, arguments.name, arguments.type)
@@ -349,6 +349,16 @@ def run_contain(arguments: Namespace) -> int:
         return desk.written()
 
     return perform(arguments, "contain", change)
+
+
+def _not_beside(machine: Machine, above: str, name: str, known: Iterable[str]) -> NotFoundError:
+    """Why a state cannot be taken together with those of the container at `above`."""
+    other = next((path for path, node in walk(machine.root) if node.name == name), None)
+    if other is not None:
+        words = f"`{name}` is in `{other.rpartition('/')[0]}`, the first state in `{above}`"
+        return NotFoundError(f"{words}\none container takes states of one container")
+    near = did_you_mean(name, known) or f"it has {listed(known)}"
+    return NotFoundError(f"`{above}` has no state `{name}`\n{near}")
 
 
 def _told(library: Library, leaf: Leaf) -> Told:

@@ -7,7 +7,8 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 from keyword import iskeyword
 
-from smachac.ir.types import Type, parse_type
+from smachac.diagnostics import did_you_mean
+from smachac.ir.types import WORDS, Type, parse_type, unknown_words
 from smachac.states import StateType
 
 LANGUAGES = ("python", "cpp")
@@ -38,6 +39,9 @@ def key_and_type(text: str) -> tuple[str, str]:
         raise BadNameError(f"`{key}` is no name for a key")
     if named and parse_type(named) is None:
         raise BadNameError(f"`{named}` is no type")
+    for word in unknown_words(type_) if (type_ := parse_type(named or "any")) is not None else ():
+        near = did_you_mean(word, WORDS) or "a type of ROS is written as `geometry_msgs/Twist`"
+        raise BadNameError(f"`{word}` names no type\n{near}")
     return key, named or "any"
 
 

@@ -19,7 +19,8 @@ def extract(sheet: Sheet, span: Span, script: str) -> str:
     body = variables_of(place.item)
     assert body is not None
     if variable(body, "script") is not None:
-        raise RefusedError(span, f"`{span.text}` is a sub-script already")
+        help = "`smachac inline` puts it in the place of its call"
+        raise RefusedError(span, f"`{span.text}` is a sub-script already", help)
     if variable(body, "states") is None:
         help = "put it into a container first: `smachac contain`"
         raise RefusedError(span, f"`{span.text}` is no container", help)
