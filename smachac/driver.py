@@ -19,6 +19,7 @@ from smachac.source import Source, Span, Word
 from smachac.states import Library
 from smachac.targets import Context, Files, Target, load_target
 from smachac.targets.declared import code_faults, target_faults
+from smachac.targets.undefined import undefined_names
 
 
 def load(source: Source, library: Library, report: Report) -> Machine | None:
@@ -65,6 +66,7 @@ def analyse(
         if machine is not None:
             report.extend(check_machine(machine))
             report.extend(code_faults(machine, library, load_target))
+            report.extend(undefined_names(machine, library))
             report.extend(more(machine) if more is not None else ())
         sources = {id(text): text for text in (script.sources if script is not None else (source,))}
         sources |= {id(item.span.source): item.span.source for item in report}
@@ -92,7 +94,8 @@ def analyse_alone(source: Source, library: Library, report: Report) -> Analysis:
     """A sub-script that nobody calls, judged as far as that goes without its caller.
 
     It is called by a script made for it, which takes in the keys it needs and ends with its
-    outcomes. Params come from callers, so look-ups that find nothing are passed over.
+    outcomes. Params come from callers, so look-ups that find nothing are passed over, as are names:
+    their base may define them.
     """
     name = f"{source.name} (alone)"
 
@@ -132,7 +135,7 @@ def analyse_alone(source: Source, library: Library, report: Report) -> Analysis:
 def _inside(report: Report, outside: Source) -> Iterator[Diagnostic]:
     """The findings that do not speak of the script made around."""
     for item in report:
-        if item.span.source is outside or item.code.code == "SM015":
+        if item.span.source is outside or item.code.code in ("SM015", "SM019"):
             continue
         finding = item.finding
         related = tuple(each for each in finding.related if each.span.source is not outside)

@@ -111,7 +111,9 @@ def _joined(items: tuple[Tree, ...], tree: Seq, report: Report) -> Tree | None:
             )
         )
         return known_wrong(tree.span)
-    return Scalar(text, text != "", tree.span)
+    # Calls have characters that YAML wants in quotes; of a dotted word quotes say that it is text.
+    quoted = any(isinstance(item, Scalar) and not item.plain for item in tree.items)
+    return Scalar(text, text != "" and (text.endswith(")") or not quoted), tree.span)
 
 
 def child_scope(scope: Scope, own: Tree | None, report: Report) -> Scope:

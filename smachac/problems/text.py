@@ -305,3 +305,46 @@ def unreadable_file(span: Span, message: str, help: str | None = None) -> Findin
         message=message,
         help=help or "check the path, and that it is a text file in UTF-8",
     )
+
+
+@problem("SM019", "undefined-name", Severity.ERROR)
+def undefined_name(span: Span, name: str, code: str, by_look: bool) -> Finding:
+    """Code of the script uses a name that nothing in its program defines.
+
+    Text with a dot or a call in it is code, as it was for SMACHA; made from params it may become
+    some by accident. The program would fail with a NameError when it builds its machine, or at the
+    first visit of the state. Names are defined by the templates of a script, which are searched for
+    the word, by Python and its library; the common names of ROS are imported.
+
+    Wrong:
+        name: sm
+        template: Base
+        outcomes: [succeeded]
+        params: {number: 2}
+        userdata: {side: [block_, [params, number], .left]}
+        states:
+          - LOOK: {template: PrintUserdataState, input_keys: [side]}
+
+    Right:
+        name: sm
+        template: Base
+        outcomes: [succeeded]
+        params: {number: 2}
+        userdata: {side: ['block_', [params, number], '.left']}
+        states:
+          - LOOK: {template: PrintUserdataState, input_keys: [side]}
+    """
+    if not by_look:
+        help = "import or define it in a template of the script, such as that of the base"
+        return Finding(
+            span=span, message=f"nothing defines `{name}`, which is used here", help=help
+        )
+    why = "a call" if code.endswith(")") else "a dot"
+    message = f"nothing defines `{name}`: `{code}` is code, for it has {why} in it"
+    if span.text.startswith("[") and code.endswith(")"):
+        help = f"import or define `{name}` in a template of the script, such as that of the base"
+    elif span.text.startswith("["):
+        help = "quote a part of it, as in `['block_', [params, number], '.left']`, if it is text"
+    else:
+        help = f'write `"{code}"` if it is text, or define `{name}` in the template of the base'
+    return Finding(span=span, message=message, help=help)

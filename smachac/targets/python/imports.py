@@ -56,6 +56,11 @@ def with_fallback(text: str, tree: ast.Module) -> str:
     return "".join(lines)
 
 
+def importable() -> set[str]:
+    """The names that a program may use without importing them."""
+    return {"smach", "smach_ros", *ROS_MODULES, *_MODULE_OF}
+
+
 def import_lines(texts: Iterable[str]) -> str:
     """Imports, each once: modules first, then names out of modules, then what is more than that."""
     modules: set[str] = set()

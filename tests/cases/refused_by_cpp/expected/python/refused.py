@@ -1,6 +1,8 @@
-# Made by smachac 0.1.0 from main.yml (sha256 28209bdff212cdee).
+# Made by smachac 0.1.0 from main.yml (sha256 e10e50a0fefe25e0).
 """The state machine `refused`."""
 
+import operator
+import statistics
 from scales import Weigh
 
 try:
@@ -44,7 +46,7 @@ def build():
             "MEASURE",
             CallbacksState(
                 callbacks={
-                    "n": lambda ud: numpy.linalg.norm(ud.n),
+                    "n": lambda ud: statistics.fmean(ud.n),
                     "label": lambda ud: [each for each in ud.label],
                 },
                 input_keys=["n", "label"],
@@ -57,7 +59,7 @@ def build():
         smach.StateMachine.add(
             "NAME",
             CallbacksState(
-                callbacks={"n": naming.number, "label": lambda ud: ud.label + ud.n},
+                callbacks={"n": operator.index, "label": lambda ud: ud.label + ud.n},
                 input_keys=["n", "label"],
                 output_keys=["n", "label"],
             ),

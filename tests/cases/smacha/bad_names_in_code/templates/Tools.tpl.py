@@ -1,0 +1,5 @@
+{% extends "Base.tpl.py" %}
+{% block imports %}
+{{ super() }}
+import tools
+{% endblock %}
