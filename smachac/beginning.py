@@ -36,8 +36,6 @@ def new(arguments: Namespace) -> int:
     if len(words) != 1 or words == ["state"]:
         return usage("name a folder, or say `new state NAME`")
     folder = Path(words[0])
-    if folder.is_file():
-        return usage(f"`{folder}` is a file: name a folder, which is made if it is not there")
     return _put(folder, project(folder.resolve().name))
 
 

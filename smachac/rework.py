@@ -6,7 +6,7 @@ import os
 import sys
 from argparse import Namespace
 from collections import Counter
-from collections.abc import Callable, Container, Iterable, Iterator, Mapping
+from collections.abc import Callable, Container, Iterator, Mapping
 from functools import partial
 from pathlib import Path
 
@@ -16,7 +16,6 @@ from smachac.diagnostics import (
     Finding,
     Report,
     Severity,
-    did_you_mean,
     has_errors,
 )
 from smachac.discover import scripts_of
@@ -24,14 +23,13 @@ from smachac.driver import Analysis, analyse
 from smachac.files import Disk, disk_library
 from smachac.ir.depth import deep_recursion
 from smachac.ir.nodes import Leaf, Machine, Node, StateMachine
-from smachac.ir.userdata import remapping
 from smachac.ir.walk import walk
 from smachac.meta import keys_in_code
-from smachac.problems import listed
 from smachac.refactor.alike import same_machine
 from smachac.refactor.concrete import Atom, UnusualError
 from smachac.refactor.contain import contain, presets_of
 from smachac.refactor.containing import contained_alike, plan
+from smachac.refactor.finding import NotFoundError, find_named, find_state, not_beside
 from smachac.refactor.renaming import Renaming, rename_outcome, rename_state
 from smachac.refactor.renaming_keys import rename_key
 from smachac.refactor.sheet import RefusedError, Sheet
@@ -48,10 +46,6 @@ from smachac.syntax import Map
 Texts = Mapping[str, str]
 
 NO_ERRORS = "mend these errors first, for nobody knows what the machine would be"
-
-
-class NotFoundError(Exception):
-    """A name of the user means nothing, or several things; the words say what there is."""
 
 
 class Desk:
@@ -164,23 +158,6 @@ class Desk:
         return put(texts, sources, self.arguments, "changed", new=frozenset(self.made))
 
 
-def find_state(machine: Machine, name: str) -> tuple[str, Node]:
-    """A state by its path or the end of it. Raises NotFoundError."""
-    found = {path: node for path, node in walk(machine.root)
-             if path == name or path.endswith(f"/{name}")}  # fmt: skip
-    if name in found:
-        return name, found[name]
-    if not found:
-        paths = [path for path, _ in walk(machine.root)]
-        names = dict.fromkeys(path.rpartition("/")[2] for path in paths)
-        near = did_you_mean(name.rpartition("/")[2], names) or ""
-        raise NotFoundError(f"there is no state `{name}`\n{near}".rstrip())
-    if len(found) > 1:
-        lines = [f"there are {len(found)} states `{name}`; name one by its path:"]
-        raise NotFoundError("\n".join([*lines, *(f"  {path}" for path in list(found)[:20])]))
-    return next(iter(found.items()))
-
-
 def perform(arguments: Namespace, verb: str, change: Callable[[Desk], int]) -> int:
     """Run one of the commands below, and tell why it cannot be done."""
     with deep_recursion():
@@ -247,7 +224,7 @@ def run_rename(arguments: Namespace) -> int:
         return usage(f"`{arguments.new}` is no name that YAML takes as it stands")
 
     def change(desk: Desk) -> int:
-        kind, declared, old = _named(desk.machine, arguments.path, arguments.kind)
+        kind, declared, old = find_named(desk.machine, arguments.path, arguments.kind)
         if old == arguments.new:
             return desk.written()
         _check_written(desk.machine, kind, declared, old)
@@ -278,48 +255,6 @@ def _check_written(machine: Machine, kind: str, declared: Span, old: str) -> Non
         raise RefusedError(declared, message)
 
 
-def _named(machine: Machine, path: str, kind: str | None) -> tuple[str, Span, str]:
-    """What a path means: a state, or an outcome or key of the state before its last part; where
-    that is declared, and its name. Raises NotFoundError."""
-    around, _, name = path.rpartition("/")
-    found: dict[tuple[str, int, int], tuple[str, Span, str, str]] = {}
-    known: dict[str, None] = {}
-
-    def note(what: str, where: str, span: Span) -> None:
-        found.setdefault((what, id(span.source), span.start), (what, span, name, where))
-
-    for here, node in walk(machine.root):
-        known.setdefault(node.name)
-        if here == path or here.endswith(f"/{path}"):
-            note("state", here, node.span)
-        known.update(dict.fromkeys(outcome.name for outcome in node.outcomes))
-        if not (here == around or here.endswith(f"/{around}") or (not around and "/" not in here)):
-            continue
-        for outcome in node.outcomes:
-            if outcome.name == name:
-                note("outcome", f"{here}/{name}", outcome.span)
-        if isinstance(node, Leaf) or node.sugar or not node.children:
-            continue
-        keys = {key.name for key in (*node.inputs, *node.outputs)}
-        keys |= {preset.key for preset in node.userdata}
-        for child in node.children:
-            outer = remapping(child)
-            keys |= {outer.get(key.name, key.name) for key in (*child.inputs, *child.outputs)}
-        known.update(dict.fromkeys(sorted(keys)))
-        if name in keys:
-            note("key", f"{here}/{name}", node.children[0].span)
-    meant = [each for each in found.values() if kind in (None, each[0])]
-    if not meant:
-        near = did_you_mean(name, known) or ""
-        what = kind or "state, outcome or key"
-        raise NotFoundError(f"there is no {what} `{path}`\n{near}".rstrip())
-    if len(meant) > 1:
-        lines = [f"`{path}` may mean {len(meant)} things; say more of the path, or --kind:"]
-        lines += [f"  {where} ({what})" for what, _, _, where in meant[:20]]
-        raise NotFoundError("\n".join(lines))
-    return meant[0][:3]
-
-
 def run_contain(arguments: Namespace) -> int:
     """Put states into a container of their own."""
     if not is_plain(arguments.name):
@@ -339,7 +274,7 @@ def run_contain(arguments: Namespace) -> int:
         names = [each.rpartition("/")[2] for each in arguments.states]
         for name in names:
             if name not in known:
-                raise _not_beside(before, above, name, known)
+                raise not_beside(before, above, name, known)
         inside = [child for child in parent.children if child.name in names]
         presets = presets_of(desk.sheet(inside[0].span.source), inside)
         made = plan(parent, inside, presets, arguments.name, arguments.type)
@@ -349,16 +284,6 @@ def run_contain(arguments: Namespace) -> int:
         return desk.written()
 
     return perform(arguments, "contain", change)
-
-
-def _not_beside(machine: Machine, above: str, name: str, known: Iterable[str]) -> NotFoundError:
-    """Why a state cannot be taken together with those of the container at `above`."""
-    other = next((path for path, node in walk(machine.root) if node.name == name), None)
-    if other is not None:
-        words = f"`{name}` is in `{other.rpartition('/')[0]}`, the first state in `{above}`"
-        return NotFoundError(f"{words}\none container takes states of one container")
-    near = did_you_mean(name, known) or f"it has {listed(known)}"
-    return NotFoundError(f"`{above}` has no state `{name}`\n{near}")
 
 
 def _told(library: Library, leaf: Leaf) -> Told:

@@ -111,7 +111,6 @@ def test_code_in_another_language(project: Path, capsys: pytest.CaptureFixture[s
         (["state", "Grasp", "--input", "a b"], "`a b` is no name for a key"),
         (["state", "Grasp", "--input", "a=float<"], "`float<` is no type"),
         (["state", "Grasp", "--input", "a=flaot"], "`flaot` names no type\ndid you mean `float`?"),
-        (["smachac.toml"], "`smachac.toml` is a file: name a folder"),
         (["state", "Grasp", "--outcome", "no good"], "`no good` is no name for an outcome"),
         (["state", "Grasp", "--target", "cpp", "--input", "a=pkg/Msg"], "there can be no stub"),
     ],
