@@ -25,6 +25,7 @@ from smachac.ir.nodes import (
     Value,
     Variable,
 )
+from smachac.ir.userdata import remapping
 from smachac.ir.walk import GOOD_OUTCOMES, PREEMPTED, outcome_names
 from smachac.source import Span
 from smachac.sugar import EXHAUSTED, TIMEOUT, ForEach, Retry, Sugar, Timeout
@@ -177,7 +178,7 @@ def _repeated(node: Node, loop: ForEach) -> Iterator:
     stopped = PREEMPTED if PREEMPTED in own else on[0] if on else EXHAUSTED
     items = as_value(loop.items)
     fields = _around(node)
-    remaps = {remap.key: remap.to for remap in node.remaps}
+    remaps = remapping(node)
     item = next((key for key, to in remaps.items() if to == loop.item), loop.item)
     fields["inputs"] = tuple(key for key in node.inputs if key.name != item)
     fields["remaps"] = tuple(remap for remap in node.remaps if remap.key != item)

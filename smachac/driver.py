@@ -11,6 +11,7 @@ from smachac.checks import check_machine
 from smachac.diagnostics import Diagnostic, Finding, Report, has_errors, identity, in_order
 from smachac.ir.depth import deep_recursion
 from smachac.ir.nodes import Checked, Machine
+from smachac.ir.userdata import remapping
 from smachac.ir.walk import walk
 from smachac.lower import lower
 from smachac.policy import Allowance, allowances, heeded, settled
@@ -122,7 +123,7 @@ def analyse_alone(source: Source, library: Library, report: Report) -> Analysis:
         outside = called((), (), ())
     else:
         state = machine.root.children[0]
-        outer = {remap.key: remap.to for remap in state.remaps}
+        outer = remapping(state)
         keys = (
             [outer.get(key.name, key.name) for key in part]
             for part in (state.inputs, state.outputs)

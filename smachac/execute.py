@@ -62,7 +62,7 @@ def execute(
 
         with (
             _watching(module, watch) as outcomes,
-            _quiet(module["smach"]),
+            quiet(module["smach"], _told),
             _preempting(built, on_preempt),
         ):
             outcome: str | None = module[main_function(machine)]()
@@ -121,18 +121,19 @@ def loaded(name: str, text: str, folder: Path) -> Iterator[dict[str, Any]]:
         sys.path.remove(str(folder.resolve()))
 
 
+def hidden(message: str, *arguments: object) -> None:
+    """What SMACH logs, and nobody is to read."""
+
+
+def _told(message: str, *arguments: object) -> None:
+    print(message % arguments if arguments else message, file=sys.stderr)
+
+
 @contextmanager
-def _quiet(smach: Any) -> Iterator[None]:
-    """Progress is shown from the trace; of what SMACH logs, warnings and errors remain."""
-
-    def shown(message: str, *arguments: object) -> None:
-        print(message % arguments if arguments else message, file=sys.stderr)
-
-    def hidden(message: str, *arguments: object) -> None:
-        pass
-
+def quiet(smach: Any, log: Callable[..., None]) -> Iterator[None]:
+    """Progress is shown from the trace; of what SMACH logs, warnings and errors go to `log`."""
     before = smach.loginfo, smach.logwarn, smach.logdebug, smach.logerr
-    smach.set_loggers(hidden, shown, hidden, shown)
+    smach.set_loggers(hidden, log, hidden, log)
     try:
         yield
     finally:

@@ -5,9 +5,10 @@ from __future__ import annotations
 import re
 from collections.abc import Iterator, Mapping
 
-from smachac.checks.accesses import accesses, inside
 from smachac.checks.once import containers, states
+from smachac.checks.sharing import accesses, inside
 from smachac.ir.nodes import Data, Machine, Node
+from smachac.ir.userdata import remapping
 
 Held = dict[int, dict[str, Node]]
 """By `id` of a state what it or something in it claims, with the innermost that does."""
@@ -48,7 +49,7 @@ def _have_keys(machine: Machine) -> bool:
 
 
 def _filled(claim: str, node: Node, keys: Mapping[str, str | None]) -> str:
-    names = {remap.key: remap.to for remap in node.remaps}
+    names = remapping(node)
     inputs = {key.name for key in node.inputs}
 
     def value(found: re.Match[str]) -> str:
@@ -68,7 +69,7 @@ def _constants(machine: Machine) -> dict[int, Constants]:
         parents.update((id(child), container) for child in container.children)
         own: Constants = {preset.key: _text(preset.value.data) for preset in container.userdata}
         outside = found[id(parents[id(container)])] if id(container) in parents else None
-        names = {remap.key: remap.to for remap in container.remaps}
+        names = remapping(container)
         for key in container.inputs:
             outer = names.get(key.name, key.name)
             if outside is None:

@@ -4,10 +4,10 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 
-from smachac.checks.accesses import Accesses, accesses
 from smachac.checks.claims import Held, claims, prefixes
 from smachac.checks.hints import calls, other_place
 from smachac.checks.once import containers
+from smachac.checks.sharing import Accesses, accesses
 from smachac.diagnostics import Finding, Related, Severity, rule
 from smachac.ir.nodes import Concurrence, Machine, Node
 from smachac.problems import listed

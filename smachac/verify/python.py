@@ -9,7 +9,7 @@ from functools import partial
 from pathlib import Path
 from typing import Any
 
-from smachac.execute import loaded, places
+from smachac.execute import hidden, loaded, places, quiet
 from smachac.ir.nodes import Machine
 from smachac.runtime import trace
 from smachac.verify.scenes import Event, Player, Scene, UnplayableError, see
@@ -24,7 +24,7 @@ def player(name: str, text: str, machine: Machine, *, folder: Path) -> Player:
     sources = places(machine)
 
     def play(scenes: Sequence[Scene]) -> Iterator[list[Event]]:
-        with _told(), loaded(name, text, folder) as module, _silent(module["smach"]):
+        with _told(), loaded(name, text, folder) as module, quiet(module["smach"], hidden):
             for scene in scenes:
                 yield _played(module["build"](), machine.root.name, scene, sources)
 
@@ -54,18 +54,3 @@ def _played(built: Any, name: str, scene: Scene, sources: dict[str, str]) -> lis
     with suppress(Exception):
         built.execute()
     return events
-
-
-@contextmanager
-def _silent(smach: Any) -> Iterator[None]:
-    """Nothing that SMACH logs is shown: runs that are to fail are no news."""
-
-    def hidden(message: str, *arguments: object) -> None:
-        pass
-
-    before = smach.loginfo, smach.logwarn, smach.logdebug, smach.logerr
-    smach.set_loggers(hidden, hidden, hidden, hidden)
-    try:
-        yield
-    finally:
-        smach.set_loggers(*before)

@@ -10,6 +10,7 @@ from collections.abc import Callable, Iterable, Mapping
 from typing import Any
 
 from smachac.ir.nodes import Concurrence, Container, Data, Expression, Leaf, Node, Struct, Variable
+from smachac.ir.userdata import remapping
 from smachac.ir.walk import own_outcomes
 from smachac.targets.python import body
 from smachac.targets.python.layout import call, flat, literal, string
@@ -200,7 +201,7 @@ def edges(node: Node, parent: Container | None) -> dict[str, object]:
     """The `transitions` and `remapping` of a state, where it has any. In a Concurrence there are no
     transitions: its `add` takes none."""
     steps = {edge.outcome: edge.target for edge in node.transitions if edge.origin == "written"}
-    remaps = {remap.key: remap.to for remap in node.remaps}
+    remaps = remapping(node)
     found = {"transitions": {} if isinstance(parent, Concurrence) else steps, "remapping": remaps}
     return {name: value for name, value in found.items() if value}
 

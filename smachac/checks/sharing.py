@@ -1,4 +1,5 @@
-"""Which keys of the userdata around it a state reads and writes, and what in it does so."""
+"""What states share: which keys of the userdata around it each reads and writes, and what in it
+does so. What a leaf does to its own keys is ir/accesses.py's."""
 
 from __future__ import annotations
 
@@ -7,6 +8,7 @@ from typing import NamedTuple
 from smachac.checks.once import states
 from smachac.ir import nodes
 from smachac.ir.nodes import Leaf, Machine, Node
+from smachac.ir.userdata import remapping
 
 Keys = dict[str, Node]
 """Keys, under the names they have around the state, with the leaf or container that is behind it:
@@ -67,7 +69,7 @@ def around(node: Node, own: Accesses) -> Accesses:
 
 
 def _renamed(node: Node, keys: Keys) -> Keys:
-    names = {remap.key: remap.to for remap in node.remaps}
+    names = remapping(node)
     found: Keys = {}
     for key, origin in keys.items():
         found.setdefault(names.get(key, key), origin)
