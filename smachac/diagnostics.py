@@ -9,6 +9,7 @@ from __future__ import annotations
 
 import difflib
 import hashlib
+import re
 from collections.abc import Callable, Iterable, Iterator
 from dataclasses import dataclass, field
 from enum import Enum
@@ -162,8 +163,16 @@ def run_rules(machine: object) -> Iterator[Diagnostic]:
 
 
 def identity(item: Diagnostic) -> tuple[object, ...]:
-    """What two findings have in common that say the same, met through different calls."""
-    return item.code.code, item.span, item.finding.message
+    """What two findings have in common that say the same, met through different calls: in a
+    sub-script all but the names of the states around, which calls give."""
+    finding, message = item.finding, item.finding.message
+    if any(each.span.source is not finding.span.source for each in finding.related):
+        names = set((finding.node or "").split("/"))
+        message = _QUOTED.sub(lambda found: "``" if found[1] in names else found[0], message)
+    return item.code.code, item.severity, item.span, message
+
+
+_QUOTED = re.compile("`([^`]*)`")
 
 
 def in_order(report: Iterable[Diagnostic]) -> Report:
