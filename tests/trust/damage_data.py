@@ -331,6 +331,23 @@ def hold_a_key_that_nobody_reads(victim: Victim) -> Mutant | None:
 
 
 @kind
+def give_a_key_two_values(victim: Victim) -> Mutant | None:
+    """In a container, and in a leaf of it."""
+    found = [
+        (site, key, leaf)
+        for site in victim.sites()
+        for key in site.pairs("userdata")
+        for leaf in site.states()
+        if isinstance(victim.node(leaf), Leaf) and "userdata" not in leaf.body
+    ]
+    if not found:
+        return None
+    site, key, leaf = victim.draw.choice(found)
+    leaf.body["userdata"] = {key: "another one"}
+    return Mutant(codes=("SM313",), places=((site.file, (*site.path, "userdata", key)),))
+
+
+@kind
 def take_in_a_key_that_nobody_needs(victim: Victim) -> Mutant | None:
     found = [site for site in victim.sites() if site.target in ("StateMachine", "Sequence")]
     site = victim.pick(site for site in found if site.path and victim.node(site) is not None)
