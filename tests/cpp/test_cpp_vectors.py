@@ -40,7 +40,6 @@ DEVIATIONS = {
     "h097-concurrence-child-none": NOTHING,
     "h114-iterator-child-none": NOTHING,
     "h115-iterator-raw-userdata": KEYS,
-    "h131-preempt-nested-unserviced": "a request that was answered is gone everywhere",
     "A20-006": KEYS,
     "A20-034": DECLARED,
     "A20-139": KEYS,

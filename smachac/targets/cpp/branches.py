@@ -48,7 +48,7 @@ def concurrence(inside: Inside) -> Lines:
         "struct {",
         *fields,
         "} ended{};",
-        f"smachac::Branches<Run, {len(node.children)}> branches(around);",
+        f"smachac::Branches<Run, {len(node.children)}> branches(around, places);",
         f"branches.run({str(node.join == 'any').lower()}, [&](std::size_t branch, Run &run) {{",
         "  const auto state = static_cast<State>(branch);",
         *indented(guarded([line[2:] for line in switch(cases)], caught_switch(caught))),

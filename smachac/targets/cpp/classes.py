@@ -9,7 +9,7 @@ from smachac.ir.nodes import Data, Key, Leaf
 from smachac.ir.types import Type
 from smachac.ir.walk import PREEMPTED
 from smachac.states import StateType
-from smachac.targets.cpp.leaves import LeafCode
+from smachac.targets.cpp.leaves import STOP, LeafCode
 from smachac.targets.cpp.plan import Scope, converts
 from smachac.targets.cpp.types import UnportableError, cpp_literal, cpp_type, cpp_value, plain
 from smachac.targets.cpp.words import identifier
@@ -68,7 +68,7 @@ def class_leaf(code: ClassCode, leaf: Leaf, scope: Scope) -> LeafCode:
     arguments = [
         *([f"{{{', '.join(inputs)}}}"] if inputs else []),
         *([f"{{{', '.join(f'run.out({out})' for out in outs)}}}"] if outs else []),
-        *(["run.stop"] if stops(type_) else []),
+        *([STOP] if stops(type_) else []),
     ]
     call = f"{state}.execute({', '.join(arguments)})"
     if outs:

@@ -2,10 +2,13 @@
 
 from __future__ import annotations
 
+from itertools import islice
+
 from smachac.ir.nodes import Concurrence, Iterator
+from smachac.ir.walk import walk
 from smachac.targets.cpp.branches import concurrence
 from smachac.targets.cpp.inside import Inside, Lines, indented, says, used
-from smachac.targets.cpp.machines import machine
+from smachac.targets.cpp.machines import MOST_STATES, machine
 from smachac.targets.cpp.rounds import iterator
 
 
@@ -20,9 +23,11 @@ def execute(inside: Inside) -> Lines:
             body = machine(inside)
     states, userdata = used(body)
     run = next((name for name in ("around", "run") if says(body, name)), "")
+    # A container is run from one place only: if it is small, what surrounds it takes it in.
+    few = len(list(islice(walk(inside.node), MOST_STATES + 1))) <= MOST_STATES
     return [
         "template <class Run>",
-        f"Outcome execute(States &{states}, Userdata &{userdata}, Run &{run}) {{",
+        f"{'[[gnu::always_inline]] ' if few else ''}inline Outcome execute(States &{states}, Userdata &{userdata}, Run &{run}) {{",
         *indented(body),
         "}",
     ]

@@ -8,7 +8,7 @@ from dataclasses import dataclass, field
 from typing import NamedTuple
 
 from smachac import problems
-from smachac.ir.nodes import Leaf, Machine
+from smachac.ir.nodes import Iterator, Leaf, Machine
 from smachac.ir.walk import walk
 from smachac.states import Library, find_state_type
 from smachac.targets import made_by
@@ -66,13 +66,14 @@ def header_of(plan: Plan, library: Library) -> Header:
 @dataclass(slots=True, kw_only=True)
 class _Printing:
     """What the containers of one header share: the classes of state types by name, and the
-    parameters that the `States` of each container printed so far are made with, by path. `missing`
-    are the state types that have no code."""
+    parameters that the `States` of each container printed so far are made with, by path; those of them in which something hears of requests
+    to stop. `missing` are the state types that have no code."""
 
     plan: Plan
     library: Library
     classes: dict[str, ClassCode | None] = field(default_factory=dict)
     parameters: dict[str, tuple[str, ...]] = field(default_factory=dict)
+    stopping: set[str] = field(default_factory=set)
     missing: set[str] = field(default_factory=set)
 
     def code_of(self, leaf: Leaf, scope: Scope) -> LeafCode | None:
@@ -111,7 +112,15 @@ def _container(printing: _Printing, scope: Scope) -> Lines:
         _places(scope),
     ]
     names = frozenset(child.name for child in node.children)
-    inside = Inside(scope=scope, leaves=leaves, names=names, scopes=plan.scopes)
+    inside = Inside(
+        scope=scope,
+        leaves=leaves,
+        names=names,
+        scopes=plan.scopes,
+        stopping=printing.stopping,
+    )
+    if isinstance(node, Iterator) or any(inside.hears(child) for child in node.children):
+        printing.stopping.add(scope.path)
     try:
         parts += [parts_of(inside), execute(inside)]
     except UnportableError as error:

@@ -4,11 +4,12 @@ from __future__ import annotations
 
 import re
 from collections.abc import Mapping
+from collections.abc import Set as AbstractSet
 from dataclasses import dataclass
 
 from smachac.ir.nodes import Concurrence, Iterator, Leaf, Node, Sequence, StateMachine
 from smachac.ir.walk import own_outcomes
-from smachac.targets.cpp.leaves import LeafCode
+from smachac.targets.cpp.leaves import STOP, LeafCode
 from smachac.targets.cpp.plan import Scope, member, place
 from smachac.targets.cpp.types import UnportableError
 from smachac.targets.cpp.words import identifier
@@ -30,12 +31,20 @@ GOES_ON = "SMACHAC_CATCH { run.failed(places, state); }"
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Inside:
     """A container that is to be printed, the code of its leaves by name, and the names of all
-    its states; `scopes` are those of the machine."""
+    its states; `scopes` are those of the machine. `stopping` are the paths of containers in which
+    something hears of requests to stop."""
 
     scope: Scope
     leaves: Mapping[str, LeafCode]
     names: frozenset[str]
     scopes: Mapping[str, Scope]
+    stopping: AbstractSet[str]
+
+    def hears(self, child: Node) -> bool:
+        """Whether a state, or something in it, is told of requests to stop."""
+        if isinstance(child, Leaf):
+            return STOP in self.leaves[child.name].call
+        return f"{self.scope.path}/{child.name}" in self.stopping
 
     @property
     def node(self) -> StateMachine | Sequence | Concurrence | Iterator:

@@ -28,6 +28,9 @@ LARGEST_WORD = 2**32
 Refuse = Callable[[Span, UnportableError], None]
 """Notes what C++ cannot say, and where."""
 
+STOP = "run.stop_for(places, state)"
+"""What hands a state the requests to stop."""
+
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class LeafCode:
@@ -80,7 +83,7 @@ def _parameters(body: _Body) -> dict[str, str]:
     return {
         **({"Userdata &ud": "ud"} if "ud." in text else {}),
         **({"Run &run": "run"} if watched else {}),
-        **({"smachac::Stop &stop": "run.stop"} if "stop." in text else {}),
+        **({"smachac::Stop &stop": STOP} if "stop." in text else {}),
     }
 
 

@@ -109,5 +109,6 @@ def _way(inside: Inside, child: Node, name: str, ended: str) -> Lines:
         return [f"run.undeclared(places, state, {told});"]
     if leads_to_child(edge, inside.names):
         return [f"run.go(places, state, {told}, State::{identifier(edge.target)});", "continue;"]
-    end = f"run.end(places, state, {told}, {inside.ends(edge.target)});"
+    how = "end_asked" if inside.hears(child) else "end"
+    end = f"run.{how}(places, state, {told}, {inside.ends(edge.target)});"
     return [f"{ended} = {end}", "return true;"] if ended else [f"return {end}"]

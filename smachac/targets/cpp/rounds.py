@@ -61,7 +61,7 @@ def iterator(inside: Inside) -> Lines:
         f"  return {done};",
         "}",
         f"const auto state = {state};",
-        "smachac::Round round(run.stop, items.size());",
+        "smachac::Round round(run.stop, places[0], items.size());",
         "for (const auto &item : items) {",
         f"  {item}.hold(item);",
         *([f"  // {place(child)}"] if place(child) else []),

@@ -24,6 +24,7 @@
 #include <random>
 #include <stdexcept>
 #include <string>
+#include <string_view>
 #include <thread>
 #include <type_traits>
 #include <utility>
@@ -259,7 +260,8 @@ public:
   Stop(const Stop &) = delete;
   Stop &operator=(const Stop &) = delete;
 
-  /// Ask what runs to stop. It goes on until a state answers; until then each next state is asked.
+  /// Ask what runs to stop. It goes on until a state answers; until then each next state is asked. A
+  /// state that ends its machine without an answer keeps the request: it is asked when it runs again.
   void request() {
     std::vector<std::pair<Observer *, Place>> told;
     ask(told);
@@ -283,6 +285,8 @@ public:
 
 private:
   template <class Run, std::size_t N> friend class Branches;
+  friend class Round;
+  friend struct Run;
   friend class WatchedRun;
 
   static constexpr double longest = 1e9;
@@ -292,6 +296,7 @@ private:
     if (ended_) {
       return;
     }
+    asker_ = nullptr;
     asked_.store(true);
     requests_.fetch_add(1);
     wake_.notify_all();
@@ -303,10 +308,77 @@ private:
     }
   }
 
+  static bool within(std::string_view path, std::string_view around) {
+    return path.substr(0, around.size()) == around &&
+           (path.size() == around.size() || path[around.size()] == '/');
+  }
+  /// A state starts: it is asked again where it, or a container around it, keeps a request.
+  [[gnu::cold, gnu::noinline]] void remind(const char *path) noexcept {
+    const std::lock_guard<std::mutex> hold(lock_);
+    settle(path);
+    ask_again([path](const char *each) { return within(path, each); });
+  }
+  /// A machine ends: its last state keeps a request that waits for an answer.
+  [[gnu::cold, gnu::noinline]] void keep(const char *path) noexcept {
+    const std::lock_guard<std::mutex> hold(lock_);
+    settle(path);
+    if (asked_.load() && (asker_ == nullptr || !within(asker_, path))) {
+      put(path);
+    }
+  }
+  /// An iterator ends because of a request: states in it keep none.
+  void forget(const char *path) {
+    const std::lock_guard<std::mutex> hold(lock_);
+    take([path](const char *each) { return within(each, path); });
+  }
+
+  // These are called under the lock.
+
+  /// A request that a state had kept ends with that state: it keeps it again.
+  void settle(const char *path) {
+    if (asker_ == nullptr || within(path, asker_)) {
+      return;
+    }
+    if (asked_.exchange(false)) {
+      put(asker_);
+    }
+    asker_ = nullptr;
+  }
+  /// Ask for some that keep a request, all of which are around one state.
+  template <class Which> void ask_again(Which which) {
+    const char *outer = nullptr;
+    take([&](const char *each) {
+      const bool found = which(each);
+      if (found && (outer == nullptr || within(outer, each))) {
+        outer = each;
+      }
+      return found;
+    });
+    if (outer != nullptr && !asked_.exchange(true)) {
+      asker_ = outer;
+    }
+    keeps_ = asker_ != nullptr || !kept_.empty();
+  }
+  void put(const char *path) {
+    take([path](const char *each) { return std::strcmp(each, path) == 0; });
+    kept_.push_back(path);
+    keeps_ = true;
+  }
+  /// Take some paths out.
+  template <class Which> void take(Which which) {
+    kept_.erase(std::remove_if(kept_.begin(), kept_.end(), which), kept_.end());
+  }
+
   std::atomic<bool> asked_{false};
   std::atomic<std::uint64_t> requests_{0};
   std::mutex lock_;
   std::condition_variable wake_;
+  // Whether a look at those that keep a request is worth it; only the thread of control does.
+  bool keeps_ = false;
+  // Under the lock: the paths of the states that keep a request, and of the one whose own request
+  // `asked_` is; null where it is everybody's.
+  std::vector<const char *> kept_;
+  const char *asker_ = nullptr;
   // Under the lock: the branches of the concurrence that runs, and what an observer is told of.
   Stop *branches_ = nullptr;
   Stop *next_ = nullptr;
@@ -319,8 +391,10 @@ private:
 /// then, even if its state has answered. A request from before is served as the first item starts.
 class Round {
 public:
-  Round(Stop &stop, std::size_t items)
-      : stop_(stop), before_(stop.requests()), left_(items), early_(stop.requested()) {
+  Round(Stop &stop, const Place &item, std::size_t items)
+      : stop_(stop), item_(item), before_(stop.requests()), left_(items) {
+    stop_.remind(item_.path);
+    early_ = stop_.requested();
     if (early_) {
       stop_.service();
     }
@@ -332,6 +406,7 @@ public:
       return false;
     }
     stop_.service();
+    stop_.forget(item_.path);
     return true;
   }
   /// Whether that was the last item.
@@ -339,9 +414,10 @@ public:
 
 private:
   Stop &stop_;
+  const Place &item_;
   std::uint64_t before_;
   std::size_t left_;
-  bool early_;
+  bool early_ = false;
 };
 
 /// An output of a state, by its own name for it.
@@ -405,7 +481,7 @@ struct NoOutcome : Undeclared {
   NoOutcome() : Undeclared("ended without an outcome") {}
 };
 
-[[noreturn]] inline void undeclared(const char *outcome) {
+[[noreturn, gnu::cold, gnu::noinline]] inline void undeclared(const char *outcome) {
   const std::string text = std::string("ended with `") + outcome + "`, which leads nowhere";
 #if defined(__cpp_exceptions)
   throw Undeclared(text);
@@ -414,7 +490,7 @@ struct NoOutcome : Undeclared {
 #endif
 }
 
-[[noreturn]] inline void no_outcome() {
+[[noreturn, gnu::cold, gnu::noinline]] inline void no_outcome() {
 #if defined(__cpp_exceptions)
   throw NoOutcome();
 #else
@@ -463,6 +539,21 @@ struct Run {
   Outcome end(const Place *, State, const char *, Outcome outcome) {
     return outcome;
   }
+  /// The same, of a state that can be asked to stop.
+  template <class State, class Outcome>
+  Outcome end_asked(const Place *places, State state, const char *, Outcome outcome) {
+    if (stop.requested()) {
+      stop.keep(places[static_cast<std::size_t>(state)].path);
+    }
+    return outcome;
+  }
+  /// The requests, for a state that is about to run.
+  template <class State> Stop &stop_for(const Place *places, State state) {
+    if (stop.keeps_) {
+      stop.remind(places[static_cast<std::size_t>(state)].path);
+    }
+    return stop;
+  }
   template <class State> void exit(const Place *, State, const char *) {}
   template <class T> Key<T> &out(Key<T> &key) { return key; }
   template <class Outcome, class... T> Outcome wrote(Outcome outcome, Output<T>...) {
@@ -487,7 +578,14 @@ struct Run {
   }
   /// To be called in SMACHAC_CATCH: what was thrown goes on as a StateError.
   template <class State> [[noreturn]] void failed(const Place *places, State state) {
-    detail::throw_on(places[static_cast<std::size_t>(state)], detail::message_of_current());
+    give_up(stop, places[static_cast<std::size_t>(state)]);
+  }
+
+private:
+  // Out of the way, so that machines are small enough to become one with those around them.
+  [[noreturn, gnu::cold, gnu::noinline]] static void give_up(Stop &stop, const Place &place) {
+    stop.keep(place.path);
+    detail::throw_on(place, detail::message_of_current());
   }
 };
 
@@ -538,6 +636,13 @@ public:
     ended(places[static_cast<std::size_t>(state)], outcome, name(with));
     return with;
   }
+  template <class State, class Outcome>
+  Outcome end_asked(const Place *places, State state, const char *outcome, Outcome with) {
+    return Run{stop}.end_asked(places, state, outcome, end(places, state, outcome, with));
+  }
+  template <class State> Stop &stop_for(const Place *places, State state) {
+    return Run{stop}.stop_for(places, state);
+  }
   template <class State> void exit(const Place *places, State state, const char *outcome) {
     left(places[static_cast<std::size_t>(state)], outcome);
   }
@@ -575,8 +680,12 @@ private:
     bool asked = false;
     {
       const std::lock_guard<std::mutex> hold(stop.lock_);
+      stop.settle(place.path);
+      stop.ask_again([&](const char *each) {
+        return Stop::within(place.path, each) && std::strcmp(place.path, each) != 0;
+      });
       stop.running_.push_back(place);
-      asked = stop.requested();
+      asked = stop.requested() && stop.asker_ != place.path;
     }
     if (asked) {
       observer_.tell({"preempt", place});
@@ -610,6 +719,7 @@ private:
     tell_error(place, detail::message_of_current());
   }
   [[noreturn]] void failed_at(const Place &place) {
+    stop.keep(place.path);
     pop();
     const std::string message = detail::message_of_current();
     tell_error(place, message);
@@ -634,11 +744,13 @@ private:
 /// The branches of a concurrence: a thread and a Stop for each of `N`.
 template <class Run, std::size_t N> class Branches {
 public:
-  explicit Branches(Run &around) : around_(around) {
+  Branches(Run &around, const Place *places) : around_(around), places_(places) {
+    around_.stop.remind(places_[0].path);
     const std::lock_guard<std::mutex> hold(around_.stop.lock_);
     for (std::size_t i = 0; i < N; ++i) {
       stops_[i].next_ = i + 1 < N ? &stops_[i + 1] : nullptr;
       stops_[i].asked_.store(around_.stop.requested());
+      move_kept(i, around_.stop, stops_[i]);
     }
     around_.stop.branches_ = stops_.data();
   }
@@ -732,20 +844,39 @@ private:
       each.request();
     }
   }
-  /// A request to the concurrence is served unless a branch has left one open.
+  /// A request to the concurrence is served unless a branch has left one open. What states of such
+  /// a branch keep is gone.
   void leave() {
     const std::lock_guard<std::mutex> hold(around_.stop.lock_);
     if (around_.stop.branches_ == nullptr) {
       return;
     }
     around_.stop.branches_ = nullptr;
-    const auto open = [](const Stop &each) { return each.requested(); };
-    if (std::none_of(stops_.begin(), stops_.end(), open)) {
+    bool open = false;
+    for (std::size_t i = 0; i < N; ++i) {
+      stops_[i].settle(places_[i].path);
+      open = open || stops_[i].requested();
+      if (!stops_[i].requested()) {
+        move_kept(i, stops_[i], around_.stop);
+      }
+    }
+    if (!open) {
       around_.stop.service();
     }
   }
+  /// What states of a branch keep, when it starts and when it has ended.
+  void move_kept(std::size_t i, Stop &from, Stop &to) {
+    from.take([&](const char *path) {
+      const bool found = Stop::within(path, places_[i].path);
+      if (found) {
+        to.put(path);
+      }
+      return found;
+    });
+  }
 
   Run &around_;
+  const Place *places_;
   std::array<Stop, N> stops_;
   std::atomic<bool> asked_{false};
   Failure failure_;

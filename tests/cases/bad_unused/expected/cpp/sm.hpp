@@ -44,7 +44,7 @@ inline constexpr smachac::Place places[] = {
 };
 
 template <class Run>
-Outcome execute(States &states, Userdata &, Run &run) {
+[[gnu::always_inline]] inline Outcome execute(States &states, Userdata &, Run &run) {
   State state = State::SAY;
   SMACHAC_TRY {
     for (;;) {
@@ -121,7 +121,7 @@ inline constexpr smachac::Place places[] = {
 };
 
 template <class Run>
-Outcome execute(States &states, Userdata &ud, Run &run) {
+[[gnu::always_inline]] inline Outcome execute(States &states, Userdata &ud, Run &run) {
   State state = State::CALL;
   SMACHAC_TRY {
     for (;;) {

@@ -74,7 +74,7 @@ inline constexpr smachac::Place places[] = {
 };
 
 template <class Run>
-Outcome execute(States &states, Userdata &, Run &run) {
+[[gnu::always_inline]] inline Outcome execute(States &states, Userdata &, Run &run) {
   State state = State::FOO;
   SMACHAC_TRY {
     for (;;) {

@@ -64,12 +64,12 @@ inline constexpr smachac::Place places[] = {
 };
 
 template <class Run>
-Outcome execute(States &states, Userdata &, Run &around) {
+[[gnu::always_inline]] inline Outcome execute(States &states, Userdata &, Run &around) {
   struct {
     types::WORK::Outcome WORK;
     types::WATCH::Outcome WATCH;
   } ended{};
-  smachac::Branches<Run, 2> branches(around);
+  smachac::Branches<Run, 2> branches(around, places);
   branches.run(true, [&](std::size_t branch, Run &run) {
     const auto state = static_cast<State>(branch);
     SMACHAC_TRY {
@@ -84,7 +84,7 @@ Outcome execute(States &states, Userdata &, Run &around) {
         }
         break;
       case State::WATCH: // main.yml:15
-        ended.WATCH = states.WATCH.execute(run.stop);
+        ended.WATCH = states.WATCH.execute(run.stop_for(places, state));
         switch (ended.WATCH) {
         case types::WATCH::Outcome::succeeded:
           run.exit(places, state, "succeeded");
@@ -138,7 +138,7 @@ inline constexpr smachac::Place places[] = {
 };
 
 template <class Run>
-Outcome execute(States &states, Userdata &ud, Run &run) {
+[[gnu::always_inline]] inline Outcome execute(States &states, Userdata &ud, Run &run) {
   State state = State::RACE;
   SMACHAC_TRY {
     for (;;) {
@@ -147,9 +147,9 @@ Outcome execute(States &states, Userdata &ud, Run &run) {
       case State::RACE: // main.yml:6
         switch (RACE::execute(states.RACE_, ud.RACE_, run)) {
         case RACE::Outcome::succeeded:
-          return run.end(places, state, "succeeded", Outcome::succeeded);
+          return run.end_asked(places, state, "succeeded", Outcome::succeeded);
         case RACE::Outcome::aborted:
-          return run.end(places, state, "aborted", Outcome::aborted);
+          return run.end_asked(places, state, "aborted", Outcome::aborted);
         }
         break;
       default:

@@ -62,12 +62,12 @@ inline constexpr smachac::Place places[] = {
 };
 
 template <class Run>
-Outcome execute(States &states, Userdata &, Run &around) {
+[[gnu::always_inline]] inline Outcome execute(States &states, Userdata &, Run &around) {
   struct {
     types::A::Outcome A;
     types::B::Outcome B;
   } ended{};
-  smachac::Branches<Run, 2> branches(around);
+  smachac::Branches<Run, 2> branches(around, places);
   branches.run(false, [&](std::size_t branch, Run &run) {
     const auto state = static_cast<State>(branch);
     SMACHAC_TRY {
@@ -160,13 +160,13 @@ inline constexpr smachac::Place places[] = {
 };
 
 template <class Run>
-Outcome execute(States &states, Userdata &ud, Run &run) {
+[[gnu::always_inline]] inline Outcome execute(States &states, Userdata &ud, Run &run) {
   const std::array<std::int64_t, 3> items = std::array<std::int64_t, 3>{{1, 2, 3}};
   if (items.empty()) {
     return Outcome::finished;
   }
   const auto state = State::STEP;
-  smachac::Round round(run.stop, items.size());
+  smachac::Round round(run.stop, places[0], items.size());
   for (const auto &item : items) {
     ud.number.hold(item);
     // main.yml:26
@@ -268,7 +268,7 @@ inline constexpr smachac::Place places[] = {
 };
 
 template <class Run>
-Outcome execute(States &states, Userdata &, Run &run) {
+[[gnu::always_inline]] inline Outcome execute(States &states, Userdata &, Run &run) {
   State state = State::ONE;
   SMACHAC_TRY {
     for (;;) {
@@ -346,7 +346,7 @@ inline constexpr smachac::Place places[] = {
 };
 
 template <class Run>
-Outcome execute(States &states, Userdata &ud, Run &run) {
+[[gnu::always_inline]] inline Outcome execute(States &states, Userdata &ud, Run &run) {
   State state = State::ROUND;
   SMACHAC_TRY {
     for (;;) {
@@ -366,7 +366,7 @@ Outcome execute(States &states, Userdata &ud, Run &run) {
           run.go(places, state, "finished", State::BOTH);
           continue;
         case ROUND::Outcome::aborted:
-          return run.end(places, state, "aborted", Outcome::aborted);
+          return run.end_asked(places, state, "aborted", Outcome::aborted);
         case ROUND::Outcome::go:
           run.undeclared(places, state, "go");
         }

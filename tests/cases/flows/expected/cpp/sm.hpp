@@ -62,7 +62,7 @@ inline constexpr smachac::Place places[] = {
 };
 
 template <class Run>
-Outcome execute(States &states, Userdata &ud, Run &run) {
+[[gnu::always_inline]] inline Outcome execute(States &states, Userdata &ud, Run &run) {
   State state = State::PLAN;
   SMACHAC_TRY {
     for (;;) {
@@ -78,13 +78,13 @@ Outcome execute(States &states, Userdata &ud, Run &run) {
         }
         break;
       case State::MOVE: // main.yml:32
-        switch (states.MOVE.execute({smachac::need(ud.goal, "positions")}, run.stop)) {
+        switch (states.MOVE.execute({smachac::need(ud.goal, "positions")}, run.stop_for(places, state))) {
         case ::smachac::MoveToJointPositionsState::Outcome::succeeded:
-          return run.end(places, state, "succeeded", Outcome::reached);
+          return run.end_asked(places, state, "succeeded", Outcome::reached);
         case ::smachac::MoveToJointPositionsState::Outcome::aborted:
-          return run.end(places, state, "aborted", Outcome::failed);
+          return run.end_asked(places, state, "aborted", Outcome::failed);
         case ::smachac::MoveToJointPositionsState::Outcome::preempted:
-          return run.end(places, state, "preempted", Outcome::failed);
+          return run.end_asked(places, state, "preempted", Outcome::failed);
         }
         break;
       default:
@@ -133,13 +133,13 @@ inline constexpr smachac::Place places[] = {
 };
 
 template <class Run>
-Outcome execute(States &states, Userdata &ud, Run &run) {
+[[gnu::always_inline]] inline Outcome execute(States &states, Userdata &ud, Run &run) {
   const auto items = smachac::need(ud.poses, "poses");
   if (items.empty()) {
     return Outcome::done;
   }
   const auto state = State::GO;
-  smachac::Round round(run.stop, items.size());
+  smachac::Round round(run.stop, places[0], items.size());
   for (const auto &item : items) {
     ud.pose.hold(item);
     // main.yml:23
@@ -272,7 +272,7 @@ inline constexpr smachac::Place places[] = {
 };
 
 template <class Run>
-Outcome execute(States &states, Userdata &ud, Run &run) {
+[[gnu::always_inline]] inline Outcome execute(States &states, Userdata &ud, Run &run) {
   State state = State::EACH;
   SMACHAC_TRY {
     for (;;) {
@@ -285,7 +285,7 @@ Outcome execute(States &states, Userdata &ud, Run &run) {
           run.go(places, state, "done", State::COUNT);
           continue;
         case EACH::Outcome::failed:
-          return run.end(places, state, "failed", Outcome::failed);
+          return run.end_asked(places, state, "failed", Outcome::failed);
         case EACH::Outcome::reached:
           run.undeclared(places, state, "reached");
         }
@@ -312,13 +312,13 @@ Outcome execute(States &states, Userdata &ud, Run &run) {
         }
         break;
       case State::HOME: // main.yml:70
-        switch (states.HOME.execute({smachac::convert<std::vector<double>>(ud.home.get())}, run.stop)) {
+        switch (states.HOME.execute({smachac::convert<std::vector<double>>(ud.home.get())}, run.stop_for(places, state))) {
         case ::smachac::MoveToJointPositionsState::Outcome::succeeded:
-          return run.end(places, state, "succeeded", Outcome::done);
+          return run.end_asked(places, state, "succeeded", Outcome::done);
         case ::smachac::MoveToJointPositionsState::Outcome::aborted:
-          return run.end(places, state, "aborted", Outcome::failed);
+          return run.end_asked(places, state, "aborted", Outcome::failed);
         case ::smachac::MoveToJointPositionsState::Outcome::preempted:
-          return run.end(places, state, "preempted", Outcome::failed);
+          return run.end_asked(places, state, "preempted", Outcome::failed);
         }
         break;
       default:

@@ -51,13 +51,13 @@ inline constexpr smachac::Place places[] = {
 };
 
 template <class Run>
-Outcome execute(States &states, Userdata &ud, Run &run) {
+[[gnu::always_inline]] inline Outcome execute(States &states, Userdata &ud, Run &run) {
   const auto items = smachac::need(ud.parts, "parts");
   if (items.empty()) {
     return Outcome::succeeded;
   }
   const auto state = State::HALVE;
-  smachac::Round round(run.stop, items.size());
+  smachac::Round round(run.stop, places[0], items.size());
   for (const auto &item : items) {
     ud.part.hold(item);
     // main.yml:60
@@ -162,12 +162,12 @@ inline constexpr smachac::Place places[] = {
 };
 
 template <class Run>
-Outcome execute(States &states, Userdata &ud, Run &around) {
+[[gnu::always_inline]] inline Outcome execute(States &states, Userdata &ud, Run &around) {
   struct {
     std::optional<types::LEFT::Outcome> LEFT;
     types::RIGHT::Outcome RIGHT;
   } ended{};
-  smachac::Branches<Run, 2> branches(around);
+  smachac::Branches<Run, 2> branches(around, places);
   branches.run(false, [&](std::size_t branch, Run &run) {
     const auto state = static_cast<State>(branch);
     SMACHAC_TRY {
@@ -185,7 +185,7 @@ Outcome execute(States &states, Userdata &ud, Run &around) {
         }
         break;
       case State::RIGHT: // main.yml:49
-        ended.RIGHT = states.RIGHT.execute(run.stop);
+        ended.RIGHT = states.RIGHT.execute(run.stop_for(places, state));
         switch (ended.RIGHT) {
         case types::RIGHT::Outcome::succeeded:
           run.exit(places, state, "succeeded");
@@ -267,13 +267,13 @@ inline constexpr smachac::Place places[] = {
 };
 
 template <class Run>
-Outcome execute(States &states, Userdata &ud, Run &run) {
+[[gnu::always_inline]] inline Outcome execute(States &states, Userdata &ud, Run &run) {
   const std::array<std::int64_t, 3> items = std::array<std::int64_t, 3>{{1, 2, 3}};
   if (items.empty()) {
     return Outcome::exhausted;
   }
   const auto state = State::CARRY;
-  smachac::Round round(run.stop, items.size());
+  smachac::Round round(run.stop, places[0], items.size());
   for (const auto &item : items) {
     ud.attempt.hold(item);
     // main.yml:28
@@ -350,7 +350,7 @@ inline constexpr smachac::Place places[] = {
 };
 
 template <class Run>
-Outcome execute(States &states, Userdata &ud, Run &run) {
+[[gnu::always_inline]] inline Outcome execute(States &states, Userdata &ud, Run &run) {
   State state = State::DIVIDE;
   SMACHAC_TRY {
     for (;;) {
@@ -467,7 +467,7 @@ inline constexpr smachac::Place places[] = {
 };
 
 template <class Run>
-Outcome execute(States &states, Userdata &ud, Run &run) {
+[[gnu::always_inline]] inline Outcome execute(States &states, Userdata &ud, Run &run) {
   State state = State::FIND;
   for (;;) {
     SMACHAC_TRY {
@@ -524,14 +524,14 @@ Outcome execute(States &states, Userdata &ud, Run &run) {
             run.go(places, state, "succeeded", State::EACH);
             continue;
           case BOTH::Outcome::failed:
-            return run.end(places, state, "failed", Outcome::aborted);
+            return run.end_asked(places, state, "failed", Outcome::aborted);
           }
           break;
         case State::EACH: // main.yml:50
           ud.EACH_.parts.hold(ud.parts.get());
           switch (EACH::execute(states.EACH_, ud.EACH_, run)) {
           case EACH::Outcome::succeeded:
-            return run.end(places, state, "succeeded", Outcome::succeeded);
+            return run.end_asked(places, state, "succeeded", Outcome::succeeded);
           case EACH::Outcome::error:
             run.go(places, state, "error", State::LET_GO);
             continue;

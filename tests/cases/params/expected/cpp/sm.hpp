@@ -47,7 +47,7 @@ inline constexpr smachac::Place places[] = {
 };
 
 template <class Run>
-Outcome execute(States &states, Userdata &, Run &run) {
+[[gnu::always_inline]] inline Outcome execute(States &states, Userdata &, Run &run) {
   State state = State::INNER;
   SMACHAC_TRY {
     for (;;) {
@@ -102,7 +102,7 @@ inline constexpr smachac::Place places[] = {
 };
 
 template <class Run>
-Outcome execute(States &states, Userdata &ud, Run &run) {
+[[gnu::always_inline]] inline Outcome execute(States &states, Userdata &ud, Run &run) {
   State state = State::OUTER;
   SMACHAC_TRY {
     for (;;) {

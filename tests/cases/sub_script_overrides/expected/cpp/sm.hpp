@@ -51,7 +51,7 @@ inline constexpr smachac::Place places[] = {
 };
 
 template <class Run>
-Outcome execute(States &states, Userdata &, Run &run) {
+[[gnu::always_inline]] inline Outcome execute(States &states, Userdata &, Run &run) {
   State state = State::A;
   SMACHAC_TRY {
     for (;;) {
@@ -128,7 +128,7 @@ inline constexpr smachac::Place places[] = {
 };
 
 template <class Run>
-Outcome execute(States &states, Userdata &, Run &run) {
+[[gnu::always_inline]] inline Outcome execute(States &states, Userdata &, Run &run) {
   State state = State::A;
   SMACHAC_TRY {
     for (;;) {
@@ -203,7 +203,7 @@ inline constexpr smachac::Place places[] = {
 };
 
 template <class Run>
-Outcome execute(States &states, Userdata &, Run &run) {
+[[gnu::always_inline]] inline Outcome execute(States &states, Userdata &, Run &run) {
   State state = State::A;
   SMACHAC_TRY {
     for (;;) {
@@ -267,7 +267,7 @@ inline constexpr smachac::Place places[] = {
 };
 
 template <class Run>
-Outcome execute(States &states, Userdata &ud, Run &run) {
+[[gnu::always_inline]] inline Outcome execute(States &states, Userdata &ud, Run &run) {
   State state = State::PLAIN;
   SMACHAC_TRY {
     for (;;) {

@@ -64,19 +64,19 @@ inline constexpr smachac::Place places[] = {
 };
 
 template <class Run>
-Outcome execute(States &states, Userdata &ud, Run &run) {
+[[gnu::always_inline]] inline Outcome execute(States &states, Userdata &ud, Run &run) {
   const std::array<std::int64_t, 2> items = std::array<std::int64_t, 2>{{1, 2}};
   if (items.empty()) {
     return Outcome::exhausted;
   }
   const auto state = State::EACH;
-  smachac::Round round(run.stop, items.size());
+  smachac::Round round(run.stop, places[0], items.size());
   for (const auto &item : items) {
     ud.attempt.hold(item);
     // main.yml:41
     SMACHAC_TRY {
       run.enter(places, state);
-      const auto outcome = states.EACH.execute(run.stop);
+      const auto outcome = states.EACH.execute(run.stop_for(places, state));
       const bool over = round.over();
       switch (outcome) {
       case types::EACH::Outcome::found:
@@ -133,13 +133,13 @@ inline constexpr smachac::Place places[] = {
 };
 
 template <class Run>
-Outcome execute(States &states, Userdata &ud, Run &run) {
+[[gnu::always_inline]] inline Outcome execute(States &states, Userdata &ud, Run &run) {
   const std::array<std::string, 2> items = std::array<std::string, 2>{{std::string("a"), std::string("b")}};
   if (items.empty()) {
     return Outcome::exhausted;
   }
   const auto state = State::EACH;
-  smachac::Round round(run.stop, items.size());
+  smachac::Round round(run.stop, places[0], items.size());
   for (const auto &item : items) {
     ud.unused.hold(item);
     // main.yml:41
@@ -220,7 +220,7 @@ inline constexpr smachac::Place places[] = {
 };
 
 template <class Run>
-Outcome execute(States &, Userdata &, Run &) {
+[[gnu::always_inline]] inline Outcome execute(States &, Userdata &, Run &) {
   return Outcome::succeeded;
 }
 
@@ -268,7 +268,7 @@ inline constexpr smachac::Place places[] = {
 };
 
 template <class Run>
-Outcome execute(States &states, Userdata &, Run &run) {
+[[gnu::always_inline]] inline Outcome execute(States &states, Userdata &, Run &run) {
   State state = State::HOPE;
   SMACHAC_TRY {
     for (;;) {
@@ -321,13 +321,13 @@ inline constexpr smachac::Place places[] = {
 };
 
 template <class Run>
-Outcome execute(States &states, Userdata &ud, Run &run) {
+[[gnu::always_inline]] inline Outcome execute(States &states, Userdata &ud, Run &run) {
   const std::array<std::int64_t, 2> items = std::array<std::int64_t, 2>{{1, 2}};
   if (items.empty()) {
     return Outcome::exhausted;
   }
   const auto state = State::TRIES;
-  smachac::Round round(run.stop, items.size());
+  smachac::Round round(run.stop, places[0], items.size());
   for (const auto &item : items) {
     ud.attempt.hold(item);
     // main.yml:27
@@ -425,19 +425,19 @@ inline constexpr smachac::Place places[] = {
 };
 
 template <class Run>
-Outcome execute(States &states, Userdata &, Run &around) {
+[[gnu::always_inline]] inline Outcome execute(States &states, Userdata &, Run &around) {
   struct {
     types::HASTE::Outcome HASTE;
     types::TIMER::Outcome TIMER;
   } ended{};
-  smachac::Branches<Run, 2> branches(around);
+  smachac::Branches<Run, 2> branches(around, places);
   branches.run(true, [&](std::size_t branch, Run &run) {
     const auto state = static_cast<State>(branch);
     SMACHAC_TRY {
       run.enter(places, state);
       switch (state) {
       case State::HASTE: // main.yml:21
-        ended.HASTE = states.HASTE.execute(run.stop);
+        ended.HASTE = states.HASTE.execute(run.stop_for(places, state));
         switch (ended.HASTE) {
         case types::HASTE::Outcome::succeeded:
           run.exit(places, state, "succeeded");
@@ -448,7 +448,7 @@ Outcome execute(States &states, Userdata &, Run &around) {
         }
         break;
       case State::TIMER: // main.yml:21
-        ended.TIMER = states.TIMER.execute(run.stop);
+        ended.TIMER = states.TIMER.execute(run.stop_for(places, state));
         switch (ended.TIMER) {
         case types::TIMER::Outcome::succeeded:
           run.exit(places, state, "succeeded");
@@ -525,13 +525,13 @@ inline constexpr smachac::Place places[] = {
 };
 
 template <class Run>
-Outcome execute(States &states, Userdata &ud, Run &run) {
+[[gnu::always_inline]] inline Outcome execute(States &states, Userdata &ud, Run &run) {
   const auto items = smachac::need(ud.waypoints, "waypoints");
   if (items.empty()) {
     return Outcome::succeeded;
   }
   const auto state = State::VISIT;
-  smachac::Round round(run.stop, items.size());
+  smachac::Round round(run.stop, places[0], items.size());
   for (const auto &item : items) {
     ud.goal.hold(item);
     // main.yml:13
@@ -636,19 +636,19 @@ inline constexpr smachac::Place places[] = {
 };
 
 template <class Run>
-Outcome execute(States &states, Userdata &, Run &around) {
+[[gnu::always_inline]] inline Outcome execute(States &states, Userdata &, Run &around) {
   struct {
     types::LOOK::Outcome LOOK;
     types::TIMER::Outcome TIMER;
   } ended{};
-  smachac::Branches<Run, 2> branches(around);
+  smachac::Branches<Run, 2> branches(around, places);
   branches.run(true, [&](std::size_t branch, Run &run) {
     const auto state = static_cast<State>(branch);
     SMACHAC_TRY {
       run.enter(places, state);
       switch (state) {
       case State::LOOK: // main.yml:6
-        ended.LOOK = states.LOOK.execute(run.stop);
+        ended.LOOK = states.LOOK.execute(run.stop_for(places, state));
         switch (ended.LOOK) {
         case types::LOOK::Outcome::succeeded:
           run.exit(places, state, "succeeded");
@@ -662,7 +662,7 @@ Outcome execute(States &states, Userdata &, Run &around) {
         }
         break;
       case State::TIMER: // main.yml:6
-        ended.TIMER = states.TIMER.execute(run.stop);
+        ended.TIMER = states.TIMER.execute(run.stop_for(places, state));
         switch (ended.TIMER) {
         case types::TIMER::Outcome::succeeded:
           run.exit(places, state, "succeeded");
@@ -751,31 +751,31 @@ inline constexpr smachac::Place places[] = {
 };
 
 template <class Run>
-Outcome execute(States &states, Userdata &ud, Run &run) {
+[[gnu::always_inline]] inline Outcome execute(States &states, Userdata &ud, Run &run) {
   State state = State::PAUSE;
   SMACHAC_TRY {
     for (;;) {
       run.enter(places, state);
       switch (state) {
       case State::PAUSE: // main.yml:6
-        switch (states.PAUSE.execute(ud, run.stop)) {
+        switch (states.PAUSE.execute(ud, run.stop_for(places, state))) {
         case types::PAUSE::Outcome::succeeded:
           run.go(places, state, "succeeded", State::LOOK);
           continue;
         case types::PAUSE::Outcome::preempted:
-          return run.end(places, state, "preempted", Outcome::preempted);
+          return run.end_asked(places, state, "preempted", Outcome::preempted);
         }
         break;
       case State::LOOK: // main.yml:6
         switch (LOOK::execute(states.LOOK_, ud.LOOK_, run)) {
         case LOOK::Outcome::succeeded:
-          return run.end(places, state, "succeeded", Outcome::succeeded);
+          return run.end_asked(places, state, "succeeded", Outcome::succeeded);
         case LOOK::Outcome::aborted:
-          return run.end(places, state, "aborted", Outcome::aborted);
+          return run.end_asked(places, state, "aborted", Outcome::aborted);
         case LOOK::Outcome::preempted:
-          return run.end(places, state, "preempted", Outcome::preempted);
+          return run.end_asked(places, state, "preempted", Outcome::preempted);
         case LOOK::Outcome::timeout:
-          return run.end(places, state, "timeout", Outcome::timeout);
+          return run.end_asked(places, state, "timeout", Outcome::timeout);
         }
         break;
       default:
@@ -820,13 +820,13 @@ inline constexpr smachac::Place places[] = {
 };
 
 template <class Run>
-Outcome execute(States &states, Userdata &ud, Run &run) {
+[[gnu::always_inline]] inline Outcome execute(States &states, Userdata &ud, Run &run) {
   const std::array<double, 3> items = std::array<double, 3>{{0.0, 0.1, 0.1}};
   if (items.empty()) {
     return Outcome::exhausted;
   }
   const auto state = State::TRY;
-  smachac::Round round(run.stop, items.size());
+  smachac::Round round(run.stop, places[0], items.size());
   for (const auto &item : items) {
     ud.pause.hold(item);
     // main.yml:6
@@ -939,7 +939,7 @@ inline constexpr smachac::Place places[] = {
 };
 
 template <class Run>
-Outcome execute(States &states, Userdata &ud, Run &run) {
+[[gnu::always_inline]] inline Outcome execute(States &states, Userdata &ud, Run &run) {
   State state = State::LOOK;
   SMACHAC_TRY {
     for (;;) {
@@ -951,9 +951,9 @@ Outcome execute(States &states, Userdata &ud, Run &run) {
           run.go(places, state, "succeeded", State::VISIT);
           continue;
         case LOOK::Outcome::preempted:
-          return run.end(places, state, "preempted", Outcome::stopped);
+          return run.end_asked(places, state, "preempted", Outcome::stopped);
         case LOOK::Outcome::exhausted:
-          return run.end(places, state, "exhausted", Outcome::failed);
+          return run.end_asked(places, state, "exhausted", Outcome::failed);
         }
         break;
       case State::VISIT: { // main.yml:13
@@ -971,9 +971,9 @@ Outcome execute(States &states, Userdata &ud, Run &run) {
       case State::HASTE: // main.yml:21
         switch (HASTE::execute(states.HASTE_, ud.HASTE_, run)) {
         case HASTE::Outcome::succeeded:
-          return run.end(places, state, "succeeded", Outcome::failed);
+          return run.end_asked(places, state, "succeeded", Outcome::failed);
         case HASTE::Outcome::preempted:
-          return run.end(places, state, "preempted", Outcome::stopped);
+          return run.end_asked(places, state, "preempted", Outcome::stopped);
         case HASTE::Outcome::timeout:
           run.go(places, state, "timeout", State::TRIES);
           continue;
@@ -982,7 +982,7 @@ Outcome execute(States &states, Userdata &ud, Run &run) {
       case State::TRIES: // main.yml:27
         switch (TRIES::execute(states.TRIES_, ud.TRIES_, run)) {
         case TRIES::Outcome::good:
-          return run.end(places, state, "good", Outcome::failed);
+          return run.end_asked(places, state, "good", Outcome::failed);
         case TRIES::Outcome::exhausted:
           run.go(places, state, "exhausted", State::WITHOUT);
           continue;
@@ -994,7 +994,7 @@ Outcome execute(States &states, Userdata &ud, Run &run) {
           run.go(places, state, "succeeded", State::EACH);
           continue;
         case WITHOUT::Outcome::preempted:
-          return run.end(places, state, "preempted", Outcome::stopped);
+          return run.end_asked(places, state, "preempted", Outcome::stopped);
         }
         break;
       case State::EACH: // main.yml:41
@@ -1003,9 +1003,9 @@ Outcome execute(States &states, Userdata &ud, Run &run) {
           run.go(places, state, "found", State::SHOW);
           continue;
         case EACH::Outcome::preempted:
-          return run.end(places, state, "preempted", Outcome::stopped);
+          return run.end_asked(places, state, "preempted", Outcome::stopped);
         case EACH::Outcome::exhausted:
-          return run.end(places, state, "exhausted", Outcome::failed);
+          return run.end_asked(places, state, "exhausted", Outcome::failed);
         }
         break;
       case State::SHOW: // main.yml:48

@@ -65,12 +65,12 @@ inline constexpr smachac::Place places[] = {
 };
 
 template <class Run>
-Outcome execute(States &states, Userdata &, Run &around) {
+[[gnu::always_inline]] inline Outcome execute(States &states, Userdata &, Run &around) {
   struct {
     types::FIND_PART::Outcome FIND_PART;
     types::WARM_UP::Outcome WARM_UP;
   } ended{};
-  smachac::Branches<Run, 2> branches(around);
+  smachac::Branches<Run, 2> branches(around, places);
   branches.run(false, [&](std::size_t branch, Run &run) {
     const auto state = static_cast<State>(branch);
     SMACHAC_TRY {
@@ -88,7 +88,7 @@ Outcome execute(States &states, Userdata &, Run &around) {
         }
         break;
       case State::WARM_UP: // main.yml:18
-        ended.WARM_UP = states.WARM_UP.execute(run.stop);
+        ended.WARM_UP = states.WARM_UP.execute(run.stop_for(places, state));
         switch (ended.WARM_UP) {
         case types::WARM_UP::Outcome::succeeded:
           run.exit(places, state, "succeeded");
@@ -162,7 +162,7 @@ inline constexpr smachac::Place places[] = {
 };
 
 template <class Run>
-Outcome execute(States &states, Userdata &ud, Run &run) {
+[[gnu::always_inline]] inline Outcome execute(States &states, Userdata &ud, Run &run) {
   State state = State::FIND_AND_WARM_UP;
   SMACHAC_TRY {
     for (;;) {
@@ -174,7 +174,7 @@ Outcome execute(States &states, Userdata &ud, Run &run) {
           run.go(places, state, "ready", State::PICK);
           continue;
         case FIND_AND_WARM_UP::Outcome::not_ready:
-          return run.end(places, state, "not_ready", Outcome::aborted);
+          return run.end_asked(places, state, "not_ready", Outcome::aborted);
         }
         break;
       case State::PICK: // main.yml:22

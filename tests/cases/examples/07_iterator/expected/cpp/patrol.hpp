@@ -63,7 +63,7 @@ inline constexpr smachac::Place places[] = {
 };
 
 template <class Run>
-Outcome execute(States &states, Userdata &ud, Run &run) {
+[[gnu::always_inline]] inline Outcome execute(States &states, Userdata &ud, Run &run) {
   State state = State::DRIVE;
   SMACHAC_TRY {
     for (;;) {
@@ -127,13 +127,13 @@ inline constexpr smachac::Place places[] = {
 };
 
 template <class Run>
-Outcome execute(States &states, Userdata &ud, Run &run) {
+[[gnu::always_inline]] inline Outcome execute(States &states, Userdata &ud, Run &run) {
   const auto items = smachac::need(ud.waypoints, "waypoints");
   if (items.empty()) {
     return Outcome::all_seen;
   }
   const auto state = State::VISIT;
-  smachac::Round round(run.stop, items.size());
+  smachac::Round round(run.stop, places[0], items.size());
   for (const auto &item : items) {
     ud.waypoint.hold(item);
     // main.yml:20
@@ -194,7 +194,7 @@ inline constexpr smachac::Place places[] = {
 };
 
 template <class Run>
-Outcome execute(States &states, Userdata &ud, Run &run) {
+[[gnu::always_inline]] inline Outcome execute(States &states, Userdata &ud, Run &run) {
   State state = State::VISIT_ALL;
   SMACHAC_TRY {
     for (;;) {
@@ -204,11 +204,11 @@ Outcome execute(States &states, Userdata &ud, Run &run) {
         ud.VISIT_ALL_.waypoints.hold(ud.waypoints.get());
         switch (VISIT_ALL::execute(states.VISIT_ALL_, ud.VISIT_ALL_, run)) {
         case VISIT_ALL::Outcome::all_seen:
-          return run.end(places, state, "all_seen", Outcome::succeeded);
+          return run.end_asked(places, state, "all_seen", Outcome::succeeded);
         case VISIT_ALL::Outcome::blocked:
-          return run.end(places, state, "blocked", Outcome::aborted);
+          return run.end_asked(places, state, "blocked", Outcome::aborted);
         case VISIT_ALL::Outcome::preempted:
-          return run.end(places, state, "preempted", Outcome::aborted);
+          return run.end_asked(places, state, "preempted", Outcome::aborted);
         }
         break;
       default:

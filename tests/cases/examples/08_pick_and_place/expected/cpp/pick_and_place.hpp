@@ -117,7 +117,7 @@ inline constexpr smachac::Place places[] = {
 };
 
 template <class Run>
-Outcome execute(States &states, Userdata &ud, Run &run) {
+[[gnu::always_inline]] inline Outcome execute(States &states, Userdata &ud, Run &run) {
   State state = State::PLAN_HOVER;
   SMACHAC_TRY {
     for (;;) {
@@ -133,14 +133,14 @@ Outcome execute(States &states, Userdata &ud, Run &run) {
         }
         break;
       case State::MOVE_TO_HOVER: // place_block.yml:15
-        switch (states.MOVE_TO_HOVER.execute({smachac::need(ud.hover_joints, "positions")}, run.stop)) {
+        switch (states.MOVE_TO_HOVER.execute({smachac::need(ud.hover_joints, "positions")}, run.stop_for(places, state))) {
         case ::smachac::MoveToJointPositionsState::Outcome::succeeded:
           run.go(places, state, "succeeded", State::CHECK_GRASP);
           continue;
         case ::smachac::MoveToJointPositionsState::Outcome::aborted:
-          return run.end(places, state, "aborted", Outcome::aborted);
+          return run.end_asked(places, state, "aborted", Outcome::aborted);
         case ::smachac::MoveToJointPositionsState::Outcome::preempted:
-          return run.end(places, state, "preempted", Outcome::aborted);
+          return run.end_asked(places, state, "preempted", Outcome::aborted);
         }
         break;
       case State::CHECK_GRASP: // place_block.yml:20
@@ -153,36 +153,36 @@ Outcome execute(States &states, Userdata &ud, Run &run) {
         }
         break;
       case State::MOVE_DOWN: // place_block.yml:25
-        switch (states.MOVE_DOWN.execute({ud.place_pose.get(), smachac::maybe<std::optional<smachac::Pose>>(ud.offset)}, run.stop)) {
+        switch (states.MOVE_DOWN.execute({ud.place_pose.get(), smachac::maybe<std::optional<smachac::Pose>>(ud.offset)}, run.stop_for(places, state))) {
         case ::smachac::MoveAlongState::Outcome::succeeded:
           run.go(places, state, "succeeded", State::OPEN_GRIPPER);
           continue;
         case ::smachac::MoveAlongState::Outcome::aborted:
-          return run.end(places, state, "aborted", Outcome::aborted);
+          return run.end_asked(places, state, "aborted", Outcome::aborted);
         case ::smachac::MoveAlongState::Outcome::preempted:
-          return run.end(places, state, "preempted", Outcome::aborted);
+          return run.end_asked(places, state, "preempted", Outcome::aborted);
         }
         break;
       case State::OPEN_GRIPPER: // place_block.yml:31
-        switch (run.wrote(states.OPEN_GRIPPER.execute({run.out(ud.width)}, run.stop), smachac::Output{"width", ud.width})) {
+        switch (run.wrote(states.OPEN_GRIPPER.execute({run.out(ud.width)}, run.stop_for(places, state)), smachac::Output{"width", ud.width})) {
         case ::smachac::GripperState::Outcome::succeeded:
           run.go(places, state, "succeeded", State::MOVE_UP);
           continue;
         case ::smachac::GripperState::Outcome::aborted:
-          return run.end(places, state, "aborted", Outcome::aborted);
+          return run.end_asked(places, state, "aborted", Outcome::aborted);
         case ::smachac::GripperState::Outcome::preempted:
-          return run.end(places, state, "preempted", Outcome::aborted);
+          return run.end_asked(places, state, "preempted", Outcome::aborted);
         }
         break;
       case State::MOVE_UP: // place_block.yml:36
-        switch (states.MOVE_UP.execute({ud.place_pose.get(), smachac::convert<std::optional<smachac::Pose>>(ud.hover_offset.get())}, run.stop)) {
+        switch (states.MOVE_UP.execute({ud.place_pose.get(), smachac::convert<std::optional<smachac::Pose>>(ud.hover_offset.get())}, run.stop_for(places, state))) {
         case ::smachac::MoveAlongState::Outcome::succeeded:
           run.go(places, state, "succeeded", State::CHECK_PLACED);
           continue;
         case ::smachac::MoveAlongState::Outcome::aborted:
-          return run.end(places, state, "aborted", Outcome::aborted);
+          return run.end_asked(places, state, "aborted", Outcome::aborted);
         case ::smachac::MoveAlongState::Outcome::preempted:
-          return run.end(places, state, "preempted", Outcome::aborted);
+          return run.end_asked(places, state, "preempted", Outcome::aborted);
         }
         break;
       case State::CHECK_PLACED: // place_block.yml:42
@@ -265,21 +265,21 @@ inline constexpr smachac::Place places[] = {
 };
 
 template <class Run>
-Outcome execute(States &states, Userdata &ud, Run &run) {
+[[gnu::always_inline]] inline Outcome execute(States &states, Userdata &ud, Run &run) {
   State state = State::OPEN_GRIPPER;
   SMACHAC_TRY {
     for (;;) {
       run.enter(places, state);
       switch (state) {
       case State::OPEN_GRIPPER: // pick_block.yml:8
-        switch (run.wrote(states.OPEN_GRIPPER.execute({run.out(ud.width)}, run.stop), smachac::Output{"width", ud.width})) {
+        switch (run.wrote(states.OPEN_GRIPPER.execute({run.out(ud.width)}, run.stop_for(places, state)), smachac::Output{"width", ud.width})) {
         case ::smachac::GripperState::Outcome::succeeded:
           run.go(places, state, "succeeded", State::PLAN_HOVER);
           continue;
         case ::smachac::GripperState::Outcome::aborted:
-          return run.end(places, state, "aborted", Outcome::aborted);
+          return run.end_asked(places, state, "aborted", Outcome::aborted);
         case ::smachac::GripperState::Outcome::preempted:
-          return run.end(places, state, "preempted", Outcome::aborted);
+          return run.end_asked(places, state, "preempted", Outcome::aborted);
         }
         break;
       case State::PLAN_HOVER: // pick_block.yml:13
@@ -292,47 +292,47 @@ Outcome execute(States &states, Userdata &ud, Run &run) {
         }
         break;
       case State::MOVE_TO_HOVER: // pick_block.yml:19
-        switch (states.MOVE_TO_HOVER.execute({smachac::need(ud.hover_joints, "positions")}, run.stop)) {
+        switch (states.MOVE_TO_HOVER.execute({smachac::need(ud.hover_joints, "positions")}, run.stop_for(places, state))) {
         case ::smachac::MoveToJointPositionsState::Outcome::succeeded:
           run.go(places, state, "succeeded", State::MOVE_DOWN);
           continue;
         case ::smachac::MoveToJointPositionsState::Outcome::aborted:
-          return run.end(places, state, "aborted", Outcome::aborted);
+          return run.end_asked(places, state, "aborted", Outcome::aborted);
         case ::smachac::MoveToJointPositionsState::Outcome::preempted:
-          return run.end(places, state, "preempted", Outcome::aborted);
+          return run.end_asked(places, state, "preempted", Outcome::aborted);
         }
         break;
       case State::MOVE_DOWN: // pick_block.yml:24
-        switch (states.MOVE_DOWN.execute({ud.pick_pose.get(), smachac::maybe<std::optional<smachac::Pose>>(ud.offset)}, run.stop)) {
+        switch (states.MOVE_DOWN.execute({ud.pick_pose.get(), smachac::maybe<std::optional<smachac::Pose>>(ud.offset)}, run.stop_for(places, state))) {
         case ::smachac::MoveAlongState::Outcome::succeeded:
           run.go(places, state, "succeeded", State::CLOSE_GRIPPER);
           continue;
         case ::smachac::MoveAlongState::Outcome::aborted:
-          return run.end(places, state, "aborted", Outcome::aborted);
+          return run.end_asked(places, state, "aborted", Outcome::aborted);
         case ::smachac::MoveAlongState::Outcome::preempted:
-          return run.end(places, state, "preempted", Outcome::aborted);
+          return run.end_asked(places, state, "preempted", Outcome::aborted);
         }
         break;
       case State::CLOSE_GRIPPER: // pick_block.yml:30
-        switch (run.wrote(states.CLOSE_GRIPPER.execute({run.out(ud.width)}, run.stop), smachac::Output{"width", ud.width})) {
+        switch (run.wrote(states.CLOSE_GRIPPER.execute({run.out(ud.width)}, run.stop_for(places, state)), smachac::Output{"width", ud.width})) {
         case ::smachac::GripperState::Outcome::succeeded:
           run.go(places, state, "succeeded", State::LIFT);
           continue;
         case ::smachac::GripperState::Outcome::aborted:
-          return run.end(places, state, "aborted", Outcome::aborted);
+          return run.end_asked(places, state, "aborted", Outcome::aborted);
         case ::smachac::GripperState::Outcome::preempted:
-          return run.end(places, state, "preempted", Outcome::aborted);
+          return run.end_asked(places, state, "preempted", Outcome::aborted);
         }
         break;
       case State::LIFT: // pick_block.yml:35
-        switch (states.LIFT.execute({ud.pick_pose.get(), smachac::convert<std::optional<smachac::Pose>>(ud.hover_offset.get())}, run.stop)) {
+        switch (states.LIFT.execute({ud.pick_pose.get(), smachac::convert<std::optional<smachac::Pose>>(ud.hover_offset.get())}, run.stop_for(places, state))) {
         case ::smachac::MoveAlongState::Outcome::succeeded:
           run.go(places, state, "succeeded", State::CHECK_GRASP);
           continue;
         case ::smachac::MoveAlongState::Outcome::aborted:
-          return run.end(places, state, "aborted", Outcome::aborted);
+          return run.end_asked(places, state, "aborted", Outcome::aborted);
         case ::smachac::MoveAlongState::Outcome::preempted:
-          return run.end(places, state, "preempted", Outcome::aborted);
+          return run.end_asked(places, state, "preempted", Outcome::aborted);
         }
         break;
       case State::CHECK_GRASP: // pick_block.yml:41
@@ -428,7 +428,7 @@ inline constexpr smachac::Place places[] = {
 };
 
 template <class Run>
-Outcome execute(States &states, Userdata &ud, Run &run) {
+[[gnu::always_inline]] inline Outcome execute(States &states, Userdata &ud, Run &run) {
   State state = State::LOAD_TABLE;
   SMACHAC_TRY {
     for (;;) {
@@ -462,14 +462,14 @@ Outcome execute(States &states, Userdata &ud, Run &run) {
         }
         break;
       case State::MOVE_TO_START: // main.yml:39
-        switch (states.MOVE_TO_START.execute({smachac::convert<std::vector<double>>(ud.home.get())}, run.stop)) {
+        switch (states.MOVE_TO_START.execute({smachac::convert<std::vector<double>>(ud.home.get())}, run.stop_for(places, state))) {
         case ::smachac::MoveToJointPositionsState::Outcome::succeeded:
           run.go(places, state, "succeeded", State::PICK_BLOCK);
           continue;
         case ::smachac::MoveToJointPositionsState::Outcome::aborted:
-          return run.end(places, state, "aborted", Outcome::aborted);
+          return run.end_asked(places, state, "aborted", Outcome::aborted);
         case ::smachac::MoveToJointPositionsState::Outcome::preempted:
-          return run.end(places, state, "preempted", Outcome::aborted);
+          return run.end_asked(places, state, "preempted", Outcome::aborted);
         }
         break;
       case State::PICK_BLOCK: // main.yml:44
@@ -497,17 +497,17 @@ Outcome execute(States &states, Userdata &ud, Run &run) {
         }
         break;
       case State::GO_HOME: // main.yml:56
-        switch (states.GO_HOME.execute({smachac::convert<std::vector<double>>(ud.home.get())}, run.stop)) {
+        switch (states.GO_HOME.execute({smachac::convert<std::vector<double>>(ud.home.get())}, run.stop_for(places, state))) {
         case ::smachac::MoveToJointPositionsState::Outcome::succeeded:
-          return run.end(places, state, "succeeded", Outcome::succeeded);
+          return run.end_asked(places, state, "succeeded", Outcome::succeeded);
         case ::smachac::MoveToJointPositionsState::Outcome::aborted:
-          return run.end(places, state, "aborted", Outcome::aborted);
+          return run.end_asked(places, state, "aborted", Outcome::aborted);
         case ::smachac::MoveToJointPositionsState::Outcome::preempted:
-          return run.end(places, state, "preempted", Outcome::aborted);
+          return run.end_asked(places, state, "preempted", Outcome::aborted);
         }
         break;
       case State::LET_GO: // main.yml:62
-        switch (run.wrote(states.LET_GO.execute({run.out(ud.gripper_width)}, run.stop), smachac::Output{"width", ud.gripper_width})) {
+        switch (run.wrote(states.LET_GO.execute({run.out(ud.gripper_width)}, run.stop_for(places, state)), smachac::Output{"width", ud.gripper_width})) {
         case ::smachac::GripperState::Outcome::succeeded:
           run.go(places, state, "succeeded", State::RETREAT);
           continue;
@@ -515,17 +515,17 @@ Outcome execute(States &states, Userdata &ud, Run &run) {
           run.go(places, state, "aborted", State::RETREAT);
           continue;
         case ::smachac::GripperState::Outcome::preempted:
-          return run.end(places, state, "preempted", Outcome::aborted);
+          return run.end_asked(places, state, "preempted", Outcome::aborted);
         }
         break;
       case State::RETREAT: // main.yml:68
-        switch (states.RETREAT.execute({smachac::convert<std::vector<double>>(ud.home.get())}, run.stop)) {
+        switch (states.RETREAT.execute({smachac::convert<std::vector<double>>(ud.home.get())}, run.stop_for(places, state))) {
         case ::smachac::MoveToJointPositionsState::Outcome::succeeded:
-          return run.end(places, state, "succeeded", Outcome::aborted);
+          return run.end_asked(places, state, "succeeded", Outcome::aborted);
         case ::smachac::MoveToJointPositionsState::Outcome::aborted:
-          return run.end(places, state, "aborted", Outcome::aborted);
+          return run.end_asked(places, state, "aborted", Outcome::aborted);
         case ::smachac::MoveToJointPositionsState::Outcome::preempted:
-          return run.end(places, state, "preempted", Outcome::aborted);
+          return run.end_asked(places, state, "preempted", Outcome::aborted);
         }
         break;
       default:
