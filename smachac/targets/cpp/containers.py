@@ -25,9 +25,10 @@ def execute(inside: Inside) -> Lines:
     run = next((name for name in ("around", "run") if says(body, name)), "")
     # A container is run from one place only: if it is small, what surrounds it takes it in.
     few = len(list(islice(walk(inside.node), MOST_STATES + 1))) <= MOST_STATES
+    inline = "[[gnu::always_inline]] inline" if few else "inline"
     return [
         "template <class Run>",
-        f"{'[[gnu::always_inline]] ' if few else ''}inline Outcome execute(States &{states}, Userdata &{userdata}, Run &{run}) {{",
+        f"{inline} Outcome execute(States &{states}, Userdata &{userdata}, Run &{run}) {{",
         *indented(body),
         "}",
     ]

@@ -66,8 +66,9 @@ def header_of(plan: Plan, library: Library) -> Header:
 @dataclass(slots=True, kw_only=True)
 class _Printing:
     """What the containers of one header share: the classes of state types by name, and the
-    parameters that the `States` of each container printed so far are made with, by path; those of them in which something hears of requests
-    to stop. `missing` are the state types that have no code."""
+    parameters that the `States` of each container printed so far are made with, by path. `stopping`
+    are the containers in which something hears of requests to stop, `missing` the state types that
+    have no code."""
 
     plan: Plan
     library: Library

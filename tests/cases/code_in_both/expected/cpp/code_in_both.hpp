@@ -65,20 +65,20 @@ inline constexpr smachac::Place places[] = {
 };
 
 template <class Run>
-Outcome execute(States &states, Userdata &ud, Run &run) {
+[[gnu::always_inline]] inline Outcome execute(States &states, Userdata &ud, Run &run) {
   State state = State::CARRY;
   SMACHAC_TRY {
     for (;;) {
       run.enter(places, state);
       switch (state) {
       case State::CARRY: // main.yml:10
-        switch (run.wrote(states.CARRY.execute({ud.shelf.get(), ud.table.get(), smachac::maybe<std::optional<bool>>(ud.gently)}, {run.out(ud.metres), run.out(ud.seconds)}, run.stop), smachac::Output{"metres", ud.metres}, smachac::Output{"seconds", ud.seconds})) {
+        switch (run.wrote(states.CARRY.execute({ud.shelf.get(), ud.table.get(), smachac::maybe<std::optional<bool>>(ud.gently)}, {run.out(ud.metres), run.out(ud.seconds)}, run.stop_for(places, state)), smachac::Output{"metres", ud.metres}, smachac::Output{"seconds", ud.seconds})) {
         case ::arm::Carry::Outcome::done:
-          return run.end(places, state, "done", Outcome::done);
+          return run.end_asked(places, state, "done", Outcome::done);
         case ::arm::Carry::Outcome::not_found:
-          return run.end(places, state, "not-found", Outcome::lost);
+          return run.end_asked(places, state, "not-found", Outcome::lost);
         case ::arm::Carry::Outcome::preempted:
-          return run.end(places, state, "preempted", Outcome::lost);
+          return run.end_asked(places, state, "preempted", Outcome::lost);
         }
         break;
       default:
