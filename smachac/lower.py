@@ -11,6 +11,7 @@ from typing import Any, cast
 
 from smachac import schema, shapes
 from smachac.catching import if_asked, with_way_out
+from smachac.conditions import with_conditions
 from smachac.desugar import desugared
 from smachac.ir.nodes import (
     Concurrence,
@@ -202,7 +203,7 @@ def _leaf(state: State) -> Leaf:
         given = [word for word in _words(state, "outcomes") if word.text in led]
     for word in given:
         outcomes.setdefault(word.text, Outcome(name=word.text, span=word.span))
-    return Leaf(
+    leaf = Leaf(
         **fields,
         outcomes=tuple(outcomes.values()),
         variables=(
@@ -218,6 +219,7 @@ def _leaf(state: State) -> Leaf:
         blocking=type_.blocking,
         body=type_.body,
     )
+    return with_conditions(leaf) if leaf.type == "ConditionalOutcomeState" else leaf
 
 
 def _defaults(state: State) -> Iterable[Variable]:

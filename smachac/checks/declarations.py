@@ -226,7 +226,9 @@ def _unused_by_the_script(machine: Machine) -> Iterator[Finding]:
 def _unused_by_code(path: str, leaf: Leaf) -> Iterator[Finding]:
     """The keys that a leaf made of code in the script declares, and that none of it uses."""
     functions = callbacks(leaf)
-    if leaf.type not in ("CallbacksState", "ConditionalOutcomeState") or not functions:
+    if leaf.type not in ("CallbacksState", "ConditionalOutcomeState") or functions is None:
+        return
+    if not functions and leaf.type == "CallbacksState":
         return
     known = [userdata_fields(code.text) for code in functions.values()]
     fields = [each for each in known if each is not None]

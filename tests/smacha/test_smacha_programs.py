@@ -295,6 +295,12 @@ def test_functions_are_called_before_a_state_does_its_work(
     assert result.userdata == {key: machine.userdata[key] for key in keys}
 
 
+def test_keys_are_conditions_of_outcomes_without_one() -> None:
+    path = FOLDER.parent / "cases" / "smacha" / "keys_as_conditions" / "main.yml"
+    machine = machine_of(smachac.build(path, "python")["sm.py"])
+    assert machine.execute() == run(smachac.load(path), built_in()).outcome == "stopped"
+
+
 def test_functions_are_called_first_in_cpp_as_well(tmp_path: Path) -> None:
     path = tmp_path / "main.yml"
     path.write_text(

@@ -1,0 +1,106 @@
+# Made by smachac 0.1.0 from main.yml (sha256 382dcb24619d4446).
+"""The state machine `sm`."""
+
+try:
+    import smach
+except ImportError:  # no ROS on this machine: the same names without it
+    from smachac.runtime import smach
+
+
+class ConditionalOutcomeState(smach.State):
+    """Ends with the first of its outcomes whose condition holds, else the default."""
+
+    def __init__(
+        self, outcomes, callbacks, default_outcome, input_keys=(), output_keys=()
+    ):
+        super().__init__(
+            outcomes=outcomes,
+            input_keys=list(input_keys),
+            output_keys=list(output_keys),
+        )
+        self.tells = "outcome" in output_keys
+        self.conditions = [
+            (name, callbacks[name]) for name in outcomes if name in callbacks
+        ]
+        self.default_outcome = default_outcome
+
+    def execute(self, userdata):
+        holding = (name for name, holds in self.conditions if holds(userdata))
+        outcome = next(holding, self.default_outcome)
+        if self.tells:
+            userdata["outcome"] = outcome
+        return outcome
+
+
+class CallbacksState(smach.State):
+    """Calls functions of the userdata, keeps what each returns under its own name."""
+
+    def __init__(self, callbacks=(), input_keys=(), output_keys=()):
+        super().__init__(
+            outcomes=["succeeded"],
+            input_keys=list(input_keys),
+            output_keys=list(output_keys),
+        )
+        self.callbacks = callbacks
+
+    def execute(self, userdata):
+        for key in sorted(self.callbacks):
+            function = self.callbacks[key]
+            if not smach.has_smach_interface(function):
+                userdata[key] = function(userdata)
+            else:  # it writes its keys itself
+                inputs = function.get_registered_input_keys()
+                outputs = function.get_registered_output_keys()
+                function(smach.Remapper(userdata, inputs, outputs, {}))
+        return "succeeded"
+
+
+def build():
+    """Build the state machine `sm`."""
+    # main.yml:2
+    sm = smach.StateMachine(outcomes=["stopped", "going"])
+    sm.userdata.stop = False
+    sm.userdata.level = 3
+    with sm:
+        # main.yml:7
+        smach.StateMachine.add(
+            "JUDGE",
+            ConditionalOutcomeState(
+                outcomes=["low", "stop", "default"],
+                callbacks={"low": lambda ud: ud.level < 1, "stop": lambda ud: ud.stop},
+                default_outcome="default",
+                input_keys=["stop", "level"],
+            ),
+            transitions={"low": "going", "stop": "stopped", "default": "TELL"},
+        )
+
+        # main.yml:13
+        smach.StateMachine.add(
+            "TELL",
+            CallbacksState(callbacks={"stop": lambda ud: True}, output_keys=["stop"]),
+            transitions={"succeeded": "AGAIN"},
+        )
+
+        # main.yml:18
+        smach.StateMachine.add(
+            "AGAIN",
+            ConditionalOutcomeState(
+                outcomes=["stop", "default"],
+                callbacks={"stop": lambda ud: ud.stop},
+                default_outcome="default",
+                input_keys=["stop"],
+            ),
+            transitions={"stop": "stopped", "default": "going"},
+        )
+    return sm
+
+
+def main():
+    """Run the state machine once and return its outcome."""
+    return build().execute()
+
+
+if __name__ == "__main__":
+    outcome = main()
+    print(f"outcome: {outcome}")
+    raise SystemExit(outcome is None)
