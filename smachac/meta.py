@@ -6,6 +6,7 @@ Meta blocks served SMACHA's help only and many are loose; what cannot be read is
 from __future__ import annotations
 
 import re
+from collections.abc import Callable
 from dataclasses import dataclass
 from typing import Literal
 
@@ -22,6 +23,10 @@ _EXTENDS = re.compile(r"\{%[-+]?\s*extends\s+[\"']([^\"']+)[\"']")
 _OUTCOMES = re.compile(r"\boutcomes\s*=\s*\[([^\[\]{}]*)\]")
 _DEFAULT = re.compile(r"\bdef\s+\w+\([^()]*$")
 _KEYS = re.compile(r"\b(input|output)_keys\s*=\s*\[([^\[\]{}]*)\]")
+_TAGS = re.compile(r"\{[{%](.*?)[%}]\}", re.DOTALL)
+_BRINGS = re.compile(r"\s*[-+]?\s*(?:extends|include|import|from)\b\s*(.*)", re.DOTALL)
+_WORD = re.compile(r"[^\W\d]\w*")
+_FILES = re.compile(r"[\"']([^\"']+)[\"']")
 _QUOTED = re.compile(r"([\"'])(\w+)\1")
 
 
@@ -108,6 +113,29 @@ def keys_in_code(template: Source) -> tuple[tuple[str, ...], tuple[str, ...]]:
         for word in _QUOTED.finditer(keys.group(2)):
             found[keys.group(1)][word.group(2)] = None
     return tuple(found["input"]), tuple(found["output"])
+
+
+def words_used(file: str, find: Callable[[str], Source | None]) -> frozenset[str] | None:
+    """The words that the tags of a template use, and of all that it brings in; None where some of
+    it is not known."""
+    words: set[str] = set()
+    todo, seen = [file], {file}
+    while todo:
+        name = todo.pop()
+        template = find(name) or find(f"{name}.py")
+        if template is None:
+            return None
+        for tag in _TAGS.finditer(template.text):
+            words.update(_WORD.findall(tag.group(1)))
+            brings = _BRINGS.match(tag.group(1)) if tag.group(0).startswith("{%") else None
+            if brings is None:
+                continue
+            files = _FILES.findall(brings.group(1)) if brings.group(1)[:1] in "\"'[(" else []
+            if not files:
+                return None
+            todo += [each for each in files if each not in seen]
+            seen.update(files)
+    return frozenset(words)
 
 
 def _text(tree: Map, name: str) -> str:

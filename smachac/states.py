@@ -72,7 +72,8 @@ class StateType:
     to a class of it, in words: `header`, `class`, `with`. `body` is what the template of Python
     does. `open`: there is no interface. `prints_itself`: the template of Python adds the
     state to its container, as those of SMACHA do. `optional` are outcomes that a state has only
-    where its container or a transition of it speaks of them.
+    where its container or a transition of it speaks of them. `used` are the words that a template
+    uses where any variable may be given; None where that is not known.
     """
 
     name: str
@@ -92,6 +93,7 @@ class StateType:
     open: bool = False
     prints_itself: bool = False
     optional: frozenset[str] = frozenset()
+    used: frozenset[str] | None = None
 
 
 TEMPLATE_FILES = ("{}.tpl.py", "{}.tpl")
@@ -374,6 +376,7 @@ def _read_template(
         return replace(
             known, name=name, outcomes=outcomes, code={"python": file}, prints_itself=whole,
             body=None, given=known.given if known.open else _ALL_GIVEN,
+            used=meta.words_used(file, library.template),
         )  # fmt: skip
     return StateType(
         name=name,
@@ -386,5 +389,6 @@ def _read_template(
         given=_ALL_GIVEN,
         code={"python": file},
         prints_itself=whole,
+        used=meta.words_used(file, library.template),
         open=found.kind == "state" and not outcomes,
     )

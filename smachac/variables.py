@@ -33,6 +33,12 @@ def check_variables(
             shape = row.shape
         elif type_.open or "variables" in type_.given:
             shape = "value"
+            if type_.used is not None and key not in type_.used:
+                words = [*schema.names_for(owner), *type_.used]
+                word = Word(str(entry.key.value), entry.key.span)
+                report.append(
+                    problems.unknown_variable(word, f"`{type_.name}`", words, anything=True)
+                )
         else:
             known = [*schema.names_for(owner), *type_.variables]
             word = Word(str(entry.key.value), entry.key.span)

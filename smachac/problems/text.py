@@ -83,11 +83,14 @@ def duplicate_key(key: Word, first: Span) -> Finding:
 
 
 @problem("SM003", "unknown-variable", Severity.ERROR)
-def unknown_variable(word: Word, owner: str, known: Iterable[str]) -> Finding:
+def unknown_variable(
+    word: Word, owner: str, known: Iterable[str], *, anything: bool = False
+) -> Finding:
     """A variable is set that neither the language nor the state type has.
 
     It would be ignored: the speed, the limit or the transition that was meant never reaches
-    the robot.
+    the robot. A template of SMACHA's kind takes any variable; one that it does not use is a
+    warning.
 
     Wrong:
         name: sm
@@ -106,6 +109,13 @@ def unknown_variable(word: Word, owner: str, known: Iterable[str]) -> Finding:
     names = sorted(known)
     variables = f"its variables are {listed(names)}" if names else "it has no variables"
     sure = Guesser(names).sure(word.text)
+    if anything:
+        return Finding(
+            span=word.span,
+            message=f"the template of {owner} does not use the variable `{word.text}`",
+            help=f"did you mean `{sure}`?" if sure else "take it out, or use it in the template",
+            severity=Severity.WARNING,
+        )
     return Finding(
         span=word.span,
         message=f"`{word.text}` is not a variable of {owner}",

@@ -180,6 +180,32 @@ def test_a_state_whose_meta_block_calls_it_a_container(tmp_path: Path) -> None:
     assert kinds["T"].open  # nothing is told of its outcomes
 
 
+@pytest.mark.parametrize(
+    ("brought", "told"),
+    [
+        ("", ["speed", "transition"]),
+        ("{% include 'Part.tpl.py' %}", ["transition"]),
+        ("{% from 'Part.tpl.py' import x %}", ["transition"]),
+        ("{% include file_of_the_state %}", []),  # nobody knows what that one uses
+    ],
+)
+def test_variables_that_a_template_does_not_use(
+    tmp_path: Path, brought: str, told: list[str]
+) -> None:
+    body = "{% block body %}\nadd({{ name }}, {{ arm }}){% if fast %}{% endif %}\n{% endblock %}"
+    (tmp_path / "T.tpl.py").write_text(f"{brought}\n{body}\n# {{# speed #}} speed\n")
+    (tmp_path / "Part.tpl.py").write_text("{% macro x() %}{{ speed }}{% endmacro %}")
+    (tmp_path / "main.yml").write_text(
+        "name: sm\ntemplate: Base\noutcomes: [done]\nstates:\n"
+        "  - A: {template: T, arm: 1, fast: 2, speed: 3, transition: {a: done}}\n"
+    )
+    analysis, _ = smachac.analyse_file(tmp_path / "main.yml", (), (tmp_path,))
+    found = [item for item in analysis.report if item.code.code == "SM003"]
+    assert [item.span.text for item in found] == told
+    assert all(item.severity is Severity.WARNING for item in found)
+    assert not told or found[-1].finding.help == "did you mean `transitions`?"
+
+
 def test_shared_objects_are_made_once_in_the_function_that_builds() -> None:
     text = text_of("two_arms")
     assert text.count("limbs = dict()") == 1
