@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+import re
 from collections.abc import Callable
 from pathlib import Path
 
@@ -87,7 +88,7 @@ def deaf(text: str) -> str:
 
 
 def crashing(text: str) -> str:
-    return text.replace("return run.end(", "std::abort(); return run.end(", 1)
+    return re.sub(r"return run\.end", r"std::abort(); \g<0>", text, count=1)
 
 
 @HERE
