@@ -26,9 +26,10 @@ def preempt_at_shutdown(machine):
     def preempt():
         end = time.monotonic() + 5.0
         machine.request_preempt()
-        if machine.is_running():
-            smach.loginfo("the node shuts down: the machine is asked to stop")
-        while machine.is_running() and time.monotonic() < end:
+        while machine.is_running():
+            if time.monotonic() > end:
+                smach.logwarn("the machine goes on for 5 s: the node shuts down")
+                break
             time.sleep(0.02)
 
     rospy.on_shutdown(preempt)
