@@ -8,7 +8,7 @@ from dataclasses import dataclass, replace
 
 from smachac import problems
 from smachac.checks import check_machine
-from smachac.diagnostics import Diagnostic, Finding, Report, has_errors, identity, in_order
+from smachac.diagnostics import Diagnostic, Finding, Report, has_errors, in_order
 from smachac.ir.depth import deep_recursion
 from smachac.ir.nodes import Checked, Machine
 from smachac.ir.userdata import remapping
@@ -185,8 +185,8 @@ def build(
 def together(report: Report, built: Report) -> Report:
     """What was found in a script and then in building it; a fault that both name is the latter's,
     which knows how bad it is."""
-    said = set(map(identity, built))
-    return [*(item for item in report if identity(item) not in said), *built]
+    said = {(item.code, item.finding.message, item.span) for item in built}
+    return [*(i for i in report if (i.code, i.finding.message, i.span) not in said), *built]
 
 
 def memory_library(files: Mapping[str, str], built_in: Library) -> Library:

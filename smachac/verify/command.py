@@ -7,8 +7,8 @@ import gc
 import sys
 
 from smachac import analyse_file
-from smachac.diagnostics import Report
-from smachac.driver import build
+from smachac.diagnostics import Report, has_errors
+from smachac.driver import build, together
 from smachac.ir.nodes import Checked
 from smachac.states import Library
 from smachac.streams import print_report, shown, usage
@@ -67,7 +67,7 @@ def _players(
             files = build(machine, target, library, found)
             ((file, text),) = files.items() or [("", "")]
             player = python.player(file, text, machine, folder=arguments.script.parent)
-        report += found
-        if not found:
+        report[:] = together(report, found)
+        if not has_errors(found):
             players[name] = player
     return players

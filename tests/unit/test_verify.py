@@ -330,6 +330,27 @@ def test_a_target_that_cannot_be_played_is_wrong_usage(capsys: pytest.CaptureFix
     assert "did you mean `python`?" in capsys.readouterr().err
 
 
+def test_what_a_build_says_is_told_once(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+) -> None:
+    """A warning is no reason not to play; an error is, though it was a warning before."""
+    case = ROOT / "tests" / "cases" / "bad_code"
+    for path in (path for path in sorted(case.rglob("*")) if path.is_file()):
+        target = tmp_path / path.relative_to(case)
+        target.parent.mkdir(parents=True, exist_ok=True)
+        target.write_text(path.read_text("utf-8"), "utf-8")
+    monkeypatch.chdir(tmp_path)
+    script = Path("main.yml").read_text("utf-8")
+    Path("main.yml").write_text(script.partition("  - DROP:")[0].replace("DROP", "done"), "utf-8")
+    assert main(["verify", "main.yml"]) == 1
+    told = capsys.readouterr().err
+    assert told.count("[SM603]") == told.count("error[SM603]") == 1
+    look = Path("arm_skills/look.py")
+    look.write_text(look.read_text().replace("none", "nothing").replace(', "speed"', ""))
+    assert main(["verify", "main.yml"]) == 0
+    assert "warning[SM604]" in capsys.readouterr().err
+
+
 def test_a_program_that_cannot_be_loaded_is_told(
     tmp_path: Path, capsys: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPatch
 ) -> None:

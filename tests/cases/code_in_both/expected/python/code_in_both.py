@@ -1,7 +1,7 @@
 # Made by smachac 0.1.0 from main.yml (sha256 4fc28c8251492587).
 """The state machine `code_in_both`."""
 
-from skills.carry import Carry
+from arm_skills.carry import Carry
 
 try:
     import smach

@@ -1,4 +1,7 @@
-import smach
+try:
+    import smach
+except ImportError:  # a machine without ROS
+    from smachac.runtime import smach
 
 
 class Look(smach.State):
