@@ -47,5 +47,5 @@ class PublishMsgState(smach.State):
 {% endif %}
 {% endblock class_defs %}
 {% block body %}
-{{ add("PublishMsgState", action, "smacha/" ~ name | lower, input_keys=input_keys, output_keys=output_keys) }}
+{{ add("PublishMsgState", action, "smacha/" ~ name | lower, input_keys=inputs if input_keys is defined, output_keys=output_keys) }}
 {% endblock body %}

@@ -43,5 +43,5 @@ class PublishObserverMsgState(smach.State):
 {% endif %}
 {% endblock class_defs %}
 {% block body %}
-{{ add("PublishObserverMsgState", action, "smacha/" ~ name | lower, sub_topic=sub_topic, input_keys=input_keys, output_keys=output_keys) }}
+{{ add("PublishObserverMsgState", action, "smacha/" ~ name | lower, sub_topic=sub_topic, input_keys=inputs if input_keys is defined, output_keys=output_keys) }}
 {% endblock body %}

@@ -34,5 +34,5 @@ class RecordROSBagState(smach.State):
 {% endif %}
 {% endblock class_defs %}
 {% block body %}
-{{ add("RecordROSBagState", recorder | code, action, input_keys=input_keys, output_keys=output_keys) }}
+{{ add("RecordROSBagState", recorder | code, action, input_keys=inputs if input_keys is defined, output_keys=output_keys) }}
 {% endblock body %}

@@ -339,6 +339,30 @@ def test_functions_are_called_first_in_cpp_as_well(tmp_path: Path) -> None:
     assert 0 < text.index('run.write("n", ud.n, ') < text.index("draws_.below(1)")
 
 
+@pytest.mark.parametrize(
+    ("type", "action", "keys"),
+    [
+        ("PublishMsgState", "start", ["msg", "rate", "topic", "x"]),
+        ("PublishObserverMsgState", "add", ["msg", "topic", "x"]),
+        ("RecordROSBagState", "record", ["file", "topics", "x"]),
+    ],
+)
+def test_states_of_ros_keep_their_keys_beside_those_of_the_script(
+    tmp_path: Path, type: str, action: str, keys: list[str]
+) -> None:
+    path = tmp_path / "main.yml"
+    path.write_text(
+        "name: sm\noutcomes: [succeeded, aborted]\nuserdata: {x: 1.0, file: a.bag}\nstates:\n"
+        f"  - A:\n      template: {type}\n      action: {action}\n      input_keys: [x]\n"
+        "      output_keys: [msg, file]\n"
+        "      callbacks: {msg: 'lambda ud: [ud.x, 2.0, 3.0]', file: 'lambda ud: str(ud.x)'}\n"
+    )
+    text = smachac.build(path, "python")["sm.py"]
+    assert sorted(machine_of(text)["A"].get_registered_input_keys()) == keys
+    assert "_lambda_cb" not in text
+    assert text.count("with_callbacks(") == 2
+
+
 def test_topics_are_named_after_their_states() -> None:
     machine = machine_of(text_of("ros_states"))
     assert machine["PUBLISH_MSG"].topic == "smacha/publish_msg"

@@ -297,6 +297,8 @@ def _whole(leaf: Leaf, inside: Inside, path: str, used: Used, gathered: Gathered
     own = gathered.context.library.own_template(used.template) is not None
     variables = state_variables(leaf, inside.node, inside.variable, path)
     variables["defined_headers"] = gathered.defined_headers
+    if not own:  # ours take the keys of their interface beside those of the script
+        variables["inputs"] = [key.name for key in leaf.inputs]
     callbacks = _called_first(leaf, used, gathered)
     variables["add"] = adding(leaf, inside.node, inside.depth + 1, callbacks)
     page = gathered.blocks.page(used.template, variables)
