@@ -8,13 +8,14 @@ from __future__ import annotations
 
 import functools
 import os
+import re
 from collections.abc import Iterable, Iterator
 from pathlib import Path
 from typing import Any
 
 import pytest
 import test_ir_vectors as recorded
-from compiler import SANITIZED, THREADED, Compiler, compilers, last_with
+from compiler import BARE, SANITIZED, THREADED, Compiler, compilers, last_with
 from ir_vectors import nodes_of
 from vectors import Part, Ran, part, replay
 
@@ -30,24 +31,18 @@ REFUSED = {
 }
 """What C++ cannot say, and what it says of it."""
 
-NOTHING = "an enum is never None"
-DECLARED = "an enum has no outcome that it does not declare"
-KEYS = "a struct has no key that nobody declares"
-
-DEVIATIONS = {
-    "h066-reference-sharing": "containers copy values at their borders",
-    "h082-concurrence-unregistered-child-outcome": DECLARED,
-    "h097-concurrence-child-none": NOTHING,
-    "h114-iterator-child-none": NOTHING,
-    "h115-iterator-raw-userdata": KEYS,
-    "A20-006": KEYS,
-    "A20-034": DECLARED,
-    "A20-139": KEYS,
-    "A20-226": DECLARED,
-    "A20-338": DECLARED,
-    "A20-370": KEYS,
-}
+DEVIATIONS = {"h066-reference-sharing": "containers copy values at their borders"}
 """Where C++ does something else, and why."""
+
+DECLARED = {
+    *("h082-concurrence-unregistered-child-outcome", "A20-034", "A20-226", "A20-338"),
+    *("h115-iterator-raw-userdata", "A20-006", "A20-139", "A20-370"),
+}
+"""Where SMACH goes on with outcomes and keys that nobody declares. In C++ they are declared, and
+the same happens."""
+
+WITHOUT_OUTCOME = {"h097-concurrence-child-none", "h114-iterator-child-none"}
+"""Where C++ fails with an error of its own, which stands for what was recorded."""
 
 NAMES = [name for name in recorded.RUN if name not in REFUSED]
 CHUNK = 100
@@ -117,6 +112,29 @@ def sanitized() -> Iterator[Any]:
         for start in range(0, len(names), CHUNK):
             chunk = names[start : start + CHUNK]
             yield pytest.param(flags, chunk, id=f"{kind}-{chunk[0]}")
+
+
+@pytest.mark.parametrize("start", range(0, len(NAMES), CHUNK))
+def test_machines_run_without_exceptions_and_type_information(start: int, tmp_path: Path) -> None:
+    chunk = NAMES[start : start + CHUNK]
+    agree(filter(without_error, chunk), last_with(*BARE), tmp_path, *BARE)
+
+
+def without_error(name: str) -> bool:
+    """Whether no run of a machine ended with an error, in SMACH and in the interpreter."""
+    runs = [*recorded.CASES[name]["expect"]["runs"], *recorded.replay(recorded.CASES[name])]
+    return all(run.get("category") is None for run in runs)
+
+
+def test_most_machines_end_without_an_error() -> None:
+    assert sum(map(without_error, NAMES)) == 326
+
+
+def test_docs_say_which_machines_differ() -> None:
+    docs = (Path(__file__).parents[2] / "docs" / "cpp.md").read_text("utf-8")
+    table = docs.partition("### Recorded machines")[2].partition("\n## ")[0]
+    named = re.findall(r"`((?:h\d+|A\d+)-[\w-]+)`", table)
+    assert sorted(named) == sorted({*REFUSED, *DEVIATIONS, *DECLARED, *WITHOUT_OUTCOME})
 
 
 def has_branches(name: str) -> bool:

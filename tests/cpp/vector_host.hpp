@@ -133,7 +133,11 @@ public:
       }
       if (word == "raise") {
         say("left");
+#if defined(__cpp_exceptions)
         throw Told(rest);
+#else
+        std::exit(4);
+#endif
       }
       if (word == "preempt") {
         root_.request();
@@ -166,8 +170,11 @@ private:
 
 /// The kind of what was thrown at first.
 inline std::string kind_of_current() {
+#if defined(__cpp_exceptions)
   try {
     throw;
+  } catch (const smachac::detail::NoOutcome &) {
+    return "no_outcome";
   } catch (const smachac::MissingKey &) {
     return "missing_key";
   } catch (const smachac::detail::Undeclared &) {
@@ -182,6 +189,9 @@ inline std::string kind_of_current() {
     }
     return "other";
   }
+#else
+  return "other";
+#endif
 }
 
 template <class T> void tell(std::string &line, const char *name, const smachac::Key<T> &key) {
@@ -203,9 +213,10 @@ void play(const char *name, int runs, bool asked, Run run, Tell tell_userdata) {
     stop.request();
   }
   for (int i = 0; i < runs; ++i) {
-    try {
+    SMACHAC_TRY {
       host.say(std::string("outcome ") + name_of(run(states, userdata, &host, stop)));
-    } catch (...) {
+    }
+    SMACHAC_CATCH {
       host.say("error " + kind_of_current());
     }
     tell_userdata(host, userdata);

@@ -62,7 +62,7 @@ def part(case: Json, name: str) -> Part | list[str]:
 
 def _part(case: Json, name: str, typed: bool) -> Part | list[str]:
     leaves: dict[str, Leaf] = {}
-    inner = _renamed(machine_of(case).root, "", name, typed, leaves)
+    inner = _renamed(declared(case), "", name, typed, leaves)
     machine = Machine(root=_around(case, name, inner), source="vectors")
     scopes = plan(machine).scopes
     if not typed:
@@ -98,6 +98,44 @@ def _part(case: Json, name: str, typed: bool) -> Part | list[str]:
     # Somebody always listens here: to compile the other case as well takes a third longer.
     header = re.sub(r"  if \(observer == nullptr\) \{\n.*?\n  \}\n", "", header, flags=re.DOTALL)
     return Part(case=case, name=name, classes="\n".join(classes), header=header, call=call)
+
+
+def declared(case: Json) -> Any:
+    """The graph of a case, with the outcomes that its leaves end with, declared or not: a class
+    has to. So has the state of an iterator the keys that it writes (I7)."""
+    return _declaring(machine_of(case).root, "", leaves_of(case), loose=False)
+
+
+def _declaring(node: Any, path: str, leaves: Mapping[str, Json], *, loose: bool) -> Any:
+    if isinstance(node, Leaf):
+        steps = leaves[path].get("steps", [])
+        more = tuple(Outcome(name=each, span=NOWHERE) for each in undeclared_outcomes(node, steps))
+        keys = undeclared_keys(node, steps) if loose else ()
+        written = tuple(Key(name=key, span=NOWHERE) for key in keys)
+        return replace(node, outcomes=node.outcomes + more, outputs=node.outputs + written)
+    loose = isinstance(node, nodes.Iterator)
+    children = tuple(
+        _declaring(child, f"{path}/{child.name}", leaves, loose=loose) for child in node.children
+    )
+    return replace(node, children=children)
+
+
+def undeclared_outcomes(leaf: Leaf, steps: Json) -> list[str]:
+    """What a leaf ends with beside its outcomes."""
+    ends: list[Json] = []
+    for step in steps:
+        told = step.get("ret")
+        ends += [told["then"], told["else"]] if isinstance(told, dict) else [told]
+        ends.append(step.get("pre"))
+    return list(dict.fromkeys(x for x in ends if x and x not in outcome_names(leaf)))
+
+
+def undeclared_keys(leaf: Leaf, steps: Json) -> list[str]:
+    """What a leaf writes beside its outputs."""
+    outputs = {key.name for key in leaf.outputs}
+    done = [operation for step in steps for operation in step.get("do", [])]
+    keys = [operation[1] for operation in done if operation[0] == "set"]
+    return list(dict.fromkeys(key for key in keys if key not in outputs))
 
 
 def _key(key: Key, typed: bool, optional: bool) -> Key:
@@ -319,7 +357,8 @@ class Remote(Replay):
         self.case, self.name = case, name
         self.leaves = leaves_of(case)
         self.events = []
-        self.graph = dict(_walk(machine_of(case).root, ""))
+        self.graph = dict(_walk(declared(case), ""))
+        self.without_outcome = ""
         self.visits: dict[str, int] = {}
         self.asked: _Asked | None = None
         self.leaving: list[Any] = []
@@ -356,10 +395,20 @@ class Remote(Replay):
             return "\n".join([*view.replies, f"raise {error.kind.replace('-', '_')}", ""])
         except Exception:
             return "\n".join([*view.replies, "raise user_exception", ""])
-        ends = outcome_names(leaf)
-        # A class with any other outcome does not compile.
-        end = f"end {ends.index(outcome)}" if outcome in ends else "raise invalid_transition"
-        return "\n".join([*view.replies, end, ""])
+        if outcome is None:
+            self.without_outcome = self._kind_of_nothing(path)
+            return "\n".join([*view.replies, "end -1", ""])
+        return "\n".join([*view.replies, f"end {outcome_names(leaf).index(outcome)}", ""])
+
+    def _kind_of_nothing(self, path: str) -> str:
+        """What the recordings call it where a state ends without an outcome: that goes by the
+        container around it (M8, N11, I6). C++ has one error for it."""
+        while path:
+            path = path.rpartition("/")[0]
+            if not isinstance(self.graph[path], nodes.Iterator):
+                among = isinstance(self.graph[path], nodes.Concurrence)
+                return "other" if among else "invalid_transition"
+        return "no_outcome"
 
 
 def _walk(node: Node, path: str) -> Iterator[tuple[str, Any]]:
@@ -409,7 +458,7 @@ def replay(
                 case "outcome":
                     ran.outcome = rest
                 case "error":
-                    ran.category = rest
+                    ran.category = remote.without_outcome if rest == "no_outcome" else rest
                 case "userdata":
                     path, _, text = rest.partition(" ")
                     ran.userdata[path.removeprefix(remote.name)] = json.loads(text)
