@@ -13,7 +13,7 @@ def start_node(name):
 
     def shut_down():
         reason = f"signal {signals.get()}"
-        threading.Thread(target=rospy.signal_shutdown, args=[reason]).start()
+        threading.Thread(target=rospy.signal_shutdown, args=[reason], daemon=False).start()
 
     threading.Thread(target=shut_down, daemon=True).start()
     signal.signal(signal.SIGINT, note)

@@ -77,6 +77,7 @@ def test_a_signal_ends_a_wait(graph: Graph, tmp_path: Path, what: str) -> None:
     program.send(signal.SIGINT)
     assert program.end() == 0
     assert program.output.endswith("outcome: preempted\n")
+    assert "/sis" not in str(graph.ask("getSystemState"))
 
 
 @EACH
