@@ -260,8 +260,9 @@ public:
   Stop(const Stop &) = delete;
   Stop &operator=(const Stop &) = delete;
 
-  /// Ask what runs to stop. It goes on until a state answers; until then each next state is asked. A
-  /// state that ends its machine without an answer keeps the request: it is asked when it runs again.
+  /// Ask what runs to stop. It goes on until a state answers; until then each next state is asked.
+  /// A state that ends its machine without an answer keeps the request: it is asked when it runs
+  /// again.
   void request() {
     std::vector<std::pair<Observer *, Place>> told;
     ask(told);
