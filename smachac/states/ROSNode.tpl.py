@@ -1,18 +1,23 @@
 def start_node(name):
     """Make the program a node that a signal shuts down, and a second one ends.
 
-    A thread does it: rospy's own handler waits for ever when what it interrupts holds a lock.
+    A thread does it: rospy's own handler waits for ever when what it interrupts holds a lock. It
+    reads the signal from a pipe, for the main thread may go on waiting and run no handler.
     """
     rospy.init_node(name, disable_signals=True)
-    signals = queue.SimpleQueue()
+    read, write = os.pipe()
+    os.set_blocking(write, False)
+    signal.set_wakeup_fd(write)
 
     def note(number, frame):
         signal.signal(signal.SIGINT, signal.default_int_handler)
         signal.signal(signal.SIGTERM, signal.SIG_DFL)
-        signals.put(number)
 
     def shut_down():
-        reason = f"signal {signals.get()}"
+        number = 0
+        while number not in (signal.SIGINT, signal.SIGTERM):
+            number = os.read(read, 1)[0]
+        reason = f"signal {number}"
         threading.Thread(target=rospy.signal_shutdown, args=[reason], daemon=False).start()
 
     threading.Thread(target=shut_down, daemon=True).start()

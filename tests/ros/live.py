@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import contextlib
+import ctypes
 import functools
 import os
 import shutil
@@ -110,6 +111,13 @@ class Program:
 
     def send(self, number: signal.Signals) -> None:
         self._process.send_signal(number)
+
+    def send_aside(self, number: signal.Signals) -> None:
+        """Send a signal to another thread than the main one. That goes on waiting then, as it does
+        when a signal comes just before it begins to."""
+        threads = (int(path.name) for path in Path(f"/proc/{self.pid}/task").iterdir())
+        other = next(thread for thread in threads if thread != self.pid)
+        assert ctypes.CDLL(None).tgkill(self.pid, other, number) == 0
 
     def halt(self) -> None:
         """Stop it as it is until it is sent SIGCONT; it has stopped when this returns."""

@@ -34,6 +34,18 @@ outcomes: {succeeded: {}}
 code: {python: "deeds:Deed"}
 """
 
+SLEEPER = """
+name: sleeper
+template: ROSBase
+outcomes: [succeeded, preempted]
+states:
+  - FIRST: {template: SleepState, time: 0, transitions: {succeeded: LONG, preempted: preempted}}
+  - LONG:
+      template: SleepState
+      time: 1000
+      transitions: {succeeded: succeeded, preempted: preempted}
+"""
+
 SIGNALS = pytest.mark.parametrize("number", [signal.SIGINT, signal.SIGTERM])
 
 
@@ -63,6 +75,20 @@ def test_a_signal_while_the_master_is_asked(
     program.expect("asked")
     program.send(number)
     graph.master.send(signal.SIGCONT)
+    assert program.end() == 0
+    assert program.output.endswith("outcome: preempted\n")
+
+
+@SIGNALS
+def test_a_signal_that_does_not_wake_the_main_thread(
+    graph: Graph, tmp_path: Path, number: signal.Signals
+) -> None:
+    path = tmp_path / "main.yml"
+    path.write_text(SLEEPER, encoding="utf-8")
+    (text,) = smachac.build(path, "python").values()
+    program = graph.start(text)
+    program.expect("-->'LONG'")
+    program.send_aside(number)
     assert program.end() == 0
     assert program.output.endswith("outcome: preempted\n")
 

@@ -32,7 +32,7 @@ ONE_FUNCTION = {"Program.tpl.py": "Base.tpl.py", "ROSProgram.tpl.py": "ROSBase.t
 """What prints a program whose states bring code around its run: all of it in one function, where
 such code sees its own names, as in SMACHA."""
 
-NODE_IMPORTS = [f"import {name}" for name in ("queue", "rospy", "signal", "threading", "time")]
+NODE_IMPORTS = [f"import {name}" for name in ("os", "rospy", "signal", "threading", "time")]
 """What ROSNode.tpl.py uses."""
 
 CATCHING = '''def error_as_outcome(state, outcome):
