@@ -9,6 +9,7 @@ from smachac import problems, schema, shapes
 from smachac.diagnostics import Related, Report, did_you_mean
 from smachac.ir.nodes import Key, Outcome
 from smachac.source import Word
+from smachac.spelling import guesser_of
 from smachac.states import StateType
 from smachac.sugar import check_sugar
 from smachac.syntax import Entry
@@ -25,6 +26,7 @@ def check_variables(
     """SM003, SM004 and SM005 over the variables of one state; `inner` is its name in the
     sub-script that a call stands for. Returns those that are names, or pairs of names, as read."""
     read = {}
+    meant: set[str | None] = set()
     for key, entry in fields.items():
         row = schema.VARIABLES.get(key)
         if key in type_.variables:
@@ -44,6 +46,7 @@ def check_variables(
             word = Word(str(entry.key.value), entry.key.span)
             whose = f"state type `{type_.name}`" if owner == "state" else _called(owner)
             report.append(problems.unknown_variable(word, whose, known))
+            meant.add(guesser_of(tuple(known))(word.text))
             continue
         if key not in ("template", "states"):
             value = shapes.READERS[shape](entry.value, report)
@@ -55,7 +58,7 @@ def check_variables(
     required = [*schema.REQUIRED[owner]]
     required += [key for key, variable in type_.variables.items() if variable.required]
     for key in required:
-        if key not in fields:
+        if key not in fields and key not in meant:
             whose = f"state type `{type_.name}`" if key in type_.variables else _called(owner)
             related: tuple[Related, ...] = ()
             if inner is not None:
