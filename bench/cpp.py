@@ -11,6 +11,7 @@ callgrind, where valgrind is installed.
 from __future__ import annotations
 
 import argparse
+import gc
 import re
 import resource
 import shutil
@@ -316,6 +317,7 @@ def main() -> int:
     parser.add_argument("--flags", default="-O1", help="of the compiler, for --scale")
     parser.add_argument("--steps", type=int, default=STEPS)
     given = parser.parse_args()
+    gc.disable()  # as `smachac` does
     if given.scale:
         lines = scale(given.scale, given.compiler, given.flags.split())
     else:

@@ -51,7 +51,8 @@ def identifier(name: str) -> str:
     Letters lose their accents; those of other scripts are numbers of Unicode. Two names may become
     one; `clashes` finds them.
     """
-    word = re.sub(r"[^0-9A-Za-z]+", "_", "".join(map(_ascii, name)))
+    text = name if name.isascii() else "".join(map(_ascii, name))
+    word = re.sub(r"[^0-9A-Za-z]+", "_", text)
     word = word.strip("_") or "_"
     if word[0].isdigit():
         word = f"n{word}"
@@ -61,8 +62,6 @@ def identifier(name: str) -> str:
 
 def _ascii(letter: str) -> str:
     """A letter in ASCII: `ö` is `o`, `ß` is `ss`, `抓` is `u6293`."""
-    if letter.isascii():
-        return letter
     parts = unicodedata.normalize("NFKD", "ss" if letter == "ß" else letter)
     plain = "".join(each for each in parts if not unicodedata.combining(each))
     if plain.isascii():
