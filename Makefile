@@ -44,7 +44,7 @@ golden: ## Rewrite what the tests expect under tests/cases and docs; review it w
 
 docs: ## Rewrite docs/rules.md from the docstrings of the rules
 	@scripts/setup.sh dev
-	.venv/bin/python -c 'import pathlib, smachac.report.explain as e; pathlib.Path("docs/rules.md").write_text(e.render_rules(), "utf-8")'
+	.venv/bin/python -c 'import pathlib, smachac.report.explain_code as e; pathlib.Path("docs/rules.md").write_text(e.render_rules(), "utf-8")'
 
 bench: ## Run the benchmarks; never part of the tests
 	@scripts/setup.sh dev

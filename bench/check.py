@@ -24,7 +24,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 if TYPE_CHECKING:
-    from smachac.diagnostics import Finding, RuleFunction
+    from smachac.diagnostics.diagnostic import Finding, RuleFunction
 
 SIZES = (1_000, 10_000, 100_000)
 DEPTH = 1_000
@@ -177,13 +177,14 @@ class Laps:
 def phases(path: str) -> dict[str, float]:
     """CPU seconds of each phase and rule, and of `check` as a whole, without its start-up."""
     from smachac.checks import check_machine
-    from smachac.diagnostics import RULES, Report, in_order
-    from smachac.files import disk_library, read_source
-    from smachac.ir.depth import deep_recursion
-    from smachac.ir.walk import walk
-    from smachac.lower import lower
-    from smachac.policy import allowances, heeded, settled
-    from smachac.script import resolve
+    from smachac.diagnostics.diagnostic import RULES, Report, in_order
+    from smachac.diagnostics.severities import settled
+    from smachac.frontend.files import disk_library, read_source
+    from smachac.frontend.lower import lower
+    from smachac.frontend.resolve import resolve
+    from smachac.frontend.suppressions import allowances, heeded
+    from smachac.ir.recursion import deep_recursion
+    from smachac.ir.traversal import walk
 
     warm_up()
     laps = Laps()

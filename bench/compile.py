@@ -14,7 +14,7 @@ import time
 from pathlib import Path
 
 PYTHON = sys.executable
-SMACHAC = [PYTHON, "-m", "smachac.cli"]
+SMACHAC = [PYTHON, "-m", "smachac"]
 
 
 def chain(states: int) -> str:

@@ -22,13 +22,14 @@ import time
 from collections.abc import Iterator
 from pathlib import Path
 
-from smachac.diagnostics import Report
-from smachac.driver import build, check, load, memory_library
-from smachac.files import disk_library
-from smachac.source import Source
-from smachac.states import find_state_type
+from smachac.diagnostics.diagnostic import Report
+from smachac.diagnostics.source import Source
+from smachac.driver import build, check, load
+from smachac.frontend.files import disk_library
+from smachac.frontend.loader import memory_library
+from smachac.frontend.state_types import find_state_type
 from smachac.targets.cpp import TARGET
-from smachac.targets.cpp.classes import interface_hash
+from smachac.targets.cpp.user_classes import interface_hash
 
 INCLUDE = Path(__file__).parents[1] / "smachac" / "runtime" / "cpp"
 PLACED = "-falign-functions=32"

@@ -26,20 +26,20 @@ from collections.abc import Callable, Iterator, Mapping
 from pathlib import Path
 from typing import Any
 
-from smachac.diagnostics import CODES, Report, has_errors
-from smachac.driver import analyse, analyse_alone, build, memory_library
-from smachac.files import disk_library
-from smachac.ir.behaviours import built_in
-from smachac.ir.run import run
-from smachac.refactor.layout import laid_out
-from smachac.report.explain import explanation
+from smachac.diagnostics.diagnostic import CODES, Report, has_errors
+from smachac.diagnostics.source import Source
+from smachac.driver import analyse, analyse_alone, build
+from smachac.frontend.files import disk_library
+from smachac.frontend.loader import Library, memory_library
+from smachac.interpreter.builtin_states import built_in
+from smachac.interpreter.interpreter import run
+from smachac.refactor.formatter import laid_out
+from smachac.report.explain_code import explanation
 from smachac.report.github import render_github
 from smachac.report.json import render_json
 from smachac.report.junit import render_junit
 from smachac.report.sarif import render_sarif
 from smachac.report.text import render_text
-from smachac.source import Source
-from smachac.states import Library
 from smachac.targets import load_target, target_names
 
 ROOT = Path(__file__).parents[1]

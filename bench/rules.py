@@ -12,6 +12,7 @@ import sys
 import time
 
 from smachac.checks import check_machine
+from smachac.diagnostics.source import NOWHERE
 from smachac.ir.nodes import (
     Concurrence,
     Condition,
@@ -22,7 +23,6 @@ from smachac.ir.nodes import (
     StateMachine,
     Transition,
 )
-from smachac.source import NOWHERE
 
 ENDS = ("succeeded", "aborted", "lost", "preempted")
 

@@ -27,9 +27,9 @@ from peers import HIERARCHY, PEERS, PING_PONG
 from tracing import tracing
 
 import smachac
+from smachac.interpreter.interpreter import run as interpret
+from smachac.interpreter.userdata import Userdata
 from smachac.ir.nodes import Leaf
-from smachac.ir.run import run as interpret
-from smachac.ir.userdata import Userdata
 from smachac.runtime import smach as bundled
 
 STEPS = 10_000

@@ -13,7 +13,8 @@ from functools import partial
 from typing import Any
 
 from smachac.runtime import smach
-from smachac.runtime.trace import TraceWriter, attach
+from smachac.runtime.tracing.trace import attach
+from smachac.runtime.tracing.writer import TraceWriter
 
 SMACH = {"ping-pong": 6.6, "hierarchy": 9.1}
 """Microseconds of a transition of SMACH itself, measured on another machine; so what is said in

@@ -9,20 +9,18 @@ The verbs of the command line for programs; they read the disk and print nothing
 
 from __future__ import annotations
 
+from smachac.version import __version__ as __version__
+
 TYPE_CHECKING = False  # typing and pathlib would double the time of `smachac --version`
 if TYPE_CHECKING:
     from collections.abc import Callable, Mapping, Sequence
     from os import PathLike
     from typing import Any
 
-    from smachac.diagnostics import Report
-    from smachac.driver import Analysis
+    from smachac.diagnostics.diagnostic import Report
     from smachac.ir.nodes import Checked
-    from smachac.states import Library
 
     Folders = Sequence[str | PathLike[str]]
-
-__version__ = "0.1.0"
 
 
 class ScriptError(Exception):
@@ -35,34 +33,20 @@ class ScriptError(Exception):
         self.report = report
 
 
-def analyse_file(
-    path: str | PathLike[str], scripts: Folders, templates: Folders
-) -> tuple[Analysis, Library | None]:
-    """The script at `path`, read and judged; and the library it was read with."""
-    from pathlib import Path
-
-    from smachac.driver import Analysis, analyse
-    from smachac.files import disk_library, read_source
-
-    report: Report = []
-    source = read_source(Path(path), report)
-    if source is None:
-        return Analysis(report=report), None
-    folders = [[Path(folder) for folder in each] for each in (scripts, templates)]
-    library = disk_library(Path(path), report, scripts=folders[0], templates=folders[1])
-    return analyse(source, library, report), library
-
-
 def check(path: str | PathLike[str], *, scripts: Folders = (), templates: Folders = ()) -> Report:
     """Every finding about the script at `path`, in order; empty when there is nothing to say.
 
     `scripts` and `templates` are more folders with sub-scripts and with state types.
     """
+    from smachac.driver import analyse_file
+
     return analyse_file(path, scripts, templates)[0].report
 
 
 def load(path: str | PathLike[str], *, scripts: Folders = (), templates: Folders = ()) -> Checked:
     """The checked machine of the script at `path`. Raises ScriptError."""
+    from smachac.driver import analyse_file
+
     analysis, _ = analyse_file(path, scripts, templates)
     if analysis.checked is None:
         raise ScriptError(analysis.report)
@@ -83,14 +67,14 @@ def build(
     Raises ScriptError, LookupError for an unknown target, ValueError for a bad option.
     """
     from smachac import driver
-    from smachac.diagnostics import has_errors
-    from smachac.files import runtime_files
+    from smachac.diagnostics.diagnostic import has_errors
     from smachac.targets import load_target
+    from smachac.targets.runtime_files import runtime_files
 
     found = load_target(target)
     if found is None:
         raise LookupError(f"there is no target `{target}`")
-    analysis, library = analyse_file(path, scripts, templates)
+    analysis, library = driver.analyse_file(path, scripts, templates)
     if analysis.checked is None or library is None:
         raise ScriptError(analysis.report)
     report: Report = []
@@ -114,7 +98,7 @@ def run(
     """
     from pathlib import Path
 
-    from smachac.execute import execute
+    from smachac.targets.python.runner import execute
 
     machine = load(path, scripts=scripts, templates=templates)
     ((name, text),) = build(path, "python", scripts=scripts, templates=templates).items()

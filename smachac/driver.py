@@ -3,24 +3,45 @@
 from __future__ import annotations
 
 import json
-from collections.abc import Callable, Iterable, Iterator, Mapping
+from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
+from os import PathLike
+from typing import TypeAlias
 
-from smachac import problems
 from smachac.checks import check_machine
-from smachac.diagnostics import Diagnostic, Finding, Report, has_errors, in_order
-from smachac.ir.depth import deep_recursion
+from smachac.diagnostics.diagnostic import Diagnostic, Finding, Report, has_errors, in_order
+from smachac.diagnostics.severities import settled
+from smachac.diagnostics.source import Source, Span, Word
+from smachac.frontend.errors.suppressions import unused_allowances
+from smachac.frontend.loader import Library
+from smachac.frontend.lower import lower
+from smachac.frontend.resolve import resolve
+from smachac.frontend.suppressions import Allowance, allowances, heeded
 from smachac.ir.nodes import Checked, Machine
-from smachac.ir.userdata import remapping
-from smachac.ir.walk import walk
-from smachac.lower import lower
-from smachac.policy import Allowance, allowances, heeded, settled
-from smachac.script import resolve
-from smachac.source import Source, Span, Word
-from smachac.states import Library
+from smachac.ir.recursion import deep_recursion
+from smachac.ir.traversal import remapping, walk
 from smachac.targets import Context, Files, Target, load_target
-from smachac.targets.declared import code_faults, target_faults
-from smachac.targets.undefined import undefined_names
+from smachac.targets.interface_check import code_faults, target_faults
+from smachac.targets.undefined_names import undefined_names
+
+Folders: TypeAlias = "Sequence[str | PathLike[str]]"
+
+
+def analyse_file(
+    path: str | PathLike[str], scripts: Folders, templates: Folders
+) -> tuple[Analysis, Library | None]:
+    """The script at `path`, read and judged; and the library it was read with."""
+    from pathlib import Path
+
+    from smachac.frontend.files import disk_library, read_source
+
+    report: Report = []
+    source = read_source(Path(path), report)
+    if source is None:
+        return Analysis(report=report), None
+    folders = [[Path(folder) for folder in each] for each in (scripts, templates)]
+    library = disk_library(Path(path), report, scripts=folders[0], templates=folders[1])
+    return analyse(source, library, report), library
 
 
 def load(source: Source, library: Library, report: Report) -> Machine | None:
@@ -76,7 +97,7 @@ def analyse(
         ]
         found, used = heeded(report, given)
         unused = [fit for fit in given if fit not in used]
-        found += problems.unused_allowances(
+        found += unused_allowances(
             Word(fit.code, fit.span) for fit in unused if fit.span.source is source
         )
         found = settled(in_order(found), library.policy)
@@ -187,29 +208,3 @@ def together(report: Report, built: Report) -> Report:
     which knows how bad it is."""
     said = {(item.code, item.finding.message, item.span) for item in built}
     return [*(i for i in report if (i.code, i.finding.message, i.span) not in said), *built]
-
-
-def memory_library(files: Mapping[str, str], built_in: Library) -> Library:
-    """A library over texts in memory; templates not among them come from `built_in`."""
-    sources = {name: Source(name, text) for name, text in files.items()}
-
-    def script(name: str, caller: str) -> Source | None:
-        names = (name, f"{name}.yml", f"{name}.yaml")
-        return next((sources[name] for name in names if name in sources), None)
-
-    def own_template(name: str) -> Source | None:
-        return sources.get(f"templates/{name}") or built_in.own_template(name)
-
-    return Library(
-        script=script,
-        template=lambda name: own_template(name) or built_in.template(name),
-        own_template=own_template,
-        code=lambda name: sources.get(name) or built_in.code(name),
-        script_folders=lambda caller: ["."],
-        template_folders=lambda: ["templates", *built_in.template_folders()],
-        script_names=lambda caller: [name.removesuffix(".yml") for name in sources],
-        template_names=lambda: [
-            *(name.removeprefix("templates/").split(".")[0] for name in sources),
-            *built_in.template_names(),
-        ],
-    )

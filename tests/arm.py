@@ -12,8 +12,8 @@ from quiet import quiet
 
 from smachac import sim
 from smachac.driver import analyse, build
-from smachac.files import disk_library, read_source
-from smachac.runtime import trace
+from smachac.frontend.files import disk_library, read_source
+from smachac.runtime.tracing import trace
 from smachac.targets.python import TARGET
 
 EXAMPLES = Path(__file__).parents[1] / "examples"

@@ -11,6 +11,7 @@ from typing import Any
 from hypothesis import strategies as st
 from strategies import BOOLEANS, FEW, Building, keys_of, outcomes_of, transition
 
+from smachac.diagnostics.source import NOWHERE
 from smachac.ir.nodes import (
     Concurrence,
     Condition,
@@ -29,8 +30,7 @@ from smachac.ir.nodes import (
     Value,
     Variable,
 )
-from smachac.ir.walk import outcome_names, walk
-from smachac.source import NOWHERE
+from smachac.ir.traversal import outcome_names, walk
 
 NUMBERS = ["a", "b", "c"]
 SOME_NUMBERS = st.lists(st.sampled_from(NUMBERS), max_size=3, unique=True)

@@ -13,7 +13,8 @@ from typing import Any
 
 from hypothesis import strategies as st
 
-from smachac.ir.accesses import leaf_writes
+from smachac.analysis.accesses import leaf_writes
+from smachac.diagnostics.source import NOWHERE
 from smachac.ir.graph import Edge, edges
 from smachac.ir.nodes import (
     Concurrence,
@@ -35,9 +36,7 @@ from smachac.ir.nodes import (
     Value,
     Variable,
 )
-from smachac.ir.userdata import remapping
-from smachac.ir.walk import containers, outcome_names
-from smachac.source import NOWHERE
+from smachac.ir.traversal import containers, outcome_names, remapping
 
 NAMES = ("a", "b", "c")
 OUTCOMES = ("done", "failed", "preempted")

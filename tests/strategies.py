@@ -12,6 +12,7 @@ from typing import Any, Literal, TypeVar
 
 from hypothesis import strategies as st
 
+from smachac.diagnostics.source import NOWHERE
 from smachac.ir.nodes import (
     Concurrence,
     Condition,
@@ -34,9 +35,8 @@ from smachac.ir.nodes import (
     Value,
     Variable,
 )
+from smachac.ir.traversal import outcome_names
 from smachac.ir.types import ANY, Type
-from smachac.ir.walk import outcome_names
-from smachac.source import NOWHERE
 
 T = TypeVar("T")
 

@@ -13,14 +13,14 @@ from hypothesis import HealthCheck, given, seed, settings
 from quiet import quiet
 
 from smachac.driver import build, check, load
-from smachac.files import disk_library, read_source
-from smachac.ir.behaviours import built_in
+from smachac.frontend.files import disk_library, read_source
+from smachac.frontend.loader import Library
+from smachac.interpreter.builtin_states import built_in
+from smachac.interpreter.interpreter import Interpreter
+from smachac.interpreter.userdata import Userdata
 from smachac.ir.nodes import Checked, Leaf, Machine
-from smachac.ir.run import Interpreter
-from smachac.ir.userdata import Userdata
-from smachac.runtime import trace
-from smachac.runtime.compare import compare
-from smachac.states import Library
+from smachac.runtime.tracing import trace
+from smachac.runtime.tracing.compare import compare
 from smachac.targets.python import TARGET
 
 ROOT = Path(__file__).parents[1]

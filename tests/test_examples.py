@@ -8,7 +8,7 @@ from pathlib import Path
 
 import pytest
 
-from smachac.cli import main
+from smachac.commands.cli import main
 
 ROOT = Path(__file__).parents[1] / "examples"
 EXAMPLES = sorted(path.parent.name for path in ROOT.glob("*/main.yml"))
@@ -86,7 +86,7 @@ def test_output_does_not_depend_on_the_hash_seed(name: str, target: str) -> None
     texts = set()
     for seed in ("1", "2"):
         ended = subprocess.run(
-            [sys.executable, "-m", "smachac.cli", "build", script(name), "-t", target, "-o", "-"],
+            [sys.executable, "-m", "smachac", "build", script(name), "-t", target, "-o", "-"],
             capture_output=True,
             timeout=120,
             check=True,

@@ -14,13 +14,14 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 from plain import MAIN, written
 
-from smachac.cli import main
-from smachac.driver import analyse, memory_library
-from smachac.files import disk_library
-from smachac.ir.text import print_machine
-from smachac.refactor.layout import WIDTH, laid_out
-from smachac.source import Source
-from smachac.syntax import parse
+from smachac.commands.cli import main
+from smachac.diagnostics.source import Source
+from smachac.driver import analyse
+from smachac.frontend.files import disk_library
+from smachac.frontend.loader import memory_library
+from smachac.frontend.yaml_tree import parse
+from smachac.ir.printer import print_machine
+from smachac.refactor.formatter import WIDTH, laid_out
 
 ROOT = Path(__file__).parent
 LAYOUTS = sorted((ROOT / "layouts").glob("*/before.yml"))

@@ -9,9 +9,9 @@ from pathlib import Path
 
 import pytest
 
-from smachac.diagnostics import Report
+from smachac.diagnostics.diagnostic import Report
 from smachac.driver import analyse, build
-from smachac.files import disk_library, read_source
+from smachac.frontend.files import disk_library, read_source
 from smachac.report.text import render_text
 from smachac.targets import load_target, target_names
 

@@ -8,7 +8,7 @@ from pathlib import Path
 
 import pytest
 
-from smachac.cli import main
+from smachac.commands.cli import main
 
 ROOT = Path(__file__).parent
 FOLDER = ROOT / "explained"

@@ -7,8 +7,8 @@ from pathlib import Path
 
 import pytest
 
-from smachac import __version__
-from smachac.cli import FORMATS, main
+from smachac.commands.cli import FORMATS, main
+from smachac.version import __version__
 
 FOLDER = Path(__file__).parent / "reports"
 ENDINGS = {"text": "txt", "github": "txt", "json": "json", "sarif": "sarif", "junit": "xml"}

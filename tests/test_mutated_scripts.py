@@ -7,12 +7,13 @@ from pathlib import Path
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from smachac.diagnostics import Report
-from smachac.driver import analyse, build, memory_library
-from smachac.files import disk_library
+from smachac.diagnostics.diagnostic import Report
+from smachac.diagnostics.source import Source
+from smachac.driver import analyse, build
+from smachac.frontend.files import disk_library
+from smachac.frontend.loader import memory_library
 from smachac.report.json import render_json
 from smachac.report.text import render_text
-from smachac.source import Source
 from smachac.targets import load_target, target_names
 
 ROOT = Path(__file__).parents[1]

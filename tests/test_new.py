@@ -8,13 +8,13 @@ from pathlib import Path
 
 import pytest
 
-from smachac.cli import main
-from smachac.diagnostics import Report
-from smachac.files import disk_library
+from smachac.commands.cli import main
+from smachac.commands.scaffold import BadNameError, file_stem, key_and_type
+from smachac.diagnostics.diagnostic import Report
+from smachac.diagnostics.source import NOWHERE
+from smachac.frontend.files import disk_library
 from smachac.ir.nodes import Checked, Leaf, Machine, Outcome, StateMachine
 from smachac.report.state_types import CONTAINERS
-from smachac.scaffold import BadNameError, file_stem, key_and_type
-from smachac.source import NOWHERE
 from smachac.targets import Context, load_target
 
 

@@ -22,17 +22,17 @@ from hypothesis import strategies as st
 from plain import written
 
 import smachac
-from smachac import analyse_file
-from smachac.cli import main
+from smachac.commands.cli import main
+from smachac.diagnostics.source import Source
+from smachac.driver import analyse_file
+from smachac.interpreter.interpreter import run
+from smachac.interpreter.userdata import Userdata, UserdataError
 from smachac.ir.nodes import Leaf, Machine, StateMachine
-from smachac.ir.run import run
-from smachac.ir.text import print_machine
-from smachac.ir.userdata import Userdata, UserdataError
-from smachac.ir.walk import outcome_names, walk
-from smachac.refactor.alike import normal
-from smachac.refactor.layout import laid_out
+from smachac.ir.printer import print_machine
+from smachac.ir.traversal import outcome_names, walk
+from smachac.refactor.equivalence import normal
+from smachac.refactor.formatter import laid_out
 from smachac.runtime import smach
-from smachac.source import Source
 
 CASES = sorted(path.parent for path in (Path(__file__).parent / "reworked").glob("*/command"))
 SEEDS = range(16)

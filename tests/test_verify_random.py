@@ -9,14 +9,14 @@ from busy_strategies import busy_machines
 from hypothesis import HealthCheck, given, seed, settings
 
 from smachac.driver import build
-from smachac.files import disk_library
-from smachac.ir.behaviours import built_in
+from smachac.frontend.files import disk_library
+from smachac.interpreter.builtin_states import built_in
+from smachac.interpreter.interpreter import run
 from smachac.ir.nodes import Checked, Machine
-from smachac.ir.run import run
 from smachac.targets.python import TARGET
 from smachac.verify import verify
 from smachac.verify.coverage import Taken
-from smachac.verify.python import player
+from smachac.verify.players.python import player
 
 ROOT = Path(__file__).parents[1]
 SLOW = list(HealthCheck)

@@ -3,50 +3,40 @@
 from __future__ import annotations
 
 from smachac.checks import (
-    bodies,
     concurrence,
-    coverage,
-    dataflow,
     declarations,
     expressions,
-    frames,
-    liveness,
-    masking,
+    failures,
+    initial_values,
+    loops,
     names,
-    operations,
-    presets,
     races,
-    reach,
+    reachability,
     robot,
-    stopping,
-    structure,
+    timeouts,
     types,
-    waiting,
+    userdata,
+    workspace,
 )
-from smachac.diagnostics import Report, run_rules
+from smachac.diagnostics.diagnostic import Report, run_rules
 from smachac.ir.nodes import Machine
 
 __all__ = [
-    "bodies",
     "check_machine",
     "concurrence",
-    "coverage",
-    "dataflow",
     "declarations",
     "expressions",
-    "frames",
-    "liveness",
-    "masking",
+    "failures",
+    "initial_values",
+    "loops",
     "names",
-    "operations",
-    "presets",
     "races",
-    "reach",
+    "reachability",
     "robot",
-    "stopping",
-    "structure",
+    "timeouts",
     "types",
-    "waiting",
+    "userdata",
+    "workspace",
 ]
 
 

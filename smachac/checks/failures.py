@@ -1,143 +1,295 @@
-"""The failures of a machine: where each one leads, who catches it, how the machine ends then."""
+"""Rules over failures that end as a success."""
 
 from __future__ import annotations
 
-from collections import deque
 from collections.abc import Iterator, Mapping
-from dataclasses import dataclass, field
-from typing import Literal
+from typing import NamedTuple
 
-from smachac.checks.hints import PREEMPTED, is_failure, successes
-from smachac.checks.masking import starts_failure
-from smachac.checks.once import states
-from smachac.checks.routes import Arrival, Routes, Step
-from smachac.ir.graph import is_unread
-from smachac.ir.nodes import Leaf, Machine, Node
-from smachac.ir.walk import outcome_names
-from smachac.source import Span
+from smachac.analysis.control_flow import MOST_STEPS
+from smachac.analysis.failure_paths import starts_failure
+from smachac.analysis.outcome_rules import Combination, Space, Study, UndecidedError
+from smachac.analysis.possible_outcomes import Judged, judged
+from smachac.checks.concurrence import written
+from smachac.checks.messages import calls, other_place
+from smachac.diagnostics.diagnostic import Finding, Severity, rule
+from smachac.diagnostics.source import Span
+from smachac.diagnostics.wording import listed
+from smachac.ir import nodes
+from smachac.ir.nodes import Concurrence, Container, Leaf, Machine, Node, Sequence, StateMachine
+from smachac.ir.outcome_names import GOOD, PREEMPTED, SUCCESSES, is_failure, successes
+from smachac.ir.traversal import containers, leads_to_child, outcome_names
 
-Answer = Literal["caught", "repeated", "passed over", "not caught", "lost"]
-"""What becomes of a failure: another state follows than after a success; the state, or one that
-contains it, runs again; what follows is what follows a success; the machine ends; nothing is said
-to follow."""
 
+@rule("SM404", "masked-failure", Severity.WARNING)
+def masked_failure(machine: Machine) -> Iterator[Finding]:
+    """A child failed, and the concurrence ends as if all had gone well.
 
-@dataclass(frozen=True, slots=True, kw_only=True)
-class Failure:
-    """A state ends with an outcome of failure, and one way on from there.
+    The robot goes on with a part it did not grasp, or to a place it did not look at. Most often
+    the default outcome is one of success, or a rule does not list all children.
 
-    `path` is the state, `way` the states and outcomes that the failure passes, as in a witness
-    path. `next` is the path of the state that is entered then, empty where there is none. `ends`
-    are the outcomes that the machine can end with from there on, while nobody asks it to stop;
-    `good`, those that mean success.
+    Exactly: an outcome of failure is `aborted`, `failed`, `error`, `timeout` and the like. A
+    success is an outcome called `succeeded` (or `done`, `ok` and the like beside one of failure),
+    and one with which the concurrence always ends when no child failed; not one that leads
+    straight to an outcome of failure. A rule that lists the child that failed, with that failure,
+    is meant so. Nobody preempts the concurrence; with `join: any` it is the first child to end that
+    failed, for the others are told to give up.
+
+    Wrong:
+        name: sm
+        template: Base
+        outcomes: [ready, failed]
+        states:
+          - BOTH:
+              template: Concurrence
+              outcomes: [ready, failed]
+              default_outcome: ready
+              outcome_map:
+                failed: {LEFT: aborted, RIGHT: aborted}
+              states:
+                - LEFT: {template: ScriptedState, outcomes: [done, aborted]}
+                - RIGHT: {template: ScriptedState, outcomes: [done, aborted]}
+              transitions: {ready: ready, failed: failed}
+
+    Right:
+        name: sm
+        template: Base
+        outcomes: [ready, failed]
+        states:
+          - BOTH:
+              template: Concurrence
+              outcomes: [ready, failed]
+              default_outcome: failed
+              outcome_map:
+                ready: {LEFT: done, RIGHT: done}
+              states:
+                - LEFT: {template: ScriptedState, outcomes: [done, aborted]}
+                - RIGHT: {template: ScriptedState, outcomes: [done, aborted]}
+              transitions: {ready: ready, failed: failed}
     """
+    for each in judged(machine):
+        try:
+            yield from _masked(each)
+        except UndecidedError:
+            continue
+
+
+def _masked(each: Judged) -> Iterator[Finding]:
+    """For the default outcome and each rule with a success the failures that it hides."""
+    read, node = each.read, each.read.node
+    spaces = each.calm
+    if not any(read.failures(*ends) for space, _ in spaces for ends in space.items()):
+        return
+    good = _good_results(read, [space for space, _ in spaces])
+    if node.default_outcome in good:
+        hidden = _hidden(read, spaces, {}, read.rules.all)
+        help = "let the default be an outcome of failure, and list what is a success in a rule"
+        yield from _masks(each, node.default_outcome, node.default_span, hidden, help)
+    for number, entry in enumerate(read.written):
+        if entry.outcome in good:
+            given = read.rules.conditions[number]
+            rivals = read.rules.larger_than(len(given) - 1) & ~(1 << number)
+            hidden = _hidden(read, spaces, given, rivals)
+            help = f"list every child in the rule for `{entry.outcome}`"
+            yield from _masks(each, entry.outcome, entry.span, hidden, help)
+
+
+def _good_results(read: Study, spaces: list[Space]) -> frozenset[str]:
+    """The outcomes of a concurrence that mean success."""
+    node = read.node
+    found = set(successes(outcome_names(node)))
+    results: set[str] = set()
+    for space in (_good_part(read, each) for each in spaces):
+        if read.rules.find(space, {}, read.rules.all) is not None:
+            results.add(node.default_outcome)
+        for number, entry in enumerate(read.written):
+            given = read.rules.conditions[number]
+            if read.rules.find(space, given, read.larger(number)) is not None:
+                results.add(entry.outcome)
+    if len(results) == 1:
+        found |= results
+    leads = {step.outcome: step.target for step in node.transitions}
+    return frozenset(name for name in found if not (_bad(name) or _bad(leads.get(name, ""))))
+
+
+def _bad(name: str) -> bool:
+    return is_failure(name) or name == PREEMPTED
+
+
+def _good_part(read: Study, space: Space) -> Space:
+    """The outcomes of success of each child; those that say nothing where it has none."""
+    found: Space = {}
+    for name, ends in space.items():
+        good = tuple(end for end in ends if end.lower() in SUCCESSES | GOOD)
+        found[name] = (
+            good or read.neutral(name, ends) or tuple(end for end in ends if end == PREEMPTED)
+        )
+    return found
+
+
+def _hidden(
+    read: Study, spaces: list[tuple[Space, str]], given: Combination, avoided: int
+) -> dict[str, Combination]:
+    """The children that a deciding rule does not ask and that may have failed, each with what
+    decides then."""
+    found: dict[str, Combination] = {}
+    for space, first in spaces:
+        for child in [first] if first else space:
+            if child in given or child in found:
+                continue
+            for end in read.failures(child, space[child]):
+                fixed = {**given, child: end}
+                whole = read.rules.find(space, fixed, avoided)
+                if whole is not None:
+                    found[child] = read.rules.shown(whole, fixed, avoided)
+                    break
+    return found
+
+
+def _masks(
+    each: Judged, outcome: str, span: Span, hidden: dict[str, Combination], help: str
+) -> Iterator[Finding]:
+    if not hidden:
+        return
+    node = each.read.node
+    child, shown = next(iter(hidden.items()))
+    others = [name for name in hidden if name != child]
+    also = f"; {listed(others)} may fail unseen as well" if others else ""
+    failed = next(one for one in node.children if one.name == child)
+    step = next((step for step in node.transitions if step.outcome == outcome), None)
+    yield Finding(
+        span=span,
+        message=f"`{node.name}` ends with `{outcome}` although `{child}` failed: {written(shown)}"
+        f"{also}",
+        help=help,
+        related=(
+            *other_place(failed.span, f"ends with `{shown[child]}`"),
+            *calls(node, span),
+        ),
+        path=(node.name, f"({outcome})", step.target) if step else (),
+        node=each.path,
+    )
+
+
+class _Fate(NamedTuple):
+    """An outcome of `node` that leaves container after container until the machine has ended with
+    a success. `turn` is the first step on which the failure is called a success."""
 
     path: str
+    node: Node
     outcome: str
-    answer: Answer
-    way: tuple[str, ...]
-    next: str = ""
-    ends: tuple[str, ...] = ()
-    good: tuple[str, ...] = ()
-    span: Span = field(compare=False, repr=False)
+    target: str
+    turn: _Fate | None
+    span: Span
+    then: _Fate | None
 
 
-def failures(machine: Machine) -> Iterator[Failure]:
-    """Every failure that can begin, in the order of the script; one for each way that it takes.
+@rule("SM206", "unhandled-failure", Severity.WARNING)
+def unhandled_failure(machine: Machine) -> Iterator[Finding]:
+    """A state fails, and the machine ends with a success, without any other state in between.
 
-    A failure begins where a leaf ends with an outcome of failure (hints.is_failure), tries are used
-    up, or a time limit is over. Linear in the states, but for the depth of containers.
+    Whoever started the robot is told that the task is done. The failure needs a recovery, or an
+    outcome of its own.
+
+    Exactly: an outcome of failure of a state (`aborted`, `failed`, `error`, `timeout` and the
+    like) leaves the containers around it, by whatever transitions, until the machine has ended
+    with `succeeded`, or with `done`, `ok` or the like where the machine has an outcome of failure
+    as well. What a concurrence makes of the failures of its children is told by SM404.
+
+    Wrong:
+        name: sm
+        template: Base
+        outcomes: [succeeded, failed]
+        states:
+          - PICK:
+              template: ScriptedState
+              outcomes: [done, lost]
+              transitions: {done: PLACE, lost: failed}
+          - PLACE:
+              template: ScriptedState
+              outcomes: [done, timeout]
+              transitions: {done: succeeded, timeout: succeeded}
+
+    Right:
+        name: sm
+        template: Base
+        outcomes: [succeeded, failed]
+        states:
+          - PICK:
+              template: ScriptedState
+              outcomes: [done, lost]
+              transitions: {done: PLACE, lost: failed}
+          - PLACE:
+              template: ScriptedState
+              outcomes: [done, timeout]
+              transitions: {done: succeeded, timeout: failed}
     """
-    routes = Routes(machine)
-    ways = routes.ways()
-    ends = _possible_ends(routes, ways)
-    for path, node in states(machine):
-        if node is not routes.nodes[path] or is_unread(node):
-            continue
-        for name in outcome_names(node):
-            if starts_failure(node, name) and (path, name) in ways:
-                yield from _failures(routes, ends, path, node, name)
+    root = machine.root
+    good = successes(outcome_names(root))
+    if not good:
+        return
+    fates: dict[tuple[int, str], _Fate | None] = {(id(root), name): None for name in good}
+    turns: dict[tuple[int, str], list[_Fate]] = {}
+    for path, container in containers(root):
+        names = frozenset(child.name for child in container.children)
+        for child in container.children:
+            for fate in _fates(container, names, f"{path}/{child.name}", child, fates):
+                if not isinstance(child, Leaf):
+                    fates[id(child), fate.outcome] = fate
+                if starts_failure(child, fate.outcome):
+                    turn = fate.turn or fate
+                    turns.setdefault((id(turn.node), turn.outcome), []).append(fate)
+    for found in turns.values():
+        yield _unhandled_failure(root, found)
 
 
-def _failures(
-    routes: Routes, ends: Mapping[Step, frozenset[str]], path: str, node: Node, name: str
-) -> Iterator[Failure]:
-    root = routes.machine.root
-    order = outcome_names(root)
-    good = successes(order)
-    span = next((step.span for step in node.transitions if step.outcome == name), node.span)
-    arrivals = routes.arrivals(path, name)
-    good_ways = _after_success(routes, path, node)
-    # In a concurrence a success leads wherever the failure of another branch does.
-    same = len(good_ways) == 1 or good_ways == {(each.target, _final(each)) for each in arrivals}
-    alike = good_ways if same else set[tuple[str, str]]()
-    for arrival in arrivals:
-        last: Step = (arrival.target, "") if arrival.target else arrival.through[-1]
-        final = [end for end in order if end in ends.get(last, ())]
-        yield Failure(
-            path=path,
-            outcome=name,
-            answer=_answer(arrival, path, alike),
-            way=_way(path, name, arrival),
-            next=arrival.target,
-            ends=tuple(final),
-            good=tuple(end for end in final if end in good),
-            span=span,
-        )
-    if not arrivals:
-        way = (path.rpartition("/")[2], f"({name})")
-        yield Failure(path=path, outcome=name, answer="lost", way=way, span=span)
+def _fates(
+    container: Container,
+    names: frozenset[str],
+    path: str,
+    child: Node,
+    fates: Mapping[tuple[int, str], _Fate | None],
+) -> Iterator[_Fate]:
+    """The outcomes of a child that end the machine with a success."""
+    ways: list[tuple[str, str, Span]] = []
+    match container:
+        case StateMachine() | Sequence():
+            steps = (step for step in child.transitions if not leads_to_child(step, names))
+            ways = [(step.outcome, step.target, step.span) for step in steps]
+        case nodes.Iterator():
+            ends = (end for end in outcome_names(child) if end not in container.loop_outcomes)
+            final = dict(container.final_map)
+            ways = [(end, final.get(end, end), container.span) for end in ends]
+        case Concurrence(sugar="timeout"):
+            inner = outcome_names(child) if child.name == container.name else ()
+            ways = [(end, end, container.span) for end in inner]
+    for outcome, target, span in ways:
+        if (id(container), target) in fates:
+            then = fates[id(container), target]
+            called_good = target.lower() in SUCCESSES | GOOD
+            turn = None if called_good or then is None else then.turn or then
+            yield _Fate(path, child, outcome, target, turn, span, then)
 
 
-def _answer(arrival: Arrival, path: str, alike: set[tuple[str, str]]) -> Answer:
-    if arrival.target and f"{path}/".startswith(f"{arrival.target}/"):
-        return "repeated"
-    final = _final(arrival)
-    if (arrival.target, final) in alike and not is_failure(final):
-        return "passed over"
-    return "caught" if arrival.target else "not caught"
-
-
-def _final(arrival: Arrival) -> str:
-    """The outcome of the machine, if it ends."""
-    return "" if arrival.target else arrival.through[-1][1]
-
-
-def _after_success(routes: Routes, path: str, node: Node) -> set[tuple[str, str]]:
-    """Where the successes of a state lead."""
-    names = [name for name in successes(outcome_names(node)) if not is_failure(name)]
-    arrivals = (arrival for name in names for arrival in routes.arrivals(path, name))
-    return {(arrival.target, _final(arrival)) for arrival in arrivals}
-
-
-def _way(path: str, outcome: str, arrival: Arrival) -> tuple[str, ...]:
-    """The states that a failure passes, in brackets how they end; last where it leads, which may
-    be an outcome of the machine."""
-    way = [path.rpartition("/")[2], f"({outcome})"]
-    for inner, name in arrival.through if arrival.target else arrival.through[:-1]:
-        way += [inner.rpartition("/")[2], f"({name})"]
-    return (*way, arrival.target.rpartition("/")[2] or _final(arrival))
-
-
-def _possible_ends(routes: Routes, ways: Mapping[Step, Step | None]) -> dict[Step, frozenset[str]]:
-    """The outcomes of the machine that each place can lead to while nobody asks it to stop."""
-    before: dict[Step, list[Step]] = {}
-    for place in ways:
-        if place[1] == PREEMPTED and isinstance(routes.nodes[place[0]], Leaf):
-            continue
-        for step in routes.follow(place):
-            before.setdefault(step, []).append(place)
-    root = routes.machine.root
-    found: dict[Step, frozenset[str]] = {}
-    for name in dict.fromkeys(outcome_names(root)):
-        end = (root.name, name)
-        todo = deque([end] if end in ways else [])
-        seen = set(todo)
-        while todo:
-            here = todo.popleft()
-            found[here] = found.get(here, frozenset()) | {name}
-            for place in before.get(here, ()):
-                if place not in seen:
-                    seen.add(place)
-                    todo.append(place)
-    return found
+def _unhandled_failure(root: StateMachine, found: list[_Fate]) -> Finding:
+    first = found[0]
+    turn = first.turn or first
+    way: list[str] = []
+    end = ""
+    step: _Fate | None = first
+    while step is not None and len(way) < 2 * MOST_STEPS:
+        way += [step.node.name, f"({step.outcome})"]
+        end, step = step.target, step.then
+    others = [fate.node.name for fate in found[1:]]
+    also = f"; so it does after {listed(others)}" if others else ""
+    return Finding(
+        span=turn.span,
+        message=f"`{first.node.name}` fails with `{first.outcome}`, and `{root.name}` ends with a"
+        f" success{also}",
+        help="lead the failure to a state that recovers, or to an outcome of failure",
+        related=(
+            *(other_place(first.node.span, "the state that fails") if turn is not first else ()),
+            *calls(turn.node, turn.span),
+        ),
+        path=(*way, end),
+        node=turn.path,
+    )

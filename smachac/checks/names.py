@@ -5,10 +5,8 @@ from __future__ import annotations
 from collections.abc import Iterator
 from typing import NamedTuple
 
-from smachac.checks.expressions import unknown_endings
-from smachac.checks.hints import calls, did_you_mean, guesser, other_place
-from smachac.checks.once import containers, states
-from smachac.checks.outline import (
+from smachac.analysis.context import containers, states
+from smachac.analysis.control_flow import (
     Linear,
     children_names,
     is_open,
@@ -17,13 +15,15 @@ from smachac.checks.outline import (
     places_of,
     unknown_outcomes,
 )
-from smachac.diagnostics import Finding, Severity, rule
+from smachac.checks.expressions import unknown_endings
+from smachac.checks.messages import calls, did_you_mean, other_place
+from smachac.diagnostics.diagnostic import Finding, Severity, rule
+from smachac.diagnostics.source import Word
+from smachac.diagnostics.spelling import guesser, respelt
+from smachac.diagnostics.wording import listed
 from smachac.ir import nodes
 from smachac.ir.nodes import Concurrence, Container, Leaf, Machine, Node, Transition
-from smachac.ir.walk import outcome_names
-from smachac.problems import listed
-from smachac.source import Word
-from smachac.spelling import respelt
+from smachac.ir.traversal import outcome_names
 
 
 class _Lost(NamedTuple):

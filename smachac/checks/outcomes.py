@@ -4,13 +4,14 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Iterator
 
-from smachac.checks.hints import PREEMPTED, calls, did_you_mean, is_failure, other_place
-from smachac.checks.once import containers
-from smachac.checks.outline import Linear, linear, places_of, unknown_outcomes
-from smachac.diagnostics import Finding, Severity, rule
+from smachac.analysis.context import containers
+from smachac.analysis.control_flow import Linear, linear, places_of, unknown_outcomes
+from smachac.checks.messages import calls, did_you_mean, other_place
+from smachac.diagnostics.diagnostic import Finding, Severity, rule
 from smachac.ir import nodes
 from smachac.ir.nodes import Concurrence, Machine, Node, Outcome, Transition
-from smachac.ir.walk import outcome_names
+from smachac.ir.outcome_names import PREEMPTED, is_failure
+from smachac.ir.traversal import outcome_names
 
 
 @rule("SM103", "undeclared-container-outcome", Severity.ERROR, firm=True)

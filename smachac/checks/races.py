@@ -4,14 +4,14 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 
-from smachac.checks.claims import Held, claims, prefixes
-from smachac.checks.hints import calls, other_place
-from smachac.checks.once import containers
-from smachac.checks.sharing import Accesses, accesses
-from smachac.diagnostics import Finding, Related, Severity, rule
+from smachac.analysis.accesses import Accesses, accesses
+from smachac.analysis.context import containers
+from smachac.analysis.resource_claims import Held, claims, prefixes
+from smachac.checks.messages import calls, other_place
+from smachac.diagnostics.diagnostic import Finding, Related, Severity, rule
+from smachac.diagnostics.source import Span
+from smachac.diagnostics.wording import listed
 from smachac.ir.nodes import Concurrence, Machine, Node
-from smachac.problems import listed
-from smachac.source import Span
 
 MOST_PLACES = 4
 """So many other places a finding shows."""

@@ -1,122 +1,384 @@
-"""The flow of userdata as the rules judge it: with misspelt names put right, so that one fault is
-reported once, and keys told apart by who could set them."""
+"""Rules over the flow of userdata: what is read has to be set before, and get there."""
 
 from __future__ import annotations
 
 from collections.abc import Iterator
-from dataclasses import replace
-from typing import NamedTuple, cast
+from functools import cache
 
-from smachac.checks.hints import guesser
-from smachac.checks.once import containers, once
-from smachac.checks.outline import is_open, mended
-from smachac.ir import nodes
-from smachac.ir.accesses import callbacks, scripted_steps, userdata_fields
-from smachac.ir.behaviours import CALLING
-from smachac.ir.dataflow import Flow, data_flow
-from smachac.ir.nodes import (
-    Container,
-    Key,
-    Leaf,
-    Machine,
-    Node,
-    Remap,
-    Sequence,
-    StateMachine,
+from smachac.analysis.context import states
+from smachac.analysis.def_use import Use, place_of, uses_by_key
+from smachac.analysis.definite_assignment import Flow, Scope
+from smachac.analysis.error_recovery import flow_of, unknown_remaps
+from smachac.analysis.lost_outputs import lost_outputs
+from smachac.analysis.unset_reads import (
+    Missing,
+    Searches,
+    Witness,
+    container_name,
+    missing_keys,
+    reader_at,
 )
-from smachac.ir.types import ANY, Type
-from smachac.ir.walk import outcome_names
+from smachac.checks.edits import with_input, with_output
+from smachac.checks.messages import calls, did_you_mean, other_place
+from smachac.diagnostics.diagnostic import Edit, Finding, Related, Severity, rule
+from smachac.diagnostics.source import Word
+from smachac.diagnostics.spelling import Guesser, guesser, respelt
+from smachac.diagnostics.wording import listed
+from smachac.ir.nodes import Machine, Node
+
+MOST_RELATED = 3
+"""More places beside the fault than these help nobody."""
 
 
-class UnknownRemap(NamedTuple):
-    """A remap of a key that the state does not have: the key meant, and that if it is certain."""
+@rule("SM301", "read-before-write", Severity.ERROR)
+def read_before_write(machine: Machine) -> Iterator[Finding]:
+    """A state reads a userdata key that nothing has set on the way to it.
 
-    remap: Remap
-    meant: str | None
-    certain: str | None
+    The machine stops there with an error, with the robot wherever it happens to be. If every path
+    leads to that it is an error, if only some do it is a warning.
+
+    An output of a state counts as set on every outcome but `preempted`, unless its interface says
+    otherwise (`writes:`). What a state of an unknown type does is not judged.
+
+    Wrong:
+        name: sm
+        template: Base
+        outcomes: [held]
+        states:
+          - LOOK:
+              template: ScriptedState
+              outcomes: [seen, hidden]
+              output_keys: [pose]
+              steps: [{outcome: seen, set: {pose: 0.5}}, {outcome: hidden}]
+              transitions: {seen: GRASP, hidden: GRASP}
+          - GRASP:
+              template: ScriptedState
+              outcomes: [done]
+              input_keys: [pose]
+              transitions: {done: held}
+
+    Right:
+        name: sm
+        template: Base
+        outcomes: [held, lost]
+        states:
+          - LOOK:
+              template: ScriptedState
+              outcomes: [seen, hidden]
+              output_keys: [pose]
+              steps: [{outcome: seen, set: {pose: 0.5}}, {outcome: hidden}]
+              transitions: {seen: GRASP, hidden: lost}
+          - GRASP:
+              template: ScriptedState
+              outcomes: [done]
+              input_keys: [pose]
+              transitions: {done: held}
+    """
+    flow = flow_of(machine)
+    searches = Searches(flow)
+    guesses = _Guesses()
+    used = cache(lambda path: uses_by_key(flow, path))
+    for missing in missing_keys(flow, "unset", "nowhere"):
+        for witness in searches.witnesses(missing):
+            users = used(missing.scope.path).get(missing.key, [])
+            yield _unset(missing, witness, users, guesses)
 
 
-def unknown_remaps(node: Node) -> list[UnknownRemap]:
-    """The remaps of keys that a state does not have."""
-    if is_open(node) or not node.remaps:
-        return []
-    own = {key.name for key in (*node.inputs, *node.outputs)}
-    wrong = [remap for remap in node.remaps if remap.key not in own]
-    if not wrong:
-        return []
-    taken = {remap.key for remap in node.remaps}
-    guess = guesser(sorted(own - taken))
-    return [UnknownRemap(each, guess(each.key), guess.sure(each.key)) for each in wrong]
+class _Guesses:
+    """What was meant by a name that no key of a container has."""
+
+    def __init__(self) -> None:
+        self._known: dict[str, Guesser] = {}
+
+    def of(self, scope: Scope) -> Guesser:
+        if scope.path not in self._known:
+            self._known[scope.path] = guesser(sorted(_keys_of(scope)))
+        return self._known[scope.path]
 
 
-def undeclared_writes(leaf: Leaf) -> tuple[str, ...]:
-    """The keys that the script lets a leaf write though they are none of its outputs."""
-    written: list[str] = []
-    if leaf.type in CALLING:
-        written = sorted(callbacks(leaf) or ())
-    elif leaf.type == "ScriptedState":
-        written = [key for _, keys in scripted_steps(leaf) for key in keys]
-    outputs = {key.name for key in leaf.outputs}
-    return tuple(key for key in dict.fromkeys(written) if key not in outputs)
+def _unset(missing: Missing, witness: Witness, users: list[Use], guesses: _Guesses) -> Finding:
+    scope, reader, name = missing.scope, witness.reader, missing.scope.container.name
+    why = "before anything has set it"
+    help = f"set it on the way, or give `{name}` a first value: `userdata: {{{missing.key}: ...}}`"
+    if missing.cause == "nowhere":
+        why = f"which nothing in {container_name(scope, reader.span)} sets"
+        help = did_you_mean(guesses.of(scope)(missing.key)) or help
+    elif not witness.always:
+        why = "which not every way to it has set"
+    words = reader.words if why.startswith("before") else f"{reader.words},"
+    return Finding(
+        span=reader.span,
+        message=f"{words} {why}",
+        help=help,
+        related=(
+            *_readers(missing, witness),
+            *_writers(users),
+            *calls(reader.node, reader.span),
+        ),
+        path=witness.path if len(witness.path) > 1 else (),
+        severity=None if witness.always else Severity.WARNING,
+        node=reader.path,
+    )
 
 
-def undeclared_reads(leaf: Leaf) -> Iterator[tuple[str, nodes.Expression]]:
-    """The keys that code of the script reads though they are none of the leaf's inputs."""
-    if leaf.type not in CALLING and leaf.type != "ConditionalOutcomeState":
-        return
-    inputs = {key.name for key in leaf.inputs}
-    order = outcome_names(leaf) if leaf.type == "ConditionalOutcomeState" else None
-    for name, code in sorted((callbacks(leaf) or {}).items()):
-        fields = userdata_fields(code.text) if order is None or name in order else None
-        for key in fields.read if fields is not None else ():
-            if key not in inputs:
-                inputs.add(key)
-                yield key, code
+def _keys_of(scope: Scope) -> set[str]:
+    """The keys that a container has, for those that misspell them."""
+    keys = {*scope.held, *scope.inputs}
+    for steps in scope.steps.values():
+        for step in steps:
+            keys |= step.writes.perhaps
+    return keys
 
 
-PERHAPS = Type("optional", (ANY,))
-"""What code reads without declaring it counts as used, but is not asked for: SM310 has said it."""
+def _readers(missing: Missing, witness: Witness) -> Iterator[Related]:
+    """What reads the key inside the place of a finding, and other places that miss it as well."""
+    if witness.inner is not None:
+        yield from other_place(witness.inner.span, f"{witness.inner.words} there")
+    for place in witness.also[:MOST_RELATED]:
+        reader = reader_at(missing.scope, place, missing.key)
+        yield from other_place(reader.span, f"{reader.words} as well")
 
 
-def mended_machine(machine: Machine) -> Machine:
-    """The machine as it was meant: misspelt targets, outcomes and remaps put right, and what the
-    code of the script reads and writes declared. Iterative, so that deep nesting costs nothing."""
-    built: dict[int, Container] = {}
-    for _, container in reversed(containers(machine)):
-        raw = isinstance(container, nodes.Iterator)
-        children = tuple(
-            _meant(built.get(id(child), child), raw and isinstance(child, Leaf))
-            for child in container.children
+def _writers(users: list[Use]) -> Iterator[Related]:
+    """What sets the key, only elsewhere or only sometimes."""
+    writers = [use for use in users if use.kind not in ("reads", "takes in")]
+    for use in writers[:MOST_RELATED]:
+        name = use.path.rpartition("/")[2]
+        when = ""
+        if not use.always and use.outcomes:
+            when = f", but only with {listed(use.outcomes)}"
+        elif not use.always:
+            when = " at most sometimes"
+        yield from other_place(use.span, f"`{name}` sets it{when}")
+
+
+@rule("SM302", "unknown-remap", Severity.ERROR)
+def unknown_remap(machine: Machine) -> Iterator[Finding]:
+    """A remapping names a key that the state does not have, or leads to one that nothing has.
+
+    SMACH passes over the entry in silence: the state goes on with the key of its own name, another
+    value than the one meant, or finds nothing.
+
+    Wrong:
+        name: sm
+        template: Base
+        outcomes: [held]
+        userdata: {pose: 0.0, block_pose: 0.5}
+        output_keys: [pose]
+        states:
+          - GRASP:
+              template: PrintUserdataState
+              input_keys: [pose]
+              remapping: {psoe: block_pose}
+              transitions: {succeeded: held}
+
+    Right:
+        name: sm
+        template: Base
+        outcomes: [held]
+        userdata: {pose: 0.0, block_pose: 0.5}
+        output_keys: [pose]
+        states:
+          - GRASP:
+              template: PrintUserdataState
+              input_keys: [pose]
+              remapping: {pose: block_pose}
+              transitions: {succeeded: held}
+    """
+    for path, node in states(machine):
+        if path != machine.root.name:
+            yield from _unknown_remaps(path, node)
+    flow = flow_of(machine)
+    guesses = _Guesses()
+    for missing in missing_keys(flow, "remapped"):
+        yield from _remapped(missing, guesses)
+
+
+def _unknown_remaps(path: str, node: Node) -> Iterator[Finding]:
+    own = list(dict.fromkeys(key.name for key in (*node.inputs, *node.outputs)))
+    for remap, meant, certain in unknown_remaps(node):
+        known = f"its keys are {listed(own)}" if own else "it has no keys"
+        yield Finding(
+            span=remap.span,
+            message=f"`{node.name}` has no key `{remap.key}` that could stand for `{remap.to}`",
+            help=did_you_mean(meant) or known,
+            related=calls(node, remap.span),
+            node=path,
+            edits=respelt(Word(remap.key, remap.span), certain),
         )
-        whole = container
-        if any(new is not old for new, old in zip(children, container.children, strict=True)):
-            whole = replace(container, children=children)
-        if isinstance(whole, StateMachine | Sequence):
-            whole = mended(whole)
-        if whole is not container:
-            built[id(container)] = whole
-    root = cast(StateMachine, built.get(id(machine.root), machine.root))
-    return machine if root is machine.root else replace(machine, root=root)
 
 
-def _meant(node: Node, raw: bool) -> Node:
-    """A state with its keys as they were meant. `raw`: it sees all keys as they are."""
-    remaps = unknown_remaps(node)
-    if remaps:
-        wrong = {each.remap: each.meant for each in remaps}
-        kept = (replace(each, key=wrong.get(each) or each.key) for each in node.remaps)
-        node = replace(node, remaps=tuple(kept))
-    if isinstance(node, Leaf) and not raw and not node.open:
-        reads = tuple(
-            Key(name=key, span=code.span, type=PERHAPS) for key, code in undeclared_reads(node)
+def _remapped(missing: Missing, guesses: _Guesses) -> Iterator[Finding]:
+    """The remaps that lead to a key that nothing has."""
+    scope, key = missing.scope, missing.key
+    around = scope.container.name
+    for child in scope.container.children:
+        for remap in child.remaps:
+            if remap.to != key or child.name not in missing.places:
+                continue
+            guess = guesses.of(scope)(key)
+            yield Finding(
+                span=remap.span,
+                message=f"`{child.name}` takes its `{remap.key}` from `{key}`, which nothing in"
+                f" {container_name(scope, remap.span)} sets",
+                help=did_you_mean(guess)
+                or f"set `{key}` before, or give `{around}` a first value of it",
+                related=calls(child, remap.span),
+                node=f"{scope.path}/{child.name}",
+            )
+
+
+@rule("SM303", "undeclared-container-key", Severity.ERROR)
+def undeclared_container_key(machine: Machine) -> Iterator[Finding]:
+    """A state needs a key that its container does not take in, though one around it has the key.
+
+    A container has userdata of its own; what its `input_keys` do not name stays outside. The
+    state finds nothing, and the machine stops there with an error.
+
+    Wrong:
+        name: sm
+        template: Base
+        outcomes: [held]
+        userdata: {pose: 0.5}
+        output_keys: [pose]
+        states:
+          - PICK:
+              template: StateMachine
+              outcomes: [done]
+              states:
+                - GRASP:
+                    template: PrintUserdataState
+                    input_keys: [pose]
+                    transitions: {succeeded: done}
+              transitions: {done: held}
+
+    Right:
+        name: sm
+        template: Base
+        outcomes: [held]
+        userdata: {pose: 0.5}
+        output_keys: [pose]
+        states:
+          - PICK:
+              template: StateMachine
+              outcomes: [done]
+              input_keys: [pose]
+              states:
+                - GRASP:
+                    template: PrintUserdataState
+                    input_keys: [pose]
+                    transitions: {succeeded: done}
+              transitions: {done: held}
+    """
+    flow = flow_of(machine)
+    for missing in missing_keys(flow, "outside"):
+        scope, key = missing.scope, missing.key
+        reader = reader_at(scope, missing.places[0], key)
+        holder = flow.scopes[missing.other].container
+        between = _between(scope.path, missing.other)
+        others = tuple(reader_at(scope, place, key) for place in missing.places[1:])
+        yield Finding(
+            span=reader.span,
+            message=f"{reader.words}, which `{holder.name}` has but {listed(between)}"
+            f" {'do' if len(between) > 1 else 'does'} not take in",
+            help=f"add `{key}` to the `input_keys` of {listed(between)}",
+            related=(
+                *other_place(scope.container.span, f"`{between[-1]}` begins here"),
+                *(
+                    related
+                    for each in others[:MOST_RELATED]
+                    for related in other_place(each.span, f"{each.words} as well")
+                ),
+                *calls(reader.node, reader.span),
+            ),
+            node=reader.path,
+            edits=_taken_in(flow, scope.path, missing.other, key),
         )
-        writes = tuple(Key(name=key, span=node.span) for key in undeclared_writes(node))
-        if reads or writes:
-            node = replace(node, inputs=(*node.inputs, *reads), outputs=(*node.outputs, *writes))
-    return node
 
 
-@once
-def flow_of(machine: Machine) -> Flow:
-    """The flow of a machine as it was meant."""
-    return data_flow(mended_machine(machine))
+def _taken_in(flow: Flow, path: str, holder: str, key: str) -> tuple[Edit, ...]:
+    """What makes every container between the key and its reader take it in."""
+    edits: list[Edit] = []
+    while path != holder:
+        added = with_input(flow.scopes[path].container, key)
+        if not added:
+            return ()
+        edits += added
+        path = path.rpartition("/")[0]
+    return tuple(edits)
+
+
+def _between(path: str, holder: str) -> list[str]:
+    """The names of the containers from below the one that holds a key to the one that lacks it."""
+    return path[len(holder) + 1 :].split("/")
+
+
+@rule("SM307", "lost-output", Severity.WARNING)
+def lost_output(machine: Machine) -> Iterator[Finding]:
+    """A key is written inside a container and read outside, but the container does not hand it out.
+
+    What its `output_keys` do not name stays inside. Who reads the key outside finds nothing, which
+    is an error, or the value from before.
+
+    Wrong:
+        name: sm
+        template: Base
+        outcomes: [held]
+        states:
+          - FIND:
+              template: StateMachine
+              outcomes: [found]
+              states:
+                - LOOK:
+                    template: ScriptedState
+                    outcomes: [seen]
+                    output_keys: [pose]
+                    steps: [{outcome: seen, set: {pose: 0.5}}]
+                    transitions: {seen: found}
+              transitions: {found: GRASP}
+          - GRASP:
+              template: PrintUserdataState
+              input_keys: [pose]
+              transitions: {succeeded: held}
+
+    Right:
+        name: sm
+        template: Base
+        outcomes: [held]
+        states:
+          - FIND:
+              template: StateMachine
+              outcomes: [found]
+              output_keys: [pose]
+              states:
+                - LOOK:
+                    template: ScriptedState
+                    outcomes: [seen]
+                    output_keys: [pose]
+                    steps: [{outcome: seen, set: {pose: 0.5}}]
+                    transitions: {seen: found}
+              transitions: {found: GRASP}
+          - GRASP:
+              template: PrintUserdataState
+              input_keys: [pose]
+              transitions: {succeeded: held}
+    """
+    flow = flow_of(machine)
+    for lost in lost_outputs(flow):
+        keeper, written = lost.keeper.container, place_of(lost.writer, lost.written)
+        inner = f"`{lost.own}`" + (f" (`{lost.key}` outside)" * (lost.own != lost.key))
+        finds = "so it finds nothing" if lost.is_missing else "so it finds an older value"
+        yield Finding(
+            span=keeper.span,
+            message=f"`{keeper.name}` does not hand out {inner}, which `{lost.writer.name}` writes"
+            f" in it; `{lost.reader.node.name}` reads it outside, {finds}",
+            help=f"add `{lost.own}` to the `output_keys` of `{keeper.name}`",
+            related=(
+                *other_place(written, f"`{lost.writer.name}` writes it"),
+                *other_place(lost.reader.span, lost.reader.words),
+                *calls(keeper, keeper.span),
+            ),
+            severity=Severity.ERROR if lost.is_missing else None,
+            node=lost.keeper.path,
+            edits=with_output(keeper, lost.own) if lost.is_missing else (),
+        )

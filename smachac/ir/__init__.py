@@ -1,1 +1,1 @@
-"""The typed state graph and what is known of it: nodes, paths, types, text, graph, interpreter."""
+"""The typed state graph: nodes, types, expressions, traversal, graph, printer and parser."""

@@ -9,10 +9,10 @@ from collections.abc import Iterable, Iterator, Sequence
 from itertools import chain
 from typing import TYPE_CHECKING, Literal, NamedTuple, TypeAlias
 
+from smachac.diagnostics.source import assert_never
 from smachac.ir import nodes
 from smachac.ir.nodes import Concurrence, Container, Leaf, Machine, Node, Transition
-from smachac.ir.walk import containers, leads_to_child, outcome_names
-from smachac.source import assert_never
+from smachac.ir.traversal import containers, leads_to_child, outcome_names
 
 if TYPE_CHECKING:
     import networkx as nx

@@ -10,9 +10,9 @@ from __future__ import annotations
 from dataclasses import dataclass, field
 from typing import Literal, NamedTuple, NewType, TypeAlias
 
-from smachac.ir.robots import Robot
+from smachac.diagnostics.source import NOWHERE, Span, Word
+from smachac.ir.robot import Robot
 from smachac.ir.types import ANY, Type
-from smachac.source import NOWHERE, Span, Word
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)

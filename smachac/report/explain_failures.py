@@ -9,9 +9,9 @@ import re
 from collections import Counter
 from collections.abc import Iterable, Iterator, Sequence
 
-from smachac.checks.failures import Answer, Failure
-from smachac.report.cells import visible
-from smachac.report.paragraphs import alternatives, at
+from smachac.analysis.failure_paths import Answer, Failure
+from smachac.report.outline import alternatives, at
+from smachac.report.terminal import visible
 from smachac.report.text import steps
 
 HEADINGS = ("state", "failure", "place", "way", "caught by", "the machine ends with")

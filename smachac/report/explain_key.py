@@ -6,16 +6,15 @@ from collections.abc import Iterable, Iterator
 from dataclasses import dataclass, field
 from typing import Any
 
+from smachac.analysis.def_use import Status, Use, around, key_status, path_without, same_key, uses
+from smachac.analysis.definite_assignment import Flow, Scope
+from smachac.analysis.type_inference import Types
+from smachac.diagnostics.source import Span
 from smachac.ir import nodes
-from smachac.ir.dataflow import Flow, Scope
-from smachac.ir.inference import Types
-from smachac.ir.keypaths import Status, around, key_status, path_without
-from smachac.ir.keyuses import Use, same_key, uses
-from smachac.ir.text import print_data
+from smachac.ir.printer import print_data
+from smachac.ir.traversal import remapping
 from smachac.ir.types import ANY, Type
-from smachac.ir.userdata import remapping
-from smachac.report.paragraphs import STATUS, Paragraph, at, place, way
-from smachac.source import Span
+from smachac.report.outline import STATUS, Paragraph, at, place, way
 
 MOST_READERS = 100
 """For so many readers of one key its paths are followed; the others are only named."""

@@ -5,15 +5,15 @@ from __future__ import annotations
 import json
 from collections.abc import Iterable
 
-from smachac.diagnostics import Report, did_you_mean
-from smachac.ir.dataflow import Flow, data_flow
-from smachac.ir.inference import infer
+from smachac.analysis.definite_assignment import Flow, data_flow
+from smachac.analysis.type_inference import infer
+from smachac.diagnostics.diagnostic import Report, did_you_mean
+from smachac.diagnostics.wording import listed
 from smachac.ir.nodes import Machine
-from smachac.ir.walk import walk
-from smachac.problems import listed
+from smachac.ir.traversal import walk
 from smachac.report.explain_key import KeyStory, key_json, key_names, key_stories, key_text
 from smachac.report.explain_state import StateStory, state_json, state_story, state_text
-from smachac.report.paragraphs import paragraphs
+from smachac.report.outline import paragraphs
 
 MOST_NAMED = 20
 """So many states or keys are listed of those that share a name."""

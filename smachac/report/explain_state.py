@@ -6,19 +6,18 @@ from collections.abc import Iterable, Iterator
 from dataclasses import dataclass, field
 from typing import Any
 
-from smachac.checks.claims import claims
-from smachac.checks.routes import Arrival, Routes, path_to
-from smachac.diagnostics import Report
-from smachac.ir.dataflow import Flow
-from smachac.ir.inference import Types
-from smachac.ir.keypaths import Status, key_status
+from smachac.analysis.def_use import Status, key_status
+from smachac.analysis.definite_assignment import Flow
+from smachac.analysis.resource_claims import claims
+from smachac.analysis.successors import Arrival, Routes, path_to
+from smachac.analysis.type_inference import Types
+from smachac.diagnostics.diagnostic import Report
+from smachac.diagnostics.wording import MOST_LISTED
 from smachac.ir.nodes import Key, Leaf, Machine, Node, Transition
-from smachac.ir.text import print_data
+from smachac.ir.printer import print_data
+from smachac.ir.traversal import outcome_names, remapping
 from smachac.ir.types import ANY, Type
-from smachac.ir.userdata import remapping
-from smachac.ir.walk import outcome_names
-from smachac.problems.wording import MOST_LISTED
-from smachac.report.paragraphs import STATUS, Paragraph, article, at, place, way
+from smachac.report.outline import STATUS, Paragraph, article, at, place, way
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)

@@ -2,10 +2,10 @@
 
 from __future__ import annotations
 
-from smachac.diagnostics import Diagnostic, Report, Severity
-from smachac.report.cells import visible
+from smachac.diagnostics.diagnostic import Diagnostic, Report, Severity
+from smachac.diagnostics.source import NOWHERE
+from smachac.report.terminal import visible
 from smachac.report.text import steps
-from smachac.source import NOWHERE
 
 _COMMANDS = {Severity.ERROR: "error", Severity.WARNING: "warning", Severity.INFO: "notice"}
 

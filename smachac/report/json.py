@@ -5,8 +5,8 @@ from __future__ import annotations
 import json
 from typing import Any
 
-from smachac.diagnostics import Diagnostic, Report, Severity
-from smachac.source import NOWHERE, Span
+from smachac.diagnostics.diagnostic import Diagnostic, Report, Severity
+from smachac.diagnostics.source import NOWHERE, Span
 
 VERSION = 2
 """Of the schema; it grows with every change."""

@@ -6,8 +6,8 @@ import re
 from collections.abc import Mapping
 from xml.etree import ElementTree as ET
 
-from smachac.diagnostics import Report
-from smachac.report.cells import visible
+from smachac.diagnostics.diagnostic import Report
+from smachac.report.terminal import visible
 from smachac.report.text import render_text, summary
 
 # XML 1.0 (fifth edition), section 2.2: all but these are characters.

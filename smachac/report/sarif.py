@@ -12,10 +12,10 @@ from pathlib import PurePath
 from typing import Any
 from urllib.parse import quote
 
-from smachac import __version__
-from smachac.diagnostics import Code, Diagnostic, Report, Severity, fingerprint
-from smachac.report.explain import explanation, render_code, render_section
-from smachac.source import NOWHERE, Source, Span
+from smachac.diagnostics.diagnostic import Code, Diagnostic, Report, Severity, fingerprint
+from smachac.diagnostics.source import NOWHERE, Source, Span
+from smachac.report.explain_code import explanation, render_code, render_section
+from smachac.version import __version__
 
 SCHEMA = "https://json.schemastore.org/sarif-2.1.0.json"
 

@@ -7,10 +7,10 @@ import textwrap
 from collections.abc import Iterable, Sequence
 from typing import Any, NamedTuple
 
-from smachac import schema
+from smachac.frontend import schema
+from smachac.frontend.state_types import StateType, VariableType
+from smachac.frontend.values import as_value
 from smachac.ir.types import ANY, Type
-from smachac.states import StateType, VariableType
-from smachac.values import as_value
 
 CONTAINERS = {
     "StateMachine": "States that follow one another along transitions.",
@@ -144,7 +144,7 @@ def _default(variable: VariableType) -> str:
 
 
 def _data(variable: VariableType) -> Any:
-    from smachac.ir.userdata import python_data, trace_value
+    from smachac.interpreter.userdata import python_data, trace_value
 
     return trace_value(python_data(as_value(variable.default).data)) if variable.default else None
 

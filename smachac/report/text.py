@@ -2,12 +2,14 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
+from itertools import groupby
+from operator import itemgetter
+from typing import NamedTuple
 
-from smachac.diagnostics import Diagnostic, Report, Severity
-from smachac.report.cells import columns, visible
-from smachac.report.snippet import Mark, Paint, grouped, mark, snippet
-from smachac.source import NOWHERE, Span
+from smachac.diagnostics.diagnostic import Diagnostic, Report, Severity
+from smachac.diagnostics.source import NOWHERE, Source, Span
+from smachac.report.terminal import Line, columns, lay_out, visible
 
 COLOURS = {
     "error": "1;31",
@@ -148,3 +150,168 @@ def _path(path: tuple[str, ...], width: int, paint: Paint) -> Iterator[str]:
         else:
             line += part
     yield head + line
+
+
+Paint = Callable[[str, str], str]
+"""Gives a text (second) a style (first): "primary", "related" or "gutter"."""
+
+NEAR = 8
+"""Marks that are at most so many lines apart share a snippet."""
+
+MOST_LINES = 6
+"""Longer spans are shown by their first and last lines."""
+
+
+class Mark(NamedTuple):
+    """A stretch to point at: lines counted from 1, characters in them from 0, end excluded."""
+
+    source: Source
+    line: int
+    start: int
+    last_line: int
+    end: int
+    label: str
+    style: str
+
+    @property
+    def flat(self) -> bool:
+        return self.line == self.last_line
+
+
+def mark(source: Source, start: int, end: int, label: str, style: str) -> Mark:
+    """A mark for any two offsets; what hangs over is cut off, so is trailing blank space."""
+    size = len(source.text)
+    start = min(max(start, 0), size)
+    end = min(max(end, start), size)
+    if "\n" in source.text[start:end]:
+        end = start + len(source.text[start:end].rstrip())
+    line, column = source.position(start)
+    last_line, last_column = source.position(max(end - 1, start))
+    first = source.line(line)
+    last = first if last_line == line else source.line(last_line)
+    start_index = min(column - 1, len(first))
+    end_index = min(last_column, len(last)) if end > start else start_index
+    return Mark(source, line, start_index, last_line, end_index, visible(label), style)
+
+
+def grouped(marks: list[Mark], width: int) -> list[list[Mark]]:
+    """Marks by the snippet they share: those of one source that are near one another."""
+    groups: list[list[Mark]] = []
+    for new in marks:
+        for group in groups:
+            if _belongs(new, group, width):
+                group.append(new)
+                break
+        else:
+            groups.append([new])
+    return groups
+
+
+def _belongs(new: Mark, group: list[Mark], width: int) -> bool:
+    if new.source is not group[0].source or not new.flat or not all(old.flat for old in group):
+        return False
+    beside = [old for old in group if old.line == new.line]
+    if beside:
+        extent = max(m.end for m in (new, *beside)) - min(m.start for m in (new, *beside))
+        return extent < width - 20
+    return any(abs(new.line - old.line) <= NEAR for old in group)
+
+
+def snippet(marks: list[Mark], digits: int, width: int, paint: Paint) -> Iterator[str]:
+    """The printed lines of one snippet; line numbers take `digits` columns."""
+    if not marks[0].source.text:
+        return
+    room = width - digits - 3
+    empty = paint("gutter", " " * digits + " |")
+    yield empty
+    body = _flat(marks, room, paint) if marks[0].flat else _tall(marks[0], room - 2, paint)
+    for number, text in body:
+        if number is None:
+            yield "..."
+        elif number == 0:
+            yield f"{empty} {text}".rstrip()
+        else:
+            yield f"{paint('gutter', f'{number:>{digits}} |')} {text}".rstrip()
+
+
+Row = tuple["int | None", str]
+"""A line of a snippet: its number (0: none, None: lines are left out) and what it shows."""
+
+
+def _flat(marks: list[Mark], room: int, paint: Paint) -> Iterator[Row]:
+    source = marks[0].source
+    before = 0
+    for number in sorted({m.line for m in marks}):
+        text = source.line(number)
+        if before and number - before == 2:
+            yield before + 1, lay_out(source.line(before + 1), 0, 0, room).text
+        elif before and number - before > 2:
+            yield None, ""
+        here = sorted((m for m in marks if m.line == number), key=lambda m: (m.start, m.end))
+        line = lay_out(text, here[0].start, max(m.end for m in here), room)
+        yield number, line.text
+        for row in _beneath(here, line, room, paint):
+            yield 0, row
+        before = number
+
+
+def _beneath(marks: list[Mark], line: Line, room: int, paint: Paint) -> Iterator[str]:
+    """The rows under a line: carets, and one row for each label that finds no place there."""
+    row: dict[int, tuple[str, str]] = {}
+    for m in sorted(marks, key=lambda m: m.style == "primary"):
+        sign = "^" if m.style == "primary" else "-"
+        start = line.column(m.start)
+        for column in range(start, max(line.column(m.end), start + 1)):
+            row[column] = (m.style, sign)
+    edge = max(row) + 1
+    hanging = [m for m in marks if m.label]
+    beside = ""
+    if hanging and line.column(hanging[-1].start) == max(line.column(m.start) for m in marks):
+        first = hanging[-1].label.split("\n")[0]
+        if "\n" not in hanging[-1].label and edge + 1 + columns(first) <= room:
+            beside = " " + paint(hanging.pop().style, first)
+    yield _drawn(row, paint) + beside
+    if hanging:
+        yield _drawn({line.column(m.start): (m.style, "|") for m in hanging}, paint)
+    while hanging:
+        m = hanging.pop()
+        column = line.column(m.start)
+        bars = {line.column(left.start): (left.style, "|") for left in hanging}
+        for text in m.label.split("\n"):
+            kept = {at: bar for at, bar in bars.items() if at < column}
+            yield _drawn(kept, paint, upto=column) + paint(m.style, text)
+
+
+def _drawn(row: dict[int, tuple[str, str]], paint: Paint, upto: int = 0) -> str:
+    """A row of signs at columns; runs of one style are painted together."""
+    width = max([upto, *(at + 1 for at in row)])
+    cells = (row.get(column, ("", " ")) for column in range(width))
+    runs = ((style, "".join(map(_SIGN, run))) for style, run in groupby(cells, key=_STYLE))
+    return "".join(paint(style, text) if style else text for style, text in runs)
+
+
+_STYLE, _SIGN = itemgetter(0), itemgetter(1)
+
+
+def _tall(m: Mark, room: int, paint: Paint) -> Iterator[Row]:
+    """A span over several lines, with a bar at its left."""
+    bar = paint(m.style, "|")
+    sign = "^" if m.style == "primary" else "-"
+    text = m.source.line(m.line)
+    line = lay_out(text, m.start, m.start, room)
+    if text[: m.start].strip():
+        yield m.line, f"  {line.text}"
+        yield 0, " " + paint(m.style, "_" * (line.column(m.start) + 1) + sign)
+    else:
+        yield m.line, f"{paint(m.style, '/')} {line.text}"
+    shown = range(m.line + 1, m.last_line)
+    cut = len(shown) + 2 > MOST_LINES
+    for number in shown[: MOST_LINES - 3] if cut else shown:
+        yield number, f"{bar} {lay_out(m.source.line(number), 0, 0, room).text}"
+    if cut:
+        yield None, ""
+    line = lay_out(m.source.line(m.last_line), max(m.end - 1, 0), m.end, room)
+    yield m.last_line, f"{bar} {line.text}"
+    last = max(line.column(m.end) - 1, 0)
+    label = f" {m.label}" if m.label else ""
+    yield 0, paint(m.style, "|" + "_" * (last + 1) + sign + label.replace("\n", " "))

@@ -9,16 +9,15 @@
 It needs `pip install 'smachac[sim]'` and knows nothing of the compiler or of SMACH.
 """
 
-from . import robots
-from .arm import Arm
-from .engine import SimUnavailable, UnknownNameError
-from .faults import Fault
-from .geometry import grasp_pose
-from .models import MODELS
-from .placing import check_placed, scattered
-from .scene import Event, World
-from .settings import close, configure, world
-from .skills import Result
+from smachac.sim import robots
+from smachac.sim.arm import Arm
+from smachac.sim.faults import Fault
+from smachac.sim.models import MODELS
+from smachac.sim.physics import SimUnavailable, UnknownNameError
+from smachac.sim.skills import Result
+from smachac.sim.tasks import check_placed, scattered
+from smachac.sim.transforms import grasp_pose
+from smachac.sim.world import Event, World, close, configure, world
 
 __all__ = [
     "MODELS",

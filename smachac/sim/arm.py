@@ -5,15 +5,15 @@ from __future__ import annotations
 from collections.abc import Callable, Sequence
 from typing import TYPE_CHECKING, Any
 
-from . import geometry, skills
-from .clock import Skill
-from .engine import Engine
-from .geometry import IDENTITY, Pose, as_pose
-from .mount import Parts
-from .skills import Result
+from smachac.sim import skills, transforms
+from smachac.sim.clock import Skill
+from smachac.sim.physics import Engine
+from smachac.sim.robots import Parts
+from smachac.sim.skills import Result
+from smachac.sim.transforms import IDENTITY, Pose, as_pose
 
 if TYPE_CHECKING:
-    from .scene import World
+    from smachac.sim.world import World
 
 GRIP_FORCE = 20.0
 """N, each finger; 1 to 40 N hold a block of 0.1 kg, 100 N press it out."""
@@ -86,7 +86,7 @@ class Arm:
         state = self.engine.getLinkState(
             self.world.robot_body, self.tip, computeForwardKinematics=True
         )
-        return geometry.as_lists(self.world.seen_from(frame, (state[4], state[5])))
+        return transforms.as_lists(self.world.seen_from(frame, (state[4], state[5])))
 
     def forces(self) -> dict[str, float]:
         """The bodies that the fingers press, with the weaker finger's force (N)."""
@@ -216,12 +216,12 @@ class Arm:
 
     def grasp_pose(self, block_pose: Any) -> list[list[float]]:
         """The tool pose that grips a cube at `block_pose` with this hand, tool straight down."""
-        return geometry.grasp_pose(block_pose, self.limb.turn)
+        return transforms.grasp_pose(block_pose, self.limb.turn)
 
     def _target(self, pose: Any, offset: Any, frame: str) -> Pose:
         shift = IDENTITY if offset is None else as_pose(offset)
-        moved = geometry.shifted(as_pose(pose), shift)
-        return self.world.seen_from("base", geometry.compose(self.world.frame(frame), moved))
+        moved = transforms.shifted(as_pose(pose), shift)
+        return self.world.seen_from("base", transforms.compose(self.world.frame(frame), moved))
 
     def _do(self, name: str, skill: Skill[Result]) -> Result:
         result = self.world.run(skill)

@@ -7,11 +7,11 @@ from collections.abc import Callable, Iterable, Mapping
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any
 
-from . import models
-from .geometry import as_pose, shifted
+from smachac.sim import models
+from smachac.sim.transforms import as_pose, shifted
 
 if TYPE_CHECKING:
-    from .scene import World
+    from smachac.sim.world import World
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)

@@ -3,8 +3,8 @@
 from dataclasses import dataclass
 from pathlib import Path
 
-from .engine import Engine, data_file, quiet
-from .geometry import IDENTITY, Pose, compose, inverse
+from smachac.sim.physics import Engine, data_file, quiet
+from smachac.sim.transforms import IDENTITY, Pose, compose, inverse
 
 RGB = tuple[float, float, float]
 

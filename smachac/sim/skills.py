@@ -10,13 +10,13 @@ from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any, Literal
 
-from . import geometry
-from .clock import Skill
-from .geometry import Pose
+from smachac.sim import transforms
+from smachac.sim.clock import Skill
+from smachac.sim.transforms import Pose
 
 if TYPE_CHECKING:
-    from .arm import Arm
-    from .scene import World
+    from smachac.sim.arm import Arm
+    from smachac.sim.world import World
 
 Outcome = Literal["succeeded", "aborted", "preempted"]
 Preempted = Callable[[], bool] | None
@@ -69,7 +69,7 @@ def move_along(arm: Arm, target: Pose, speed: float, preempted: Preempted) -> Sk
     """Go straight to `target` (base frame); a move in joint space would bow by some 6 mm."""
     joints, waypoints = arm.joints, []
     start = arm.world.shadow.tip(arm.limb, joints)
-    for pose in geometry.straight(start, target, _WAYPOINTS):
+    for pose in transforms.straight(start, target, _WAYPOINTS):
         solved = arm.world.shadow.solve(arm.limb, pose, joints)
         if solved is None:
             place = ", ".join(f"{each:.3f}" for each in pose[0])

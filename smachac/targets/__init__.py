@@ -11,11 +11,12 @@ from collections.abc import Callable, Mapping
 from dataclasses import dataclass, field
 from keyword import iskeyword
 
-from smachac import __version__
-from smachac.diagnostics import Report
+from smachac.diagnostics.diagnostic import Report
+from smachac.frontend.loader import Library
+from smachac.frontend.state_types import StateType
 from smachac.ir.nodes import Checked, Machine
-from smachac.states import Library, StateType
-from smachac.targets.declared import Declared
+from smachac.targets.interface_check import Declared
+from smachac.version import __version__
 
 GROUP = "smachac.targets"
 

@@ -13,10 +13,10 @@ from collections.abc import Mapping, Sequence
 
 from smachac.ir.nodes import Machine
 from smachac.verify.coverage import reasons
-from smachac.verify.scenarios import Scenarios
-from smachac.verify.scenes import Player, Scene, differ, expected, scenes_of
-from smachac.verify.verdict import Disagreement, Verdict
-from smachac.verify.walks import Path
+from smachac.verify.generate import Scenarios
+from smachac.verify.paths import Path
+from smachac.verify.result import Disagreement, Verdict
+from smachac.verify.test_case import Player, Scene, differ, expected, scenes_of
 
 
 def verify(

@@ -5,12 +5,12 @@ from __future__ import annotations
 from collections.abc import Iterable, Iterator, Mapping
 from typing import Literal, NamedTuple
 
+from smachac.diagnostics.source import Span
+from smachac.interpreter.result import Event
 from smachac.ir import nodes
 from smachac.ir.nodes import Concurrence, Container, Leaf, Machine
-from smachac.ir.result import Event
-from smachac.ir.walk import containers, leads_to_child, outcome_names
-from smachac.source import Span
-from smachac.verify.steering import Steering, count_of_items, leaf_outcomes, winner
+from smachac.ir.traversal import containers, leads_to_child, outcome_names
+from smachac.verify.guidance import Steering, count_of_items, leaf_outcomes, winner
 
 
 class Way(NamedTuple):

@@ -17,10 +17,11 @@ from typing import Any
 from ir_vectors import data_of, leaves_of, machine_of
 from quiet import quiet
 
-from smachac.driver import build, memory_library
-from smachac.files import disk_library
+from smachac.diagnostics.source import NOWHERE
+from smachac.driver import build
+from smachac.frontend.files import disk_library
+from smachac.frontend.loader import memory_library
 from smachac.ir.nodes import Checked, Leaf, Node, Value, Variable
-from smachac.source import NOWHERE
 from smachac.targets.python import TARGET
 
 CONFORMANCE = Path(__file__).parents[1] / "conformance"

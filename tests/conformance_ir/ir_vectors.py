@@ -6,6 +6,10 @@ import copy
 from collections.abc import Iterator as Iter
 from typing import Any, cast
 
+from smachac.diagnostics.source import NOWHERE
+from smachac.interpreter.interpreter import Interpreter
+from smachac.interpreter.result import Event, Result
+from smachac.interpreter.userdata import Userdata
 from smachac.ir.nodes import (
     Concurrence,
     Condition,
@@ -26,11 +30,7 @@ from smachac.ir.nodes import (
     Transition,
     Value,
 )
-from smachac.ir.result import Event, Result
-from smachac.ir.run import Interpreter
-from smachac.ir.userdata import Userdata
-from smachac.ir.walk import outcome_names
-from smachac.source import NOWHERE
+from smachac.ir.traversal import outcome_names
 
 Json = Any
 

@@ -12,11 +12,11 @@ import pytest
 from ir_vectors import Replay, leaves_of, machine_of
 from test_ir_vectors import CASES, RUN
 
-from smachac.ir.dataflow import data_flow
-from smachac.ir.keypaths import key_status
+from smachac.analysis.def_use import key_status
+from smachac.analysis.definite_assignment import data_flow
+from smachac.interpreter.result import Event
 from smachac.ir.nodes import Leaf, Machine, Node, StateMachine
-from smachac.ir.result import Event
-from smachac.ir.walk import containers, outcome_names
+from smachac.ir.traversal import containers, outcome_names
 
 Json = Any
 

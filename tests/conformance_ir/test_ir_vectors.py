@@ -20,8 +20,8 @@ import pytest
 from ir_vectors import Replay, machine_of, nodes_of
 
 from smachac.checks import check_machine
-from smachac.diagnostics import has_errors
-from smachac.ir.result import Event, Result
+from smachac.diagnostics.diagnostic import has_errors
+from smachac.interpreter.result import Event, Result
 
 Json = Any
 

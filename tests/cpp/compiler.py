@@ -12,8 +12,8 @@ from pathlib import Path
 
 import pytest
 
-from smachac.verify.compilers import HEADERS
-from smachac.verify.compilers import compilers as installed
+from smachac.verify.players.cpp import HEADERS
+from smachac.verify.players.cpp import compilers as installed
 
 WARNINGS = (
     *("-Wall", "-Wextra", "-Wpedantic", "-Wconversion", "-Wshadow", "-Werror"),

@@ -20,7 +20,7 @@ from types import SimpleNamespace
 from compiler import SANITIZED, Compiler, compilers
 from typed_expressions import TYPES, expression, key_type, userdata
 
-from smachac.ir.evaluate import EvaluationError, _Budget, _Evaluation
+from smachac.interpreter.evaluator import EvaluationError, _Budget, _Evaluation
 from smachac.ir.expressions import Expr, print_expression
 from smachac.ir.types import Type
 from smachac.targets.cpp.expressions import Spelling, cpp_expression, lowered

@@ -11,7 +11,7 @@ import pytest
 from arm import PICK_AND_PLACE, run
 from compiler import BARE, SANITIZED, Compiler, compilers, last_with
 
-from smachac import cli
+from smachac.commands import cli
 
 FOLDER = Path(__file__).parents[2] / "examples" / "08_pick_and_place"
 FAULTS = (Path(__file__).with_name("arm_faults.cpp")).read_text("utf-8")

@@ -8,13 +8,14 @@ from pathlib import Path
 import pytest
 from compiler import Compiler, compilers
 
-from smachac.diagnostics import Report
-from smachac.driver import analyse, build, memory_library
-from smachac.files import disk_library
-from smachac.source import Source
-from smachac.states import find_state_type
+from smachac.diagnostics.diagnostic import Report
+from smachac.diagnostics.source import Source
+from smachac.driver import analyse, build
+from smachac.frontend.files import disk_library
+from smachac.frontend.loader import memory_library
+from smachac.frontend.state_types import find_state_type
 from smachac.targets.cpp import TARGET
-from smachac.targets.cpp.classes import interface_hash
+from smachac.targets.cpp.user_classes import interface_hash
 
 COMPILERS = pytest.mark.parametrize("compiler", compilers(), ids=lambda each: each.name)
 

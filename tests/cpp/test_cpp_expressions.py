@@ -19,14 +19,14 @@ from expression_strategies import NAMES_OF_VALUES, computations, expressions
 from hypothesis import given
 from typed_expressions import userdata
 
+from smachac.diagnostics.source import NOWHERE
 from smachac.ir.expressions import Expr, parse_expression
 from smachac.ir.nodes import Data, Expression, Struct
 from smachac.ir.types import Type, parse_type
-from smachac.source import NOWHERE
 from smachac.targets.cpp.expressions import Spelling, cpp_condition, cpp_expression, cpp_function
-from smachac.targets.cpp.style import CLANG_FORMAT
+from smachac.targets.cpp.project import CLANG_FORMAT
 from smachac.targets.cpp.types import UnportableError, cpp_float, cpp_string, cpp_type, cpp_value
-from smachac.verify.compilers import HEADERS
+from smachac.verify.players.cpp import HEADERS
 
 COMPILERS = [pytest.param(each, id=each.name) for each in compilers()] or [
     pytest.param(None, marks=pytest.mark.skip("no C++ compiler"))

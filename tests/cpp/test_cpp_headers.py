@@ -11,12 +11,12 @@ import pytest
 from compiler import Compiler, compilers
 from test_cpp_classes import made
 
-from smachac.driver import memory_library
-from smachac.files import disk_library
-from smachac.states import find_state_type
-from smachac.targets.cpp.classes import interface_hash
-from smachac.targets.cpp.style import CLANG_FORMAT
-from smachac.verify.compilers import HEADERS
+from smachac.frontend.files import disk_library
+from smachac.frontend.loader import memory_library
+from smachac.frontend.state_types import find_state_type
+from smachac.targets.cpp.project import CLANG_FORMAT
+from smachac.targets.cpp.user_classes import interface_hash
+from smachac.verify.players.cpp import HEADERS
 
 ROOT = Path(__file__).parents[2]
 GOLDEN = sorted((ROOT / "tests" / "cases").glob("**/expected/cpp/*.hpp"))

@@ -12,12 +12,12 @@ from hypothesis import HealthCheck, given, seed, settings
 from test_differential import Event, differ, of_interpreter
 from traces import NOBODY, ROOT, Asked, Part, header, named, traces
 
-from smachac.diagnostics import Report
+from smachac.diagnostics.diagnostic import Report
 from smachac.driver import analyse
-from smachac.files import disk_library, read_source
+from smachac.frontend.files import disk_library, read_source
 from smachac.ir.nodes import Concurrence, Machine
-from smachac.ir.walk import walk
-from smachac.targets.cpp import machines
+from smachac.ir.traversal import walk
+from smachac.targets.cpp import containers
 
 COMPILERS = pytest.mark.parametrize(
     "compiler",
@@ -103,7 +103,7 @@ def test_machines_do_what_the_interpreter_does(compiler: Compiler, tmp_path: Pat
 def test_large_machines_become_several_functions(
     monkeypatch: pytest.MonkeyPatch, tmp_path: Path
 ) -> None:
-    monkeypatch.setattr(machines, "MOST_STATES", 2)
+    monkeypatch.setattr(containers, "MOST_STATES", 2)
     found: list[Expected] = []
     for (machine, _, asked), ours in of_scripts():
         text = header(machine)

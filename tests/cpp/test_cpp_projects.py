@@ -11,7 +11,7 @@ from xml.etree import ElementTree
 
 import pytest
 
-from smachac import cli
+from smachac.commands import cli
 
 PATROL = Path(__file__).parents[2] / "examples" / "07_iterator" / "main.yml"
 ARM = Path(__file__).parents[2] / "examples" / "08_pick_and_place" / "main.yml"

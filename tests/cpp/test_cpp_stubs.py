@@ -7,7 +7,7 @@ from pathlib import Path
 import pytest
 from compiler import Compiler, compilers
 
-from smachac.cli import main
+from smachac.commands.cli import main
 
 COMPILERS = pytest.mark.parametrize("compiler", compilers()[:1], ids=str)
 

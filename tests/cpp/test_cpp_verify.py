@@ -10,12 +10,12 @@ from pathlib import Path
 import pytest
 from compiler import compilers
 
-from smachac.cli import main
-from smachac.states import Library
+from smachac.commands.cli import main
+from smachac.frontend.loader import Library
 from smachac.targets.cpp.header import Header, header_of
 from smachac.targets.cpp.plan import Plan
-from smachac.verify import cpp
-from smachac.verify.compilers import Compiler
+from smachac.verify.players import cpp
+from smachac.verify.players.cpp import Compiler
 
 ROOT = Path(__file__).parents[2]
 EXAMPLES = [ROOT / "examples" / name for name in ("03_concurrence", "06_callbacks", "07_iterator")]
@@ -108,7 +108,7 @@ def test_a_wrong_header_is_found(
         changed.append(break_(header.text) != header.text)
         return header._replace(text=break_(header.text))
 
-    monkeypatch.setattr("smachac.verify.cpp_program.header_of", broken)
+    monkeypatch.setattr("smachac.verify.players.cpp_program.header_of", broken)
     assert main(["verify", str(script), "--targets", "cpp", "--paths", "40"]) == 1
     assert any(changed)
     out = capsys.readouterr().out

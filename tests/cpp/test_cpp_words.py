@@ -8,7 +8,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from smachac.targets.cpp.words import KEYWORDS, OURS, clashes, identifier
+from smachac.targets.cpp.identifiers import KEYWORDS, OURS, clashes, identifier
 
 
 @pytest.mark.parametrize(

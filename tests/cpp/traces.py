@@ -10,11 +10,11 @@ from typing import Any
 
 from compiler import Compiler
 
-from smachac.diagnostics import Report
+from smachac.diagnostics.diagnostic import Report
 from smachac.driver import build
-from smachac.files import disk_library
+from smachac.frontend.files import disk_library
+from smachac.frontend.loader import Library
 from smachac.ir.nodes import Checked, Machine
-from smachac.states import Library
 from smachac.targets.cpp import TARGET
 
 ROOT = Path(__file__).parents[2]

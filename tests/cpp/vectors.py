@@ -17,22 +17,23 @@ from typing import Any
 from compiler import Compiler
 from ir_vectors import Replay, data_of, leaves_of, machine_of
 
-from smachac.diagnostics import Report
-from smachac.driver import build, memory_library
-from smachac.files import disk_library
+from smachac.diagnostics.diagnostic import Report
+from smachac.diagnostics.source import NOWHERE
+from smachac.driver import build
+from smachac.frontend.files import disk_library
+from smachac.frontend.loader import memory_library
+from smachac.frontend.state_types import find_state_type
+from smachac.interpreter.userdata import UserdataError
 from smachac.ir import nodes
 from smachac.ir.nodes import Checked, Key, Leaf, Machine, Node, Outcome, Preset, StateMachine
+from smachac.ir.traversal import outcome_names, remapping
 from smachac.ir.types import ANY, Type
-from smachac.ir.userdata import UserdataError, remapping
-from smachac.ir.walk import outcome_names
-from smachac.source import NOWHERE
-from smachac.states import find_state_type
 from smachac.targets.cpp import TARGET
-from smachac.targets.cpp.classes import interface_hash
-from smachac.targets.cpp.inside import results
+from smachac.targets.cpp.containers import results
+from smachac.targets.cpp.identifiers import identifier
 from smachac.targets.cpp.plan import member, plan
 from smachac.targets.cpp.types import cpp_literal, cpp_type
-from smachac.targets.cpp.words import identifier
+from smachac.targets.cpp.user_classes import interface_hash
 
 Json = Any
 

@@ -19,13 +19,14 @@ import pytest
 from smacha_programs import FOLDER, TEMPLATES, machine_of, outline, stand_ins, text_of
 
 import smachac
-from smachac.diagnostics import Report, Severity
+from smachac import driver
+from smachac.diagnostics.diagnostic import Report, Severity
 from smachac.driver import build
-from smachac.files import disk_library
-from smachac.ir.behaviours import built_in
-from smachac.ir.run import run
+from smachac.frontend.files import disk_library
+from smachac.frontend.state_types import find_state_type
+from smachac.interpreter.builtin_states import built_in
+from smachac.interpreter.interpreter import run
 from smachac.runtime import smach
-from smachac.states import find_state_type
 from smachac.targets import load_target
 
 SCRIPTS = [
@@ -149,7 +150,7 @@ def test_outcomes_that_are_a_default_are_not_all(tmp_path: Path, given: str) -> 
     rest = "transitions: {a: done, b: A}}" if given else "transitions: {c: done}}"
     states = f"states:\n  - A: {{template: T, {given}{', ' if given else ''}{rest}\n"
     (tmp_path / "main.yml").write_text("name: sm\ntemplate: Base\noutcomes: [done]\n" + states)
-    analysis, _ = smachac.analyse_file(tmp_path / "main.yml", (), (tmp_path,))
+    analysis, _ = driver.analyse_file(tmp_path / "main.yml", (), (tmp_path,))
     assert analysis.checked is not None, [item.finding.message for item in analysis.report]
 
 
@@ -199,7 +200,7 @@ def test_variables_that_a_template_does_not_use(
         "name: sm\ntemplate: Base\noutcomes: [done]\nstates:\n"
         "  - A: {template: T, arm: 1, fast: 2, speed: 3, transition: {a: done}}\n"
     )
-    analysis, _ = smachac.analyse_file(tmp_path / "main.yml", (), (tmp_path,))
+    analysis, _ = driver.analyse_file(tmp_path / "main.yml", (), (tmp_path,))
     found = [item for item in analysis.report if item.code.code == "SM003"]
     assert [item.span.text for item in found] == told
     assert all(item.severity is Severity.WARNING for item in found)
@@ -410,7 +411,7 @@ def test_services_and_actions_get_what_the_script_says() -> None:
 
 def built_report(path: Path) -> Report:
     """What building says beyond what checking says."""
-    analysis, library = smachac.analyse_file(path, (), (TEMPLATES,))
+    analysis, library = driver.analyse_file(path, (), (TEMPLATES,))
     target = load_target("python")
     assert analysis.checked is not None
     assert library is not None

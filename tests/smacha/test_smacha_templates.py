@@ -15,10 +15,10 @@ from types import ModuleType
 import pytest
 
 import smachac
-from smachac.files import disk_library
-from smachac.states import StateType, find_state_type
-from smachac.targets.blocks import Blocks
-from smachac.targets.python.smacha import FILTERS, TESTS, Text, is_not_string
+from smachac.frontend.files import disk_library
+from smachac.frontend.state_types import StateType, find_state_type
+from smachac.targets.python.smacha_context import FILTERS, TESTS, Text, is_not_string
+from smachac.targets.templates.engine import Blocks
 
 Built = Callable[..., str]
 

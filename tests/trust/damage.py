@@ -15,10 +15,10 @@ from typing import Literal
 from plain import Project, Site, Steps, Written, analysed, judged, sites, texts
 from stand_in import missing
 
+from smachac.diagnostics.source import Span
 from smachac.driver import Analysis
 from smachac.ir.nodes import Machine, Node
-from smachac.ir.walk import walk
-from smachac.source import Span
+from smachac.ir.traversal import walk
 
 Place = tuple[str, Steps]
 Judgement = Literal["caught", "missed", "equivalent"]

@@ -9,7 +9,7 @@ from damage_names import renamed, swap_letters
 from plain import Site
 
 from smachac.ir.nodes import Concurrence, Leaf
-from smachac.ir.walk import outcome_names
+from smachac.ir.traversal import outcome_names
 
 
 def concurrences(victim: Victim) -> list[tuple[Site, Concurrence]]:

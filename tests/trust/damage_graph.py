@@ -7,7 +7,7 @@ from damage_names import MACHINES, transitions
 from plain import Site
 
 from smachac.ir.nodes import Leaf
-from smachac.ir.walk import outcome_names
+from smachac.ir.traversal import outcome_names
 
 
 def leaves(victim: Victim) -> list[tuple[Site, Leaf]]:

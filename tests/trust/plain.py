@@ -14,10 +14,11 @@ from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Any, TypeAlias
 
-from smachac.driver import Analysis, analyse, memory_library
-from smachac.files import disk_library
-from smachac.source import Source
-from smachac.syntax import Map, Scalar, Seq, Tree, parse
+from smachac.diagnostics.source import Source
+from smachac.driver import Analysis, analyse
+from smachac.frontend.files import disk_library
+from smachac.frontend.loader import memory_library
+from smachac.frontend.yaml_tree import Map, Scalar, Seq, Tree, parse
 
 ROOT = Path(__file__).parents[2]
 BUILT_IN = disk_library(ROOT / "main.yml", [])

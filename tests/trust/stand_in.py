@@ -6,13 +6,13 @@ import random
 import re
 from collections.abc import Iterator
 
-from smachac.diagnostics import Report, Severity
-from smachac.ir.behaviours import default_outcome, variable
+from smachac.diagnostics.diagnostic import Report, Severity
+from smachac.interpreter.interpreter import run
+from smachac.interpreter.result import Behaviour, Event, Result
+from smachac.interpreter.userdata import Userdata
+from smachac.ir.builtin_states import default_outcome, variable
 from smachac.ir.nodes import Leaf, Machine, Struct
-from smachac.ir.result import Behaviour, Event, Result
-from smachac.ir.run import run
-from smachac.ir.userdata import Userdata
-from smachac.ir.walk import PREEMPTED, containers, outcome_names, walk
+from smachac.ir.traversal import PREEMPTED, containers, outcome_names, walk
 
 MOST_STEPS = 150
 VALUE = [1, 2]

@@ -7,7 +7,7 @@ from corpus import texts_by_hand, written_by_hand
 from correct import correct_project
 from plain import analysed, judged
 
-from smachac.diagnostics import Report, Severity
+from smachac.diagnostics.diagnostic import Report, Severity
 from smachac.report.text import render_text
 
 RANDOM = 500

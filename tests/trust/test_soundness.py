@@ -22,14 +22,14 @@ from plain import judged
 from stand_in import contradictions, runs
 from test_ir_vectors import CASES
 
+from smachac.analysis.accesses import scripted_steps
 from smachac.checks import check_machine
-from smachac.diagnostics import Report, Severity
-from smachac.ir.accesses import scripted_steps
-from smachac.ir.behaviours import built_in
+from smachac.diagnostics.diagnostic import Report, Severity
+from smachac.diagnostics.source import NOWHERE
+from smachac.interpreter.builtin_states import built_in
+from smachac.interpreter.interpreter import run
+from smachac.interpreter.result import Event, Result
 from smachac.ir.nodes import Key, Leaf, Machine, Node, StateMachine
-from smachac.ir.result import Event, Result
-from smachac.ir.run import run
-from smachac.source import NOWHERE
 
 PROJECTS = 24
 DAMAGED = 6

@@ -5,6 +5,10 @@ from __future__ import annotations
 from collections.abc import Mapping
 from typing import Any
 
+from smachac.diagnostics.source import NOWHERE
+from smachac.interpreter.interpreter import run
+from smachac.interpreter.result import Behaviour, Event, Result
+from smachac.interpreter.userdata import Userdata
 from smachac.ir.nodes import (
     Concurrence,
     Condition,
@@ -26,10 +30,6 @@ from smachac.ir.nodes import (
     Value,
     Variable,
 )
-from smachac.ir.result import Behaviour, Event, Result
-from smachac.ir.run import run
-from smachac.ir.userdata import Userdata
-from smachac.source import NOWHERE
 
 
 def data(value: Any) -> Data:

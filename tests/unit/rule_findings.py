@@ -5,7 +5,7 @@ from __future__ import annotations
 from dataclasses import replace
 
 from smachac.checks import check_machine
-from smachac.diagnostics import Diagnostic, Severity
+from smachac.diagnostics.diagnostic import Diagnostic, Severity
 from smachac.ir.nodes import Leaf, Machine, StateMachine
 
 

@@ -7,14 +7,15 @@ from typing import Any
 
 from ir_machines import ran
 
+from smachac.interpreter.builtin_states import built_in
+from smachac.interpreter.scenario import Scenario, Step, acted
+from smachac.interpreter.userdata import python_data
 from smachac.ir import nodes
-from smachac.ir.behaviours import built_in
 from smachac.ir.nodes import Concurrence, Iterator, Leaf, Machine, Node, StateMachine
-from smachac.ir.scenario import Scenario, Step, acted
-from smachac.ir.userdata import python_data
-from smachac.ir.walk import outcome_names
+from smachac.ir.traversal import outcome_names
 from smachac.runtime import smach
-from smachac.runtime.trace import Event, attach, script
+from smachac.runtime.tracing.trace import attach, script
+from smachac.runtime.tracing.writer import Event
 
 Steps = Mapping[str, Sequence[tuple[str, Mapping[str, object]]]]
 """Rows of (outcome, keys to write) by path."""

@@ -7,9 +7,9 @@ from pathlib import Path
 
 import pytest
 
-from smachac.diagnostics import Report
+from smachac.diagnostics.diagnostic import Report
 from smachac.driver import analyse, build
-from smachac.files import disk_library, read_source
+from smachac.frontend.files import disk_library, read_source
 from smachac.targets import load_target
 
 MAIN = """\
@@ -161,8 +161,8 @@ def _context(library: object) -> object:
 
 
 def test_what_templates_may_do(tmp_path: Path) -> None:
-    from smachac.source import Source
-    from smachac.targets.blocks import Blocks
+    from smachac.diagnostics.source import Source
+    from smachac.targets.templates.engine import Blocks
 
     text = (
         "{% block body %}{% set d = {'b': 1, 'a': 2} %}{% do d.update({'c': 3}) %}"

@@ -8,12 +8,12 @@ from textwrap import indent
 import pytest
 
 import smachac
-from smachac.diagnostics import Severity
-from smachac.ir.behaviours import built_in
+from smachac.diagnostics.diagnostic import Severity
+from smachac.interpreter.builtin_states import built_in
+from smachac.interpreter.interpreter import run
+from smachac.interpreter.result import Event
 from smachac.ir.nodes import Machine
-from smachac.ir.result import Event
-from smachac.ir.run import run
-from smachac.ir.walk import own_outcomes
+from smachac.ir.traversal import own_outcomes
 
 HEAD = """
 name: sm

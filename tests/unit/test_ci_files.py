@@ -62,7 +62,7 @@ def commands(folder: Path) -> dict[str, str]:
     """An environment in which `smachac` is what is tested here."""
     program = folder / "bin" / "smachac"
     program.parent.mkdir()
-    program.write_text(f'#!/bin/sh\nexec "{sys.executable}" -m smachac.cli "$@"\n')
+    program.write_text(f'#!/bin/sh\nexec "{sys.executable}" -m smachac "$@"\n')
     program.chmod(0o755)
     path = f"{program.parent}{os.pathsep}{os.environ['PATH']}"
     return {**os.environ, "PATH": path, "PYTHONPATH": str(ROOT)}

@@ -11,8 +11,8 @@ from pathlib import Path
 
 import pytest
 
-from smachac import __version__
-from smachac.cli import main
+from smachac.commands.cli import main
+from smachac.version import __version__
 
 EXAMPLES = Path(__file__).parents[2] / "examples"
 GOOD = str(EXAMPLES / "01_sequence" / "main.yml")
@@ -28,7 +28,7 @@ def broken(tmp_path: Path) -> Path:
 def run(*arguments: str, **options: object) -> subprocess.CompletedProcess[str]:
     """The command in a process of its own."""
     ended: subprocess.CompletedProcess[str] = subprocess.run(
-        [sys.executable, "-m", "smachac.cli", *arguments],
+        [sys.executable, "-m", "smachac", *arguments],
         capture_output=True,
         text=True,
         timeout=120,
@@ -211,7 +211,7 @@ def test_output_that_cannot_be_written(capsys: pytest.CaptureFixture[str]) -> No
 def test_check_loads_only_what_it_needs() -> None:
     heavy = ("lark", "jinja2", "numpy", "pybullet", "PIL", "importlib.metadata")
     code = (
-        "import sys; from smachac.cli import main; main(sys.argv[1:]);"
+        "import sys; from smachac.commands.cli import main; main(sys.argv[1:]);"
         f"print([name for name in {heavy} if name in sys.modules])"
     )
     ended = subprocess.run(
@@ -229,7 +229,7 @@ def test_a_closed_pipe_is_no_error() -> None:
     os.close(read_end)
     with os.fdopen(write_end, "w") as closed:
         ended = subprocess.run(
-            [sys.executable, "-m", "smachac.cli", "build", GOOD, "-t", "python", "-o", "-"],
+            [sys.executable, "-m", "smachac", "build", GOOD, "-t", "python", "-o", "-"],
             stdout=closed,
             stderr=subprocess.PIPE,
             text=True,
@@ -261,7 +261,7 @@ def test_ctrl_c_preempts_the_machine(tmp_path: Path) -> None:
     trace = tmp_path / "t.fifo"
     os.mkfifo(trace)
     process = subprocess.Popen(
-        [sys.executable, "-m", "smachac.cli", "run", str(path), "--trace", str(trace)],
+        [sys.executable, "-m", "smachac", "run", str(path), "--trace", str(trace)],
         stdout=subprocess.PIPE,
         stderr=subprocess.PIPE,
         text=True,

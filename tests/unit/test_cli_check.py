@@ -11,11 +11,11 @@ from xml.etree import ElementTree as ET
 
 import pytest
 
-from smachac import files
-from smachac.cli import main
-from smachac.diagnostics import Report
-from smachac.source import Source
-from smachac.syntax import Tree, parse
+from smachac.commands.cli import main
+from smachac.diagnostics.diagnostic import Report
+from smachac.diagnostics.source import Source
+from smachac.frontend import files
+from smachac.frontend.yaml_tree import Tree, parse
 
 HEAD = "template: Base\noutcomes: [done]\nuserdata: {block: red}\noutput_keys: [block]\nstates:\n"
 PICK = "  - PICK: {script: pick, transitions: {ok: done}}\n"
@@ -225,7 +225,7 @@ def test_git_has_its_own_mind(
 
 def test_watching_checks_at_every_change(folder: Path) -> None:
     process = subprocess.Popen(
-        [sys.executable, "-m", "smachac.cli", "check", "deep", "main.yml", "--watch"],
+        [sys.executable, "-m", "smachac", "check", "deep", "main.yml", "--watch"],
         stdout=subprocess.PIPE,
         stderr=subprocess.PIPE,
         text=True,

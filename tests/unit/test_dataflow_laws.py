@@ -6,13 +6,13 @@ from data_machines import Brute, data_machines, keys_of
 from hypothesis import event, given, settings
 from hypothesis import strategies as st
 
-from smachac.ir.behaviours import built_in
-from smachac.ir.dataflow import data_flow
-from smachac.ir.keypaths import key_status, path_without
+from smachac.analysis.def_use import key_status, path_without
+from smachac.analysis.definite_assignment import data_flow
+from smachac.interpreter.builtin_states import built_in
+from smachac.interpreter.interpreter import Interpreter
+from smachac.interpreter.result import Event
 from smachac.ir.nodes import Machine
-from smachac.ir.result import Event
-from smachac.ir.run import Interpreter
-from smachac.ir.walk import walk
+from smachac.ir.traversal import walk
 
 
 @settings(max_examples=150)

@@ -10,12 +10,13 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from smachac.diagnostics import Report, Severity
-from smachac.driver import analyse, build, memory_library, together
-from smachac.files import disk_library
-from smachac.scaffold import Wanted, code_file, interface, stub
-from smachac.source import Source
-from smachac.states import find_state_type
+from smachac.commands.scaffold import Wanted, code_file, interface, stub
+from smachac.diagnostics.diagnostic import Report, Severity
+from smachac.diagnostics.source import Source
+from smachac.driver import analyse, build, together
+from smachac.frontend.files import disk_library
+from smachac.frontend.loader import memory_library
+from smachac.frontend.state_types import find_state_type
 from smachac.targets import load_target
 
 GRASP = """

@@ -7,14 +7,14 @@ from typing import Any
 
 import pytest
 
-from smachac import syntax
-from smachac.diagnostics import Report
-from smachac.driver import analyse, build, memory_library
-from smachac.files import disk_library
-from smachac.ir.behaviours import built_in
-from smachac.ir.run import run
-from smachac.source import Source
-from smachac.states import Library
+from smachac.diagnostics.diagnostic import Report
+from smachac.diagnostics.source import Source
+from smachac.driver import analyse, build
+from smachac.frontend import yaml_tree
+from smachac.frontend.files import disk_library
+from smachac.frontend.loader import Library, memory_library
+from smachac.interpreter.builtin_states import built_in
+from smachac.interpreter.interpreter import run
 from smachac.targets import load_target, target_names
 
 
@@ -105,13 +105,13 @@ def test_too_deep_an_expression() -> None:
 def test_brackets_that_the_pure_parser_would_take_long_for(monkeypatch: pytest.MonkeyPatch) -> None:
     """Found by fuzzing: 1,000 open brackets took it 0.3 s, in each of several readings."""
     read: list[str] = []
-    pure = syntax._pure_events
+    pure = yaml_tree._pure_events
 
     def counted(text: str) -> Iterator[Any]:
         read.append(text)
         return pure(text)
 
-    monkeypatch.setattr(syntax, "_pure_events", counted)
+    monkeypatch.setattr(yaml_tree, "_pure_events", counted)
     assert codes("states:\n" + "{" * 1000) == {"SM001"}
     assert codes("states:\n" + "{ " * 1000) == {"SM001"}
     assert read == []

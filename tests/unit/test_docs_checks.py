@@ -12,11 +12,11 @@ from typing import Any
 import pytest
 
 import smachac
-from smachac.cli import main
-from smachac.ir.behaviours import built_in
-from smachac.ir.result import Result
-from smachac.ir.run import run
-from smachac.ir.scenario import acted, read_scenario
+from smachac.commands.cli import main
+from smachac.interpreter.builtin_states import built_in
+from smachac.interpreter.interpreter import run
+from smachac.interpreter.result import Result
+from smachac.interpreter.scenario import acted, read_scenario
 from smachac.runtime import smach
 
 PAGE = Path(__file__).parents[2] / "docs" / "checks.md"

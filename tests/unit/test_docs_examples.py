@@ -11,10 +11,10 @@ from typing import Any
 import pytest
 
 import smachac
-from smachac.cli import main
-from smachac.ir.behaviours import built_in
-from smachac.ir.run import run
-from smachac.runtime.compare import compare
+from smachac.commands.cli import main
+from smachac.interpreter.builtin_states import built_in
+from smachac.interpreter.interpreter import run
+from smachac.runtime.tracing.compare import compare
 
 PAGE = Path(__file__).parents[2] / "docs" / "semantics.md"
 BLOCKS = re.findall(r"^```(\w+)\n(.*?)^```$", PAGE.read_text("utf-8"), re.MULTILINE | re.DOTALL)

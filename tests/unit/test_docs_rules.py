@@ -8,8 +8,8 @@ from pathlib import Path
 
 import pytest
 
-from smachac.diagnostics import CODES
-from smachac.report.explain import GROUPS, MAIN, explanation, render_code, render_rules
+from smachac.diagnostics.diagnostic import CODES
+from smachac.report.explain_code import GROUPS, MAIN, explanation, render_code, render_rules
 
 RULES = Path(__file__).parents[2] / "docs" / "rules.md"
 REWRITE = os.environ.get("SMACHAC_GOLDEN") == "rewrite"

@@ -11,11 +11,11 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 from strategies import machines
 
-from smachac.checks.failures import failures
-from smachac.cli import main
-from smachac.ir.dataflow import data_flow
+from smachac.analysis.definite_assignment import data_flow
+from smachac.analysis.failure_paths import failures
+from smachac.commands.cli import main
 from smachac.ir.nodes import Machine
-from smachac.ir.walk import walk
+from smachac.ir.traversal import walk
 from smachac.report.explain_failures import render_failures
 from smachac.report.explain_key import key_names
 from smachac.report.explain_name import UnclearError, explain_name

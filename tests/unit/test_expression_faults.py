@@ -10,9 +10,10 @@ from expression_strategies import COMPUTING_FORMS, trees
 from hypothesis import event, given, settings
 from hypothesis import strategies as st
 
-from smachac.ir.evaluate import EvaluationError, evaluate
-from smachac.ir.expression_faults import Fault, expression_faults
-from smachac.ir.expression_types import type_of
+from smachac.analysis.expression_errors import Fault, expression_faults, kinds
+from smachac.analysis.expression_types import type_of
+from smachac.analysis.type_lattice import record
+from smachac.interpreter.evaluator import EvaluationError, evaluate
 from smachac.ir.expressions import (
     Attribute,
     Binary,
@@ -28,8 +29,6 @@ from smachac.ir.expressions import (
     parse_expression,
     parts,
 )
-from smachac.ir.fitting import record
-from smachac.ir.operands import kinds
 from smachac.ir.types import Type, parse_type
 
 INT = st.integers(-3, 9)

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from ir_machines import concurrence, iterator, leaf, machine
 
-from smachac.checks.failures import Failure, failures
+from smachac.analysis.failure_paths import Failure, failures
 from smachac.ir.nodes import Machine, StateMachine
 
 

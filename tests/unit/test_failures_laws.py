@@ -7,14 +7,14 @@ from hypothesis import event, given, settings
 from hypothesis import strategies as st
 from strategies import valid_machines
 
-from smachac.checks.failures import Failure, failures
-from smachac.checks.hints import is_failure
-from smachac.checks.routes import Routes, path_to
-from smachac.ir.behaviours import built_in
+from smachac.analysis.failure_paths import Failure, failures
+from smachac.analysis.successors import Routes, path_to
+from smachac.interpreter.builtin_states import built_in
+from smachac.interpreter.interpreter import run
+from smachac.interpreter.result import Event, Result
 from smachac.ir.nodes import Concurrence, Leaf, Machine
-from smachac.ir.result import Event, Result
-from smachac.ir.run import run
-from smachac.ir.walk import walk
+from smachac.ir.outcome_names import is_failure
+from smachac.ir.traversal import walk
 
 MACHINES = st.one_of(valid_machines(), data_machines())
 

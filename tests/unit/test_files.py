@@ -6,16 +6,9 @@ from pathlib import Path
 
 import pytest
 
-from smachac.diagnostics import Report
-from smachac.files import (
-    MARK,
-    changed_files,
-    disk_library,
-    find_project,
-    foreign_files,
-    read_source,
-    write_files,
-)
+from smachac.commands.files import MARK, changed_files, foreign_files, write_files
+from smachac.diagnostics.diagnostic import Report
+from smachac.frontend.files import disk_library, find_project, read_source
 
 
 def codes(report: Report) -> list[str]:

@@ -11,14 +11,22 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from smachac.cli import main
-from smachac.diagnostics import Diagnostic, Edit, Finding, Severity, fingerprint, has_errors
-from smachac.files import ChangedError, Disk, rewrite_files
-from smachac.fixes import Mended, mended
-from smachac.refactor.layout import laid_out
-from smachac.source import Source, Span, Word
-from smachac.spelling import Guesser, respelt
-from smachac.survey import Survey, survey
+from smachac.batch import Survey, survey
+from smachac.commands.cli import main
+from smachac.commands.files import ChangedError, rewrite_files
+from smachac.diagnostics.diagnostic import (
+    Diagnostic,
+    Edit,
+    Finding,
+    Severity,
+    fingerprint,
+    has_errors,
+)
+from smachac.diagnostics.source import Source, Span, Word
+from smachac.diagnostics.spelling import Guesser, respelt
+from smachac.frontend.files import Disk
+from smachac.refactor.autofix import Mended, mended
+from smachac.refactor.formatter import laid_out
 
 NAMES = ["PICK_BLOCK", "PLACE_BLOCK", "PICK_1", "GRASP", "LEFT", "done", "aborted", "Left_Arm"]
 

@@ -10,7 +10,7 @@ from expression_strategies import FUNCTION_NAMES, NAMES_OF_VALUES, VALUES, compu
 from hypothesis import assume, given, settings
 from hypothesis import strategies as st
 
-from smachac.ir.evaluate import FUNCTIONS, EvaluationError, evaluate
+from smachac.interpreter.evaluator import FUNCTIONS, EvaluationError, evaluate
 from smachac.ir.expressions import Expr, parse_expression, print_expression
 
 PYTHON = {name: getattr(__import__("builtins"), name) for name in FUNCTIONS}

@@ -5,8 +5,17 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 from strategies import types
 
-from smachac.ir.fitting import Misfit, fits, misfit
-from smachac.ir.joining import constants, join, joined, meet, settled, widened
+from smachac.analysis.type_lattice import (
+    Misfit,
+    constants,
+    fits,
+    join,
+    joined,
+    meet,
+    misfit,
+    settled,
+    widened,
+)
 from smachac.ir.types import ANY, Type, parse_type
 
 

@@ -1,9 +1,9 @@
 from __future__ import annotations
 
+from smachac.diagnostics.source import NOWHERE
 from smachac.ir import nodes
 from smachac.ir.graph import START, can_end, container_graph, edges, flat_graph, reachable
 from smachac.ir.nodes import Concurrence, Leaf, Machine, StateMachine, Transition
-from smachac.source import NOWHERE
 
 
 def outcomes(*names: str) -> tuple[nodes.Outcome, ...]:

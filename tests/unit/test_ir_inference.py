@@ -9,21 +9,21 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 from strategies import machines, valid_machines
 
+from smachac.analysis.expression_types import limited, type_of, type_of_call, type_of_data
+from smachac.analysis.type_inference import infer
+from smachac.analysis.type_lattice import fits, misfit, widened
 from smachac.checks import check_machine
-from smachac.ir.behaviours import built_in
-from smachac.ir.evaluate import EvaluationError, evaluate
-from smachac.ir.expression_types import limited, type_of, type_of_call, type_of_data
+from smachac.diagnostics.source import NOWHERE
+from smachac.interpreter.builtin_states import built_in
+from smachac.interpreter.evaluator import EvaluationError, evaluate
+from smachac.interpreter.interpreter import run
+from smachac.interpreter.result import Event
 from smachac.ir.expressions import Expr, parse_expression
-from smachac.ir.fitting import fits, misfit
-from smachac.ir.inference import infer
-from smachac.ir.joining import widened
 from smachac.ir.nodes import Data, Expression, Leaf, Machine, Node, StateMachine, Struct
-from smachac.ir.result import Event
-from smachac.ir.run import run
-from smachac.ir.text import parse_machine, print_machine
+from smachac.ir.parser import parse_machine
+from smachac.ir.printer import print_machine
+from smachac.ir.traversal import walk
 from smachac.ir.types import Type, parse_type
-from smachac.ir.walk import walk
-from smachac.source import NOWHERE
 
 
 def a(text: str) -> Type:

@@ -7,10 +7,10 @@ from typing import Any
 import pytest
 from ir_machines import iterator, leaf, machine, ran, sequence, short
 
+from smachac.diagnostics.source import Source, Span
+from smachac.interpreter.interpreter import Interpreter, run
+from smachac.interpreter.userdata import Userdata
 from smachac.ir.nodes import Leaf, Machine, StateMachine
-from smachac.ir.run import Interpreter, run
-from smachac.ir.userdata import Userdata
-from smachac.source import Source, Span
 
 
 def test_events_of_a_nested_machine_come_in_order() -> None:

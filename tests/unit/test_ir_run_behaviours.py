@@ -8,8 +8,8 @@ from typing import Any
 import pytest
 from ir_machines import leaf, machine, ran, short
 
-from smachac.ir.behaviours import built_in
-from smachac.ir.result import Result
+from smachac.interpreter.builtin_states import built_in
+from smachac.interpreter.result import Result
 
 
 def single(

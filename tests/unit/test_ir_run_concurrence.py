@@ -7,11 +7,11 @@ from typing import Any
 import pytest
 from ir_machines import concurrence, iterator, leaf, machine, ran, short
 
-from smachac.ir.behaviours import built_in
+from smachac.interpreter.builtin_states import built_in
+from smachac.interpreter.interpreter import Interpreter
+from smachac.interpreter.result import Event
+from smachac.interpreter.userdata import Userdata
 from smachac.ir.nodes import Leaf, Machine
-from smachac.ir.result import Event
-from smachac.ir.run import Interpreter
-from smachac.ir.userdata import Userdata
 
 
 def both(*rules: Any, join: str = "all", **more: Any) -> Any:

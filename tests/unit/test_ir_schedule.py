@@ -10,10 +10,10 @@ from typing import Any
 import pytest
 from ir_machines import acting, concurrence, leaf, machine, ran
 
-from smachac.cli import main
-from smachac.ir.explore import explore
+from smachac.commands.cli import main
+from smachac.interpreter.explore import explore
+from smachac.interpreter.scheduler import ScheduleError
 from smachac.ir.nodes import Machine, StateMachine
-from smachac.ir.schedule import ScheduleError
 
 
 def row(name: str, length: int) -> StateMachine:

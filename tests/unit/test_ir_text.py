@@ -8,7 +8,8 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 from strategies import machines
 
-from smachac.ir import read
+from smachac.diagnostics.source import NOWHERE
+from smachac.ir import parser
 from smachac.ir.nodes import (
     Concurrence,
     Data,
@@ -22,9 +23,9 @@ from smachac.ir.nodes import (
     StateMachine,
     Value,
 )
-from smachac.ir.text import IrSyntaxError, parse_machine, print_machine
-from smachac.ir.walk import walk
-from smachac.source import NOWHERE
+from smachac.ir.parser import IrSyntaxError, parse_machine
+from smachac.ir.printer import print_machine
+from smachac.ir.traversal import walk
 
 
 def holding(data: Data) -> Machine:
@@ -270,4 +271,7 @@ def test_every_field_of_every_kind_can_be_read() -> None:
     places = {"span", "via", "initial_span", "default_span"}
     in_the_head = {"name", "type", "children", "root"}
     in_other_files = {"body", "robot", "unused", "written"}
-    assert names - places - in_the_head - in_other_files == read.SEVERAL.keys() | read.SINGLE.keys()
+    assert (
+        names - places - in_the_head - in_other_files
+        == parser.SEVERAL.keys() | parser.SINGLE.keys()
+    )

@@ -10,105 +10,28 @@ from pathlib import Path, PurePosixPath
 import pytest
 
 LAYERS = (
-    ("source",),
-    ("diagnostics", "problems", "spelling", "grammars"),
-    ("syntax", "ir", "shapes", "policy"),
-    (
-        "states",
-        "meta",
-        "script",
-        "schema",
-        "lookups",
-        "calls",
-        "typed",
-        "sugar",
-        "robots",
-        "urdf",
-        "variables",
-        "unused",
-    ),
-    (
-        "lower",
-        "presets",
-        "quirks",
-        "template_quirks",
-        "desugar",
-        "catching",
-        "conditions",
-        "values",
-        "checks",
-        "targets",
-    ),
-    ("driver", "report", "refactor", "project", "files", "execute", "reach"),
-    ("__init__", "runs", "streams", "survey", "discover", "baseline"),
-    ("fixes", "verify"),
-    ("checkup", "rewriting", "migrate"),
-    ("rework", "scaffold"),
-    (
-        "beginning",
-        "telling",
-    ),
-    ("verbs", "arguments"),
-    ("cli",),
+    ("sim", "runtime", "grammars", "diagnostics", "version"),
+    ("ir",),
+    ("analysis", "interpreter", "frontend"),
+    ("targets", "checks"),
+    ("driver", "report"),
+    ("__init__", "batch"),
+    ("refactor", "verify"),
+    ("commands",),
     ("__main__",),
 )
-"""The parts of the compiler, lowest first: a part may import every part of the rows above it."""
+"""The rooms of smachac/, lowest first: a room imports only from the rows above its own here."""
 
-WITHIN = {
-    ("problems", "diagnostics"),
-    ("problems", "spelling"),
-    ("spelling", "diagnostics"),
-    ("shapes", "syntax"),
-    ("policy", "syntax"),
-    ("script", "states"),
-    ("template_quirks", "quirks"),
-    ("template_quirks", "targets"),
-    ("script", "schema"),
-    ("script", "lookups"),
-    ("script", "typed"),
-    ("states", "typed"),
-    ("states", "meta"),
-    ("script", "calls"),
-    ("script", "robots"),
-    ("script", "variables"),
-    ("script", "unused"),
-    ("unused", "states"),
-    ("unused", "lookups"),
-    ("unused", "typed"),
-    ("variables", "states"),
-    ("variables", "schema"),
-    ("variables", "sugar"),
-    ("robots", "states"),
-    ("robots", "urdf"),
-    ("sugar", "states"),
-    ("lower", "values"),
-    ("lower", "presets"),
-    ("presets", "values"),
-    ("targets", "values"),
-    ("lower", "conditions"),
-    ("lower", "desugar"),
-    ("lower", "catching"),
-    ("desugar", "values"),
-    ("files", "project"),
-}
-"""The imports, as (who, whom), that are allowed inside one row."""
-
-ASIDE: Mapping[str, frozenset[str]] = {
+PACKAGES: Mapping[str, frozenset[str]] = {
     "runtime": frozenset({"rospy", "rosgraph", "actionlib", "actionlib_msgs", "genpy"}),
     "sim": frozenset({"pybullet", "pybullet_data", "numpy", "PIL", "imageio_ffmpeg"}),
 }
-"""What generated code stands on, with the packages it may import; no other part of ours."""
-
-USES_ASIDE = {"execute", "reach", "runs", "verify"}
-"""The parts of the compiler that run what it made, and so may import the parts above."""
-
-FACTS = {"smachac.__version__"}
-"""What everyone may know of the package as a whole."""
+"""The rooms that generated programs stand on, with the packages that they may import."""
 
 HEAVY = {"networkx", "lark", "jinja2", "pybullet", "pybullet_data", "numpy", "PIL"}
 """Packages slow to load: imported inside the functions that use them, or for types alone."""
 
-LATE = {"smachac/targets/bounds.py"}
+LATE = {"smachac/targets/templates/sandbox.py"}
 """Modules that are made of a heavy package, and so are imported where they are used."""
 
 Tree = Mapping[str, str]
@@ -142,7 +65,7 @@ def imported(node: ast.AST, path: str, modules: set[str]) -> Iterator[str]:
             base = absolute(node, path)
             for alias in names:
                 module = f"{base}.{alias.name}"
-                yield module if module in modules | FACTS else base
+                yield module if module in modules else base
         case ast.Call(
             func=ast.Name(id="import_module" | "__import__")
             | ast.Attribute(attr="import_module" | "__import__"),
@@ -159,7 +82,7 @@ def layer_faults(tree: Tree) -> Iterator[str]:
     }
     for path, text in tree.items():
         part = part_of(module_name(path))
-        if part not in ASIDE and not any(part in row for row in LAYERS):
+        if not any(part in row for row in LAYERS):
             yield f"{path}:1: `{part}` has no layer: give it a place in LAYERS"
             continue
         for node in ast.walk(ast.parse(text)):
@@ -171,19 +94,13 @@ def layer_faults(tree: Tree) -> Iterator[str]:
 def fault_of(part: str, module: str) -> str | None:
     package = module.partition(".")[0]
     if package != "smachac":
-        known = part not in ASIDE or package in ASIDE[part] | sys.stdlib_module_names
+        known = part not in PACKAGES or package in PACKAGES[part] | sys.stdlib_module_names
         return None if known else f"`{part}` may not import the package `{package}`"
+    rows = {name: number for number, row in enumerate(LAYERS) for name in row}
     other = part_of(module)
-    if other == part or module in FACTS or (other in ASIDE and part in USES_ASIDE):
-        return None
-    if part not in ASIDE and other not in ASIDE and ((part, other) in WITHIN or above(other, part)):
+    if other == part or rows.get(other, len(LAYERS)) < rows[part]:
         return None
     return f"`{part}` may not import `{other}`"
-
-
-def above(upper: str, lower: str) -> bool:
-    rows = {part: number for number, row in enumerate(LAYERS) for part in row}
-    return rows.get(upper, len(LAYERS)) < rows[lower]
 
 
 def heavy_faults(tree: Tree) -> Iterator[str]:
@@ -228,13 +145,13 @@ def test_our_modules_load_no_heavy_package_when_imported(ours: Tree) -> None:
 @pytest.mark.parametrize(
     ("path", "text"),
     [
-        ("smachac/cli.py", "import smachac\nfrom smachac import driver, load"),
-        ("smachac/lower.py", "from smachac import __version__"),
-        ("smachac/driver.py", "from smachac.script import resolve"),
-        ("smachac/ir/graph.py", "from .nodes import Leaf\nfrom .. import source"),
-        ("smachac/execute.py", "import smachac.sim.film"),
+        ("smachac/commands/cli.py", "import smachac\nfrom smachac import driver, load"),
+        ("smachac/targets/__init__.py", "from smachac.version import __version__"),
+        ("smachac/driver.py", "from smachac.frontend.lower import lower"),
+        ("smachac/ir/graph.py", "from .nodes import Leaf\nfrom .. import diagnostics"),
+        ("smachac/targets/runner.py", "import smachac.sim.world"),
         ("smachac/sim/world.py", "def step():\n    import numpy, time"),
-        ("smachac/script.py", "from smachac.states import Interface"),
+        ("smachac/frontend/lower.py", "from smachac.frontend.resolve import Script"),
     ],
 )
 def test_imports_from_lower_layers_are_fine(path: str, text: str) -> None:
@@ -244,54 +161,52 @@ def test_imports_from_lower_layers_are_fine(path: str, text: str) -> None:
 @pytest.mark.parametrize(
     ("path", "text", "fault"),
     [
-        ("smachac/source.py", "import smachac.cli", "1: `source` may not import `cli`"),
-        ("smachac/ir/nodes.py", "from smachac import lower", "1: `ir` may not import `lower`"),
-        ("smachac/ir/nodes.py", "from ..checks import names", "1: `ir` may not import `checks`"),
-        ("smachac/ir/__init__.py", "from .. import lower", "1: `ir` may not import `lower`"),
-        ("smachac/states.py", "\nfrom . import script", "2: `states` may not import `script`"),
+        ("smachac/diagnostics/source.py", "import smachac.driver", "1: diagnostics > driver"),
+        ("smachac/ir/nodes.py", "from smachac import frontend", "1: ir > frontend"),
+        ("smachac/ir/nodes.py", "from ..checks import names", "1: ir > checks"),
+        ("smachac/ir/__init__.py", "from .. import frontend", "1: ir > frontend"),
+        ("smachac/analysis/context.py", "\nfrom .. import frontend", "2: analysis > frontend"),
         (
-            "smachac/states.py",
-            "def f():\n from smachac.cli import main",
-            "2: `states` may not import `cli`",
+            "smachac/checks/names.py",
+            "def f():\n from smachac.commands.cli import main",
+            "2: checks > commands",
         ),
         (
-            "smachac/syntax.py",
+            "smachac/diagnostics/source.py",
             "import typing\nif typing.TYPE_CHECKING:\n    from smachac.ir import nodes",
-            "3: `syntax` may not import `ir`",
+            "3: diagnostics > ir",
         ),
-        ("smachac/lower.py", "from smachac import load", "1: `lower` may not import `__init__`"),
+        ("smachac/driver.py", "from smachac import load", "1: driver > __init__"),
         (
-            "smachac/lower.py",
+            "smachac/frontend/lower.py",
             "import importlib\nimportlib.import_module('smachac.checks')",
-            "2: `lower` may not import `checks`",
+            "2: frontend > checks",
         ),
-        (
-            "smachac/runtime/smach/__init__.py",
-            "from ...sim import world",
-            "1: `runtime` may not import `sim`",
-        ),
-        (
-            "smachac/runtime/trace.py",
-            "import smachac.source",
-            "1: `runtime` may not import `source`",
-        ),
-        (
-            "smachac/runtime/trace.py",
-            "import numpy",
-            "1: `runtime` may not import the package `numpy`",
-        ),
-        (
-            "smachac/sim/world.py",
-            "import networkx",
-            "1: `sim` may not import the package `networkx`",
-        ),
-        ("smachac/driver.py", "import smachac.sim", "1: `driver` may not import `sim`"),
-        ("smachac/lower.py", "import smachac.novelty", "1: `lower` may not import `novelty`"),
-        ("smachac/novelty.py", "", "1: `novelty` has no layer: give it a place in LAYERS"),
+        ("smachac/runtime/trace.py", "from ..sim import world", "1: runtime > sim"),
+        ("smachac/runtime/trace.py", "import smachac.diagnostics", "1: runtime > diagnostics"),
+        ("smachac/frontend/lower.py", "import smachac.novelty", "1: frontend > novelty"),
     ],
 )
 def test_imports_against_the_order_are_found(path: str, text: str, fault: str) -> None:
-    assert list(layer_faults(example(path, text))) == [f"{path}:{fault}"]
+    line, _, rooms = fault.partition(": ")
+    lower, _, upper = rooms.partition(" > ")
+    expected = f"{path}:{line}: `{lower}` may not import `{upper}`"
+    assert list(layer_faults(example(path, text))) == [expected]
+
+
+@pytest.mark.parametrize(
+    ("path", "package"),
+    [("smachac/runtime/trace.py", "numpy"), ("smachac/sim/world.py", "networkx")],
+)
+def test_packages_that_generated_programs_may_not_need_are_found(path: str, package: str) -> None:
+    room = path.split("/")[1]
+    expected = f"{path}:1: `{room}` may not import the package `{package}`"
+    assert list(layer_faults(example(path, f"import {package}"))) == [expected]
+
+
+def test_a_room_without_a_layer_is_found() -> None:
+    expected = "smachac/novelty.py:1: `novelty` has no layer: give it a place in LAYERS"
+    assert list(layer_faults(example("smachac/novelty.py", ""))) == [expected]
 
 
 @pytest.mark.parametrize(
@@ -304,7 +219,7 @@ def test_imports_against_the_order_are_found(path: str, text: str, fault: str) -
     ],
 )
 def test_heavy_packages_at_the_top_are_found(text: str) -> None:
-    assert len(list(heavy_faults(example("smachac/checks/structure.py", text)))) == 1
+    assert len(list(heavy_faults(example("smachac/checks/names.py", text)))) == 1
 
 
 @pytest.mark.parametrize(
@@ -317,11 +232,12 @@ def test_heavy_packages_at_the_top_are_found(text: str) -> None:
     ],
 )
 def test_heavy_packages_in_functions_and_for_types_are_fine(text: str) -> None:
-    assert list(heavy_faults(example("smachac/checks/structure.py", text))) == []
+    assert list(heavy_faults(example("smachac/checks/names.py", text))) == []
 
 
 def example(path: str, text: str) -> Tree:
     """A tree with one module of interest, and the empty modules that the texts above name."""
-    names = ["__init__", "source", "states", "script", "lower", "driver", "files", "cli"]
-    names += [f"{part}/__init__" for part in ("ir", "checks", "sim", "runtime")]
-    return {**{f"smachac/{name}.py": "" for name in names}, "smachac/sim/world.py": "", path: text}
+    rooms = ("checks", "commands", "diagnostics", "frontend", "ir", "runtime", "sim", "targets")
+    names = ["__init__", "driver", "commands/cli", "ir/nodes", "frontend/resolve", "sim/world"]
+    names += [f"{room}/__init__" for room in rooms]
+    return {**{f"smachac/{name}.py": "" for name in names}, path: text}

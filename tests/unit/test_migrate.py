@@ -8,12 +8,12 @@ from pathlib import Path
 
 import pytest
 
-from smachac.cli import main
-from smachac.quirks import quirks
-from smachac.report.migration import render_migration
-from smachac.source import Source
-from smachac.syntax import parse
-from smachac.template_quirks import template_quirks
+from smachac.commands.cli import main
+from smachac.diagnostics.source import Source
+from smachac.frontend.yaml_tree import parse
+from smachac.refactor.smacha.report import render_migration
+from smachac.refactor.smacha.script_differences import quirks
+from smachac.refactor.smacha.template_differences import template_quirks
 
 SMACHA = Path(__file__).parents[1] / "smacha"
 

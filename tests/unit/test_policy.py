@@ -9,13 +9,14 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from smachac import checks
-from smachac.diagnostics import CODES, Code, Finding, Report, Severity
-from smachac.diagnostics import Diagnostic as Item
+from smachac.diagnostics.diagnostic import CODES, Code, Finding, Report, Severity
+from smachac.diagnostics.diagnostic import Diagnostic as Item
+from smachac.diagnostics.severities import Policy, chosen, settled
+from smachac.diagnostics.source import NOWHERE, Source
 from smachac.driver import Analysis, analyse, build
-from smachac.files import disk_library, read_source
-from smachac.policy import MARK, Policy, allowances, chosen, settled
-from smachac.report.explain import MAIN, explanation
-from smachac.source import NOWHERE, Source
+from smachac.frontend.files import disk_library, read_source
+from smachac.frontend.suppressions import MARK, allowances
+from smachac.report.explain_code import MAIN, explanation
 from smachac.targets import load_target, target_names
 
 HEAD = "name: sm\ntemplate: Base\noutcomes: [done]\nstates:\n"

@@ -9,9 +9,9 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
+from smachac.diagnostics.source import Source
+from smachac.frontend.python_source import python_body
 from smachac.ir.nodes import Body
-from smachac.ir.python_body import python_body
-from smachac.source import Source
 
 TEMPLATE = """{{% block class_defs %}}
 class Pick(smach.State):
@@ -162,7 +162,7 @@ def test_any_text_is_read(code: str, name: str) -> None:
 def test_our_own_state_types_are_read() -> None:
     import smachac
 
-    folder = Path(smachac.__file__).parent / "states"
+    folder = Path(smachac.__file__).parent / "stdlib"
     found = {
         path.name.removesuffix(".tpl.py"): python_body(
             Source(path.name, path.read_text("utf-8")), path.name.removesuffix(".tpl.py")

@@ -7,12 +7,11 @@ from pathlib import Path
 
 import pytest
 
-from smachac.checks.reach import poses_to_reach
-from smachac.cli import main
+from smachac.checks.workspace import poses_to_reach, unreachable
+from smachac.commands.cli import main
 from smachac.driver import load
-from smachac.files import disk_library, read_source
+from smachac.frontend.files import disk_library, read_source
 from smachac.ir.nodes import Machine
-from smachac.reach import unreachable
 
 SCRIPT = """
 name: sm
@@ -88,13 +87,13 @@ def test_the_command(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None
 def test_without_a_simulation_it_says_so(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
 ) -> None:
-    from smachac.sim import ik
-    from smachac.sim.engine import SimUnavailable
+    from smachac.sim import inverse_kinematics
+    from smachac.sim.physics import SimUnavailable
 
     def missing(robot: object) -> None:
         raise SimUnavailable("PyBullet is not installed")
 
     machine_of(tmp_path, FAR)
-    monkeypatch.setattr(ik, "Shadow", missing)
+    monkeypatch.setattr(inverse_kinematics, "Shadow", missing)
     assert main(["check", str(tmp_path / "main.yml"), "--sim"]) == 2
     assert "PyBullet is not installed" in capsys.readouterr().err

@@ -14,13 +14,21 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 import smachac
-from smachac.checks import liveness
-from smachac.diagnostics import CODES, Diagnostic, Edit, Finding, Related, Report, Severity
-from smachac.report.explain import MAIN, explanation
+from smachac.checks import loops
+from smachac.diagnostics.diagnostic import (
+    CODES,
+    Diagnostic,
+    Edit,
+    Finding,
+    Related,
+    Report,
+    Severity,
+)
+from smachac.diagnostics.source import NOWHERE, Source, Span
+from smachac.report.explain_code import MAIN, explanation
 from smachac.report.github import render_github
 from smachac.report.junit import render_junit
 from smachac.report.sarif import render_sarif
-from smachac.source import NOWHERE, Source, Span
 
 STANDARD = Path(__file__).parents[1] / "standards" / "sarif-2.1.0-rtm.5.json"
 SCRIPT = Source("a b/main.yml", "name: sm\ntransitions: {\U0001f916: B}\n")
@@ -32,7 +40,7 @@ def schema() -> Any:
 
 
 def diagnostic(finding: Finding, severity: Severity = Severity.ERROR) -> Diagnostic:
-    assert liveness is not None  # imported for the codes it files
+    assert loops is not None  # imported for the codes it files
     return Diagnostic(code=CODES["SM204"], severity=severity, finding=finding)
 
 

@@ -9,9 +9,9 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 from schemas import faults, load_schema
 
-from smachac.diagnostics import Code, Diagnostic, Edit, Finding, Related, Severity
+from smachac.diagnostics.diagnostic import Code, Diagnostic, Edit, Finding, Related, Severity
+from smachac.diagnostics.source import NOWHERE, Source, Span
 from smachac.report.json import render_json
-from smachac.source import NOWHERE, Source, Span
 
 SCHEMA = load_schema("report")
 SCRIPT = Source("main.yml", "name: sm\ntransitions: {a: B}\n")

@@ -9,10 +9,10 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from smachac.diagnostics import Code, Diagnostic, Finding, Related, Severity
-from smachac.report.cells import columns, lay_out, visible
+from smachac.diagnostics.diagnostic import Code, Diagnostic, Finding, Related, Severity
+from smachac.diagnostics.source import NOWHERE, Source, Span
+from smachac.report.terminal import columns, lay_out, visible
 from smachac.report.text import MOST_FINDINGS, render_text, steps, summary
-from smachac.source import NOWHERE, Source, Span
 
 SCRIPT = Source(
     "main.yml",

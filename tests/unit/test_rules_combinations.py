@@ -13,11 +13,10 @@ from hypothesis import strategies as st
 from ir_machines import concurrence, iterator, leaf, machine, ran
 from rule_findings import report
 
-from smachac.checks import combinations
-from smachac.checks.branches import study
-from smachac.checks.combinations import Combination, Rules, UndecidedError
-from smachac.checks.coverage import written
-from smachac.diagnostics import Diagnostic, Severity
+from smachac.analysis import outcome_rules
+from smachac.analysis.outcome_rules import Combination, Rules, UndecidedError, study
+from smachac.checks.concurrence import written
+from smachac.diagnostics.diagnostic import Diagnostic, Severity
 from smachac.ir.nodes import Concurrence, StateMachine
 
 ENDS = ("ok", "lost", "seen", "aborted", "preempted")
@@ -250,7 +249,7 @@ def test_shown_parts_decide_and_are_as_small_as_they_can_be(
         return all(
             not all(ended[child] == end for child, end in rules.conditions[number].items())
             for ended in fitting
-            for number in combinations.bits(avoided)
+            for number in outcome_rules.bits(avoided)
         )
 
     assert decides(part)
@@ -302,7 +301,7 @@ def test_what_takes_too_much_is_given_up(monkeypatch: pytest.MonkeyPatch) -> Non
     pigeons = [f"P{number}" for number in range(8)]
     pairs = itertools.combinations(pigeons, 2)
     rules = [{a: hole, b: hole} for a, b in pairs for hole in holes]
-    monkeypatch.setattr(combinations, "MOST_LOOKED_AT", 10_000)
+    monkeypatch.setattr(outcome_rules, "MOST_LOOKED_AT", 10_000)
     with pytest.raises(UndecidedError):
         Rules(rules).find(dict.fromkeys(pigeons, holes), {}, (1 << len(rules)) - 1)
     node = concurrence(

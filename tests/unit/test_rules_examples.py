@@ -7,11 +7,11 @@ from pathlib import Path
 
 import pytest
 
-from smachac.diagnostics import CODES, Code, Diagnostic, Report, Severity
+from smachac.checks.workspace import unreachable
+from smachac.diagnostics.diagnostic import CODES, Code, Diagnostic, Report, Severity
 from smachac.driver import analyse, build
-from smachac.files import disk_library, read_source
-from smachac.reach import unreachable
-from smachac.report.explain import MAIN, explanation
+from smachac.frontend.files import disk_library, read_source
+from smachac.report.explain_code import MAIN, explanation
 from smachac.targets import load_target
 
 EVERY = [pytest.param(CODES[name], id=name) for name in sorted(CODES)]

@@ -9,7 +9,7 @@ import pytest
 from ir_machines import concurrence, iterator, leaf, machine, sequence
 from rule_findings import blocking, found, looping, one, report
 
-from smachac.diagnostics import Severity
+from smachac.diagnostics.diagnostic import Severity
 from smachac.ir.nodes import Node, StateMachine
 
 

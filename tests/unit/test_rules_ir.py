@@ -9,8 +9,8 @@ import pytest
 from ir_machines import concurrence, iterator, leaf, machine, sequence
 from rule_findings import found, one, report
 
-from smachac.diagnostics import Severity
-from smachac.source import Source, Span
+from smachac.diagnostics.diagnostic import Severity
+from smachac.diagnostics.source import Source, Span
 
 
 def test_a_sound_machine_has_no_findings() -> None:

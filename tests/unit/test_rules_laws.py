@@ -9,8 +9,8 @@ from hypothesis import strategies as st
 from ir_machines import leaf, machine
 from rule_findings import found, report
 
-from smachac.checks.hints import is_failure
 from smachac.ir.nodes import StateMachine
+from smachac.ir.outcome_names import is_failure
 
 EXITS = ("out", "lost")
 Steps = dict[str, dict[str, str]]

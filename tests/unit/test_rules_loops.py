@@ -8,7 +8,7 @@ import pytest
 from ir_machines import iterator, leaf, machine
 from rule_findings import blocking, found, looping, one, report
 
-from smachac.diagnostics import Severity
+from smachac.diagnostics.diagnostic import Severity
 from smachac.ir.nodes import Leaf, Node, StateMachine
 
 RETRY = {"ok": "done", "failed": "A"}

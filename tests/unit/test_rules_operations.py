@@ -3,8 +3,8 @@ from __future__ import annotations
 import pytest
 
 from smachac.checks import check_machine
-from smachac.diagnostics import Diagnostic, Severity
-from smachac.ir.text import parse_machine
+from smachac.diagnostics.diagnostic import Diagnostic, Severity
+from smachac.ir.parser import parse_machine
 
 CODES = ("SM311", "SM312", "SM504")
 

@@ -6,10 +6,11 @@ from pathlib import Path
 
 import pytest
 
-from smachac.diagnostics import Diagnostic
-from smachac.driver import analyse, memory_library
-from smachac.files import disk_library
-from smachac.source import Source
+from smachac.diagnostics.diagnostic import Diagnostic
+from smachac.diagnostics.source import Source
+from smachac.driver import analyse
+from smachac.frontend.files import disk_library
+from smachac.frontend.loader import memory_library
 
 BUILT_IN = disk_library(Path("main.yml"), [])
 SCRIPT = """

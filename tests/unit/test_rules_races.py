@@ -12,9 +12,9 @@ from hypothesis import strategies as st
 from ir_machines import concurrence, iterator, leaf, machine, ran
 from rule_findings import found, report
 
-import smachac
+from smachac import driver
+from smachac.interpreter.userdata import Userdata
 from smachac.ir.nodes import Concurrence, Leaf, Node, StateMachine
-from smachac.ir.userdata import Userdata
 
 
 def beside(*branches: Node, **options: Any) -> StateMachine:
@@ -247,7 +247,7 @@ def test_variables_and_params_fill_claims_in(
     (tmp_path / "templates" / "Grasp.yml").write_text(GRASP.replace("DEFAULT", default), "utf-8")
     script = tmp_path / "main.yml"
     script.write_text(SCRIPT.replace("FIRST", first).replace("SECOND", second), "utf-8")
-    analysis, _ = smachac.analyse_file(script, (), ())
+    analysis, _ = driver.analyse_file(script, (), ())
     assert "SM406" in {item.code.code for item in analysis.report}  # for the gripper
     assert analysis.machine is not None
     (both,) = analysis.machine.root.children

@@ -5,9 +5,9 @@ from xml.etree import ElementTree
 import pytest
 
 from smachac.checks import check_machine
-from smachac.diagnostics import Diagnostic
-from smachac.ir.robots import BUILT_IN
-from smachac.ir.text import parse_machine
+from smachac.diagnostics.diagnostic import Diagnostic
+from smachac.ir.parser import parse_machine
+from smachac.ir.robot import BUILT_IN
 
 
 def found(text: str) -> list[Diagnostic]:

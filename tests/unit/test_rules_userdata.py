@@ -9,13 +9,12 @@ import pytest
 from ir_machines import concurrence, iterator, leaf, machine, sequence
 from rule_findings import found, one, report
 
-from smachac.diagnostics import Severity
-from smachac.ir.dataflow import data_flow
-from smachac.ir.keypaths import key_status, path_without
-from smachac.ir.keyuses import same_key, uses
+from smachac.analysis.def_use import key_status, path_without, same_key, uses
+from smachac.analysis.definite_assignment import data_flow
+from smachac.diagnostics.diagnostic import Severity
+from smachac.diagnostics.source import NOWHERE
 from smachac.ir.nodes import Key, Leaf, Machine, Node, StateMachine
 from smachac.ir.types import Type
-from smachac.source import NOWHERE
 
 
 def writer(name: str, to: dict[str, str], key: str = "k", **on: str) -> Leaf:

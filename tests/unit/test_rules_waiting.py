@@ -11,8 +11,8 @@ from hypothesis import strategies as st
 from ir_machines import concurrence, iterator, leaf, machine
 from rule_findings import blocking, found, one, report
 
-from smachac.checks.endings import endings
-from smachac.diagnostics import Severity
+from smachac.analysis.possible_outcomes import endings
+from smachac.diagnostics.diagnostic import Severity
 from smachac.ir.nodes import Machine, Node, StateMachine
 
 WORK = leaf("WORK", outcomes="done")

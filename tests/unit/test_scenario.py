@@ -7,9 +7,9 @@ from typing import Any
 import pytest
 from ir_machines import concurrence, iterator, leaf, machine, ran, short
 
-from smachac.ir.behaviours import built_in
+from smachac.interpreter.builtin_states import built_in
+from smachac.interpreter.scenario import Row, Scenario, Step, acted, plain_steps, read_scenario
 from smachac.ir.nodes import Machine
-from smachac.ir.scenario import Row, Scenario, Step, acted, plain_steps, read_scenario
 
 
 def picking() -> Machine:

@@ -9,7 +9,7 @@ import pytest
 from ruamel.yaml import YAML
 from schemas import faults, load_schema
 
-from smachac.schema import CONTAINERS, LONG, REQUIRED, VARIABLES, names_for
+from smachac.frontend.schema import CONTAINERS, LONG, REQUIRED, VARIABLES, names_for
 
 SCHEMA = load_schema("script")
 DEFINITIONS = SCHEMA["definitions"]

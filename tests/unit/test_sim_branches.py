@@ -9,7 +9,7 @@ import pytest
 
 from smachac import sim
 from smachac.runtime import smach
-from smachac.sim import branches
+from smachac.sim import smach_bridge
 from smachac.sim.clock import Clock, Skill
 
 OUTCOMES = ["succeeded", "aborted", "preempted"]
@@ -57,7 +57,7 @@ class Bench:
         return Waits(self, name, count, fails)
 
     def run(self, machine: Any) -> str | None:
-        branches.attach(machine, self.clock, self.shown.append, "sm")
+        smach_bridge.attach(machine, self.clock, self.shown.append, "sm")
         outcome: str | None = machine.execute()
         assert self.lost == []
         return outcome

@@ -7,8 +7,8 @@ from collections.abc import Iterator
 
 import pytest
 
-from smachac.sim.branches import together
 from smachac.sim.clock import Clock, Key, Skill
+from smachac.sim.smach_bridge import together
 
 
 class Counter:

@@ -8,14 +8,14 @@ import sys
 import pytest
 
 from smachac import sim
-from smachac.sim import engine, film
+from smachac.sim import physics, video
 
 pytest.importorskip("pybullet")
 
 
 def test_what_is_written_below_python_stays_inside(capfd: pytest.CaptureFixture[str]) -> None:
     print("before")
-    with engine.quiet():
+    with physics.quiet():
         os.write(1, b"noise")
         os.write(2, b"noise")
     print("after")
@@ -38,16 +38,16 @@ def test_a_missing_package_is_named_with_its_cure(
     missing: str, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     monkeypatch.setitem(sys.modules, missing, None)
-    engine.pybullet.cache_clear()
+    physics.pybullet.cache_clear()
     with pytest.raises(sim.SimUnavailable, match=r"pip install 'smachac\[sim\]'"):
         sim.World()
-    engine.pybullet.cache_clear()
+    physics.pybullet.cache_clear()
 
 
 def test_no_film_without_pillow(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setitem(sys.modules, "PIL", None)
     with pytest.raises(sim.SimUnavailable, match="Pillow"):
-        film._pillow()
+        video._pillow()
 
 
 def test_no_window_without_a_display(monkeypatch: pytest.MonkeyPatch) -> None:
@@ -58,7 +58,7 @@ def test_no_window_without_a_display(monkeypatch: pytest.MonkeyPatch) -> None:
 
 
 def test_a_client_is_freed_once() -> None:
-    client = engine.Engine()
+    client = physics.Engine()
     assert client.getNumBodies() == 0
     client.close()
     client.close()
@@ -66,7 +66,7 @@ def test_a_client_is_freed_once() -> None:
 
 
 def test_files_are_looked_for_on_disk_and_in_pybullets_data() -> None:
-    found = engine.data_file("franka_panda/panda.urdf")
+    found = physics.data_file("franka_panda/panda.urdf")
     assert found is not None
-    assert engine.data_file(found) == found
-    assert engine.data_file("no/such/file.urdf") is None
+    assert physics.data_file(found) == found
+    assert physics.data_file("no/such/file.urdf") is None

@@ -9,7 +9,7 @@ from typing import Any
 import pytest
 
 from smachac import sim
-from smachac.sim import film
+from smachac.sim import video
 
 pytest.importorskip("pybullet")
 Image = pytest.importorskip("PIL.Image")
@@ -29,7 +29,7 @@ def test_a_gif_holds_the_run_and_is_small(tmp_path: Path) -> None:
         world.enter(["sm/MOVE"])
         arm = world.arm()
         arm.move_to_joints(arm.solve_ik([[0.5, 0.0, 0.2], [1, 0, 0, 0]]) or [])
-        count = int(world.time * film.RATE)
+        count = int(world.time * video.RATE)
         assert not path.exists()
     assert [each.name for each in path.parent.iterdir()] == ["run.gif"]
     assert frames(path) >= count - 1
@@ -78,7 +78,7 @@ def test_the_robot_and_all_bodies_are_in_the_picture() -> None:
         world.load("table", TABLE, frame="world")
         world.load("block", [[0.4, -0.3, 0.025], [0, 0, 0, 1]])
         world.load("goal", [[0.6, 0.3, 0.025], [0, 0, 0, 1]])
-        view, projection = film.fit(world)
+        view, projection = video.fit(world)
         seen: Any = world.engine.getCameraImage(
             160, 110, view, projection, renderer=world.engine.ER_TINY_RENDERER
         )[4]
@@ -97,9 +97,9 @@ def test_the_robot_and_all_bodies_are_in_the_picture() -> None:
 
 def test_a_long_caption_keeps_its_end() -> None:
     image = Image.new("RGB", (320, 218))
-    short = film.caption(image, "sm/A", 1.0)
+    short = video.caption(image, "sm/A", 1.0)
     assert short.size == (320, 240)
-    cut = film.caption(image, "x" * 300 + "/LAST", 1.0)
-    longer = film.caption(image, "x" * 900 + "/LAST", 1.0)
+    cut = video.caption(image, "x" * 300 + "/LAST", 1.0)
+    longer = video.caption(image, "x" * 900 + "/LAST", 1.0)
     assert cut.tobytes() == longer.tobytes()
     assert cut.tobytes() != short.tobytes()

@@ -9,8 +9,8 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from smachac.sim import geometry
-from smachac.sim.geometry import IDENTITY, Pose, Quaternion, as_pose
+from smachac.sim import transforms
+from smachac.sim.transforms import IDENTITY, Pose, Quaternion, as_pose
 
 LAW = settings(derandomize=True, deadline=None, max_examples=30)
 
@@ -30,31 +30,31 @@ poses = st.tuples(vectors, rotations())
 
 
 def near(a: Pose, b: Pose) -> bool:
-    return math.dist(a[0], b[0]) < 1e-9 and geometry.angle_between(a[1], b[1]) < 1e-7
+    return math.dist(a[0], b[0]) < 1e-9 and transforms.angle_between(a[1], b[1]) < 1e-7
 
 
 @LAW
 @given(poses)
 def test_a_pose_and_its_inverse_cancel(pose: Pose) -> None:
-    assert near(geometry.compose(pose, geometry.inverse(pose)), IDENTITY)
-    assert near(geometry.compose(geometry.inverse(pose), pose), IDENTITY)
+    assert near(transforms.compose(pose, transforms.inverse(pose)), IDENTITY)
+    assert near(transforms.compose(transforms.inverse(pose), pose), IDENTITY)
 
 
 @LAW
 @given(poses, poses, poses)
 def test_frames_chain_in_any_grouping(a: Pose, b: Pose, c: Pose) -> None:
-    left = geometry.compose(geometry.compose(a, b), c)
-    assert near(left, geometry.compose(a, geometry.compose(b, c)))
+    left = transforms.compose(transforms.compose(a, b), c)
+    assert near(left, transforms.compose(a, transforms.compose(b, c)))
 
 
 @LAW
 @given(poses, poses)
 def test_a_straight_way_ends_where_it_should_in_even_steps(start: Pose, end: Pose) -> None:
-    way = [start, *geometry.straight(start, end, 6)]
+    way = [start, *transforms.straight(start, end, 6)]
     assert near(way[-1], end)
     lengths = [math.dist(a[0], b[0]) for a, b in itertools.pairwise(way)]
     assert max(lengths) - min(lengths) < 1e-9
-    turns = [geometry.angle_between(a[1], b[1]) for a, b in itertools.pairwise(way)]
+    turns = [transforms.angle_between(a[1], b[1]) for a, b in itertools.pairwise(way)]
     assert max(turns) - min(turns) < 1e-6
     assert sum(turns) <= math.pi + 1e-6
 
@@ -64,10 +64,10 @@ def test_a_straight_way_ends_where_it_should_in_even_steps(start: Pose, end: Pos
 def test_a_grasp_points_down_and_turns_at_most_45_degrees(
     place: tuple[float, float, float], yaw: float
 ) -> None:
-    position, rotation = as_pose(geometry.grasp_pose([place, geometry.about_z(yaw)]))
+    position, rotation = as_pose(transforms.grasp_pose([place, transforms.about_z(yaw)]))
     assert position == place
-    assert geometry.rotate(rotation, (0.0, 0.0, 1.0)) == pytest.approx((0, 0, -1), abs=1e-9)
-    turned = geometry.yaw_of(geometry.multiply(rotation, (-1.0, 0.0, 0.0, 0.0)))
+    assert transforms.rotate(rotation, (0.0, 0.0, 1.0)) == pytest.approx((0, 0, -1), abs=1e-9)
+    turned = transforms.yaw_of(transforms.multiply(rotation, (-1.0, 0.0, 0.0, 0.0)))
     assert abs(turned) <= math.pi / 4 + 1e-9
     # A cube's sides come round every quarter turn.
     quarters = (yaw - turned) / (math.pi / 2)
@@ -75,13 +75,13 @@ def test_a_grasp_points_down_and_turns_at_most_45_degrees(
 
 
 def test_the_turn_of_a_hand_is_added() -> None:
-    rotation = as_pose(geometry.grasp_pose(IDENTITY, turn=math.pi))[1]
-    assert geometry.angle_between(rotation, (0.0, 1.0, 0.0, 0.0)) < 1e-9
+    rotation = as_pose(transforms.grasp_pose(IDENTITY, turn=math.pi))[1]
+    assert transforms.angle_between(rotation, (0.0, 1.0, 0.0, 0.0)) < 1e-9
 
 
 def test_an_offset_moves_along_the_outer_axes() -> None:
     down: Pose = ((0.5, 0.0, 0.025), (1.0, 0.0, 0.0, 0.0))
-    above = geometry.shifted(down, ((0.0, 0.0, 0.15), IDENTITY[1]))
+    above = transforms.shifted(down, ((0.0, 0.0, 0.15), IDENTITY[1]))
     assert near(above, ((0.5, 0.0, 0.175), (1.0, 0.0, 0.0, 0.0)))
 
 

@@ -9,7 +9,7 @@ from typing import Any
 import pytest
 
 from smachac import sim
-from smachac.sim import geometry
+from smachac.sim import transforms
 from smachac.sim.skills import TIME_STEP
 
 pytest.importorskip("pybullet")
@@ -22,7 +22,7 @@ EDGE = 0.05
 
 def block_pose(world: sim.World, y: tuple[float, float]) -> list[list[float]]:
     position = [world.random.uniform(0.35, 0.65), world.random.uniform(*y), EDGE / 2]
-    return [position, list(geometry.about_z(world.random.uniform(-math.pi, math.pi)))]
+    return [position, list(transforms.about_z(world.random.uniform(-math.pi, math.pi)))]
 
 
 def carry(world: sim.World, name: str, goal: list[list[float]]) -> list[str]:
@@ -60,7 +60,7 @@ def test_a_block_is_picked_and_placed_within_2_mm(seed: int) -> None:
     with sim.World(seed=seed) as world:
         world.load("table", TABLE, frame="world")
         world.load("block", block_pose(world, (-0.3, -0.05)))
-        goal = geometry.grasp_pose(block_pose(world, (0.05, 0.3)))
+        goal = transforms.grasp_pose(block_pose(world, (0.05, 0.3)))
         assert carry(world, "block", goal) == ["succeeded"] * 10
         world.sleep(0.5)
         assert world.error("block", goal) < 0.002
@@ -188,12 +188,14 @@ def test_solutions_are_checked_by_forward_kinematics(idle: sim.World) -> None:
     arm = idle.arm()
     for x in (0.35, 0.5, 0.65):
         for y in (-0.3, 0.0, 0.3):
-            pose = geometry.as_pose(geometry.grasp_pose([[x, y, 0.025], geometry.about_z(x + y)]))
+            pose = transforms.as_pose(
+                transforms.grasp_pose([[x, y, 0.025], transforms.about_z(x + y)])
+            )
             joints = arm.solve_ik(pose)
             assert joints is not None
             tip = idle.shadow.tip(arm.limb, joints)
             assert math.dist(tip[0], pose[0]) < 2e-4
-            assert geometry.angle_between(tip[1], pose[1]) < 1e-3
+            assert transforms.angle_between(tip[1], pose[1]) < 1e-3
 
 
 def test_out_of_reach_is_none_with_an_event(idle: sim.World) -> None:

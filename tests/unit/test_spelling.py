@@ -7,11 +7,11 @@ import tracemalloc
 from dataclasses import replace
 from pathlib import Path
 
-from smachac.diagnostics import did_you_mean
+from smachac.diagnostics.diagnostic import did_you_mean
+from smachac.diagnostics.source import Source
+from smachac.diagnostics.spelling import LONGEST_SLIP, Guesser, slips
 from smachac.driver import analyse
-from smachac.files import disk_library
-from smachac.source import Source
-from smachac.spelling import LONGEST_SLIP, Guesser, slips
+from smachac.frontend.files import disk_library
 
 
 def test_only_the_case_of_a_very_long_name_may_differ() -> None:

@@ -7,12 +7,12 @@ from hypothesis import given, settings
 from strategies import valid_machines
 
 from smachac.checks import check_machine
-from smachac.diagnostics import Severity
-from smachac.ir.behaviours import built_in
+from smachac.diagnostics.diagnostic import Severity
+from smachac.interpreter.builtin_states import built_in
+from smachac.interpreter.interpreter import run
 from smachac.ir.graph import can_end, reachable
 from smachac.ir.nodes import Concurrence, Iterator, Leaf, Machine, Node, Sequence, StateMachine
-from smachac.ir.run import run
-from smachac.ir.walk import containers, outcome_names, walk
+from smachac.ir.traversal import containers, outcome_names, walk
 
 
 @given(valid_machines())

@@ -8,14 +8,14 @@ from typing import Any
 import pytest
 
 import smachac
-from smachac.diagnostics import Report
-from smachac.ir.behaviours import built_in
-from smachac.ir.result import Event, Result
-from smachac.ir.run import run
-from smachac.ir.scenario import acted, read_scenario
-from smachac.source import Source
-from smachac.sugar import duration
-from smachac.syntax import parse
+from smachac.diagnostics.diagnostic import Report
+from smachac.diagnostics.source import Source
+from smachac.frontend.sugar import duration
+from smachac.frontend.yaml_tree import parse
+from smachac.interpreter.builtin_states import built_in
+from smachac.interpreter.interpreter import run
+from smachac.interpreter.result import Event, Result
+from smachac.interpreter.scenario import acted, read_scenario
 
 SCRIPT = """
 name: sm

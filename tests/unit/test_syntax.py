@@ -8,10 +8,10 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from smachac import syntax
-from smachac.diagnostics import Report
-from smachac.source import Source
-from smachac.syntax import Map, Scalar, Seq, Tree, parse
+from smachac.diagnostics.diagnostic import Report
+from smachac.diagnostics.source import Source
+from smachac.frontend import yaml_tree
+from smachac.frontend.yaml_tree import Map, Scalar, Seq, Tree, parse
 
 
 def read(text: str, codes: list[str] | None = None) -> Tree | None:
@@ -107,8 +107,8 @@ def test_aliases_and_merges() -> None:
         ("? [a]\n: 1", ["SM004"]),
         ("a: !thing 1", ["SM004"]),
         ("<<: 3", ["SM004"]),
-        ("[" * (syntax.MAX_DEPTH + 1) + "]" * (syntax.MAX_DEPTH + 1), ["SM006"]),
-        (" " * syntax.MAX_CHARACTERS, ["SM006"]),
+        ("[" * (yaml_tree.MAX_DEPTH + 1) + "]" * (yaml_tree.MAX_DEPTH + 1), ["SM006"]),
+        (" " * yaml_tree.MAX_CHARACTERS, ["SM006"]),
     ],
     ids=lambda value: repr(value)[:20],
 )
@@ -122,10 +122,10 @@ def test_bad_text_is_a_problem_with_a_place(text: str, codes: list[str]) -> None
 def test_aliases_may_repeat_only_so_much() -> None:
     """A short text must not become a million nodes that every rule goes through."""
     item = f"&a [{', '.join('0' * 99)}]"
-    much = ", ".join(["*a"] * (syntax.MAX_ALIASED // 100))
+    much = ", ".join(["*a"] * (yaml_tree.MAX_ALIASED // 100))
     assert read(f"[{item}, {much}]") is not None
     assert read(f"[{item}, {much}, *a]", ["SM006"]) is None
-    longer = "#" * syntax.MAX_ALIASED * 2
+    longer = "#" * yaml_tree.MAX_ALIASED * 2
     assert read(f"[{item}, {much}, *a] {longer}") is not None
 
 
@@ -140,7 +140,7 @@ def same_result(text: str, monkeypatch: pytest.MonkeyPatch) -> None:
     slow: Report = []
     quick = parse(Source("x.yml", text), fast)
     with monkeypatch.context() as patch:
-        patch.setattr(syntax, "_c_events", lambda text: iter(()))
+        patch.setattr(yaml_tree, "_c_events", lambda text: iter(()))
         thorough = parse(Source("x.yml", text), slow)
     assert (quick is None) == (thorough is None)
     if quick is not None and thorough is not None:
@@ -196,7 +196,7 @@ def test_the_slow_parser_does_not_read_again_what_takes_it_long(
     def slow(text: str) -> None:
         raise AssertionError("read again")
 
-    monkeypatch.setattr(syntax, "_pure_events", slow)
+    monkeypatch.setattr(yaml_tree, "_pure_events", slow)
     report: Report = []
     assert parse(Source("x.yml", text), report) is None
     (found,) = [item for item in report if item.code.code == "SM001"]

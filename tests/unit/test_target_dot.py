@@ -12,7 +12,8 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from smachac import __version__
+from smachac.diagnostics.source import NOWHERE
+from smachac.frontend.loader import Library
 from smachac.ir import nodes
 from smachac.ir.nodes import (
     Checked,
@@ -28,11 +29,10 @@ from smachac.ir.nodes import (
     Transition,
     Value,
 )
-from smachac.source import NOWHERE
-from smachac.states import Library
 from smachac.targets import Context, stem
 from smachac.targets.dot import TARGET
 from smachac.targets.dot.style import TONES, identifier, tone
+from smachac.version import __version__
 
 
 def outcomes(*names: str) -> tuple[Outcome, ...]:

@@ -4,10 +4,10 @@ from __future__ import annotations
 
 from pathlib import Path
 
-from smachac.files import disk_library
+from smachac.diagnostics.source import NOWHERE
+from smachac.frontend.files import disk_library
 from smachac.ir.nodes import Checked, Leaf, Machine, Outcome, StateMachine
-from smachac.ir.text import print_machine
-from smachac.source import NOWHERE
+from smachac.ir.printer import print_machine
 from smachac.targets import Context, made_by
 from smachac.targets.ir import TARGET
 

@@ -9,9 +9,10 @@ from typing import Any
 import pytest
 from schemas import faults, load_schema
 
-from smachac.diagnostics import Report
+from smachac.diagnostics.diagnostic import Report
+from smachac.diagnostics.source import NOWHERE, Source, Span
 from smachac.driver import load
-from smachac.files import disk_library, read_source
+from smachac.frontend.files import disk_library, read_source
 from smachac.ir.nodes import (
     Checked,
     Expression,
@@ -26,9 +27,8 @@ from smachac.ir.nodes import (
     Value,
     Variable,
 )
+from smachac.ir.traversal import walk
 from smachac.ir.types import Type
-from smachac.ir.walk import walk
-from smachac.source import NOWHERE, Source, Span
 from smachac.targets import Context
 from smachac.targets.json import TARGET, to_json
 

@@ -6,7 +6,7 @@ import ast
 
 import pytest
 
-from smachac.targets.python.layout import expression, flat
+from smachac.targets.python.formatter import expression, flat
 
 CODES = {
     "lambda a, b: a # the first": "lambda a, b: a",

@@ -11,8 +11,9 @@ from smach_machines import Steps, built, interpreted, traced
 
 from smachac.ir.nodes import Machine, Node, StateMachine
 from smachac.runtime import smach
-from smachac.runtime.compare import compare
-from smachac.runtime.trace import Event, attach, script
+from smachac.runtime.tracing.compare import compare
+from smachac.runtime.tracing.trace import attach, script
+from smachac.runtime.tracing.writer import Event
 
 
 @pytest.fixture(autouse=True)

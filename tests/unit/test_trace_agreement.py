@@ -11,11 +11,11 @@ from hypothesis import strategies as st
 from ir_machines import concurrence, iterator, leaf, machine, ran
 from smach_machines import Steps, interpreted, traced
 
+from smachac.interpreter.userdata import Userdata
 from smachac.ir.nodes import Leaf, Node, StateMachine
-from smachac.ir.userdata import Userdata
-from smachac.ir.walk import walk
+from smachac.ir.traversal import walk
 from smachac.runtime import smach
-from smachac.runtime.compare import compare
+from smachac.runtime.tracing.compare import compare
 
 T = TypeVar("T")
 

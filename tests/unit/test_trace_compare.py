@@ -8,7 +8,7 @@ from typing import Any
 import pytest
 from ir_machines import concurrence, leaf, machine, ran
 
-from smachac.runtime.compare import compare
+from smachac.runtime.tracing.compare import compare
 
 Events = list[dict[str, Any]]
 

@@ -16,10 +16,11 @@ import pytest
 from ir_machines import concurrence, iterator, leaf, machine
 from smach_machines import Steps, built
 
+from smachac.interpreter.userdata import trace_value as interpreted_value
 from smachac.ir.nodes import Machine, StateMachine
-from smachac.ir.userdata import trace_value as interpreted_value
 from smachac.runtime import smach
-from smachac.runtime.trace import Event, TraceWriter, attach, script, trace_value
+from smachac.runtime.tracing.trace import attach, script
+from smachac.runtime.tracing.writer import Event, TraceWriter, trace_value
 
 ROOT = Path(__file__).parents[2]
 
@@ -159,7 +160,7 @@ def test_values_are_shown_as_the_interpreter_shows_them(value: object) -> None:
 KILLED = """
 import functools, os, sys
 from smachac.runtime import smach
-from smachac.runtime.trace import TraceWriter, attach
+from smachac.runtime.tracing.trace import TraceWriter, attach
 
 class Step(smach.State):
     def execute(self, ud):

@@ -8,8 +8,8 @@ from typing import Any
 
 from ir_machines import leaf, machine, ran
 
-from smachac.ir.behaviours import built_in
-from smachac.runtime.progress import Progress
+from smachac.interpreter.builtin_states import built_in
+from smachac.runtime.tracing.progress import Progress
 
 
 def root() -> Any:

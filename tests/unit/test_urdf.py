@@ -10,9 +10,9 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 import smachac
-from smachac.ir.robots import Robot
-from smachac.source import Source
-from smachac.urdf import UrdfError, read_urdf
+from smachac.diagnostics.source import Source
+from smachac.frontend.urdf import UrdfError, read_urdf
+from smachac.ir.robot import Robot
 
 
 def joint(name: str, parent: str, child: str, kind: str = "revolute", more: str = "") -> str:

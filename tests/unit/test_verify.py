@@ -12,14 +12,15 @@ from ir_machines import iterator, leaf
 from ir_machines import machine as state_machine
 
 import smachac
-from smachac.cli import main
+from smachac.commands.cli import main
 from smachac.ir.nodes import Machine
-from smachac.runtime import smach, trace
+from smachac.runtime import smach
+from smachac.runtime.tracing import trace
 from smachac.verify import verify
-from smachac.verify.constants import Constants
-from smachac.verify.python import player
-from smachac.verify.scenarios import Scenarios
-from smachac.verify.verdict import Verdict, render_json, render_text, scenario_text
+from smachac.verify.generate import Scenarios
+from smachac.verify.players.python import player
+from smachac.verify.result import Verdict, render_json, render_text, scenario_text
+from smachac.verify.sample_values import Constants
 
 ROOT = Path(__file__).parents[2]
 EXAMPLES = sorted((ROOT / "examples").glob("[0-9]*/main.yml"))
@@ -360,7 +361,7 @@ def test_a_program_that_cannot_be_loaded_is_told(
     def refuse(*_: object, **__: object) -> None:
         raise ImportError("no module named robot")
 
-    monkeypatch.setattr("smachac.execute.compile", refuse, raising=False)
+    monkeypatch.setattr("smachac.targets.python.runner.compile", refuse, raising=False)
     assert main(["verify", str(script)]) == 1
     told = capsys.readouterr().err
     assert told.endswith(

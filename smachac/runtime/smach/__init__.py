@@ -12,7 +12,7 @@ from __future__ import annotations
 import os
 from collections.abc import Callable
 
-from . import (
+from smachac.runtime.smach import (
     concurrence,
     container,
     exceptions,
@@ -24,20 +24,20 @@ from . import (
     user_data,
     util,
 )
-from .concurrence import Concurrence
-from .container import Container
-from .exceptions import (
+from smachac.runtime.smach.concurrence import Concurrence
+from smachac.runtime.smach.container import Container
+from smachac.runtime.smach.exceptions import (
     InvalidConstructionError,
     InvalidStateError,
     InvalidTransitionError,
     InvalidUserCodeError,
 )
-from .iterator import Iterator
-from .sequence import Sequence
-from .state import CBState, State
-from .state_machine import StateMachine
-from .user_data import Remapper, UserData
-from .util import CBInterface, cb_interface, has_smach_interface
+from smachac.runtime.smach.iterator import Iterator
+from smachac.runtime.smach.sequence import Sequence
+from smachac.runtime.smach.state import CBState, State
+from smachac.runtime.smach.state_machine import StateMachine
+from smachac.runtime.smach.user_data import Remapper, UserData
+from smachac.runtime.smach.util import CBInterface, cb_interface, has_smach_interface
 
 __all__ = [
     "CBInterface",

@@ -7,13 +7,16 @@ from collections.abc import Callable, Iterable, Mapping, Sequence
 from typing import Any, TypeVar
 
 from smachac.runtime import smach
-
-from .branches import Branches
-from .container import Container, open_container, withdraw
-from .exceptions import InvalidStateError, InvalidTransitionError, InvalidUserCodeError
-from .log import quiet
-from .state import State
-from .user_data import UserData
+from smachac.runtime.smach.container import Container, open_container, withdraw
+from smachac.runtime.smach.exceptions import (
+    InvalidStateError,
+    InvalidTransitionError,
+    InvalidUserCodeError,
+)
+from smachac.runtime.smach.log import quiet
+from smachac.runtime.smach.state import State
+from smachac.runtime.smach.threads import Branches
+from smachac.runtime.smach.user_data import UserData
 
 S = TypeVar("S", bound=State)
 OutcomeMap = Mapping[str, Mapping[str, str]]

@@ -10,10 +10,13 @@ from types import TracebackType
 from typing import Any, ClassVar, TypeVar
 
 from smachac.runtime import smach
-
-from .exceptions import InvalidConstructionError, InvalidStateError, InvalidTransitionError
-from .state import State
-from .user_data import Remapper, UserData, read_keys, store, write_keys
+from smachac.runtime.smach.exceptions import (
+    InvalidConstructionError,
+    InvalidStateError,
+    InvalidTransitionError,
+)
+from smachac.runtime.smach.state import State
+from smachac.runtime.smach.user_data import Remapper, UserData, read_keys, store, write_keys
 
 C = TypeVar("C", bound="Container")
 Callbacks = list[tuple[Callable[..., object], tuple[Any, ...]]]

@@ -7,12 +7,11 @@ from collections.abc import Callable, Iterable, Mapping, Sequence
 from typing import Any
 
 from smachac.runtime import smach
-
-from .container import Container, open_container, withdraw
-from .exceptions import InvalidUserCodeError
-from .log import quiet
-from .state import State
-from .user_data import UserData
+from smachac.runtime.smach.container import Container, open_container, withdraw
+from smachac.runtime.smach.exceptions import InvalidUserCodeError
+from smachac.runtime.smach.log import quiet
+from smachac.runtime.smach.state import State
+from smachac.runtime.smach.user_data import UserData
 
 _NO_MORE = object()
 

@@ -6,10 +6,9 @@ from collections.abc import Iterable, Mapping
 from typing import Any, TypeVar
 
 from smachac.runtime import smach
-
-from .container import open_container
-from .state import State
-from .state_machine import StateMachine
+from smachac.runtime.smach.container import open_container
+from smachac.runtime.smach.state import State
+from smachac.runtime.smach.state_machine import StateMachine
 
 S = TypeVar("S", bound=State)
 

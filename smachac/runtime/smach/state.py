@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Callable, Iterable, Mapping
 from typing import Any
 
-from .util import has_smach_interface
+from smachac.runtime.smach.util import has_smach_interface
 
 
 class State:

@@ -7,13 +7,16 @@ from collections.abc import Iterable, Mapping, Sequence
 from typing import Any, TypeVar
 
 from smachac.runtime import smach
-
-from .container import Container, open_container
-from .exceptions import InvalidStateError, InvalidTransitionError, InvalidUserCodeError
-from .log import quiet
-from .state import State
-from .transitions import Transitions
-from .user_data import UserData
+from smachac.runtime.smach.container import Container, open_container
+from smachac.runtime.smach.exceptions import (
+    InvalidStateError,
+    InvalidTransitionError,
+    InvalidUserCodeError,
+)
+from smachac.runtime.smach.log import quiet
+from smachac.runtime.smach.state import State
+from smachac.runtime.smach.transitions import Transitions
+from smachac.runtime.smach.user_data import UserData
 
 S = TypeVar("S", bound=State)
 

@@ -5,8 +5,8 @@ from __future__ import annotations
 from collections.abc import Collection, Iterable, Mapping
 from typing import Any
 
-from .exceptions import InvalidStateError, InvalidTransitionError
-from .state import State
+from smachac.runtime.smach.exceptions import InvalidStateError, InvalidTransitionError
+from smachac.runtime.smach.state import State
 
 
 class Transitions:

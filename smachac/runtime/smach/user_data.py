@@ -11,8 +11,7 @@ from types import MappingProxyType
 from typing import Any, ClassVar, TypeAlias
 
 from smachac.runtime import smach
-
-from .exceptions import InvalidUserCodeError
+from smachac.runtime.smach.exceptions import InvalidUserCodeError
 
 View: TypeAlias = tuple[
     Collection[str], Collection[str], Mapping[str, str], MutableMapping[str, Any]

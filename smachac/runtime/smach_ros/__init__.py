@@ -8,7 +8,7 @@ docs/ros.md lists what differs from smach_ros.
 
 from __future__ import annotations
 
-from . import (
+from smachac.runtime.smach_ros import (
     action_server_wrapper,
     condition_state,
     introspection,
@@ -16,15 +16,14 @@ from . import (
     service_state,
     simple_action_state,
     util,
-    watch,
 )
-from .action_server_wrapper import ActionServerWrapper
-from .condition_state import ConditionState
-from .introspection import IntrospectionClient, IntrospectionServer
-from .monitor_state import MonitorState
-from .service_state import ServiceState
-from .simple_action_state import SimpleActionState
-from .util import set_preempt_handler
+from smachac.runtime.smach_ros.action_server_wrapper import ActionServerWrapper
+from smachac.runtime.smach_ros.condition_state import ConditionState
+from smachac.runtime.smach_ros.introspection import IntrospectionClient, IntrospectionServer
+from smachac.runtime.smach_ros.monitor_state import MonitorState
+from smachac.runtime.smach_ros.service_state import ServiceState
+from smachac.runtime.smach_ros.simple_action_state import SimpleActionState
+from smachac.runtime.smach_ros.util import set_preempt_handler
 
 __all__ = [
     "ActionServerWrapper",
@@ -42,5 +41,4 @@ __all__ = [
     "set_preempt_handler",
     "simple_action_state",
     "util",
-    "watch",
 ]

@@ -10,8 +10,7 @@ from typing import Any
 from smachac.runtime import smach
 from smachac.runtime.smach import Remapper, UserData
 from smachac.runtime.smach.container import Container
-
-from . import ros
+from smachac.runtime.smach_ros import ros
 
 
 class ActionServerWrapper:

@@ -7,9 +7,8 @@ from collections.abc import Callable
 from typing import Any
 
 from smachac.runtime.smach import InvalidUserCodeError, has_smach_interface
-
-from . import ros
-from .waiting import RosState
+from smachac.runtime.smach_ros import ros
+from smachac.runtime.smach_ros.ros_state import RosState
 
 
 class ConditionState(RosState):

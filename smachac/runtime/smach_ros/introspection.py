@@ -12,8 +12,7 @@ from smachac.runtime import smach
 from smachac.runtime.smach import InvalidStateError, State, UserData
 from smachac.runtime.smach.container import Container
 from smachac.runtime.smach.user_data import store
-
-from . import messages, ros
+from smachac.runtime.smach_ros import messages, ros
 
 STATUS_TOPIC = "/smach/container_status"
 INIT_TOPIC = "/smach/container_init"

@@ -9,7 +9,7 @@ from __future__ import annotations
 import functools
 from typing import Any
 
-from . import ros
+from smachac.runtime.smach_ros import ros
 
 HEADER = """
 ================================================================================

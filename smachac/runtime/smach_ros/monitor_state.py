@@ -7,8 +7,7 @@ from collections.abc import Callable
 from typing import Any
 
 from smachac.runtime import smach
-
-from .waiting import RosState
+from smachac.runtime.smach_ros.ros_state import RosState
 
 
 class MonitorState(RosState):

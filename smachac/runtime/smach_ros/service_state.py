@@ -10,8 +10,7 @@ from typing import Any
 
 from smachac.runtime import smach
 from smachac.runtime.smach import has_smach_interface
-
-from .waiting import RosState, callback, check_slots, is_outcome
+from smachac.runtime.smach_ros.ros_state import RosState, callback, check_slots, is_outcome
 
 CONTACT = 0.5
 """Seconds to reach a service before it is said that it is waited for."""

@@ -11,10 +11,9 @@ from typing import Any
 
 from smachac.runtime import smach
 from smachac.runtime.smach import InvalidStateError, has_smach_interface
-
-from . import ros
-from .waiting import RosState, callback, check_slots, is_outcome
-from .watch import Watch
+from smachac.runtime.smach_ros import ros
+from smachac.runtime.smach_ros.ros_state import RosState, callback, check_slots, is_outcome
+from smachac.runtime.smach_ros.server_watch import Watch
 
 STOPPING = 5.0
 """Seconds that a node which shuts down waits for the server to confirm that it stopped."""

@@ -8,8 +8,7 @@ from typing import Any
 
 from smachac.runtime import smach
 from smachac.runtime.smach.container import Container
-
-from . import ros
+from smachac.runtime.smach_ros import ros
 
 
 def set_preempt_handler(sc: Container) -> None:

@@ -7,16 +7,17 @@ add what builds and runs the header (project.py).
 
 from __future__ import annotations
 
-from smachac.diagnostics import Report, in_order
+from smachac.diagnostics.diagnostic import Report, in_order
+from smachac.frontend.loader import Library
+from smachac.frontend.state_types import StateType
 from smachac.ir.nodes import Checked
-from smachac.states import Library, StateType
 from smachac.targets import Context, Files, Target, stem
-from smachac.targets.cpp.classes import class_code, left_to_scripts
-from smachac.targets.cpp.declared import declared
+from smachac.targets.cpp.builtin_states import is_built_in
+from smachac.targets.cpp.class_reader import declared
 from smachac.targets.cpp.header import header_of
-from smachac.targets.cpp.leaves import is_built_in
 from smachac.targets.cpp.plan import plan
 from smachac.targets.cpp.project import OPTIONS, project, project_files, runtime
+from smachac.targets.cpp.user_classes import class_code, left_to_scripts
 
 
 def emit(machine: Checked, context: Context, report: Report) -> Files:

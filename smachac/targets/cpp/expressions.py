@@ -11,6 +11,7 @@ import re
 from collections.abc import Iterator, Mapping
 from dataclasses import dataclass, field, replace
 
+from smachac.diagnostics.source import assert_never
 from smachac.ir.expressions import (
     Attribute,
     Binary,
@@ -32,8 +33,7 @@ from smachac.ir.expressions import (
     print_expression,
 )
 from smachac.ir.types import Type
-from smachac.source import assert_never
-from smachac.targets.cpp import arithmetic, comparing, displays, functions
+from smachac.targets.cpp import builtin_functions, literals, operators
 from smachac.targets.cpp.terms import (
     AND,
     BOOL,
@@ -173,20 +173,20 @@ def _form(expr: Expr, scope: _Scope) -> Term:
         case Conditional(test, then, otherwise):
             return _conditional(*(_term(part, scope) for part in (test, then, otherwise)))
         case ListDisplay(items):
-            return displays.listed([_term(item, scope) for item in items], "array")
+            return literals.listed([_term(item, scope) for item in items], "array")
         case TupleDisplay(items):
-            return displays.listed([_term(item, scope) for item in items], "tuple")
+            return literals.listed([_term(item, scope) for item in items], "tuple")
         case DictDisplay(entries):
-            return displays.mapped([(_term(k, scope), _term(v, scope)) for k, v in entries])
+            return literals.mapped([(_term(k, scope), _term(v, scope)) for k, v in entries])
         case Unary("-", Constant(int() | float() as value)):
             return literal(-value)
         case Unary("not", operand):
             text = Text(f"!{condition(_term(operand, scope)).at(SIGNED)}", SIGNED)
             return fixed(BOOL, text)
         case Unary(sign, operand):
-            return arithmetic.signed(sign, _term(operand, scope))
+            return operators.signed(sign, _term(operand, scope))
         case Binary(word, left, right):
-            return arithmetic.binary(word, _term(left, scope), _term(right, scope))
+            return operators.binary(word, _term(left, scope), _term(right, scope))
         case Compare(first, rest):
             operands = [(word, _term(operand, scope)) for word, operand in rest]
             return fixed(BOOL, _chain(_term(first, scope), operands, scope))
@@ -230,7 +230,7 @@ def _index(value: Expr, index: Expr, scope: _Scope) -> Term:
             -len(fields) <= at < len(fields)
         ):
             return _member(owner, fields[at])
-    return functions.item(owner, place)
+    return builtin_functions.item(owner, place)
 
 
 def _call(
@@ -240,8 +240,8 @@ def _call(
     scope: _Scope,
 ) -> Term:
     name = dotted(function)
-    if name is None or name not in functions.FUNCTIONS or name in scope.names:
-        known = ", ".join(functions.FUNCTIONS)
+    if name is None or name not in builtin_functions.FUNCTIONS or name in scope.names:
+        known = ", ".join(builtin_functions.FUNCTIONS)
         error = UnportableError("C++ knows no such function")
         error.help = f"it knows {known}"
         raise error
@@ -249,11 +249,11 @@ def _call(
     named: dict[str, Term] = {}
     for key, value in keywords:
         if isinstance(value, Lambda):
-            item = functions.item_of(given)
+            item = builtin_functions.item_of(given)
             named[key] = _function(value, item, scope)
         else:
             named[key] = _term(value, scope)
-    return functions.FUNCTIONS[name](given, named)
+    return builtin_functions.FUNCTIONS[name](given, named)
 
 
 def _function(function: Lambda, item: Type, scope: _Scope) -> Term:
@@ -350,10 +350,10 @@ def _chain(left: Term, rest: list[tuple[str, Term]], scope: _Scope) -> Text:
     """`a < b < c`: `b` is computed once, `c` where `a < b`."""
     (word, right), *others = rest
     if not others:
-        return comparing.compare(word, left, right)
+        return operators.compare(word, left, right)
     if right.simple:
-        return _both(comparing.compare(word, left, right), _chain(right, others, scope))
+        return _both(operators.compare(word, left, right), _chain(right, others, scope))
     name = f"value_{next(scope.numbers)}"
     bound = fixed(right.type, Text(name), simple=True)
-    text = _both(comparing.compare(word, left, bound), _chain(bound, others, scope))
+    text = _both(operators.compare(word, left, bound), _chain(bound, others, scope))
     return bind(right, name, text)

@@ -7,19 +7,19 @@ from collections.abc import Set as AbstractSet
 from dataclasses import dataclass, field
 from typing import NamedTuple
 
-from smachac import problems
+from smachac.frontend.loader import Library
+from smachac.frontend.state_types import find_state_type
 from smachac.ir.nodes import Iterator, Leaf, Machine
-from smachac.ir.walk import walk
-from smachac.states import Library, find_state_type
+from smachac.ir.traversal import walk
 from smachac.targets import made_by
-from smachac.targets.cpp.classes import ClassCode, argument, assertions, class_code, class_leaf
-from smachac.targets.cpp.containers import execute
-from smachac.targets.cpp.inside import Inside, results
-from smachac.targets.cpp.leaves import LeafCode, built_in, enumeration
-from smachac.targets.cpp.machines import parts as parts_of
+from smachac.targets.cpp.builtin_states import LeafCode, built_in, enumeration
+from smachac.targets.cpp.containers import Inside, execute, results
+from smachac.targets.cpp.containers import parts as parts_of
+from smachac.targets.cpp.identifiers import identifier
 from smachac.targets.cpp.plan import Plan, Scope, member, place, scope_name
 from smachac.targets.cpp.types import UnportableError, cpp_literal, cpp_type, cpp_value
-from smachac.targets.cpp.words import identifier
+from smachac.targets.cpp.user_classes import ClassCode, argument, assertions, class_code, class_leaf
+from smachac.targets.errors import no_code_for_target
 
 Lines = list[str]
 
@@ -96,7 +96,7 @@ def _refuse_missing(plan: Plan, types: AbstractSet[str]) -> None:
             leaves.setdefault(node.type, []).append(node)
     for name, states in leaves.items():
         place = states[0].span
-        plan.report.append(problems.no_code_for_target(place, "C++", "cpp", name, len(states)))
+        plan.report.append(no_code_for_target(place, "C++", "cpp", name, len(states)))
 
 
 def _container(printing: _Printing, scope: Scope) -> Lines:

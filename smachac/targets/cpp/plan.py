@@ -6,17 +6,16 @@ from collections.abc import Mapping
 from dataclasses import dataclass, field
 from pathlib import PurePath
 
-from smachac import problems
-from smachac.diagnostics import Report
-from smachac.ir.inference import infer
+from smachac.analysis.type_inference import infer
+from smachac.diagnostics.diagnostic import Report
+from smachac.diagnostics.source import NOWHERE, Span
 from smachac.ir.nodes import Container, Iterator, Leaf, Machine, Node
+from smachac.ir.traversal import containers, outcome_names, remapping
 from smachac.ir.types import ANY, Type
-from smachac.ir.userdata import remapping
-from smachac.ir.walk import containers, outcome_names
-from smachac.source import NOWHERE, Span
 from smachac.targets.cpp.expressions import Spelling
+from smachac.targets.cpp.identifiers import clashes, identifier, outermost
 from smachac.targets.cpp.types import UnportableError, cpp_literal, cpp_type, plain
-from smachac.targets.cpp.words import clashes, identifier, outermost
+from smachac.targets.errors import unsupported_by_target
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -57,7 +56,7 @@ class Plan:
     report: Report = field(default_factory=list)
 
     def refuse(self, span: Span, error: UnportableError) -> None:
-        found = problems.unsupported_by_target(span, "C++", str(error), error.help)
+        found = unsupported_by_target(span, "C++", str(error), error.help)
         self.report.append(found)
 
 

@@ -218,3 +218,8 @@ def _summary(machine: Machine) -> str:
 
 def _escaped(text: str) -> str:
     return text.replace("&", "&amp;").replace("<", "&lt;").replace(">", "&gt;")
+
+
+CLANG_FORMAT = "BasedOnStyle: LLVM\nColumnLimit: 0\n"
+"""The `.clang-format` that leaves generated code as it is: LLVM's, where the printer breaks lines
+and long expressions stay on one. The headers of the runtime hold to LLVM's with 100 columns."""

@@ -220,7 +220,7 @@ def _members(data: tuple[Data, ...] | Struct, name: str) -> list[str]:
 
 def _computed(expression: Expression) -> Data:
     """The value of an expression over nothing. Raises UnportableError where it has none."""
-    from smachac.ir.evaluate import EvaluationError, evaluate
+    from smachac.interpreter.evaluator import EvaluationError, evaluate
     from smachac.ir.expressions import parse_expression
 
     tree = parse_expression(expression.text)

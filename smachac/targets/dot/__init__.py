@@ -2,10 +2,10 @@
 
 from __future__ import annotations
 
-from smachac.diagnostics import Report
+from smachac.diagnostics.diagnostic import Report
 from smachac.ir.nodes import Checked
 from smachac.targets import Context, Files, OptionError, Target, made_by, stem
-from smachac.targets.dot.picture import picture
+from smachac.targets.dot.graph import picture
 
 DIRECTIONS = ("TB", "LR", "BT", "RL")
 

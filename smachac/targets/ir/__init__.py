@@ -2,15 +2,15 @@
 
 from __future__ import annotations
 
-from smachac.diagnostics import Report
+from smachac.diagnostics.diagnostic import Report
 from smachac.ir.nodes import Checked
 from smachac.targets import Context, Files, Target, made_by, stem
 
 
 def emit(machine: Checked, context: Context, report: Report) -> Files:
     """One text in the notation of grammars/ir.lark, named after the machine."""
-    from smachac.ir.inference import infer
-    from smachac.ir.text import print_machine
+    from smachac.analysis.type_inference import infer
+    from smachac.ir.printer import print_machine
 
     text = print_machine(machine, infer(machine))
     return {f"{stem(machine)}.smir": f"# {made_by(machine)}\n{text}"}

@@ -8,11 +8,11 @@ from collections.abc import Iterator
 from dataclasses import fields, is_dataclass
 from typing import Any
 
-from smachac.diagnostics import Report
+from smachac.diagnostics.diagnostic import Report
+from smachac.diagnostics.source import NOWHERE, Span
 from smachac.ir.nodes import Checked, Expression, Machine, Node, Struct, Value
+from smachac.ir.traversal import walk
 from smachac.ir.types import Type
-from smachac.ir.walk import walk
-from smachac.source import NOWHERE, Span
 from smachac.targets import Context, Files, Target, made_by, stem
 
 VERSION = 2

@@ -7,11 +7,12 @@ Templates of SMACHA's kind print states, containers and the frame themselves (sm
 
 from __future__ import annotations
 
-from smachac.diagnostics import Report
+from smachac.diagnostics.diagnostic import Report
+from smachac.frontend.loader import Library
+from smachac.frontend.state_types import StateType
 from smachac.ir.nodes import Checked
-from smachac.states import Library, StateType
 from smachac.targets import Context, Files, OptionError, Target, stem
-from smachac.targets.python.declared import declared
+from smachac.targets.python.class_reader import declared
 
 OPTIONS = {
     "comments": "yes: print the comment blocks of templates (default: no)",

@@ -6,7 +6,9 @@ import ast
 import sys
 from collections.abc import Iterable
 
-from smachac.targets.python.layout import WIDTH
+from smachac.ir.nodes import Machine
+from smachac.ir.traversal import expressions, walk
+from smachac.targets.python.formatter import WIDTH
 
 ROS_MODULES = ("rospy", "roslib", "rospkg", "rostopic", "actionlib", "tf2_ros")
 """Modules that SMACHA's bases imported for everybody."""
@@ -130,3 +132,30 @@ def unbound_names(parts: Iterable[str], also: Iterable[str] = ()) -> list[str]:
         for name in sorted(named - bound)
         if name in _MODULE_OF and _MODULE_OF[name] not in everything
     ]
+
+
+def standard_imports(machine: Machine) -> list[str]:
+    """Imports of the modules of the standard library that expressions name: `math.pi`."""
+    found = {
+        name
+        for _, node in walk(machine.root)
+        for expression in expressions(node)
+        for name in _modules(expression.text)
+    }
+    return [f"import {name}" for name in sorted(found)]
+
+
+def _modules(text: str) -> set[str]:
+    """The modules at the roots of dotted names; arguments of a lambda are none."""
+    try:
+        tree = ast.parse(text.strip(), mode="eval")
+    except (SyntaxError, ValueError, RecursionError, MemoryError):
+        return set()
+    nodes = list(ast.walk(tree))
+    arguments = {node.arg for node in nodes if isinstance(node, ast.arg)}
+    roots = {
+        node.value.id
+        for node in nodes
+        if isinstance(node, ast.Attribute) and isinstance(node.value, ast.Name)
+    }
+    return (roots - arguments) & sys.stdlib_module_names

@@ -6,27 +6,32 @@ import ast
 import re
 from textwrap import indent
 
-from smachac import problems
-from smachac.diagnostics import Report, has_errors
+from smachac.diagnostics.diagnostic import Report, has_errors
+from smachac.frontend.errors.references import template_error
+from smachac.frontend.state_types import find_state_type
 from smachac.ir.nodes import Machine
-from smachac.ir.walk import walk
-from smachac.states import find_state_type
+from smachac.ir.traversal import walk
 from smachac.targets import Context, made_by
-from smachac.targets.blocks import BlockError, Blocks
-from smachac.targets.python.containers import (
+from smachac.targets.errors import python_2_code
+from smachac.targets.python.buffers import PREPENDED, Gathered
+from smachac.targets.python.imports import (
+    import_lines,
+    standard_imports,
+    unbound_names,
+    with_fallback,
+)
+from smachac.targets.python.python2 import modern
+from smachac.targets.python.smacha_context import FILTERS, TESTS, container_variables, plain
+from smachac.targets.python.states import (
     NO_BODY,
     Inside,
     children,
+    container_block,
     headers,
     joined,
     lost,
-    structure,
 )
-from smachac.targets.python.expressions import standard_imports
-from smachac.targets.python.gathered import PREPENDED, Gathered
-from smachac.targets.python.imports import import_lines, unbound_names, with_fallback
-from smachac.targets.python.python2 import modern
-from smachac.targets.python.smacha import FILTERS, TESTS, container_variables, plain
+from smachac.targets.templates.engine import BlockError, Blocks
 
 ONE_FUNCTION = {"Program.tpl.py": "Base.tpl.py", "ROSProgram.tpl.py": "ROSBase.tpl.py"}
 """What prints a program whose states bring code around its run: all of it in one function, where
@@ -86,7 +91,9 @@ def _text(machine: Machine, context: Context, gathered: Gathered) -> str | None:
     if any(node.catches for _, node in walk(machine.root)):
         gathered.buffers["imports"]["import traceback"] = None
         gathered.buffers["defs"][CATCHING] = None
-    lines = gathered.blocks.render("Container.tpl.py", "body", structure(inside, None, states))
+    lines = gathered.blocks.render(
+        "Container.tpl.py", "body", container_block(inside, None, states)
+    )
     texts = joined(gathered.buffers)
     parts = [*texts.values(), lines, *gathered.functions]
     if template == "Program.tpl.py" and any(map(_NEEDS_NODE.search, parts)):
@@ -121,7 +128,7 @@ def _text(machine: Machine, context: Context, gathered: Gathered) -> str | None:
     text = _rendered(template, variables, imports, gathered) + "\n"
     if lost(states, text):
         span = gathered.blocks.block_span(template, "body") or machine.root.span
-        raise BlockError(problems.template_error(span, *NO_BODY))
+        raise BlockError(template_error(span, *NO_BODY))
     return _checked(text, template, machine, gathered)
 
 
@@ -160,7 +167,7 @@ def _base_template(machine: Machine, context: Context, gathered: Gathered) -> st
     file = type_.code.get("python", "") if type_ is not None else ""
     if not file or gathered.blocks.source(file) is None:
         message = f"the base `{machine.base}` has no template for Python"
-        raise BlockError(problems.template_error(machine.root.span, message))
+        raise BlockError(template_error(machine.root.span, message))
     return file
 
 
@@ -169,7 +176,7 @@ def _checked(text: str, template: str, machine: Machine, gathered: Gathered) -> 
     text, changes = modern(text)
     for line, change in changes:
         place = gathered.blocks.line_span(template, line) or machine.root.span
-        gathered.note(problems.python_2_code(place, change))
+        gathered.note(python_2_code(place, change))
     try:
         tree = ast.parse(text)
     except (SyntaxError, ValueError, RecursionError, MemoryError) as error:
@@ -180,7 +187,7 @@ def _checked(text: str, template: str, machine: Machine, gathered: Gathered) -> 
         place = gathered.blocks.line_span(template, line) or machine.root.span
         message = f"the base `{machine.base}` makes no Python: {words}"
         help = f"the line it prints is `{line.strip()}`"
-        raise BlockError(problems.template_error(place, message, help)) from error
+        raise BlockError(template_error(place, message, help)) from error
     text = with_fallback(text, tree)
     tree = ast.parse(text)
     tidy = _TRAILING.sub("", _BLANKS.sub("\n\n\n", text))

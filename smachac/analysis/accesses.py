@@ -1,0 +1,277 @@
+"""What a leaf reads and writes of userdata: as its interface says, or as its built-in type does."""
+
+from __future__ import annotations
+
+import ast
+import warnings
+from collections.abc import Iterable, Mapping
+from functools import lru_cache
+from typing import NamedTuple
+
+from smachac.analysis.context import states
+from smachac.ir import nodes
+from smachac.ir.builtin_states import CALLING, default_outcome, variable
+from smachac.ir.nodes import Expression, Leaf, Machine, Node, Struct
+from smachac.ir.traversal import PREEMPTED, remapping
+
+NONE: frozenset[str] = frozenset()
+
+_ALL_CODE = ("CallbacksState", "ConditionalOutcomeState")
+"""State types that read nothing but what the functions of the script read."""
+
+
+class Writes(NamedTuple):
+    """The keys that are set when a state ends with some outcome.
+
+    `sure`: always. `trusted`: unless a stand-in or unknown code proves otherwise, so that nobody is
+    blamed for what is not known. `perhaps`: possibly. `anything`: unknown code may set any key.
+    """
+
+    sure: frozenset[str] = NONE
+    trusted: frozenset[str] = NONE
+    perhaps: frozenset[str] = NONE
+    anything: bool = False
+
+
+NOTHING = Writes()
+ANYTHING = Writes(anything=True)
+
+
+def is_optional(node: Node, key: str) -> bool:
+    """Whether a declared input may be absent: its type is `T?`."""
+    return any(each.name == key and each.type.name == "optional" for each in node.inputs)
+
+
+def leaf_reads(leaf: Leaf, *, raw: bool = False) -> tuple[str, ...]:
+    """The keys, under the leaf's names, that have to be there when it is entered.
+
+    These are its declared inputs but for optional ones; callbacks say it exactly. `raw`: the leaf
+    sees every key of its container, as the child of an iterator does (smach-semantics I7).
+    """
+    if leaf.open or not (leaf.inputs or raw):
+        return ()
+    needed = tuple(key.name for key in leaf.inputs if key.type.name != "optional")
+    functions = callbacks(leaf)
+    if functions is not None and leaf.type in CALLING:
+        order = sorted(functions)
+    elif functions is not None and leaf.type == "ConditionalOutcomeState":
+        order = [name for name in _names(leaf) if name in functions]
+    else:
+        return needed
+    found: dict[str, None] = {}
+    written: set[str] = set()
+    for name in order:
+        code = functions[name]
+        fields = userdata_fields(code.text)
+        reads = needed if fields is None else fields.read
+        optional = NONE if fields is None else fields.tested
+        found |= {
+            key: None
+            for key in reads
+            if key not in written and key not in optional and (raw or key in needed)
+        }
+        written.add(name)
+    if leaf.type not in _ALL_CODE:
+        found |= {key: None for key in needed if key not in written}
+    return tuple(found)
+
+
+def leaf_writes(leaf: Leaf, outcome: str, *, raw: bool = False) -> Writes:
+    """The keys, under the leaf's names, that it has set when it ends with an outcome.
+
+    An exception may come before any of them is written, or after.
+    """
+    if leaf.open:
+        return ANYTHING
+    if not (leaf.outputs or raw):
+        return NOTHING
+    if outcome == leaf.catches:
+        begun = {key.name for key in leaf.outputs}
+        if raw:
+            begun.update(callback_names(leaf), *(keys for _, keys in scripted_steps(leaf)))
+        return Writes(perhaps=frozenset(begun))
+    outputs = frozenset(key.name for key in leaf.outputs)
+    called = callback_names(leaf) if leaf.type in CALLING else NONE
+    if leaf.type == "ScriptedState":
+        return _scripted(leaf, outcome, outputs, raw)
+    called = called if raw else called & outputs
+    if leaf.type == "CallbacksState" and callbacks(leaf) is not None:
+        return Writes(called, called, called)
+    if not outputs and not called:
+        return NOTHING
+    told = frozenset(key for _, keys in leaf.writes for key in keys)
+    here = frozenset(key for name, keys in leaf.writes for key in keys if name == outcome)
+    untold = outputs - told
+    sure = called | (here & outputs)
+    if outcome != PREEMPTED:
+        sure |= untold
+    return Writes(sure, sure, untold | sure)
+
+
+def _scripted(leaf: Leaf, outcome: str, outputs: frozenset[str], raw: bool) -> Writes:
+    """What the steps of a ScriptedState set. A key that no step sets is left to the real state."""
+    steps = list(scripted_steps(leaf))
+    ever = frozenset(key for _, keys in steps for key in keys)
+    sets = [frozenset(keys) for name, keys in steps if name == outcome]
+    if not raw:
+        sets = [keys & outputs for keys in sets]
+    perhaps = frozenset(outputs if not sets else (outputs - ever)).union(*sets)
+    if outcome == PREEMPTED:
+        # It comes without a step when the state is asked to stop.
+        return Writes(NONE, NONE, perhaps)
+    sure = frozenset.intersection(*sets) if sets else NONE
+    return Writes(sure, sure | (outputs if not sets else outputs - ever), perhaps)
+
+
+def scripted_steps(leaf: Leaf) -> Iterable[tuple[str, tuple[str, ...]]]:
+    """The outcome and the keys of each step of a ScriptedState."""
+    data = variable(leaf, "steps")
+    for step in data if isinstance(data, tuple) else ():
+        told = dict(step.entries) if isinstance(step, Struct) else {}
+        outcome, sets = told.get("outcome"), told.get("set")
+        keys = tuple(key for key, _ in sets.entries) if isinstance(sets, Struct) else ()
+        yield outcome if isinstance(outcome, str) else default_outcome(leaf), keys
+
+
+def _names(leaf: Leaf) -> tuple[str, ...]:
+    return tuple(outcome.name for outcome in leaf.outcomes)
+
+
+def callbacks(leaf: Leaf) -> Mapping[str, Expression] | None:
+    """The functions of a leaf by key or outcome; None where they cannot be told."""
+    data = variable(leaf, "callbacks")
+    if data is None:
+        return {}
+    if not isinstance(data, Struct):
+        return None
+    return {key: code for key, code in data.entries if isinstance(code, Expression)}
+
+
+def callback_names(leaf: Leaf) -> frozenset[str]:
+    """The names under which a leaf has functions, or what should be some."""
+    data = variable(leaf, "callbacks")
+    return frozenset(key for key, _ in data.entries) if isinstance(data, Struct) else NONE
+
+
+class Fields(NamedTuple):
+    """The keys that code reads of userdata, in order, and those it asks for with `in`."""
+
+    read: tuple[str, ...]
+    tested: frozenset[str]
+
+
+_METHODS = frozenset(["keys", "update", "extract", "merge"])
+
+
+@lru_cache(maxsize=10_000)
+def userdata_fields(text: str) -> Fields | None:
+    """What a lambda over userdata, or an expression over `ud`, reads; None where it cannot be told.
+
+    It cannot where the code hands userdata on, or is the name of a function.
+    """
+    try:
+        with warnings.catch_warnings():
+            warnings.simplefilter("ignore", SyntaxWarning)
+            body: ast.expr = ast.parse(text.strip(), mode="eval").body
+    except (SyntaxError, ValueError, RecursionError, MemoryError):
+        return None
+    names = {"ud", "userdata"}
+    if isinstance(body, ast.Lambda):
+        names = {each.arg for each in [*body.args.posonlyargs, *body.args.args][:1]}
+        body = body.body
+    elif not any(isinstance(node, ast.Name) and node.id in names for node in ast.walk(body)):
+        return None
+    return _fields(body, names)
+
+
+def _fields(body: ast.expr, names: set[str]) -> Fields | None:
+    def is_userdata(node: ast.expr) -> bool:
+        return isinstance(node, ast.Name) and node.id in names
+
+    read: dict[str, None] = {}
+    tested: set[str] = set()
+    uses = 0
+    for node in ast.walk(body):
+        match node:
+            case ast.Name(id=name) if name in names:
+                uses += 1
+            case ast.Attribute(value=value, attr=key) if is_userdata(value):
+                uses -= key not in _METHODS
+                read[key] = None
+            case ast.Subscript(value=value, slice=ast.Constant(str() as key)) if is_userdata(value):
+                uses -= 1
+                read[key] = None
+            case ast.Compare(
+                left=ast.Constant(str() as key),
+                ops=[ast.In() | ast.NotIn()],
+                comparators=[value],
+            ) if is_userdata(value):
+                uses -= 1
+                tested.add(key)
+    return None if uses else Fields(tuple(read), frozenset(tested))
+
+
+Keys = dict[str, Node]
+"""Keys, under the names they have around the state, with the leaf or container that is behind it:
+the innermost whose access it is."""
+
+
+class Accesses(NamedTuple):
+    """What a state may read and may write of the userdata around it."""
+
+    reads: Keys
+    writes: Keys
+
+
+def accesses(machine: Machine) -> dict[int, Accesses]:
+    """The accesses of every state, by `id`.
+
+    A leaf may read and write the keys it declares, at any time. A container copies its inputs when
+    it starts, and its outputs when it ends (smach-semantics V1, V4); it counts as reading what
+    something in it reads, and as writing what it hands on or something in it has put there.
+    """
+    found: dict[int, Accesses] = {}
+    for _, node in reversed(states(machine)):
+        found[id(node)] = around(node, inside(node, found))
+    return found
+
+
+def inside(node: Node, known: dict[int, Accesses]) -> Accesses:
+    """What is read and written of a state's own userdata by what is in it."""
+    if isinstance(node, Leaf):
+        return Accesses(
+            {key.name: node for key in node.inputs}, {key.name: node for key in node.outputs}
+        )
+    reads: Keys = {}
+    writes: Keys = {}
+    for child in node.children:
+        for key, origin in known[id(child)].reads.items():
+            reads.setdefault(key, origin)
+        for key, origin in known[id(child)].writes.items():
+            writes.setdefault(key, origin)
+    if isinstance(node, nodes.Iterator):
+        writes.setdefault(node.item_key, node)
+        if node.items_key:
+            reads.setdefault(node.items_key, node)
+    return Accesses(reads, writes)
+
+
+def around(node: Node, own: Accesses) -> Accesses:
+    """The accesses to its own userdata as far as they go to the userdata around it."""
+    if isinstance(node, Leaf):
+        return Accesses(_renamed(node, own.reads), _renamed(node, own.writes))
+    inputs = {key.name for key in node.inputs}
+    held = {*inputs, *(preset.key for preset in node.userdata)}
+    outputs = [key.name for key in node.outputs]
+    reads = {key.name: own.reads[key.name] for key in node.inputs if key.name in own.reads}
+    written = (key for key in outputs if key in own.writes or key in held)
+    writes = {key: own.writes.get(key, node) for key in written}
+    return Accesses(_renamed(node, reads), _renamed(node, writes))
+
+
+def _renamed(node: Node, keys: Keys) -> Keys:
+    names = remapping(node)
+    found: Keys = {}
+    for key, origin in keys.items():
+        found.setdefault(names.get(key, key), origin)
+    return found

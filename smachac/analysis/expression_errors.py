@@ -1,0 +1,497 @@
+"""What cannot work in a portable expression, by the types of what it is over (see operands.py).
+
+An expression of unknown type is never at fault. What is evaluated in some runs only is told apart;
+where a condition asks for a key first, what it guards is not judged by that key: it may well be
+asked so that the fault does not come about.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Mapping
+from dataclasses import dataclass, replace
+from functools import lru_cache
+from typing import Literal, NamedTuple, TypeAlias
+
+from smachac.analysis.expression_types import (
+    ATTRIBUTES,
+    Names,
+    body_of,
+    keys_named,
+    parsed,
+    type_of,
+)
+from smachac.analysis.type_lattice import item_of, length_of, misfit, record, widened
+from smachac.ir.expressions import (
+    Attribute,
+    Binary,
+    Boolean,
+    Call,
+    Compare,
+    Conditional,
+    Constant,
+    Expr,
+    Index,
+    Lambda,
+    Name,
+    Unary,
+    dotted,
+    parts,
+    print_expression,
+)
+from smachac.ir.nodes import Expression
+from smachac.ir.types import Type
+
+FaultKind: TypeAlias = Literal["operation", "comparison", "unit"]
+"""It fails; its result is always the same; it mixes units."""
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Fault:
+    """An expression that cannot be meant so.
+
+    `what` says in words what it does, `keys` are those of the userdata that it does it with.
+    `always`: every evaluation of the whole comes to it. `word` is what was written for one of
+    `choices`; `length`: the fault is one of how many items there are.
+    """
+
+    kind: FaultKind
+    expr: Expr
+    what: str
+    keys: tuple[str, ...] = ()
+    always: bool = True
+    help: str | None = None
+    word: str = ""
+    choices: tuple[str, ...] = ()
+    length: bool = False
+
+
+EMPTY = record(())
+"""The type of userdata without keys."""
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class _Part:
+    """A part of an expression, and the keys that conditions have asked for before it."""
+
+    expr: Expr
+    always: bool = True
+    guards: frozenset[str] = frozenset()
+
+
+def expression_faults(
+    expr: Expr, userdata: Type = EMPTY, parameters: tuple[str, ...] = ()
+) -> tuple[Fault, ...]:
+    """The faults of an expression, outer parts first. `parameters` are the names of userdata,
+    whose type is a record of its keys. Total."""
+    judge = _Judge(dict.fromkeys(parameters, userdata), parameters)
+    found: list[Fault] = []
+    todo = [_Part(expr=expr)]
+    while todo:
+        part = todo.pop()
+        if isinstance(part.expr, Constant | Name):
+            continue
+        for fault in judge.judged(part.expr):
+            if part.guards.isdisjoint(fault.keys):
+                found.append(fault if part.always else _seldom(fault))
+        todo.extend(reversed(list(judge.inside(part))))
+    return tuple(found)
+
+
+@lru_cache(maxsize=10_000)
+def function_faults(text: str, userdata: Type) -> tuple[Fault, ...]:
+    """The faults of a function of the script over userdata, a record of the keys it reads. Code
+    that is not portable has none. By text, as trees with `1` and `True` are alike."""
+    tree = parsed(text)
+    if tree is None:
+        return ()
+    body, parameters = body_of(tree)
+    return expression_faults(body, userdata, parameters)
+
+
+def always_fails(expression: Expression, userdata: Names) -> bool:
+    """Whether a function of the script never gives a value, over the types of the keys it reads."""
+    found = function_faults(expression.text, record(userdata.items()))
+    return any(each.kind == "operation" and each.always and not each.length for each in found)
+
+
+def _seldom(fault: Fault) -> Fault:
+    return replace(fault, always=False)
+
+
+class _Judge:
+    """The names of one expression."""
+
+    def __init__(self, names: Names, parameters: tuple[str, ...]) -> None:
+        self.names = names
+        self.parameters = parameters
+
+    def type(self, expr: Expr) -> Type:
+        return type_of(expr, self.names)
+
+    def keys(self, *exprs: Expr) -> tuple[str, ...]:
+        found = (key for expr in exprs for key in keys_named(expr, self.parameters))
+        return tuple(dict.fromkeys(found))
+
+    def inside(self, part: _Part) -> Iterator[_Part]:
+        """The parts of a part, in the order in which they are evaluated."""
+
+        def sure(expr: Expr) -> _Part:
+            return _Part(expr=expr, always=part.always, guards=part.guards)
+
+        def perhaps(expr: Expr, *asked: Expr) -> _Part:
+            guards = part.guards.union(self.keys(*asked))
+            return _Part(expr=expr, always=False, guards=guards)
+
+        match part.expr:
+            case Lambda():
+                # What it will be called with is not known.
+                return
+            case Conditional(test, then, otherwise):
+                yield sure(test)
+                yield perhaps(then, test)
+                yield perhaps(otherwise, test)
+            case Boolean(_, exprs):
+                for place, expr in enumerate(exprs):
+                    yield perhaps(expr, *exprs[:place]) if place else sure(expr)
+            case Compare(first, rest):
+                second, *others = (expr for _, expr in rest)
+                yield from map(sure, (first, second))
+                for place, expr in enumerate(others, 1):
+                    yield perhaps(expr, first, *(each for _, each in rest[:place]))
+            case _:
+                yield from map(sure, parts(part.expr))
+
+    def judged(self, expr: Expr) -> Iterator[Fault]:
+        """What is wrong with an expression, not counting its parts."""
+        match expr:
+            case Attribute(Name(name), _) if name in self.parameters:
+                return
+            case Index(Name(name), _) if name in self.parameters:
+                return
+            case Attribute(value, name):
+                yield from self.attribute(expr, value, name)
+            case Index(value, index):
+                yield from self.index(expr, value, index)
+            case Call():
+                yield from self.call(expr)
+            case Unary(word, operand) if word != "not":
+                type_ = self.type(operand)
+                if not can_be_negated(type_):
+                    yield self.fault(expr, f"takes `{told(type_)}` for a number", operand)
+            case Binary(word, left, right):
+                yield from self.binary(expr, word, left, right)
+            case Compare(first, rest):
+                for word, operand in rest:
+                    pair = Compare(first, ((word, operand),))
+                    for fault in self.compare(pair, word, first, operand):
+                        # Later pairs are compared only if the first ones hold.
+                        yield fault if operand is rest[0][1] else _seldom(fault)
+                    first = operand
+
+    def fault(self, expr: Expr, does: str, *of: Expr, help: str | None = None) -> Fault:
+        text = f"`{print_expression(expr)}` {does}"
+        return Fault(kind="operation", expr=expr, what=text, keys=self.keys(*of), help=help)
+
+    def attribute(self, expr: Expr, value: Expr, name: str) -> Iterator[Fault]:
+        type_ = self.type(value)
+        if not has_attribute(type_, name):
+            help = None
+            if kinds(type_) == {"mapping"}:
+                entry = print_expression(Index(value, Constant(name)))
+                help = f"the entry of a mapping is `{entry}`"
+            yield Fault(
+                kind="operation",
+                expr=expr,
+                what=f"`{print_expression(expr)}` asks `{told(type_)}` for `{name}`",
+                keys=self.keys(value),
+                help=help,
+                word=name,
+                choices=tuple(ATTRIBUTES.get(type_.name, ())),
+            )
+
+    def index(self, expr: Expr, value: Expr, index: Expr) -> Iterator[Fault]:
+        owner, place = self.type(value), self.type(index)
+        if not can_be_indexed(owner, place):
+            found = kinds(owner)
+            help = None
+            does = f"takes an item of `{told(owner)}`"
+            if found & {"text", "list", "mapping"}:
+                does = f"looks up `{told(place)}` in `{told(owner)}`"
+                named = found == {"mapping"}
+                help = (
+                    f"the items are {'named by text' if named else 'numbered: the first is `[0]`'}"
+                )
+            yield self.fault(expr, does, value, index, help=help)
+            return
+        size = _size(owner)
+        known = place.args[0] if place.name == "literal" and len(place.args) == 1 else None
+        if isinstance(known, int) and size is not None and not -size <= known < size:
+            text = f"`{print_expression(expr)}` is beyond the {size} items of `{told(owner)}`"
+            last = f"the last one is `[{size - 1}]`" if size else None
+            keys = self.keys(value, index)
+            yield Fault(kind="operation", expr=expr, what=text, keys=keys, help=last, length=True)
+
+    def binary(self, expr: Expr, word: str, left: Expr, right: Expr) -> Iterator[Fault]:
+        one, other = self.type(left), self.type(right)
+        if fails(word, one, other):
+            does = _DOES[word].format(told(one), told(other))
+            yield self.fault(expr, does, left, right, help=_cure(word, one, other))
+        elif word in ("+", "-", "%"):
+            yield from self.units(expr, one, other, left, right)
+
+    def compare(self, expr: Expr, word: str, left: Expr, right: Expr) -> Iterator[Fault]:
+        one, other = self.type(left), self.type(right)
+        if fails(word, one, other):
+            does = _DOES.get(word, "compares `{}` with `{}`").format(told(one), told(other))
+            yield self.fault(expr, does, left, right, help=_cure(word, one, other))
+            return
+        if word in ("in", "not in"):
+            other = item_of(other) if kinds(other) == {"list"} else Type("any")
+        if word in _EQUAL and never_equal(one, other):
+            yield self.comparison(expr, word, one, other, self.keys(left, right))
+        elif word not in ("in", "not in"):
+            yield from self.units(expr, one, other, left, right)
+
+    def comparison(
+        self, expr: Expr, word: str, one: Type, other: Type, keys: tuple[str, ...]
+    ) -> Fault:
+        result = "true" if word.startswith(("!", "not")) else "false"
+        text = f"`{print_expression(expr)}` is always {result}: "
+        chosen, given = (one, other) if one.name == "one_of" else (other, one)
+        if chosen.name == "one_of" and given.name in ("one_of", "literal"):
+            return Fault(
+                kind="comparison",
+                expr=expr,
+                what=f"{text}no `{chosen}` is {' or '.join(f'`{each}`' for each in given.args)}",
+                keys=keys,
+                word=str(given.args[0]),
+                choices=tuple(map(str, chosen.args)),
+            )
+        text += f"`{told(one)}` never equals `{told(other)}`"
+        return Fault(kind="comparison", expr=expr, what=text, keys=keys)
+
+    def units(self, expr: Expr, one: Type, other: Type, left: Expr, right: Expr) -> Iterator[Fault]:
+        if {one.name, other.name} <= {"int", "float"}:
+            clash = misfit(one, Type("float", other.args))
+            if clash is not None and clash.kind == "unit":
+                text = f"`{print_expression(expr)}` takes `{one}` and `{other}` together"
+                yield Fault(
+                    kind="unit",
+                    expr=expr,
+                    what=text,
+                    keys=self.keys(left, right),
+                    help=f"convert `{other}` to `{Type(other.name, one.args)}` first",
+                )
+
+    def call(self, expr: Call) -> Iterator[Fault]:
+        text = dotted(expr.function)
+        if text is None or text.partition(".")[0] in self.names:
+            type_ = self.type(expr.function)
+            if isinstance(expr.function, Name) and text in self.parameters:
+                return
+            if not can_be_called(type_):
+                does = f"calls `{told(type_)}`, which is no function"
+                yield self.fault(expr, does, expr.function)
+            return
+        signature = SIGNATURES.get(text)
+        if signature is None:
+            return
+        least, most, keywords, alone, many = signature
+        given = len(expr.arguments)
+        unknown = [name for name, _ in expr.keywords if name not in keywords]
+        if unknown:
+            yield self.fault(expr, f"gives `{text}` a `{unknown[0]}`, which it does not take")
+        elif given > most or (given < least and not expr.keywords):
+            count = f"{given} argument{'s' if given != 1 else ''}"
+            due = (
+                f"{least}"
+                if least == most
+                else f"{least} to {most}"
+                if given > most
+                else f"{least}"
+            )
+            yield self.fault(expr, f"gives `{text}` {count}, and it takes {due}")
+        elif given:
+            type_ = self.type(expr.arguments[0])
+            found, wanted = kinds(type_), alone if given == 1 else many
+            if found and wanted and found.isdisjoint(wanted):
+                does = f"gives `{text}` `{told(type_)}`, which it does not take"
+                yield self.fault(expr, does, expr.arguments[0])
+
+
+_EQUAL = ("==", "!=", "in", "not in")
+
+_DOES: Mapping[str, str] = {
+    "+": "adds `{}` and `{}`",
+    "-": "takes `{1}` from `{0}`",
+    "*": "multiplies `{}` by `{}`",
+    **dict.fromkeys(("/", "//", "%"), "divides `{}` by `{}`"),
+    "**": "raises `{}` to the power of `{}`",
+    **dict.fromkeys(("in", "not in"), "looks for `{}` in `{}`"),
+}
+
+
+def told(type_: Type) -> str:
+    """A type as messages name it."""
+    return str(widened(type_))
+
+
+def _size(type_: Type) -> int | None:
+    """How many items there are, where that is known."""
+    return {"Point": 3, "Quaternion": 4}.get(type_.name, length_of(type_))
+
+
+def _cure(word: str, one: Type, other: Type) -> str | None:
+    both = {*kinds(one), *kinds(other)}
+    if both == {"number", "text"}:
+        if word == "+":
+            return "make both text with `str(...)`, or both numbers with `float(...)`"
+        return "make a number of the text with `float(...)`"
+    if "nothing" in both:
+        return "nothing (`null`) is all that the script puts there: give it a value"
+    return None
+
+
+Kinds = frozenset[str]
+
+ANYTHING: Kinds = frozenset()
+"""The kinds of a value of which nothing is known."""
+
+_KINDS: Mapping[str, Kinds] = {
+    **dict.fromkeys(("bool", "int", "float"), frozenset(["number"])),
+    "str": frozenset(["text"]),
+    "none": frozenset(["nothing"]),
+    **dict.fromkeys(("list", "array", "tuple"), frozenset(["list"])),
+    **dict.fromkeys(("dict", "record"), frozenset(["mapping"])),
+    **dict.fromkeys(ATTRIBUTES, frozenset(["struct"])),
+}
+
+_BUILT_IN: Mapping[str, tuple[type, ...]] = {
+    "number": (int, float),
+    "text": (str,),
+    "nothing": (type(None),),
+    "list": (list, tuple, range),
+    "mapping": (dict,),
+}
+"""The classes of Python that values of a kind may have. A struct may be a list or an object."""
+
+
+def kinds(type_: Type) -> Kinds:
+    """The kinds that a value of a type can have: `number`, `text`, `list`, `mapping`, `struct`,
+    `nothing`. None at all where it is not known, as of `T?`, which is mostly asked before."""
+    if type_.name in ("literal", "one_of"):
+        return frozenset("text" if isinstance(each, str) else "number" for each in type_.args)
+    return _KINDS.get(type_.name, ANYTHING)
+
+
+def fails(word: str, left: Type, right: Type) -> bool:
+    """Whether an operation or comparison of two values fails, whichever they are."""
+    pairs = [(one, other) for one in kinds(left) for other in kinds(right)]
+    return bool(pairs) and not any(_works(word, *pair) for pair in pairs)
+
+
+_ALIKE: Mapping[str, tuple[str, ...]] = {
+    "+": ("number", "text", "list"),
+    **dict.fromkeys(("<", "<=", ">", ">="), ("number", "text", "list")),
+}
+
+
+def _works(word: str, one: str, other: str) -> bool:
+    """Whether two kinds go together in an operation."""
+    if word in ("in", "not in"):
+        if other == "text":
+            return one == "text"
+        return other in ("list", "struct") or (other == "mapping" and one != "mapping")
+    if word in ("==", "!="):
+        return True
+    if word == "%" and one == "text":
+        # Python fills in texts so.
+        return True
+    if "struct" in (one, other):
+        # It may be an object, such as an array, that can do what lists cannot.
+        return {one, other} <= {"struct", "list", "number"}
+    if word == "*" and {one, other} in ({"number", "text"}, {"number", "list"}):
+        return True
+    return one == other and one in _ALIKE.get(word, ("number",))
+
+
+def never_equal(left: Type, right: Type) -> bool:
+    """Whether two values differ, whichever they are. One that may be nothing is not judged, as a
+    state may have its turn before the value comes."""
+    enumerations = {"one_of", "literal"}
+    if "one_of" in (left.name, right.name) and {left.name, right.name} <= enumerations:
+        return not any(one == other for one in left.args for other in right.args)
+    one, other = kinds(left), kinds(right)
+    unsure = {"nothing", "struct"}
+    return bool(one and other) and not (one & other or (one | other) & unsure)
+
+
+def can_be_negated(type_: Type) -> bool:
+    """Whether some value of a type takes a sign."""
+    found = kinds(type_)
+    return not found or bool(found & {"number", "struct"})
+
+
+def can_be_called(type_: Type) -> bool:
+    found = kinds(type_)
+    return not found or "struct" in found
+
+
+def has_attribute(type_: Type, name: str) -> bool:
+    """Whether some value of a type may have an attribute."""
+    if type_.name in ATTRIBUTES:
+        return name.startswith("_") or name in ATTRIBUTES[type_.name]
+    found = kinds(type_)
+    return not found or any(hasattr(each, name) for kind in found for each in _BUILT_IN[kind])
+
+
+def can_be_indexed(owner: Type, index: Type) -> bool:
+    """Whether some value of a type can be asked for an item of some such number or name."""
+    known, wanted = kinds(owner), kinds(index)
+    if not known or "struct" in known:
+        return True
+    if not known & {"text", "list", "mapping"}:
+        return False
+    if not wanted or "struct" in wanted:
+        return True
+    # What the mappings of a script are asked by is text.
+    named = owner.name == "record" or bool(owner.args)
+    by_number = bool(known & {"text", "list"}) or not named
+    return (by_number and "number" in wanted) or ("mapping" in known and "text" in wanted) or (
+        "mapping" in known and not named and bool(wanted - {"list", "mapping"})
+    )  # fmt: skip
+
+
+class Signature(NamedTuple):
+    """What a function of Python takes: how many arguments, which keywords, and the kinds of value
+    that its first argument may be where it is alone (`many`: at all)."""
+
+    least: int
+    most: int
+    keywords: tuple[str, ...] = ()
+    kinds: Kinds = ANYTHING
+    many: Kinds = ANYTHING
+
+
+_ITEMS = frozenset(["text", "list", "mapping", "struct"])
+_NUMBER = frozenset(["number", "struct"])
+_PARSED = frozenset(["number", "text", "struct"])
+_MANY = 1_000_000
+
+SIGNATURES: Mapping[str, Signature] = {
+    "abs": Signature(1, 1, (), _NUMBER, _NUMBER),
+    "bool": Signature(0, 1),
+    "float": Signature(0, 1, (), _PARSED, _PARSED),
+    "int": Signature(0, 2, ("base",), _PARSED, _PARSED),
+    "len": Signature(1, 1, (), _ITEMS, _ITEMS),
+    "list": Signature(0, 1, (), _ITEMS, _ITEMS),
+    "max": Signature(1, _MANY, ("default", "key"), _ITEMS),
+    "min": Signature(1, _MANY, ("default", "key"), _ITEMS),
+    "range": Signature(1, 3, (), _NUMBER, _NUMBER),
+    "round": Signature(1, 2, ("ndigits", "number"), _NUMBER, _NUMBER),
+    "sorted": Signature(1, 1, ("key", "reverse"), _ITEMS, _ITEMS),
+    "str": Signature(0, 3, ("object", "encoding", "errors")),
+    "sum": Signature(1, 2, ("start",), _ITEMS, _ITEMS),
+    "tuple": Signature(0, 1, (), _ITEMS, _ITEMS),
+}
+"""The functions that every expression may call (evaluate.py), but for `dict`, which takes much."""

@@ -1,0 +1,157 @@
+"""The failures of a machine: where each one leads, who catches it, how the machine ends then."""
+
+from __future__ import annotations
+
+from collections import deque
+from collections.abc import Iterator, Mapping
+from dataclasses import dataclass, field
+from typing import Literal
+
+from smachac.analysis.context import states
+from smachac.analysis.successors import Arrival, Routes, Step
+from smachac.diagnostics.source import Span
+from smachac.ir import nodes
+from smachac.ir.graph import is_unread
+from smachac.ir.nodes import Concurrence, Leaf, Machine, Node
+from smachac.ir.outcome_names import PREEMPTED, is_failure, successes
+from smachac.ir.traversal import outcome_names
+
+Answer = Literal["caught", "repeated", "passed over", "not caught", "lost"]
+"""What becomes of a failure: another state follows than after a success; the state, or one that
+contains it, runs again; what follows is what follows a success; the machine ends; nothing is said
+to follow."""
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Failure:
+    """A state ends with an outcome of failure, and one way on from there.
+
+    `path` is the state, `way` the states and outcomes that the failure passes, as in a witness
+    path. `next` is the path of the state that is entered then, empty where there is none. `ends`
+    are the outcomes that the machine can end with from there on, while nobody asks it to stop;
+    `good`, those that mean success.
+    """
+
+    path: str
+    outcome: str
+    answer: Answer
+    way: tuple[str, ...]
+    next: str = ""
+    ends: tuple[str, ...] = ()
+    good: tuple[str, ...] = ()
+    span: Span = field(compare=False, repr=False)
+
+
+def starts_failure(node: Node, outcome: str) -> bool:
+    """Whether a failure begins here: with a leaf, tries that are used up, or a time limit."""
+    if node.catches == outcome:
+        return True
+    match node:
+        case Leaf():
+            return is_failure(outcome)
+        case nodes.Iterator(sugar="retry"):
+            return outcome == node.exhausted_outcome
+        case Concurrence(sugar="timeout"):
+            return outcome == node.default_outcome
+    return False
+
+
+def failures(machine: Machine) -> Iterator[Failure]:
+    """Every failure that can begin, in the order of the script; one for each way that it takes.
+
+    A failure begins where a leaf ends with an outcome of failure (hints.is_failure), tries are used
+    up, or a time limit is over. Linear in the states, but for the depth of containers.
+    """
+    routes = Routes(machine)
+    ways = routes.ways()
+    ends = _possible_ends(routes, ways)
+    for path, node in states(machine):
+        if node is not routes.nodes[path] or is_unread(node):
+            continue
+        for name in outcome_names(node):
+            if starts_failure(node, name) and (path, name) in ways:
+                yield from _failures(routes, ends, path, node, name)
+
+
+def _failures(
+    routes: Routes, ends: Mapping[Step, frozenset[str]], path: str, node: Node, name: str
+) -> Iterator[Failure]:
+    root = routes.machine.root
+    order = outcome_names(root)
+    good = successes(order)
+    span = next((step.span for step in node.transitions if step.outcome == name), node.span)
+    arrivals = routes.arrivals(path, name)
+    good_ways = _after_success(routes, path, node)
+    # In a concurrence a success leads wherever the failure of another branch does.
+    same = len(good_ways) == 1 or good_ways == {(each.target, _final(each)) for each in arrivals}
+    alike = good_ways if same else set[tuple[str, str]]()
+    for arrival in arrivals:
+        last: Step = (arrival.target, "") if arrival.target else arrival.through[-1]
+        final = [end for end in order if end in ends.get(last, ())]
+        yield Failure(
+            path=path,
+            outcome=name,
+            answer=_answer(arrival, path, alike),
+            way=_way(path, name, arrival),
+            next=arrival.target,
+            ends=tuple(final),
+            good=tuple(end for end in final if end in good),
+            span=span,
+        )
+    if not arrivals:
+        way = (path.rpartition("/")[2], f"({name})")
+        yield Failure(path=path, outcome=name, answer="lost", way=way, span=span)
+
+
+def _answer(arrival: Arrival, path: str, alike: set[tuple[str, str]]) -> Answer:
+    if arrival.target and f"{path}/".startswith(f"{arrival.target}/"):
+        return "repeated"
+    final = _final(arrival)
+    if (arrival.target, final) in alike and not is_failure(final):
+        return "passed over"
+    return "caught" if arrival.target else "not caught"
+
+
+def _final(arrival: Arrival) -> str:
+    """The outcome of the machine, if it ends."""
+    return "" if arrival.target else arrival.through[-1][1]
+
+
+def _after_success(routes: Routes, path: str, node: Node) -> set[tuple[str, str]]:
+    """Where the successes of a state lead."""
+    names = [name for name in successes(outcome_names(node)) if not is_failure(name)]
+    arrivals = (arrival for name in names for arrival in routes.arrivals(path, name))
+    return {(arrival.target, _final(arrival)) for arrival in arrivals}
+
+
+def _way(path: str, outcome: str, arrival: Arrival) -> tuple[str, ...]:
+    """The states that a failure passes, in brackets how they end; last where it leads, which may
+    be an outcome of the machine."""
+    way = [path.rpartition("/")[2], f"({outcome})"]
+    for inner, name in arrival.through if arrival.target else arrival.through[:-1]:
+        way += [inner.rpartition("/")[2], f"({name})"]
+    return (*way, arrival.target.rpartition("/")[2] or _final(arrival))
+
+
+def _possible_ends(routes: Routes, ways: Mapping[Step, Step | None]) -> dict[Step, frozenset[str]]:
+    """The outcomes of the machine that each place can lead to while nobody asks it to stop."""
+    before: dict[Step, list[Step]] = {}
+    for place in ways:
+        if place[1] == PREEMPTED and isinstance(routes.nodes[place[0]], Leaf):
+            continue
+        for step in routes.follow(place):
+            before.setdefault(step, []).append(place)
+    root = routes.machine.root
+    found: dict[Step, frozenset[str]] = {}
+    for name in dict.fromkeys(outcome_names(root)):
+        end = (root.name, name)
+        todo = deque([end] if end in ways else [])
+        seen = set(todo)
+        while todo:
+            here = todo.popleft()
+            found[here] = found.get(here, frozenset()) | {name}
+            for place in before.get(here, ()):
+                if place not in seen:
+                    seen.add(place)
+                    todo.append(place)
+    return found

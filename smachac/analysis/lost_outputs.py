@@ -1,0 +1,113 @@
+"""Userdata that is written inside a container, read outside, and not handed out."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from functools import cache, lru_cache
+from itertools import chain
+from typing import NamedTuple
+
+from smachac.analysis.def_use import around, place_in
+from smachac.analysis.definite_assignment import Flow, Scope
+from smachac.analysis.unset_reads import MOST_STEPS, Missing, Reader, missing_keys, reader_at
+from smachac.ir.graph import Place
+from smachac.ir.nodes import Key, Leaf, Node
+from smachac.ir.traversal import remapping
+
+
+class Lost(NamedTuple):
+    """A key that the container `keeper` writes inside and keeps, though `reader` needs it.
+
+    `own` is what the keeper calls it. `is_missing`: the reader finds nothing else.
+    """
+
+    keeper: Scope
+    own: str
+    writer: Node
+    written: Key
+    reader: Reader
+    key: str
+    is_missing: bool
+
+
+@lru_cache(maxsize=1)
+def lost_outputs(flow: Flow) -> tuple[Lost, ...]:
+    """The outputs that containers keep to themselves, in the order of the script."""
+    return tuple(_lost(flow))
+
+
+def _lost(flow: Flow) -> Iterator[Lost]:
+    told: set[tuple[str, str]] = set()
+    for missing in missing_keys(flow, "lost"):
+        lost = _missed(flow, missing)
+        told.add((lost.keeper.path, lost.own))
+        yield lost
+    left = MOST_STEPS
+    read = cache(lambda path: frozenset(chain(*flow.scopes[path].reads.values())))
+    for scope in flow.scopes.values():
+        outer = around(flow, scope.path)
+        if outer is None or scope.path not in flow.entered or scope.container.sugar:
+            continue
+        for writer, written, own in _kept(scope):
+            around_it = flow.scopes[outer]
+            key = remapping(scope.container).get(own, own)
+            if key not in read(outer) or left <= 0 or (scope.path, own) in told:
+                continue
+            left -= len(around_it.steps) + len(around_it.reads)
+            place = _read_after(around_it, place_in(outer, scope.path), key)
+            if place is not None:
+                reader = reader_at(around_it, place, key)
+                yield Lost(scope, own, writer, written, reader, key, False)
+
+
+def _missed(flow: Flow, missing: Missing) -> Lost:
+    keeper = flow.scopes[missing.other]
+    for writer in keeper.container.children:
+        names = remapping(writer)
+        for written in writer.outputs:
+            own = names.get(written.name, written.name)
+            if own not in keeper.outputs and _name_at(flow, keeper, own, missing) == missing.key:
+                reader = reader_at(missing.scope, missing.places[0], missing.key)
+                return Lost(keeper, own, writer, written, reader, missing.key, True)
+    raise AssertionError("a keeper writes what it keeps")
+
+
+def _name_at(flow: Flow, scope: Scope, own: str, missing: Missing) -> str:
+    """What a key would be called in the container where it is missing."""
+    path: str | None = scope.path
+    while path is not None and path != missing.scope.path:
+        own = remapping(flow.scopes[path].container).get(own, own)
+        path = around(flow, path)
+    return own
+
+
+def _kept(scope: Scope) -> Iterator[tuple[Node, Key, str]]:
+    """What leaves of a container write by the word of the script, and it does not hand out: where
+    it reads that itself only what it has also taken in, for that goes by the same name outside."""
+    container = scope.container
+    read = {
+        remapping(child).get(key.name, key.name)
+        for child in container.children
+        for key in child.inputs
+    }
+    for child in container.children:
+        for key in child.outputs if isinstance(child, Leaf) else ():
+            own = remapping(child).get(key.name, key.name)
+            is_local = own in read and own not in scope.inputs
+            if key.span.source is child.span.source and own not in scope.outputs and not is_local:
+                yield child, key, own
+
+
+def _read_after(scope: Scope, start: str, key: str) -> Place | None:
+    """A place that reads a key after another one and before anything writes it."""
+    todo: list[Place] = [start]
+    seen: set[Place] = set(todo)
+    for place in todo:
+        for step in scope.steps.get(place, ()):
+            if key in step.writes.trusted or step.writes.anything or step.target in seen:
+                continue
+            if key in scope.reads.get(step.target, ()):
+                return step.target
+            seen.add(step.target)
+            todo.append(step.target)
+    return None

@@ -1,0 +1,294 @@
+"""How the children of a concurrence may end together, without going through the product.
+
+Rules are conjunctions of `child: outcome`; each is one bit of a number, so that a choice for one
+child strikes out in one step all rules that ask for something else. What is looked for is always
+the same: a combination, with some outcomes given, in which none of some rules holds. A child with
+an outcome that no rule asks for settles all rules about it; only where each of its outcomes is
+asked for is there something to try.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Iterator, Mapping, Sequence
+from dataclasses import dataclass, replace
+
+from smachac.analysis.control_flow import fails, is_open
+from smachac.diagnostics.spelling import guesser
+from smachac.ir.nodes import Concurrence, Node, OutcomeRule
+from smachac.ir.outcome_names import PREEMPTED, good_first
+from smachac.ir.traversal import outcome_names
+
+Combination = dict[str, str]
+"""Children with the outcome each has ended with."""
+
+Domains = Mapping[str, Sequence[str]]
+"""The outcomes that each child can end with, those to show first in front."""
+
+MOST_LOOKED_AT = 1_000_000
+"""So many children one rule of the checker looks at for one concurrence. Forty branches with forty
+rules take some thousands."""
+
+
+class UndecidedError(Exception):
+    """There was more to look at than MOST_LOOKED_AT."""
+
+
+class Rules:
+    """The rules of one concurrence by number, and what is struck out by which outcome."""
+
+    def __init__(self, conditions: Iterable[Mapping[str, str]]) -> None:
+        self.conditions = [dict(one) for one in conditions]
+        self.all = (1 << len(self.conditions)) - 1
+        self._about: dict[str, int] = {}
+        self._asking: dict[tuple[str, str], int] = {}
+        self.looked_at = 0
+        for number, rule in enumerate(self.conditions):
+            for child, outcome in rule.items():
+                bit = 1 << number
+                self._about[child] = self._about.get(child, 0) | bit
+                self._asking[child, outcome] = self._asking.get((child, outcome), 0) | bit
+
+    def larger_than(self, size: int) -> int:
+        """The rules with more conditions, as bits."""
+        sizes = enumerate(map(len, self.conditions))
+        return sum(1 << number for number, own in sizes if own > size)
+
+    def struck_out(self, child: str, outcome: str) -> int:
+        """The rules that do not hold when a child ends so, as bits."""
+        return self._about.get(child, 0) & ~self._asking.get((child, outcome), 0)
+
+    def compatible(self, number: int) -> int:
+        """The rules that can hold together with one, as bits."""
+        found = self.all
+        for child, outcome in self.conditions[number].items():
+            found &= ~self.struck_out(child, outcome)
+        return found
+
+    def find(self, domains: Domains, given: Mapping[str, str], avoided: int) -> Combination | None:
+        """A combination with the given outcomes in which no avoided rule holds, if there is one.
+
+        Raises:
+            UndecidedError: after MOST_LOOKED_AT, counted over all calls.
+        """
+        if any(outcome not in domains[child] for child, outcome in given.items()):
+            return None
+        if not all(domains.values()):
+            return None
+        for child, outcome in given.items():
+            avoided &= ~self.struck_out(child, outcome)
+        todo = [(avoided, dict(given))]
+        while todo:
+            self._look_at(1)
+            left, chosen = todo.pop()
+            left = self._settle(domains, left, chosen)
+            if not left:
+                return {child: chosen.get(child, domains[child][0]) for child in domains}
+            name = self._next(left, chosen)
+            if name is not None:
+                todo += (
+                    (left & ~self.struck_out(name, outcome), {**chosen, name: outcome})
+                    for outcome in reversed(domains[name])
+                )
+        return None
+
+    def _settle(self, domains: Domains, left: int, chosen: Combination) -> int:
+        """Choose outcomes that no rule left asks for, which costs nothing; the rules left then."""
+        before = 0
+        while left and left != before:
+            before = left
+            self._look_at(len(self._about))
+            for child, about in self._about.items():
+                if about & left and child not in chosen:
+                    for outcome in domains[child]:
+                        if not self._asking.get((child, outcome), 0) & left:
+                            chosen[child] = outcome
+                            left &= ~about
+                            break
+        return left
+
+    def _next(self, left: int, chosen: Mapping[str, str]) -> str | None:
+        """A child to try, of the rule with fewest conditions open; None when a rule holds."""
+        best: list[str] | None = None
+        for number in bits(left):
+            self._look_at(1)
+            open_ = [child for child in self.conditions[number] if child not in chosen]
+            if not open_:
+                return None
+            if best is None or len(open_) < len(best):
+                best = open_
+        return best[0] if best else None
+
+    def _look_at(self, children: int) -> None:
+        self.looked_at += children
+        if self.looked_at > MOST_LOOKED_AT:
+            raise UndecidedError
+
+    def shown(
+        self, combination: Mapping[str, str], given: Mapping[str, str], avoided: int
+    ) -> Combination:
+        """The part of a combination that decides: what is given, and as little more as excludes
+        the avoided rules, whatever the other children do. None of it can be left out."""
+        for child, outcome in given.items():
+            avoided &= ~self.struck_out(child, outcome)
+        effects = {
+            child: self.struck_out(child, outcome) & avoided
+            for child, outcome in combination.items()
+            if child not in given
+        }
+        needed: list[str] = []
+        left = avoided
+        for child in sorted(effects, key=lambda child: -effects[child].bit_count()):
+            if effects[child] & left:
+                needed.append(child)
+                left &= ~effects[child]
+        for child in list(needed):
+            others = 0
+            for other in needed:
+                others |= effects[other] if other != child else 0
+            if others == avoided:
+                needed.remove(child)
+        kept = {*given, *needed}
+        return {child: outcome for child, outcome in combination.items() if child in kept}
+
+
+def bits(number: int) -> Iterator[int]:
+    """The places of the ones in a number, lowest first."""
+    while number:
+        low = number & -number
+        yield low.bit_length() - 1
+        number ^= low
+
+
+OTHER = ""
+"""An outcome of an open leaf that is not known."""
+
+Known = Mapping[int, tuple[str, ...]]
+"""The possible outcomes of states by `id`."""
+
+Space = dict[str, tuple[str, ...]]
+"""The outcomes that each branch may end with, independent of the others; good ones first."""
+
+
+@dataclass(frozen=True, slots=True)
+class Study:
+    """A concurrence whose rules have no fault of their own: misspelt names are put right."""
+
+    node: Concurrence
+    children: Mapping[str, Node]
+    written: tuple[OutcomeRule, ...]
+    rules: Rules
+
+    def failures(self, child: str, ends: Sequence[str]) -> list[str]:
+        """Those of the outcomes of a branch with which it has failed."""
+        return [end for end in ends if fails(self.children[child], end)]
+
+    def neutral(self, child: str, ends: Sequence[str]) -> tuple[str, ...]:
+        """Those with which it has neither failed nor been preempted."""
+        node = self.children[child]
+        return tuple(end for end in ends if end != PREEMPTED and not fails(node, end))
+
+    def larger(self, number: int) -> int:
+        """The rules that win over one wherever both hold, as bits."""
+        return self.rules.larger_than(len(self.rules.conditions[number]))
+
+    def winners(self, combination: Combination) -> list[int]:
+        """Of the rules that hold those with most conditions; ties are several."""
+        holding = self.rules.all
+        for child, outcome in combination.items():
+            holding &= ~self.rules.struck_out(child, outcome)
+        found = list(bits(holding))
+        most = max((len(self.rules.conditions[number]) for number in found), default=0)
+        return [number for number in found if len(self.rules.conditions[number]) == most]
+
+
+def study(node: Concurrence) -> Study | None:
+    """What the rules of a concurrence say; None where it has no states, two of one name, or a rule
+    that says nothing which can be understood."""
+    children = {child.name: child for child in node.children}
+    if not children or len(children) < len(node.children):
+        return None
+    ends = {
+        name: None if is_open(child) else frozenset(outcome_names(child))
+        for name, child in children.items()
+    }
+    written = []
+    for rule in node.rules:
+        understood = rule if _is_sound(rule, ends) else _understood(rule, children)
+        if understood is None:
+            return None
+        written.append(understood)
+    conditions = ({one.child: one.outcome for one in rule.when} for rule in written)
+    return Study(node, children, tuple(written), Rules(conditions))
+
+
+def _is_sound(rule: OutcomeRule, ends: Mapping[str, frozenset[str] | None]) -> bool:
+    """Whether a rule asks each of some children once, for an outcome that it may have."""
+    for condition in rule.when:
+        known = ends.get(condition.child, frozenset())
+        if known is not None and condition.outcome not in known:
+            return False
+    return 0 < len({condition.child for condition in rule.when}) == len(rule.when)
+
+
+def _understood(rule: OutcomeRule, children: Mapping[str, Node]) -> OutcomeRule | None:
+    when = []
+    for condition in rule.when:
+        name = condition.child
+        if name not in children:
+            name = guesser(children)(name) or ""
+        if not name:
+            return None
+        outcomes = outcome_names(children[name])
+        outcome = condition.outcome
+        if outcome not in outcomes and not is_open(children[name]):
+            outcome = guesser(outcomes)(outcome) or ""
+        if not outcome:
+            return None
+        when.append(replace(condition, child=name, outcome=outcome))
+    understood = replace(rule, when=tuple(when))
+    once = len({condition.child for condition in when}) == len(when)
+    return understood if when and once else None
+
+
+def space(read: Study, known: Known) -> Space:
+    """How the branches may end. One that never does ends here with an outcome that is not known
+    where the others do not wait for it: that it does not end is told elsewhere."""
+    asked: dict[str, list[str]] = {}
+    for rule in read.written:
+        for condition in rule.when:
+            asked.setdefault(condition.child, []).append(condition.outcome)
+    found: Space = {}
+    for child in read.node.children:
+        names = known[id(child)]
+        if is_open(child):
+            names = tuple(dict.fromkeys([*good_first(names), *asked.get(child.name, ()), OTHER]))
+        elif not names and read.node.join == "any":
+            names = (OTHER,)
+        found[child.name] = good_first(names)
+    return found
+
+
+def calm_spaces(read: Study, ever: Known, calm: Known) -> Iterator[tuple[Space, str]]:
+    """How the branches may end while nobody asks the concurrence to stop, and for `join: any` the
+    branch that ends first. The others are preempted; one that answers has no other outcome here,
+    though it may have one in the moment in which two end at once."""
+    whole = space(read, ever)
+    own = space(read, calm)
+    if read.node.join == "all":
+        yield own, ""
+        return
+    others: Space = {
+        name: (PREEMPTED,) if PREEMPTED in outcomes else outcomes
+        for name, outcomes in whole.items()
+    }
+    for child in read.node.children:
+        if calm[id(child)] or is_open(child):
+            yield {**others, child.name: own[child.name]}, child.name
+
+
+def without_other(whole: Space) -> Space:
+    """Only outcomes that are known, where there are any."""
+    return {
+        name: tuple(outcome for outcome in outcomes if outcome != OTHER) or outcomes
+        for name, outcomes in whole.items()
+    }

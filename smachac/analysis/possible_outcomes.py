@@ -1,0 +1,197 @@
+"""The outcomes with which states can really end, through all containers inside them."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Sequence
+from dataclasses import replace
+from typing import NamedTuple
+
+from smachac.analysis.context import containers, once, states
+from smachac.analysis.control_flow import Linear, children_names, is_open, leads_somewhere, mended
+from smachac.analysis.outcome_rules import (
+    OTHER,
+    Space,
+    Study,
+    UndecidedError,
+    calm_spaces,
+    space,
+    study,
+    without_other,
+)
+from smachac.diagnostics.source import assert_never
+from smachac.ir import nodes
+from smachac.ir.graph import edges, is_unread, stopped_endings
+from smachac.ir.nodes import Concurrence, Leaf, Machine, Node, StateMachine
+from smachac.ir.outcome_names import PREEMPTED
+from smachac.ir.traversal import leads_to_child, outcome_names
+
+Known = dict[int, tuple[str, ...]]
+
+
+class Endings(NamedTuple):
+    """The outcomes of states by `id`: those that ever come, and those that come while nobody asks
+    the state to stop."""
+
+    ever: Known
+    calm: Known
+
+
+@once
+def endings(machine: Machine) -> Endings:
+    """The possible endings of all states inside concurrences, in the order of declaration.
+
+    A declared outcome that nothing brings about is none of them. Where a fault hides what a state
+    does, it may end with any of its outcomes.
+    """
+    found = Endings({}, {})
+    inside: list[Node] = []
+    within: set[int] = set()
+    for _, node in states(machine):
+        if isinstance(node, Leaf):
+            continue
+        if isinstance(node, Concurrence) or id(node) in within:
+            inside += node.children
+            within.update(map(id, node.children))
+    for node in reversed(inside):
+        found.ever[id(node)] = _ever(node, found.ever)
+        found.calm[id(node)] = _calm(node, found)
+    return found
+
+
+def _ever(node: Node, known: Known) -> tuple[str, ...]:
+    match node:
+        case Leaf():
+            return (*outcome_names(node), *(OTHER,) * node.open)
+        case Concurrence():
+            read = study(node)
+            spaces = [space(read, known)] if read else []
+            return _declared(node, [*_results(node, read, spaces), PREEMPTED])
+    return _of_container(node, known, asked=True)
+
+
+def _calm(node: Node, found: Endings) -> tuple[str, ...]:
+    match node:
+        case Leaf():
+            return tuple(name for name in found.ever[id(node)] if name != PREEMPTED)
+        case Concurrence():
+            read = study(node)
+            spaces = [each for each, _ in calm_spaces(read, *found)] if read else []
+            return _declared(node, _results(node, read, spaces))
+    return _of_container(node, found.calm, asked=False)
+
+
+def _of_container(
+    node: StateMachine | nodes.Sequence | nodes.Iterator, known: Known, *, asked: bool
+) -> tuple[str, ...]:
+    match node:
+        case nodes.Iterator():
+            return _declared(node, _iterator(node, known, asked=asked))
+        case StateMachine() | nodes.Sequence():
+            return _declared(node, _linear(node, known))
+    return assert_never(node)
+
+
+def _declared(node: Node, results: Iterable[str]) -> tuple[str, ...]:
+    possible = frozenset([*results, node.catches])
+    return tuple(name for name in outcome_names(node) if name in possible)
+
+
+def _linear(container: Linear, known: Known) -> set[str]:
+    """The exits that can be reached from the initial state."""
+    whole = mended(container)
+    names = children_names(whole)
+    exits = frozenset(outcome_names(whole))
+    ends: dict[str, tuple[str, ...]] = {}
+    states: dict[str, Node] = {}
+    for old, child in zip(container.children, whole.children, strict=True):
+        states[child.name] = child
+        # What a misspelt leaf was mended to says more than what was known of it.
+        ends[child.name] = known[id(old)] if old.outcomes or is_open(old) else outcome_names(child)
+    todo = [whole.initial] if whole.initial in names else list(states)
+    seen, found = set(todo), set[str]()
+    while todo:
+        child = states[todo.pop()]
+        handled = {step.outcome for step in child.transitions}
+        more: list[str] = []
+        for step in child.transitions:
+            if step.outcome not in ends[child.name] and not is_open(child):
+                continue
+            if leads_to_child(step, names):
+                more.append(step.target)
+            elif leads_somewhere(step, names, exits):
+                found.add(step.target)
+            else:
+                found |= exits
+        if is_open(child):
+            found |= exits - handled
+        if is_unread(child):
+            more += states
+        todo += (name for name in dict.fromkeys(more) if name not in seen)
+        seen.update(more)
+    return found
+
+
+def _iterator(container: nodes.Iterator, known: Known, *, asked: bool) -> set[str]:
+    """What an iterator can end with. One that is asked to stop ends with its child's outcome, also
+    with one on which it goes on else (smach-semantics P9)."""
+    children = tuple(
+        child if is_open(child) else replace(child, outcomes=_only(child, known[id(child)]))
+        for child in container.children
+    )
+    shown = replace(container, children=children)
+    found = {edge.target[1] for edge in edges(shown) if isinstance(edge.target, tuple)}
+    if asked:
+        found.update(stopped_endings(shown).values())
+    return found
+
+
+def _only(node: Node, names: Sequence[str]) -> tuple[nodes.Outcome, ...]:
+    return tuple(outcome for outcome in node.outcomes if outcome.name in names)
+
+
+def _results(node: Concurrence, read: Study | None, spaces: Sequence[Space]) -> set[str]:
+    """The results of the rules that can win, and of the default if none has to hold."""
+    if read is None:
+        return set(outcome_names(node)) if node.children else set()
+    found: set[str] = set()
+    try:
+        for each in spaces:
+            if read.rules.find(each, {}, read.rules.all) is not None:
+                found.add(node.default_outcome)
+            for number, rule in enumerate(read.written):
+                given = read.rules.conditions[number]
+                if read.rules.find(each, given, read.larger(number)) is not None:
+                    found.add(rule.outcome)
+    except UndecidedError:
+        return set(outcome_names(node))
+    return found
+
+
+class Judged(NamedTuple):
+    """A concurrence whose rules can be judged, at its path.
+
+    `whole` is how its branches may end, also when it is asked to stop; `calm` how they may while
+    nobody asks it to, as far as outcomes are known, and for `join: any` which branch ends first.
+    """
+
+    path: str
+    read: Study
+    endings: Endings
+    whole: Space
+    calm: list[tuple[Space, str]]
+
+
+@once
+def judged(machine: Machine) -> list[Judged]:
+    """The concurrences of a machine whose rules can be judged, without those made for sugar."""
+    found: list[Judged] = []
+    for path, container in containers(machine):
+        if not isinstance(container, Concurrence) or container.sugar:
+            continue
+        read = study(container)
+        if read is not None:
+            known = endings(machine)
+            spaces = calm_spaces(read, *known)
+            calm = [(without_other(each), first) for each, first in spaces]
+            found.append(Judged(path, read, known, space(read, known.ever), calm))
+    return found

@@ -1,0 +1,279 @@
+"""Rules over loops: whether a machine can still end, and what bounds a loop."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from dataclasses import replace
+from typing import NamedTuple
+
+from smachac.analysis.context import states
+from smachac.analysis.control_flow import (
+    Linear,
+    Steps,
+    circle,
+    dead_ends,
+    endless_states,
+    linear,
+    outline,
+    regions,
+    steps_of,
+    stuck_states,
+    way,
+    ways_from,
+)
+from smachac.checks.messages import calls
+from smachac.diagnostics.diagnostic import Finding, Severity, rule
+from smachac.diagnostics.wording import listed
+from smachac.ir.graph import can_end, reachable
+from smachac.ir.nodes import Leaf, Machine, Node, StateMachine, Transition
+from smachac.ir.outcome_names import PREEMPTED, is_failure
+from smachac.ir.traversal import leads_to_child, outcome_names
+
+
+@rule("SM202", "trap", Severity.ERROR)
+def trap(machine: Machine) -> Iterator[Finding]:
+    """Once this state is entered, no outcome of the container can be reached any more.
+
+    The robot goes round in circles, or waits in a part that never ends, until somebody pulls the
+    plug. A machine that is meant so says `forever: true`.
+
+    Wrong:
+        name: sm
+        template: Base
+        outcomes: [done]
+        states:
+          - PICK: {template: ScriptedState, outcomes: [ok, far], transitions: {ok: done, far: LOOK}}
+          - LOOK: {template: ScriptedState, outcomes: [seen], transitions: {seen: APPROACH}}
+          - APPROACH: {template: ScriptedState, outcomes: [near], transitions: {near: LOOK}}
+
+    Right:
+        name: sm
+        template: Base
+        outcomes: [done]
+        states:
+          - PICK: {template: ScriptedState, outcomes: [ok, far], transitions: {ok: done, far: LOOK}}
+          - LOOK: {template: ScriptedState, outcomes: [seen], transitions: {seen: APPROACH}}
+          - APPROACH: {template: ScriptedState, outcomes: [near], transitions: {near: PICK}}
+    """
+    endless = endless_states(machine)
+    for path, container in linear(machine):
+        if isinstance(container, StateMachine) and container.forever:
+            continue
+        flow = outline(container, endless)
+        stuck = stuck_states(flow)
+        if not stuck:
+            continue
+        steps = steps_of(flow)
+        children = {child.name: child for child in reversed(container.children)}
+        before = ways_from(container.initial, steps)
+        for region in dead_ends(stuck, steps):
+            first = region[0]
+            start = container.initial
+            round_ = circle(region, steps)
+            there = way(start, first, before) if start != first else [first]
+            yield _trapped(path, container, children[first], region, [*there, *round_[1:]])
+
+
+def _trapped(
+    path: str, container: Linear, child: Node, region: list[str], witness: list[str]
+) -> Finding:
+    what = f"from {listed(region)} no outcome of `{container.name}` can be reached"
+    help = f"lead a transition to an outcome of `{container.name}`"
+    if witness.count(child.name) == 1 and isinstance(child, Leaf):
+        what = f"`{child.name}` has no outcomes, so `{container.name}` never ends after it"
+        help = f"give `{child.name}` an outcome"
+    elif witness.count(child.name) == 1:
+        what = f"`{child.name}` never ends, so neither does `{container.name}`"
+        help = f"give `{child.name}` a way out"
+    if isinstance(container, StateMachine):
+        help += f", or write `forever: true` if `{container.name}` is meant so"
+    return Finding(
+        span=child.span,
+        message=what,
+        help=help,
+        related=calls(child, child.span),
+        path=tuple(witness) if len(witness) > 1 else (),
+        node=f"{path}/{child.name}",
+    )
+
+
+class _Loop(NamedTuple):
+    """A region that is not left while its states fail. `step` is the failure of `child` that
+    keeps it inside, None where success does not leave either."""
+
+    region: list[str]
+    child: Node
+    step: Transition | None
+
+
+@rule("SM204", "unbounded-loop", Severity.WARNING)
+def unbounded_loop(machine: Machine) -> Iterator[Finding]:
+    """Nothing bounds a loop: neither a number of tries nor, where it never ends, a wait.
+
+    A robot that stops only when it succeeds tries until it breaks something. One that loops
+    without waiting does nothing else.
+
+    Exactly: a state retries when an outcome of failure (`aborted`, `failed`, `error`, `timeout`)
+    leads it back to itself. Let every such state fail each time, and nobody preempt: if no outcome
+    of the container can be reached then, though a success would leave the loop, it has no bound.
+    A way out of any other state in the loop is a bound. Where even success does not leave, which
+    is right for `forever: true` and for what runs until it is preempted, some state on every
+    circle has to wait: one that is blocking, as a SleepState, or of which nothing is known.
+
+    Wrong:
+        name: sm
+        template: Base
+        outcomes: [picked]
+        states:
+          - PICK:
+              template: ScriptedState
+              outcomes: [done, failed]
+              transitions: {done: picked, failed: OPEN}
+          - OPEN: {template: ScriptedState, outcomes: [done], transitions: {done: PICK}}
+
+    Right:
+        name: sm
+        template: Base
+        outcomes: [picked, lost]
+        states:
+          - PICK:
+              template: ScriptedState
+              outcomes: [done, failed]
+              transitions: {done: picked, failed: COUNT}
+          - COUNT:
+              template: ScriptedState
+              outcomes: [again, enough]
+              transitions: {again: OPEN, enough: lost}
+          - OPEN: {template: ScriptedState, outcomes: [done], transitions: {done: PICK}}
+    """
+    endless = endless_states(machine)
+    waiting = _waiting(machine)
+    for path, container in linear(machine):
+        if not _goes_back(container):
+            continue
+        forever = isinstance(container, StateMachine) and container.forever
+        whole = outline(container, endless)
+        trapped = frozenset(() if forever else stuck_states(whole))
+        flow = _unpreempted(whole)
+        steps = steps_of(flow)
+        waits = frozenset(child.name for child in container.children if id(child) in waiting)
+        for loop in _unbounded(flow, reachable(whole), steps):
+            if not trapped.isdisjoint(loop.region):
+                continue
+            if loop.step is not None and not forever:
+                yield _retries(path, container, loop, loop.step, steps)
+            elif spin := _spin(loop.region, steps, waits):
+                yield _spins(path, container, spin)
+
+
+def _goes_back(container: Linear) -> bool:
+    """Whether a transition leads to its own state or one above: without, nothing can loop."""
+    order = {child.name: number for number, child in enumerate(container.children)}
+    return any(
+        order.get(step.target, len(order)) <= number
+        for number, child in enumerate(container.children)
+        for step in child.transitions
+    )
+
+
+def _waiting(machine: Machine) -> frozenset[int]:
+    """The states, by `id`, that wait, or may."""
+    found: set[int] = set()
+    for _, node in reversed(states(machine)):
+        if isinstance(node, Leaf):
+            waits = node.blocking or node.open or node.type == "SleepState"
+        else:
+            waits = any(id(child) in found for child in node.children)
+        if waits:
+            found.add(id(node))
+    return frozenset(found)
+
+
+def _unpreempted(container: Linear) -> Linear:
+    """The container while nobody preempts it."""
+
+    def child(node: Node) -> Node:
+        outcomes = tuple(one for one in node.outcomes if one.name != PREEMPTED)
+        steps = tuple(step for step in node.transitions if step.outcome != PREEMPTED)
+        if len(outcomes) == len(node.outcomes) and len(steps) == len(node.transitions):
+            return node
+        return replace(node, outcomes=outcomes, transitions=steps)
+
+    return replace(container, children=tuple(map(child, container.children)))
+
+
+def _failing(node: Node) -> Node:
+    """A state that fails each time. What an open leaf may do beside stays."""
+    declared = frozenset(outcome_names(node))
+    steps = [s for s in node.transitions if is_failure(s.outcome) or s.outcome not in declared]
+    outcomes = [one for one in node.outcomes if is_failure(one.name)]
+    return replace(node, outcomes=tuple(outcomes), transitions=tuple(steps))
+
+
+def _unbounded(flow: Linear, entered: frozenset[str], steps: Steps) -> Iterator[_Loop]:
+    """The loops that are not left while all that retries fails."""
+    part = {name: part for part, names in enumerate(regions(steps, steps)) for name in names}
+    retrying = {
+        name
+        for name in steps
+        if any(is_failure(outcome) and part[to] == part[name] for outcome, to in steps[name])
+    }
+    children = tuple(
+        _failing(child) if child.name in retrying else child for child in flow.children
+    )
+    failing = replace(flow, children=children)
+    left_at_all, left = can_end(flow), can_end(failing)
+    stuck = [name for name in steps if name in entered and name not in left]
+    by_name = {child.name: child for child in reversed(flow.children)}
+    for region in dead_ends(stuck, steps_of(failing)):
+        inside = frozenset(region)
+        tries = [by_name[name] for name in region if name in retrying and name in left_at_all]
+        child = next((child for child in tries if _could_leave(child, inside)), None)
+        yield _Loop(region, child or by_name[region[0]], _closing_step(child, inside))
+
+
+def _could_leave(child: Node, inside: frozenset[str]) -> bool:
+    return any(
+        not is_failure(step.outcome) and not leads_to_child(step, inside)
+        for step in child.transitions
+    )
+
+
+def _closing_step(child: Node | None, inside: frozenset[str]) -> Transition | None:
+    steps = child.transitions if child is not None else ()
+    closing = (s for s in steps if is_failure(s.outcome) and leads_to_child(s, inside))
+    return next(closing, None)
+
+
+def _retries(path: str, container: Linear, loop: _Loop, step: Transition, steps: Steps) -> Finding:
+    child = loop.child
+    region = [child.name, *(name for name in loop.region if name != child.name)]
+    kept = {name: steps[name] for name in region}
+    kept[child.name] = [(step.outcome, step.target)]
+    return Finding(
+        span=step.span,
+        message=f"nothing bounds the tries of `{child.name}`: while it ends with"
+        f" `{step.outcome}`, `{container.name}` goes on for ever",
+        help="count the tries, and lead the last failure out of the loop",
+        related=calls(child, step.span),
+        path=tuple(circle(region, kept)),
+        node=f"{path}/{child.name}",
+    )
+
+
+def _spin(region: list[str], steps: Steps, waits: frozenset[str]) -> list[str]:
+    """A circle of a region on which no state waits; empty if there is none."""
+    hasty = [name for name in region if name not in waits]
+    return next(filter(None, (circle(part, steps) for part in regions(hasty, steps))), [])
+
+
+def _spins(path: str, container: Linear, spin: list[str]) -> Finding:
+    child = next(child for child in container.children if child.name == spin[0])
+    return Finding(
+        span=child.span,
+        message=f"{listed(spin[::2])} repeat without an end and without a wait",
+        help="let a state of the loop wait, such as a SleepState",
+        related=calls(child, child.span),
+        path=tuple(spin),
+        node=f"{path}/{child.name}",
+    )

@@ -1,0 +1,262 @@
+"""Rules over waits without an end: branches that nothing stops, states without a time limit."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from collections.abc import Set as AbstractSet
+
+from smachac.analysis.context import containers, states
+from smachac.analysis.control_flow import endless_states
+from smachac.analysis.possible_outcomes import Endings, endings
+from smachac.checks.messages import calls
+from smachac.diagnostics.diagnostic import Finding, Severity, rule
+from smachac.diagnostics.wording import listed
+from smachac.ir import nodes
+from smachac.ir.graph import stopped_endings
+from smachac.ir.nodes import Concurrence, Leaf, Machine
+from smachac.ir.outcome_names import PREEMPTED
+from smachac.ir.traversal import outcome_names
+
+TIMEOUTS = frozenset(["timeout", "timed_out"])
+
+
+@rule("SM207", "no-timeout", Severity.INFO)
+def no_timeout(machine: Machine) -> Iterator[Finding]:
+    """A state waits for the outside world, and nothing limits the wait.
+
+    A person who does not come, or a message that is lost, stops the robot for good. In a
+    concurrence, where it is a warning, it keeps all other branches waiting as well, and nobody
+    can call it off when one of them has failed.
+
+    Exactly: the interface says that the state is `blocking`, and it has no outcome `timeout`,
+    `timed_out` or `preempted`, and no variable that ends with `timeout` is set. The `timeout:`
+    of a script preempts the state, so it needs that outcome as well.
+
+    Wrong:
+        name: sm
+        template: Base
+        outcomes: [done]
+        states:
+          - BOTH:
+              template: Concurrence
+              outcomes: [done]
+              default_outcome: done
+              states:
+                - WAIT: {template: WaitForButton}
+                - BLINK: {template: ScriptedState, outcomes: [ok]}
+              transitions: {done: done}
+        == templates/WaitForButton.yml ==
+        name: WaitForButton
+        outcomes: {pressed: {}}
+        blocking: true
+        code: {python: my_robot.states:WaitForButton}
+
+    Right:
+        name: sm
+        template: Base
+        outcomes: [done]
+        states:
+          - BOTH:
+              template: Concurrence
+              outcomes: [done]
+              default_outcome: done
+              states:
+                - WAIT: {template: WaitForButton}
+                - BLINK: {template: ScriptedState, outcomes: [ok]}
+              transitions: {done: done}
+        == templates/WaitForButton.yml ==
+        name: WaitForButton
+        outcomes: {pressed: {}, preempted: {}}
+        blocking: true
+        code: {python: my_robot.states:WaitForButton}
+    """
+    around: dict[int, Concurrence] = {}
+    for path, node in states(machine):
+        outer = around.get(id(node))
+        if not isinstance(node, Leaf):
+            outer = node if isinstance(node, Concurrence) else outer
+            if outer is not None:
+                around.update(dict.fromkeys(map(id, node.children), outer))
+        elif node.blocking and not _is_limited(node):
+            yield Finding(
+                span=node.span,
+                message=_unlimited(node, outer),
+                help=f"give its type `{node.type}` an outcome `preempted`, or `timeout`",
+                related=calls(node, node.span),
+                severity=Severity.WARNING if outer is not None else None,
+                node=path,
+            )
+
+
+def _unlimited(leaf: Leaf, outer: Concurrence | None) -> str:
+    if outer is not None and outer.sugar == "timeout":
+        limited = f"the time limit of `{outer.name}` cannot end `{leaf.name}`"
+        return f"{limited}, which has no outcome `preempted`"
+    waits = f", and all of `{outer.name}` waits for it" if outer is not None else ""
+    return (
+        f"`{leaf.name}` may wait for ever{waits}: it has neither a time limit nor an outcome"
+        " `preempted`"
+    )
+
+
+def _is_limited(leaf: Leaf) -> bool:
+    names = frozenset(outcome_names(leaf))
+    if leaf.open or PREEMPTED in names or not TIMEOUTS.isdisjoint(names):
+        return True
+    return any(
+        one.name.endswith("timeout") and one.value.data is not None for one in leaf.variables
+    )
+
+
+@rule("SM407", "never-ends", Severity.WARNING)
+def never_ends(machine: Machine) -> Iterator[Finding]:
+    """A branch of a concurrence has no end, and nobody, or nothing, can stop it.
+
+    The other branches end, and the robot stands still for ever while the concurrence waits for
+    this one.
+
+    Exactly: some other branch ends by itself. With `join: all` this branch ends only when it is
+    preempted, which nothing in the concurrence does; with `join: any` it is meant to go on for
+    ever (`forever: true`) and ends not even when it is preempted. A branch that is never done,
+    without being meant so, is told by SM202; a single state that waits by SM207.
+
+    Wrong:
+        name: sm
+        template: Base
+        outcomes: [done]
+        states:
+          - DRIVE:
+              template: Concurrence
+              outcomes: [done]
+              default_outcome: done
+              states:
+                - MOVE: {template: ScriptedState, outcomes: [there, blocked]}
+                - WATCH:
+                    template: StateMachine
+                    outcomes: [stopped]
+                    states:
+                      - WAIT: {template: SleepState, time: 1, transitions: {succeeded: LOOK,
+                          preempted: stopped}}
+                      - LOOK: {template: ScriptedState, outcomes: [seen], transitions: {seen: WAIT}}
+              transitions: {done: done}
+
+    Right:
+        name: sm
+        template: Base
+        outcomes: [done]
+        states:
+          - DRIVE:
+              template: Concurrence
+              join: any
+              outcomes: [done]
+              default_outcome: done
+              states:
+                - MOVE: {template: ScriptedState, outcomes: [there, blocked]}
+                - WATCH:
+                    template: StateMachine
+                    outcomes: [stopped]
+                    states:
+                      - WAIT: {template: SleepState, time: 1, transitions: {succeeded: LOOK,
+                          preempted: stopped}}
+                      - LOOK: {template: ScriptedState, outcomes: [seen], transitions: {seen: WAIT}}
+              transitions: {done: done}
+    """
+    concurrences = [
+        (path, one) for path, one in containers(machine) if isinstance(one, Concurrence)
+    ]
+    if not concurrences:
+        return
+    found = endings(machine)
+    endless = endless_states(machine)
+    for path, container in concurrences:
+        yield from _lasting(path, container, found, endless)
+
+
+def _lasting(
+    path: str, container: Concurrence, found: Endings, endless: AbstractSet[int]
+) -> Iterator[Finding]:
+    ever, calm = found
+    ending = [child.name for child in container.children if calm[id(child)]]
+    for child in container.children if ending else ():
+        if container.join == "all" and ever[id(child)] and not calm[id(child)]:
+            why = f"ends only when it is asked to stop, and nothing in `{container.name}` asks"
+            help = "write `join: any`, so that the first to end stops the others, or let it end"
+        elif container.join == "any" and not ever[id(child)] and id(child) in endless:
+            why = f"goes on for ever, also after {listed(ending)} would end `{container.name}`"
+            help = "let a state in it answer with `preempted`, and lead that out"
+        else:
+            continue
+        yield Finding(
+            span=child.span,
+            message=f"`{child.name}` {why}",
+            help=help,
+            related=calls(child, child.span),
+            node=f"{path}/{child.name}",
+        )
+
+
+@rule("SM208", "no-way-to-stop", Severity.INFO)
+def no_way_to_stop(machine: Machine) -> Iterator[Finding]:
+    """An iterator that is asked to stop ends with an outcome that it does not have.
+
+    A request to stop, such as Ctrl-C, ends it after the item at hand with the outcome of its
+    state, also if that is one on which it goes on else; `final_outcome_map` renames it. What the
+    iterator does not declare is an error, and the whole machine ends there instead of with an
+    outcome. That is a note, and a warning where the iterator declares `preempted`: somebody counts
+    on it.
+
+    Wrong:
+        name: sm
+        template: Base
+        outcomes: [seen, stopped]
+        states:
+          - EACH:
+              template: Iterator
+              outcomes: [all, preempted]
+              it: [1, 2, 3]
+              exhausted_outcome: all
+              loop_outcomes: [done]
+              states:
+                - LOOK: {template: ScriptedState, outcomes: [done]}
+              transitions: {all: seen, preempted: stopped}
+
+    Right:
+        name: sm
+        template: Base
+        outcomes: [seen, stopped]
+        states:
+          - EACH:
+              template: Iterator
+              outcomes: [all, preempted]
+              it: [1, 2, 3]
+              exhausted_outcome: all
+              loop_outcomes: [done]
+              final_outcome_map: {done: preempted}
+              states:
+                - LOOK: {template: ScriptedState, outcomes: [done]}
+              transitions: {all: seen, preempted: stopped}
+    """
+    for path, container in containers(machine):
+        lost = undeclared_stops(container) if isinstance(container, nodes.Iterator) else []
+        if not lost:
+            continue
+        name, counted_on = container.name, PREEMPTED in outcome_names(container)
+        renamed = ", ".join(f"{outcome}: {PREEMPTED}" for outcome in lost)
+        first = "" if counted_on else f"add `{PREEMPTED}` to its outcomes, and "
+        yield Finding(
+            span=container.span,
+            message=f"when `{name}` is asked to stop it can end with {listed(lost)}, which is none"
+            " of its outcomes: an error",
+            help=f"{first}rename it: `final_outcome_map: {{{renamed}}}`",
+            related=calls(container, container.span),
+            severity=Severity.WARNING if counted_on else None,
+            node=path,
+        )
+
+
+def undeclared_stops(container: nodes.Iterator) -> list[str]:
+    """The looping outcomes of its state with which an iterator that is asked to stop would end
+    without having them as its own."""
+    own = outcome_names(container)
+    ends = stopped_endings(container)
+    return [] if container.catches else [each for each, result in ends.items() if result not in own]

@@ -1,0 +1,174 @@
+"""Poses that the arm is to reach, as far as the script gives them as numbers (SM506)."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Iterator
+from dataclasses import dataclass
+from typing import TypeAlias
+
+from smachac.analysis.context import containers, types_of
+from smachac.analysis.type_inference import Flow, Types
+from smachac.checks.robot import at, robot_of
+from smachac.diagnostics.diagnostic import Finding, Report, Severity, problem
+from smachac.ir.builtin_states import variable
+from smachac.ir.nodes import Data, Leaf, Machine
+from smachac.ir.traversal import remapping
+
+Numbers: TypeAlias = "list[Numbers] | float"
+
+REACHING = frozenset(["MoveAlongState", "PoseToJointPositionsState"])
+"""The state types that bring the tool to their `pose`, moved by their `offset`."""
+
+SIMULATED = ("PyBulletBase", "panda")
+"""The base and the robot for which there is a solver."""
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Reach:
+    """A pose, in the frame of the base, that the tool is to be brought to; `flow` is its literal.
+
+    `grasp`: it is that of a body to be held from above.
+    """
+
+    flow: Flow
+    pose: Numbers
+    offset: Numbers | None
+    grasp: bool
+
+
+@problem("SM506", "out-of-reach", Severity.WARNING)
+def out_of_reach(flow: Flow, place: str) -> Finding:
+    """The simulated arm cannot bring its tool to a pose.
+
+    The state ends with `aborted`, with the arm where it was. `smachac check --sim` asks the solver
+    of the simulation, once for each pose that the script gives as numbers to a state that moves the
+    arm, with the state's offset if that is given as numbers too. A pose in reach may still lie
+    behind an obstacle.
+
+    Wrong:
+        name: sm
+        template: PyBulletBase
+        outcomes: [done, failed]
+        userdata: {goal: [[1.9, 0.0, 0.1], [1.0, 0.0, 0.0, 0.0]]}
+        states:
+          - GO:
+              template: MoveAlongState
+              remapping: {pose: goal}
+              transitions: {succeeded: done, aborted: failed, preempted: failed}
+
+    Right:
+        name: sm
+        template: PyBulletBase
+        outcomes: [done, failed]
+        userdata: {goal: [[0.5, 0.0, 0.1], [1.0, 0.0, 0.0, 0.0]]}
+        states:
+          - GO:
+              template: MoveAlongState
+              remapping: {pose: goal}
+              transitions: {succeeded: done, aborted: failed, preempted: failed}
+    """
+    reader = flow.place.node.name if flow.place.node is not None else "the base"
+    message = f"`{reader}` cannot reach {place}: no joints bring the tool there"
+    return at(flow, message, "metres from the robot's base: nearer, or with another rotation?")
+
+
+def poses_to_reach(machine: Machine) -> Iterator[Reach]:
+    """Every pose that a state surely asks of the simulated arm when its turn comes."""
+    robot = robot_of(machine)
+    if robot is None or (machine.base, robot.name) != SIMULATED:
+        return
+    types = types_of(machine)
+    literals: dict[int, list[Flow]] = {}
+    for flow in types.constants:
+        literals.setdefault(id(flow.place), []).append(flow)
+    for path, container in containers(machine):
+        for leaf in container.children:
+            if not isinstance(leaf, Leaf) or leaf.type not in REACHING:
+                continue
+            place = types.places.get((f"{path}/{leaf.name}", "pose"))
+            offsets = _offsets(types, path, leaf)
+            limb = variable(leaf, "limb")
+            if place is None or len(offsets) != 1 or limb not in (None, "arm"):
+                continue
+            for flow in literals.get(id(place), ()):
+                pose = _numbers(flow.value)
+                if pose is not None:
+                    grasp = variable(leaf, "grasp") is True
+                    yield Reach(flow=flow, pose=pose, offset=offsets[0], grasp=grasp)
+
+
+def _offsets(types: Types, path: str, leaf: Leaf) -> list[Numbers | None]:
+    """The offsets a state may find; none where that cannot be told. The key may be absent."""
+    place = types.places.get((path, remapping(leaf).get("offset", "offset")))
+    flows = [flow for alike in place.flows.values() for flow in alike] if place is not None else []
+    found: list[Numbers | None] = []
+    for flow in flows:
+        offset = _numbers(flow.value)
+        if flow.how != "value" or (offset is None and flow.value is not None):
+            return []
+        if offset not in found:
+            found.append(offset)
+    return found or [None]
+
+
+def _numbers(data: Data) -> Numbers | None:
+    """A literal as numbers; None where it holds anything else."""
+    if isinstance(data, tuple):
+        inner = [_numbers(item) for item in data]
+        kept = [item for item in inner if item is not None]
+        return kept if len(kept) == len(inner) else None
+    number = isinstance(data, int | float) and not isinstance(data, bool)
+    return float(data) if number and abs(data) < 1e300 else None  # type: ignore[arg-type]
+
+
+class NoSimulationError(Exception):
+    """The simulation is not installed; the words say how to get it."""
+
+
+def unreachable(machine: Machine) -> Report:
+    """SM506 for the poses of a machine; one solution is looked for, for each different one.
+
+    Raises NoSimulationError. The simulation starts only if there is a pose to ask.
+    """
+    wanted = list(poses_to_reach(machine))
+    if not wanted:
+        return []
+    from smachac.sim import SimUnavailable
+
+    try:
+        return _asked(wanted)
+    except SimUnavailable as error:
+        raise NoSimulationError(str(error)) from error
+
+
+def _asked(wanted: Iterable[Reach]) -> Report:
+    from smachac.sim import robots
+    from smachac.sim.inverse_kinematics import Shadow
+    from smachac.sim.transforms import IDENTITY, Pose, as_pose, grasp_pose, shifted
+
+    robot = robots.panda()
+    (limb,) = robot.limbs
+    known: dict[Pose, bool] = {}
+
+    def goal(each: Reach) -> Pose | None:
+        try:
+            pose = as_pose(grasp_pose(each.pose, limb.turn) if each.grasp else each.pose)
+            return shifted(pose, IDENTITY if each.offset is None else as_pose(each.offset))
+        except ValueError:
+            return None
+
+    found: Report = []
+    shadow = Shadow(robot)
+    try:
+        for each in wanted:
+            pose = goal(each)
+            if pose is None:
+                continue
+            if pose not in known:
+                known[pose] = shadow.solve(limb, pose) is not None
+            if not known[pose]:
+                place = ", ".join(f"{number:.3f}" for number in pose[0])
+                found.append(out_of_reach(each.flow, f"({place})"))
+    finally:
+        shadow.close()
+    return found

@@ -1,0 +1,1 @@
+"""The commands of the command line; the only room that prints."""

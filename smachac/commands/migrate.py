@@ -1,0 +1,218 @@
+"""The command `migrate`: what becomes of the SMACHA scripts and templates of a folder."""
+
+from __future__ import annotations
+
+import os
+import re
+import sys
+from argparse import Namespace
+from collections.abc import Iterable, Iterator, Sequence
+from pathlib import Path
+
+from smachac.commands.output import FINDINGS, OK, usage
+from smachac.diagnostics.diagnostic import Diagnostic, Report, Severity, in_order
+from smachac.diagnostics.source import Source, Span
+from smachac.driver import analyse, analyse_alone, build
+from smachac.frontend.discovery import NothingFoundError, scripts_of
+from smachac.frontend.files import Disk, disk_library
+from smachac.frontend.schema import LONG
+from smachac.frontend.yaml_tree import Map, Seq, Tree
+from smachac.refactor.smacha.report import File, Item, render_migration
+from smachac.refactor.smacha.script_differences import Quirk, quirks
+from smachac.refactor.smacha.template_differences import template_quirks, top_level_sets
+from smachac.targets import load_target
+from smachac.targets.templates.engine import BlockError, Blocks
+
+TEMPLATE = re.compile(r"[^.].*\.tpl(\.py)?$")
+
+
+def migrate(arguments: Namespace) -> int:
+    """Report on the folders; the exit code: 1 where something has to be edited."""
+    disk = Disk()
+    folders: list[Path] = arguments.folder or [Path()]
+    for folder in folders:
+        if not folder.is_dir():
+            what = "is a file: name the folder that it is in" if folder.exists() else "is no folder"
+            return usage(f"`{folder}` {what}")
+    templates = [path for folder in folders for path in template_files(folder)]
+    try:
+        scripts = scripts_of(folders, disk)
+    except NothingFoundError as error:
+        if not templates:
+            return usage(str(error))
+        scripts = []
+    files = list(_files(scripts, templates, disk, arguments))
+    sys.stdout.write(render_migration(files, arguments.format))
+    return FINDINGS if any(file.fails for file in files) else OK
+
+
+def template_files(folder: Path) -> Iterator[Path]:
+    """The templates below a folder, sorted."""
+    for top, inner, names in os.walk(folder):
+        inner[:] = sorted(name for name in inner if not name.startswith("."))
+        yield from (Path(top, name) for name in sorted(names) if TEMPLATE.match(name))
+
+
+def _files(
+    scripts: Sequence[Path], templates: Sequence[Path], disk: Disk, arguments: Namespace
+) -> Iterator[File]:
+    """What there is to say of each file, scripts first."""
+    texts = [(path, disk.read(path, [])) for path in scripts]
+    alone = {path for path, text in texts if text and isinstance(disk.parse(text, []), Seq)}
+    reports: dict[Path, Report] = {}
+    used: set[str] = set()
+    for path, text in texts:
+        if path not in alone:
+            disk.asked.clear()
+            reports[path] = _report(path, text, scripts, templates, disk, arguments)
+            used |= disk.asked
+    for path, text in texts:
+        if path in alone:
+            called = os.path.realpath(path) in used
+            around = [] if called else [path]
+            reports[path] = [
+                item
+                for each in around
+                for item in _report(each, text, scripts, templates, disk, arguments, alone=True)
+            ]
+    found = in_order(item for report in reports.values() for item in report)
+    for path, text in texts:
+        kind = "sub-script" if path in alone else "script"
+        faults = any(item.severity is Severity.ERROR for item in reports[path])
+        yield File(
+            name=str(path),
+            kind=kind,
+            fails=faults or _has_errors(found, path),
+            items=tuple(_items(found, path, text, disk)),
+        )
+    trees = [disk.parse(text, []) for _, text in texts if text is not None]
+    given = frozenset(name for tree in trees if tree is not None for name in _keys(tree))
+    sources = [source for path in templates if (source := disk.read(path, [])) is not None]
+    sets = {"sm_name": "Base.tpl.py"} | {
+        name: Path(source.name).name for source in sources for name in top_level_sets(source)
+    }
+    for source in sources:
+        path = Path(source.name)
+        library = disk_library(path, [], templates=_near(path, templates), disk=disk)
+        known = [item for item in found if _is_at(item.span, path)]
+        fault = _syntax_fault(source)
+        if fault is not None and not any(item.code.code == "SM605" for item in known):
+            known.append(fault)
+        told = [] if fault is not None else template_quirks(source, library.template, given, sets)
+        items = [*map(_item, known), *_untold(told, known)]
+        yield File(
+            name=str(path),
+            kind="template",
+            fails=any(item.what == "edit" for item in items),
+            items=tuple(sorted(items, key=lambda item: (item.line, item.column, item.name))),
+        )
+
+
+def _report(
+    path: Path,
+    source: Source | None,
+    scripts: Sequence[Path],
+    templates: Sequence[Path],
+    disk: Disk,
+    arguments: Namespace,
+    *,
+    alone: bool = False,
+) -> Report:
+    """What checking a script says, and building it for Python."""
+    report: Report = []
+    if source is None:
+        disk.read(path, report)
+        return report
+    library = disk_library(
+        path,
+        report,
+        scripts=[*arguments.scripts, *_near(path, scripts)],
+        templates=[*arguments.templates, *_near(path, templates)],
+        disk=disk,
+    )
+    if alone:
+        return analyse_alone(source, library, report).report
+    analysis = analyse(source, library, report)
+    found = list(analysis.report)
+    target = load_target("python")
+    if analysis.checked is not None and target is not None:
+        build(analysis.checked, target, library, found)
+    return found
+
+
+def _near(path: Path, files: Iterable[Path]) -> list[Path]:
+    """The folders of files, those first whose paths have most in common with that of a script."""
+    own = set(path.parent.parts)
+    folders = dict.fromkeys(file.parent for file in files)
+    return sorted(folders, key=lambda folder: (-len(own & set(folder.parts)), str(folder)))
+
+
+def _keys(tree: Tree) -> Iterator[str]:
+    """The names of all that a script gives, in their long form."""
+    todo = [tree]
+    while todo:
+        each = todo.pop()
+        if isinstance(each, Map):
+            yield from (LONG.get(name, name) for name in (str(e.key.value) for e in each.entries))
+            todo += [entry.value for entry in each.entries]
+        elif isinstance(each, Seq):
+            todo += each.items
+
+
+def _untold(told: Iterable[Quirk], known: Report) -> Iterator[Item]:
+    """The quirks of a template of which building a program has not spoken."""
+    lines = {item.span.line for item in known if item.code.code == "SM606"}
+    missing = " ".join(item.finding.message for item in known if item.code.code == "SM605")
+    for quirk in told:
+        if quirk.name == "python-2" and quirk.what == "told" and quirk.span.line in lines:
+            continue
+        if quirk.name == "unknown-name" and f"'{quirk.span.text}' is undefined" in missing:
+            continue
+        yield _quirk(quirk)
+
+
+def _quirk(quirk: Quirk) -> Item:
+    return Item(
+        line=quirk.span.line,
+        column=quirk.span.column,
+        what=quirk.what,
+        name=quirk.name,
+        message=quirk.message,
+    )
+
+
+def _syntax_fault(source: Source) -> Diagnostic | None:
+    """Why a template cannot be read at all."""
+    name = Path(source.name).name
+    try:
+        Blocks({name: source}.get).parsed(name)
+    except BlockError as error:
+        return error.diagnostic
+    return None
+
+
+def _is_at(span: Span, path: Path) -> bool:
+    return os.path.realpath(span.source.name) == os.path.realpath(path)
+
+
+def _has_errors(found: Report, path: Path) -> bool:
+    return any(item.severity is Severity.ERROR and _is_at(item.span, path) for item in found)
+
+
+def _items(found: Report, path: Path, source: Source | None, disk: Disk) -> Iterator[Item]:
+    """Of one script: what must be edited, and the quirks of SMACHA that it has."""
+    items = [_item(item) for item in found if _is_at(item.span, path)]
+    for quirk in quirks(disk.parse(source, [])) if source is not None else ():
+        items.append(_quirk(quirk))
+    yield from sorted(items, key=lambda item: (item.line, item.column, item.name))
+
+
+def _item(item: Diagnostic) -> Item:
+    return Item(
+        line=item.span.line,
+        column=item.span.column,
+        what="edit" if item.severity is Severity.ERROR else "told",
+        name=item.code.code,
+        message=item.finding.message,
+        help=item.finding.help or "",
+    )

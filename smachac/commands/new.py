@@ -1,0 +1,107 @@
+"""The command `new`: files that are written once, and never over others."""
+
+from __future__ import annotations
+
+import sys
+from argparse import Namespace
+from dataclasses import replace
+from pathlib import Path
+
+from smachac.commands.files import present_files, write_files
+from smachac.commands.output import FINDINGS, OK, usage
+from smachac.commands.scaffold import (
+    BadNameError,
+    Files,
+    Wanted,
+    code_file,
+    code_line,
+    interface,
+    is_type_name,
+    key_and_type,
+    project,
+    stub,
+)
+from smachac.diagnostics.diagnostic import Report
+from smachac.diagnostics.source import Source
+from smachac.frontend.files import disk_library
+from smachac.frontend.loader import Library
+from smachac.frontend.state_types import find_state_type
+
+
+def new(arguments: Namespace) -> int:
+    """Begin a project, or a state type."""
+    words: list[str] = arguments.words
+    if words[:1] == ["state"] and len(words) == 2:
+        return _state(words[1], arguments)
+    if len(words) != 1 or words == ["state"]:
+        return usage("name a folder, or say `new state NAME`")
+    folder = Path(words[0])
+    return _put(folder, project(folder.resolve().name))
+
+
+def _put(folder: Path, files: Files) -> int:
+    """Write files, unless one of them is there."""
+    there = present_files(folder, files)
+    for path in there:
+        print(f"{path} is there already: nothing was written", file=sys.stderr)
+    if there:
+        return FINDINGS
+    try:
+        for path in write_files(folder, files):
+            print(f"made {path}")
+    except OSError as error:
+        print(f"cannot write to {folder}: {error.strerror or error}", file=sys.stderr)
+        return FINDINGS
+    return OK
+
+
+def _state(name: str, arguments: Namespace) -> int:
+    """A state type, or the code of one in another language."""
+    language: str = arguments.target
+    if not is_type_name(name):
+        return usage(f"`{name}` is no name for a state type: write it as `GraspPart`")
+    try:
+        wanted = Wanted(
+            name=name,
+            inputs=[key_and_type(text) for text in arguments.input],
+            outputs=[key_and_type(text) for text in arguments.output],
+            outcomes=arguments.outcome or ["succeeded", "aborted"],
+        )
+        for outcome in wanted.outcomes:
+            if not outcome.isidentifier():
+                raise BadNameError(f"`{outcome}` is no name for an outcome")
+    except BadNameError as error:
+        return usage(str(error))
+    folder = Path()
+    report: Report = []
+    files: Files = {}
+    library = disk_library(folder / "main.yml", report)
+    there = library.own_template(f"{name}.yml")
+    if there is None:
+        files[f"templates/{name}.yml"] = interface(wanted, language)
+        library = _with(library, f"{name}.yml", files[f"templates/{name}.yml"])
+    type_ = find_state_type(name, library, report)
+    assert type_ is not None
+    from smachac.targets.cpp.types import UnportableError
+
+    try:
+        files[code_file(name, language)] = stub(type_, language)
+    except UnportableError as error:
+        return usage(f"there can be no stub in C++: {error}")
+    package = code_file(name, language).rpartition("/")[0] + "/__init__.py"
+    if language == "python" and not present_files(folder, {package: ""}):
+        files[package] = ""
+    code = _put(folder, files)
+    if code == OK and there is not None and language not in (*type_.code, *type_.classes):
+        print(f"add to the `code` of {there.name}: {code_line(name, language)}")
+    return code
+
+
+def _with(library: Library, name: str, text: str) -> Library:
+    """A library in which there is one more interface."""
+    source = Source(name, text)
+
+    def template(wanted: str) -> Source | None:
+        return source if wanted == name else library.own_template(wanted)
+
+    return replace(library, own_template=template)

@@ -1,0 +1,300 @@
+"""What `smachac new` begins: a project, or a state type with a stub of its code. Written once."""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Sequence
+from dataclasses import dataclass
+from keyword import iskeyword
+
+from smachac.diagnostics.diagnostic import did_you_mean
+from smachac.frontend.state_types import StateType
+from smachac.ir.types import WORDS, Type, parse_type, unknown_words
+
+LANGUAGES = ("python", "cpp")
+
+Files = dict[str, str]
+"""Names to texts, by their path in a folder."""
+
+
+class BadNameError(ValueError):
+    """Something cannot be called so; the words say why."""
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Wanted:
+    """A state type to be: its name in capitals and small letters, its keys with their types, the
+    outcomes it ends with."""
+
+    name: str
+    inputs: Sequence[tuple[str, str]] = ()
+    outputs: Sequence[tuple[str, str]] = ()
+    outcomes: Sequence[str] = ("succeeded", "aborted")
+
+
+def key_and_type(text: str) -> tuple[str, str]:
+    """`target` or `target=Pose`. Raises BadNameError."""
+    key, _, named = text.partition("=")
+    if not key.isidentifier():
+        raise BadNameError(f"`{key}` is no name for a key")
+    if named and parse_type(named) is None:
+        raise BadNameError(f"`{named}` is no type")
+    for word in unknown_words(type_) if (type_ := parse_type(named or "any")) is not None else ():
+        near = did_you_mean(word, WORDS) or "a type of ROS is written as `geometry_msgs/Twist`"
+        raise BadNameError(f"`{word}` names no type\n{near}")
+    return key, named or "any"
+
+
+def file_stem(name: str) -> str:
+    """`GraspPart` as a file is called: `grasp_part`."""
+    return re.sub(r"(?<=[a-z0-9])(?=[A-Z])|(?<=[A-Z])(?=[A-Z][a-z])", "_", name).lower()
+
+
+def interface(wanted: Wanted, language: str) -> str:
+    """The interface of a new state type."""
+    name = wanted.name
+    lines = [
+        f"# What the checker knows of {name}, and what scripts may say to it (docs/language.md).",
+        f"name: {name}",
+        "doc: Say in one sentence what it does.",
+    ]
+    for part, keys in (("input_keys", wanted.inputs), ("output_keys", wanted.outputs)):
+        lines += [f"{part}:"] if keys else []
+        lines += [f"  {key}: {_quoted(type_)}" for key, type_ in keys]
+    lines += ["outcomes:", *(f"  {outcome}: {{}}" for outcome in wanted.outcomes)]
+    return "\n".join([*lines, f"code: {{{code_line(name, language)}}}"]) + "\n"
+
+
+def _quoted(text: str) -> str:
+    return f'"{text}"' if re.search(r"[\[\]{},?#]|: ", text) else text
+
+
+def code_line(name: str, language: str) -> str:
+    """What the interface says of the code in a language."""
+    if language == "cpp":
+        return f'cpp: {{header: {HEADERS}/{file_stem(name)}.hpp, class: "{HEADERS}::{name}"}}'
+    return f'python: "{MODULES}.{file_stem(name)}:{name}"'
+
+
+MODULES, HEADERS = "robot_states", "robot_states"
+"""The package of Python, the folder and the namespace of C++, that stubs are put into."""
+
+
+def code_file(name: str, language: str) -> str:
+    """Where the stub of a state type stands."""
+    if language == "cpp":
+        return f"include/{HEADERS}/{file_stem(name)}.hpp"
+    return f"{MODULES}/{file_stem(name)}.py"
+
+
+def stub(type_: StateType, language: str) -> str:
+    """Code for an interface that does nothing yet."""
+    return _cpp_stub(type_) if language == "cpp" else _python_stub(type_)
+
+
+def _python_stub(type_: StateType) -> str:
+    outcomes = [each.name for each in type_.outcomes] or ["succeeded"]
+    arguments = [f"outcomes={outcomes!r}"]
+    for part, keys in (("input_keys", type_.input_keys), ("output_keys", type_.output_keys)):
+        arguments += [f"{part}={[key.name for key in keys]!r}"] if keys else []
+    variables = "".join(f", {name}" for name in type_.variables)
+    lines = [
+        f'"""{type_.name}: {type_.doc or "what it does."}"""',
+        "",
+        "try:",
+        "    import smach",
+        "except ImportError:  # a machine without ROS",
+        "    from smachac.runtime import smach",
+        "",
+        "",
+        f"class {type_.name}(smach.State):",
+        f"    def __init__(self{variables}):",
+        "        super().__init__(",
+        *(f"            {argument}," for argument in arguments),
+        "        )",
+        *(f"        self.{name} = {name}" for name in type_.variables),
+        "",
+        "    def execute(self, userdata):",
+        *(f"        # {_access(key.name)}: {key.type}" for key in type_.input_keys),
+        *(f"        {_access(key.name)} = None  # {key.type}" for key in type_.output_keys),
+        f"        return {outcomes[0]!r}",
+    ]
+    return "\n".join(lines) + "\n"
+
+
+def _access(key: str) -> str:
+    """A key of the userdata in Python."""
+    named = key.isidentifier() and not iskeyword(key)
+    return f"userdata.{key}" if named else f"userdata[{key!r}]"
+
+
+def _cpp_stub(type_: StateType) -> str:
+    """A class as the target `cpp` wants it (docs/cpp.md). Raises UnportableError."""
+    from smachac.targets.cpp.identifiers import identifier
+    from smachac.targets.cpp.types import cpp_type
+    from smachac.targets.cpp.user_classes import field_type, interface_hash, parameter_type, stops
+
+    def parameter(name: str, of: Type) -> str:
+        text = parameter_type(of)
+        return f"{text}{identifier(name)}" if text.endswith("&") else f"{text} {identifier(name)}"
+
+    outcomes = [identifier(each.name) for each in type_.outcomes]
+    variables = [(name, each.type) for name, each in type_.variables.items()]
+    given = [
+        *(["In in"] if type_.input_keys else []),
+        *(["Out out"] if type_.output_keys else []),
+        *(["smachac::Stop &stop"] if stops(type_) else []),
+    ]
+    members = [f"  {cpp_type(each)} {identifier(name)}_;" for name, each in variables]
+    lines = [
+        f"// {type_.name}: {type_.doc or 'what it does.'}",
+        "#pragma once",
+        "",
+        "#include <cstdint>",
+        "",
+        '#include "smachac/smachac.hpp"',
+        "",
+        f"namespace {HEADERS} {{",
+        "",
+        f"class {type_.name} {{",
+        "public:",
+        f"  enum class Outcome {{ {', '.join(outcomes)} }};",
+    ]
+    if type_.input_keys:
+        fields = "; ".join(parameter(key.name, key.type) for key in type_.input_keys)
+        lines.append(f"  struct In {{ {fields}; }};")
+    if type_.output_keys:
+        keys = (f"{field_type('Out', key.type)}{identifier(key.name)}"
+                for key in type_.output_keys)  # fmt: skip
+        lines.append(f"  struct Out {{ {'; '.join(keys)}; }};")
+    lines += [
+        "  // Changes with the interface: the compiler then asks you to compare the two.",
+        f"  static constexpr std::uint32_t smachac_interface = {interface_hash(type_)};",
+        "",
+    ]
+    if variables:
+        taken = ", ".join(parameter(name, each) for name, each in variables)
+        kept = ", ".join(f"{identifier(name)}_({identifier(name)})" for name, _ in variables)
+        explicit = "explicit " if len(variables) == 1 else ""
+        lines += [f"  {explicit}{type_.name}({taken}) : {kept} {{}}", ""]
+    unused = [f"    (void){each.split()[-1].strip('&')};" for each in given if "out" not in each]
+    sets = [f"    out.{identifier(key.name)} = {cpp_type(key.type)}{{}};"
+            for key in type_.output_keys]  # fmt: skip
+    lines += [
+        f"  Outcome execute({', '.join(given)}) {{",
+        *unused,
+        *sets,
+        f"    return Outcome::{outcomes[0]};",
+        "  }",
+        *(["", "private:", *members] if members else []),
+        "};",
+        "",
+        f"}}  // namespace {HEADERS}",
+    ]
+    return "\n".join(lines) + "\n"
+
+
+# --- a project
+
+MAIN = """\
+# Ask, act, and end well or badly: a machine to begin with.
+name: {name}
+template: Base
+doc: Say in one sentence what the robot does.
+outcomes: [succeeded, aborted]
+userdata:
+  goal: {{type: str, value: door}}
+
+states:
+  - GREET:
+      template: Greet
+      transitions: {{succeeded: ACT}}
+
+  - ACT:
+      template: ScriptedState           # stands in for a state that is not written yet
+      outcomes: [there, lost]
+      transitions: {{there: succeeded, lost: aborted}}
+"""
+
+SETTINGS = """\
+# Where scripts of this folder look for sub-scripts and state types (docs/ci.md has the rest).
+templates = ["templates"]
+"""
+
+HOOKS = """\
+# pre-commit install    (https://pre-commit.com)
+repos:
+  - repo: local
+    hooks:
+      - id: smachac-fmt
+        name: smachac fmt
+        language: system
+        entry: smachac fmt .
+        files: '\\.ya?ml$'
+        pass_filenames: false
+      - id: smachac-check
+        name: smachac check
+        language: system
+        entry: smachac check . --strict
+        files: '(\\.ya?ml|\\.py|\\.hpp|(^|/)smachac\\.toml)$'
+        pass_filenames: false
+"""
+
+READ_ME = """\
+# {name}
+
+- `main.yml` is the machine, `templates/` what is known of its state types, `{modules}/` their
+  code.
+- `smachac check` judges it, `smachac run main.yml` runs it,
+  `smachac build main.yml --target python` prints it as a program.
+- `smachac new state Grasp` begins another state type.
+
+The line for CI: `smachac fmt . --check && smachac check . --strict`
+"""
+
+GREET = """\
+# What the checker knows of Greet, and what scripts may say to it (docs/language.md).
+name: Greet
+doc: Says where it goes.
+input_keys: {{goal: str}}
+outcomes: {{succeeded: {{}}}}
+code: {{{code}}}
+"""
+
+GREET_CODE = """\
+\"\"\"Greet: says where it goes.\"\"\"
+
+try:
+    import smach
+except ImportError:  # a machine without ROS
+    from smachac.runtime import smach
+
+
+class Greet(smach.State):
+    def __init__(self):
+        super().__init__(outcomes=['succeeded'], input_keys=['goal'])
+
+    def execute(self, userdata):
+        print(f"off to the {userdata.goal}")
+        return 'succeeded'
+"""
+
+
+def project(name: str) -> Files:
+    """A project that is without a finding, can be built, and runs."""
+    machine = re.sub(r"\W+", "_", name).strip("_").lower() or "robot"
+    machine = f"robot_{machine}" if not machine.isidentifier() else machine
+    return {
+        "main.yml": MAIN.format(name=machine),
+        "smachac.toml": SETTINGS,
+        "templates/Greet.yml": GREET.format(code=code_line("Greet", "python")),
+        f"{MODULES}/__init__.py": '"""The code of the state types in `templates/`."""\n',
+        f"{MODULES}/greet.py": GREET_CODE,
+        ".pre-commit-config.yaml": HOOKS,
+        "README.md": READ_ME.format(name=name, modules=MODULES),
+    }
+
+
+def is_type_name(name: str) -> bool:
+    """Whether a state type may be called so: as a class in Python and C++, and a file."""
+    return name.isascii() and name.isidentifier() and name[:1].isupper() and not name.endswith("_")

@@ -1,0 +1,61 @@
+"""The command `states`: what state types there are."""
+
+from __future__ import annotations
+
+import json
+import sys
+from argparse import Namespace
+from pathlib import Path
+
+from smachac.commands.output import OK, usage
+from smachac.diagnostics.diagnostic import Report
+from smachac.frontend.files import disk_library
+from smachac.frontend.state_types import StateType, find_state_type
+from smachac.report import state_types as shown_types
+from smachac.report.state_types import CONTAINERS, Known, container_type
+from smachac.targets import load_target, target_names
+from smachac.targets.interface_check import languages
+
+
+def states(arguments: Namespace) -> int:
+    """Tell of the state types that there are, or of one."""
+    known = _known_types(arguments.templates)
+    names = [each.type.name for each in known]
+    if arguments.name is not None and arguments.name not in names:
+        return usage(f"there is no state type `{arguments.name}`", arguments.name, names)
+    some = [each for each in known if arguments.name in (None, each.type.name)]
+    match arguments.format:
+        case "json":
+            rows = [shown_types.type_json(each) for each in some]
+            text = json.dumps(rows if arguments.name is None else rows[0], indent=2,
+                              ensure_ascii=False) + "\n"  # fmt: skip
+        case "md":
+            text = "\n".join(map(shown_types.type_markdown, some))
+        case _ if arguments.name is None:
+            text = shown_types.list_text(some)
+        case _:
+            text = shown_types.type_text(some[0])
+    sys.stdout.write(text)
+    return OK
+
+
+def _known_types(templates: list[Path]) -> list[Known]:
+    """The state types that a script in this folder may have: the user's, then the built-in ones."""
+    found: Report = []
+    library = disk_library(Path("main.yml"), found, templates=templates)
+    targets = [target for name in target_names() if (target := load_target(name)) is not None]
+
+    def row(type_: StateType, place: str) -> Known:
+        able = [each.name for each in targets if each.has_code(type_, library)]
+        others = set(languages(type_)) - {each.name for each in targets}
+        return Known(type_, place, tuple(sorted({*able, *others})))
+
+    known = []
+    for name in sorted(library.template_names()):
+        type_ = find_state_type(name, library, [])
+        mine = any(library.own_template(f"{name}{end}") for end in (".yml", ".tpl.py", ".tpl"))
+        if type_ is None or not (mine or library.template(f"{name}.yml")):
+            continue  # a piece that templates are made of
+        known.append(row(type_, "of this project" if mine else "built-in"))
+    known += [row(container_type(name), "built-in") for name in CONTAINERS]
+    return sorted(known, key=lambda each: (each.place == "built-in", each.type.name))

@@ -1,0 +1,1 @@
+"""Sources, spans, diagnostics, severities, spelling and baselines: what all other rooms import."""

@@ -1,0 +1,61 @@
+"""A baseline: the findings that an old code base is known to have, so that only new ones count."""
+
+from __future__ import annotations
+
+import json
+from collections import Counter
+from pathlib import PurePath
+
+from smachac.diagnostics.diagnostic import Report, fingerprint
+
+VERSION = 1
+
+
+class BaselineError(Exception):
+    """A text is no baseline; the words say why."""
+
+
+def written(report: Report) -> str:
+    """A report as a baseline: sorted, a finding a line, so that it merges well."""
+    counts = Counter(fingerprint(item) for item in report)
+    lines = {}
+    for item in report:
+        mark = fingerprint(item)
+        entry = {
+            "file": PurePath(item.span.source.name).name,
+            "code": item.code.code,
+            "fingerprint": mark,
+            "count": counts[mark],
+            "message": item.finding.message,
+        }
+        lines[mark] = json.dumps(entry, ensure_ascii=True)
+    body = ",\n    ".join(sorted(lines.values()))
+    findings = f"[\n    {body}\n  ]" if body else "[]"
+    return f'{{\n  "version": {VERSION},\n  "findings": {findings}\n}}\n'
+
+
+def read(text: str) -> Counter[str]:
+    """How many findings of each fingerprint a baseline knows. Raises BaselineError."""
+    try:
+        data = json.loads(text)
+        if data["version"] != VERSION:
+            raise BaselineError(f"its version is {data['version']!r}, not {VERSION}")
+        return Counter({str(each["fingerprint"]): int(each["count"]) for each in data["findings"]})
+    except (ValueError, TypeError, KeyError, RecursionError) as error:
+        raise BaselineError("it was not written by --write-baseline") from error
+
+
+def compared(report: Report, known: Counter[str]) -> tuple[Report, int, int]:
+    """The findings that a baseline does not know, how many it knows, and how many of it are gone.
+
+    Of several alike the first are taken for those that are known.
+    """
+    left = Counter(known)
+    new = []
+    for item in report:
+        mark = fingerprint(item)
+        if left[mark] > 0:
+            left[mark] -= 1
+        else:
+            new.append(item)
+    return new, len(report) - len(new), sum(left.values())

@@ -1,0 +1,54 @@
+"""What is made of findings: what comments allow, and how much each code counts in a project."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Mapping, Sequence
+from dataclasses import dataclass, field, replace
+
+from smachac.diagnostics.diagnostic import Diagnostic, Report, Severity
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Policy:
+    """Severities by code or by the beginning of codes; None turns them off."""
+
+    severities: Mapping[str, Severity | None] = field(default_factory=dict)
+
+
+def is_firm(item: Diagnostic) -> bool:
+    """Whether a finding counts whatever anybody says: no target could print such a machine."""
+    return item.code.firm and item.severity is Severity.ERROR
+
+
+def settled(report: Report, policy: Policy) -> Report:
+    """A report with the severities of a project. Of several that fit a code the longest counts."""
+    if not policy.severities:
+        return report
+    found = []
+    for item in report:
+        name = _longest(item.code.code, policy.severities)
+        level = item.severity if name is None else policy.severities[name]
+        if name is None or is_firm(item):
+            found.append(item)
+        elif level is not None:
+            found.append(replace(item, severity=level))
+    return found
+
+
+def chosen(report: Report, select: Sequence[str], ignore: Sequence[str]) -> Report:
+    """The findings whose code begins with one of `select` (none: all) and none of `ignore`.
+
+    The longer beginning wins. Firm ones stay: what else is found may follow from them.
+    """
+
+    def wanted(code: str) -> bool:
+        more, less = _longest(code, select), _longest(code, ignore)
+        if more is None or less is None:
+            return less is None and (more is not None or not select)
+        return len(more) > len(less)
+
+    return [item for item in report if is_firm(item) or wanted(item.code.code)]
+
+
+def _longest(code: str, beginnings: Iterable[str]) -> str | None:
+    return max((name for name in beginnings if code.startswith(name)), key=len, default=None)

@@ -1,0 +1,1 @@
+"""From text to the state graph: parse, resolve, lower; files, configuration and suppressions."""

@@ -1,0 +1,216 @@
+"""Time limits, retries and loops as the containers that a SMACH user would write for them.
+
+A time limit is a concurrence with a timer; retries and `for_each` are iterators. The container has
+the state's name, interface and transitions, and the state stands in it under the same name.
+"""
+
+from __future__ import annotations
+
+from dataclasses import replace
+from typing import Any
+
+from smachac.diagnostics.source import Span
+from smachac.frontend.sugar import EXHAUSTED, TIMEOUT, ForEach, Retry, Sugar, Timeout
+from smachac.frontend.values import as_value
+from smachac.ir.nodes import (
+    Concurrence,
+    Condition,
+    Expression,
+    Iterator,
+    Key,
+    Leaf,
+    Node,
+    Outcome,
+    OutcomeRule,
+    Remap,
+    StateMachine,
+    Transition,
+    Value,
+    Variable,
+)
+from smachac.ir.outcome_names import GOOD_OUTCOMES
+from smachac.ir.traversal import PREEMPTED, outcome_names, remapping
+
+TIMER = "SleepState"
+"""The state type that lets time pass."""
+
+
+def desugared(node: Node, sugar: Sugar) -> Node:
+    """A state inside the containers that its sugar asks for: the limit counts for each try, and
+    the tries for each item."""
+    if sugar.timeout is not None:
+        node = _limited(node, sugar.timeout)
+    if sugar.retry is not None:
+        node = _retried(node, sugar.retry)
+    if sugar.for_each is not None:
+        node = _repeated(node, sugar.for_each)
+    return node
+
+
+def _inside(node: Node) -> Node:
+    """The state as it stands in the container, which has its name and its edges."""
+    return replace(node, transitions=(), remaps=(), doc="")
+
+
+def _around(node: Node) -> dict[str, Any]:
+    """What the container takes over from the state."""
+    fields = ("name", "doc", "inputs", "outputs", "transitions", "remaps", "span", "via")
+    return {name: getattr(node, name) for name in fields}
+
+
+def _fresh(wanted: str, taken: tuple[str, ...]) -> str:
+    """A name that is not taken yet."""
+    number, name = 1, wanted
+    while name in taken:
+        number += 1
+        name = f"{wanted}_{number}"
+    return name
+
+
+def _pause(name: str, seconds: Value, node: Node, reads: tuple[Key, ...] = ()) -> Leaf:
+    """A state that lets time pass beside or before another one."""
+    return Leaf(
+        name=name,
+        type=TIMER,
+        inputs=reads,
+        outcomes=tuple(Outcome(name=each, span=node.span) for each in ("succeeded", PREEMPTED)),
+        variables=(Variable(name="time", value=seconds, span=seconds.span),),
+        blocking=True,
+        span=node.span,
+        via=node.via,
+    )
+
+
+def _limited(node: Node, limit: Timeout) -> Concurrence:
+    timer = _fresh("TIMER", (node.name,))
+    own = outcome_names(node)
+    outcomes = node.outcomes
+    if TIMEOUT not in own:
+        outcomes += (Outcome(name=TIMEOUT, doc="", span=limit.span),)
+    rules = tuple(
+        OutcomeRule(
+            outcome=name,
+            when=(
+                Condition(child=node.name, outcome=name, span=node.span),
+                Condition(child=timer, outcome=PREEMPTED, span=node.span),
+            ),
+            span=node.span,
+        )
+        for name in own
+    )
+    seconds = Value(data=limit.seconds, span=limit.span)
+    return Concurrence(
+        **_around(node),
+        type="Concurrence",
+        sugar="timeout",
+        outcomes=outcomes,
+        children=(_inside(node), _pause(timer, seconds, node)),
+        default_outcome=TIMEOUT,
+        default_span=limit.span,
+        rules=rules,
+        join="any",
+    )
+
+
+def _retried(node: Node, retry: Retry) -> Iterator:
+    on = tuple(word.text for word in retry.on)
+    own = outcome_names(node)
+    keys = tuple(key.name for key in (*node.inputs, *node.outputs))
+    item = _fresh("pause" if retry.delay else "attempt", keys)
+    child = _inside(node)
+    items: tuple[float, ...] = tuple(range(1, retry.most + 1))
+    if retry.delay:
+        child = _after_pause(child, item, on)
+        items = (0.0, *(retry.delay,) * (retry.most - 1))
+    kept = tuple(outcome for outcome in node.outcomes if outcome.name not in on)
+    if EXHAUSTED not in outcome_names(node):
+        kept += (Outcome(name=EXHAUSTED, span=retry.span),)
+    stopped = PREEMPTED if PREEMPTED in own else EXHAUSTED
+    return Iterator(
+        **_around(node),
+        type="Iterator",
+        sugar="retry",
+        outcomes=kept,
+        children=(child,),
+        items=Value(data=items, span=retry.span),
+        item_key=item,
+        exhausted_outcome=EXHAUSTED,
+        loop_outcomes=tuple(name for name in own if name in on),
+        final_map=tuple((name, stopped) for name in own if name in on),
+    )
+
+
+def _after_pause(node: Node, key: str, on: tuple[str, ...]) -> StateMachine:
+    """A state with a pause before it, which the userdata `key` gives in seconds."""
+    own = outcome_names(node)
+    name = _fresh("PAUSE", (node.name,))
+    reads = Key(name=key, span=node.span)
+    time = Expression(text=f"lambda ud: ud.{key}", span=node.span)
+    pause = _pause(name, Value(data=time, span=node.span), node, (reads,))
+    way_out = next(name for name in (PREEMPTED, *on, *own) if name in own)
+    edges = (("succeeded", node.name), (PREEMPTED, way_out))
+    leads = tuple(
+        Transition(outcome=outcome, target=target, span=node.span, target_span=node.span)
+        for outcome, target in edges
+    )
+    exits = tuple(
+        Transition(outcome=name, target=name, origin="implicit", span=node.span) for name in own
+    )
+    return StateMachine(
+        name=_fresh("TRY", (node.name,)),
+        type="StateMachine",
+        sugar="retry",
+        outcomes=node.outcomes,
+        inputs=(*node.inputs, reads),
+        outputs=node.outputs,
+        children=(replace(pause, transitions=leads), replace(node, transitions=exits)),
+        initial=name,
+        initial_span=node.span,
+        span=node.span,
+        via=node.via,
+    )
+
+
+def _repeated(node: Node, loop: ForEach) -> Iterator:
+    own = outcome_names(node)
+    good = tuple(name for name in own if name in GOOD_OUTCOMES)[:1]
+    on = tuple(word.text for word in loop.on) or good or own[:1]
+    stopped = PREEMPTED if PREEMPTED in own else on[0] if on else EXHAUSTED
+    items = as_value(loop.items)
+    fields = _around(node)
+    remaps = remapping(node)
+    item = next((key for key, to in remaps.items() if to == loop.item), loop.item)
+    fields["inputs"] = tuple(key for key in node.inputs if key.name != item)
+    fields["remaps"] = tuple(remap for remap in node.remaps if remap.key != item)
+    exhausted = _fresh(EXHAUSTED, own)
+    items_key = ""
+    if isinstance(items.data, str):
+        items_key = _with_input(fields, items.data, loop.span)
+    return Iterator(
+        **fields,
+        type="Iterator",
+        sugar="for_each",
+        outcomes=tuple(each for each in node.outcomes if each.name not in on[1:]),
+        children=(_inside(node),),
+        items=None if items_key else items,
+        items_key=items_key,
+        item_key=item,
+        exhausted_outcome=exhausted,
+        loop_outcomes=on,
+        final_map=((exhausted, on[0]), *((name, stopped) for name in on)) if on else (),
+    )
+
+
+def _with_input(fields: dict[str, Any], outer: str, span: Span) -> str:
+    """The key under which a container reads a key of the container around it, declared in
+    `fields` if it was not yet."""
+    remaps = {remap.key: remap.to for remap in fields["remaps"]}
+    names: list[str] = [key.name for key in fields["inputs"]]
+    for name in names:
+        if remaps.get(name, name) == outer:
+            return name
+    name = _fresh(outer, (*names, *remaps))
+    fields["inputs"] += (Key(name=name, span=span),)
+    if name != outer:
+        fields["remaps"] += (Remap(key=name, to=outer, span=span),)
+    return name

@@ -1,0 +1,127 @@
+"""Which scripts a run is about: files, folders and patterns as given; what git says has changed."""
+
+from __future__ import annotations
+
+import os
+import re
+from collections.abc import Iterator, Sequence
+from fnmatch import fnmatchcase
+from glob import has_magic
+from pathlib import Path
+
+from smachac.diagnostics.diagnostic import Report
+from smachac.frontend.config import Project
+from smachac.frontend.files import Disk, find_project
+
+SUFFIXES = (".yml", ".yaml")
+SKIPPED = ("__pycache__", "node_modules")
+"""Folders without scripts of the user, beside those whose name begins with a dot."""
+
+_KEY = re.compile(r"^([\"']?)(\w+)\1[ \t]*:", re.M)
+_ITEM = re.compile(r"^[ \t]*(?:#[^\n]*|---[^\n]*)?$", re.M)
+_CALLABLE = re.compile(r"(?:^[ \t]+|[{,][ \t]*)(?:template|script|T|S)[ \t]*:", re.M)
+_NAMED = {"name", "template", "outcomes", "n", "T", "o"}
+
+
+class NothingFoundError(Exception):
+    """An argument of the user leads to no script; the words say which."""
+
+
+def scripts_of(arguments: Sequence[Path], disk: Disk) -> list[Path]:
+    """The scripts that files, folders and patterns stand for, each once, in order.
+
+    A file that is named is taken as it is. Of a folder all YAML files are taken that look like
+    scripts, but for what the project file excludes. Raises NothingFoundError.
+    """
+    found: dict[str, Path] = {}
+    for argument in arguments:
+        paths = [argument]
+        if argument.is_dir():
+            paths = [path for path in yaml_files([argument]) if _is_script(path, disk)]
+        elif not argument.exists() and has_magic(str(argument)):
+            root = Path(argument.anchor)
+            paths = sorted(root.glob(str(argument.relative_to(root))))
+            paths = [path for path in paths if path.is_file()]
+        if not paths:
+            raise NothingFoundError(f"there is no script in `{argument}`")
+        for path in paths:
+            found.setdefault(os.path.realpath(path), path)
+    return list(found.values())
+
+
+def yaml_files(arguments: Sequence[Path]) -> Iterator[Path]:
+    """The YAML files in folders, sorted, but for what their project file excludes."""
+    for argument in arguments:
+        if argument.is_dir():
+            project = find_project(argument / "script.yml", [])
+
+            def kept(path: Path, project: Project = project) -> bool:
+                hidden = path.name.startswith(".") or path.name in SKIPPED
+                return not hidden and not _excluded(path, project)
+
+            for top, folders, names in os.walk(argument):
+                folders[:] = [name for name in sorted(folders) if kept(Path(top, name))]
+                paths = (Path(top, name) for name in sorted(names) if name.endswith(SUFFIXES))
+                yield from filter(kept, paths)
+
+
+def _excluded(path: Path, project: Project) -> bool:
+    if not project.exclude:
+        return False
+    name = Path(os.path.relpath(path, project.folder)).as_posix()
+    return any(fnmatchcase(name, pattern.rstrip("/")) for pattern in project.exclude)
+
+
+def _is_script(path: Path, disk: Disk) -> bool:
+    """Whether a YAML file looks like a script or sub-script, even if it is not quite YAML.
+
+    What cannot be read is taken for one: better a word too many than a script passed over.
+    """
+    report: Report = []
+    source = disk.read(path, report)
+    return source is None or looks_like_a_script(source.text)
+
+
+def looks_like_a_script(text: str) -> bool:
+    """By its first column: `states:` with a name, template or outcomes, or a list of states."""
+    keys = {found[2] for found in _KEY.finditer(text)}
+    if keys & {"states", "s"}:
+        return bool(keys & _NAMED)
+    first = next((line for line in text.splitlines() if not _ITEM.fullmatch(line)), "")
+    return first.startswith("- ") and _CALLABLE.search(text) is not None
+
+
+class GitError(Exception):
+    """Git could not say what has changed; the words are its own."""
+
+
+def changed_since(revision: str) -> set[str]:
+    """The real paths of files that differ from where this branch left `revision`.
+
+    Changes that are not committed count, so do new and removed files. Raises GitError.
+    """
+    commit = f"{revision}^{{commit}}"
+    commit = _git("rev-parse", "--verify", "--quiet", "--end-of-options", commit).strip()
+    if not commit:
+        raise GitError(f"git knows no revision `{revision}`")
+    top = Path(_git("rev-parse", "--show-toplevel").rstrip("\n"))
+    base = _git("merge-base", commit, "HEAD").strip() or commit
+    names = _git("-C", str(top), "diff", "--name-only", "--no-renames", "-z", base, "--")
+    names += _git("-C", str(top), "ls-files", "--others", "--exclude-standard", "-z")
+    return {os.path.realpath(top / name) for name in names.split("\0") if name}
+
+
+def _git(*arguments: str) -> str:
+    """What a command of git prints; nothing where it fails for want of an answer."""
+    import subprocess
+
+    try:
+        ended = subprocess.run(
+            ["git", *arguments], capture_output=True, check=False, encoding="utf-8",
+            errors="surrogateescape",
+        )  # fmt: skip
+    except OSError as error:
+        raise GitError(f"git does not run: {error.strerror or error}") from error
+    if ended.returncode not in (0, 1):
+        raise GitError(ended.stderr.strip() or "git failed")
+    return ended.stdout

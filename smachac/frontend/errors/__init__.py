@@ -1,0 +1,1 @@
+"""The diagnostics of the front end: SM001 to SM022."""

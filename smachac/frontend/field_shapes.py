@@ -1,0 +1,165 @@
+"""The shapes that variables of a script have, and how each is read from a tree.
+
+A reader reports what does not fit (SM004) and returns what does, so it can be used both to check
+and, with a report that nobody reads, to lower.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+
+from smachac.diagnostics.diagnostic import Report
+from smachac.diagnostics.source import Word
+from smachac.frontend.errors.script import duplicate_key, wrong_shape
+from smachac.frontend.yaml_tree import Entry, Map, Scalar, Seq, Tree, is_known_wrong
+
+_YAML_1_1_BOOLEANS = frozenset(
+    form
+    for word in ("yes", "no", "on", "off", "true", "false")
+    for form in (word, word.capitalize(), word.upper())
+)
+
+
+def kind_of(tree: Tree) -> str:
+    """What a tree is, in words for messages."""
+    match tree:
+        case Map():
+            return "a mapping"
+        case Seq():
+            return "a list"
+        case Scalar(value=None):
+            return "nothing"
+        case Scalar(value=bool()):
+            return "a boolean"
+        case Scalar(value=int() | float()):
+            return "a number"
+    return "a string"
+
+
+def wrong(tree: Tree, wanted: str, report: Report, help: str | None = None) -> None:
+    if is_known_wrong(tree):
+        return
+    report.append(wrong_shape(tree.span, f"{wanted} is due here, not {kind_of(tree)}", help))
+
+
+def as_name(tree: Tree, report: Report) -> Word | None:
+    """A name: of a state, an outcome, a key, a script, a template."""
+    if not isinstance(tree, Scalar):
+        wrong(tree, "a name", report)
+        return None
+    value = tree.value
+    if isinstance(value, str) and (value not in _YAML_1_1_BOOLEANS or not tree.plain):
+        return Word(value, tree.span)
+    if value is None:
+        wrong(tree, "a name", report)
+        return None
+    if isinstance(value, (str, bool)):
+        text = tree.span.text
+        report.append(
+            wrong_shape(
+                tree.span,
+                f"`{text}` is a boolean to many YAML parsers, not a name",
+                f"write it in quotes: '{text}', or choose another name",
+            )
+        )
+        return Word(text, tree.span)
+    # A number is a fine name for a state or an outcome once it is text.
+    return Word(tree.span.text, tree.span)
+
+
+def as_names(tree: Tree, report: Report) -> tuple[Word, ...]:
+    """A list of names, each once."""
+    if not isinstance(tree, Seq):
+        wrong(tree, "a list of names", report, "write it as `[a, b]`")
+        return ()
+    found: dict[str, Word] = {}
+    for item in tree.items:
+        word = as_name(item, report)
+        if word is None:
+            continue
+        first = found.setdefault(word.text, word)
+        if first is not word:
+            report.append(duplicate_key(word, first.span))
+    return tuple(found.values())
+
+
+def as_map(tree: Tree, report: Report) -> tuple[Entry, ...]:
+    """A mapping of names to anything; a null block (`userdata:` with nothing) is an error."""
+    if not isinstance(tree, Map):
+        nothing = isinstance(tree, Scalar) and tree.value is None
+        wrong(tree, "a mapping", report, "write `{}` or leave it out" if nothing else None)
+        return ()
+    return tuple([entry for entry in tree.entries if _names(entry.key, report)])
+
+
+def _names(key: Scalar, report: Report) -> bool:
+    """Whether a key is a name; if not, that is reported."""
+    value = key.value
+    if isinstance(value, str) and value not in _YAML_1_1_BOOLEANS:
+        return True
+    return as_name(key, report) is not None
+
+
+def as_pairs(tree: Tree, report: Report) -> tuple[tuple[Word, Word], ...]:
+    """A mapping of names to names: transitions, remapping."""
+    pairs = []
+    for entry in tree.entries if isinstance(tree, Map) else as_map(tree, report):
+        key = as_name(entry.key, report)
+        value = as_name(entry.value, report) if key is not None else None
+        if key is not None and value is not None:
+            pairs.append((key, value))
+    return tuple(pairs)
+
+
+def as_rules(tree: Tree, report: Report) -> tuple[tuple[Word, tuple[tuple[Word, Word], ...]], ...]:
+    """A mapping of names to mappings of names to names: an outcome map."""
+    rules = []
+    for entry in as_map(tree, report):
+        key = as_name(entry.key, [])
+        if key is not None:
+            rules.append((key, as_pairs(entry.value, report)))
+    return tuple(rules)
+
+
+def as_keys(tree: Tree, report: Report) -> tuple[tuple[Word, Word | None], ...]:
+    """Keys with their types where given: `[a, b]` or `{a: float, b: Pose}`."""
+    if isinstance(tree, Seq):
+        return tuple((word, None) for word in as_names(tree, report))
+    if isinstance(tree, Map):
+        return as_pairs(tree, report)
+    wrong(tree, "a list of keys", report, "write it as `[a, b]` or `{a: float}`")
+    return ()
+
+
+def as_text(tree: Tree, report: Report) -> str:
+    """A text on one or more lines."""
+    if isinstance(tree, Scalar) and tree.value is not None:
+        return str(tree.value)
+    wrong(tree, "a text", report)
+    return ""
+
+
+def as_flag(tree: Tree, report: Report) -> bool:
+    if isinstance(tree, Scalar) and isinstance(tree.value, bool):
+        return tree.value
+    wrong(tree, "`true` or `false`", report)
+    return False
+
+
+def as_value(tree: Tree, report: Report) -> Tree:
+    """Anything."""
+    return tree
+
+
+READERS: dict[str, Callable[[Tree, Report], object]] = {
+    "name": as_name,
+    "names": as_names,
+    "keys": as_keys,
+    "map": as_map,
+    "pairs": as_pairs,
+    "rules": as_rules,
+    "text": as_text,
+    "flag": as_flag,
+    "value": as_value,
+}
+"""Shape to reader."""

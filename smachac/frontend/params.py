@@ -1,0 +1,146 @@
+"""Params, look-ups and string constructs: `[params, x]`, `[[x]]`, `['/', [params, arm]]`.
+
+They are found at any depth of a value. A quoted word is data: `['params', x]` is a plain list.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+
+from smachac.diagnostics.diagnostic import Report
+from smachac.diagnostics.source import Word
+from smachac.frontend.errors.references import unresolved_look_up
+from smachac.frontend.errors.script import too_big
+from smachac.frontend.yaml_tree import Entry, Map, Scalar, Seq, Tree, known_wrong
+
+Scope = Mapping[str, Tree]
+"""The params that are seen from a state."""
+
+MAX_TEXT = 100_000
+"""The longest text that a string construct may make, in characters."""
+
+MAX_NODES = 100_000
+"""The most nodes that a param may hold once its look-ups are filled in."""
+
+MAX_FILLED, MAX_FILLED_BY_STATE = 100_000, 100
+"""The most nodes that all look-ups of a script may stand for, and as many more for each state."""
+
+MAX_LEVELS = 100
+"""The most levels of a value: what reads Python or C++ allows about 200 brackets in brackets."""
+
+
+def is_flat(tree: Tree) -> bool:
+    """Whether nothing can be looked up in a value, nor is it nested: true of most values."""
+    if isinstance(tree, Map):
+        return all(isinstance(entry.value, Scalar) for entry in tree.entries)
+    return isinstance(tree, Scalar)
+
+
+def is_too_deep(tree: Tree) -> bool:
+    """Whether a value has more than MAX_LEVELS levels."""
+    level = [tree]
+    for _ in range(MAX_LEVELS + 1):
+        below: list[Tree] = []
+        for one in level:
+            if isinstance(one, Seq):
+                below += one.items
+            elif isinstance(one, Map):
+                below += [entry.value for entry in one.entries]
+        if not below:
+            return False
+        level = below
+    return True
+
+
+def look_up_word(tree: Tree) -> Word | None:
+    """The param that a tree asks for, or None when it is no look-up."""
+    match tree:
+        case Seq(items=(Scalar(value="params", plain=True), Scalar(value=str(name), plain=True))):
+            return Word(name, tree.items[1].span)
+        case Seq(items=(Seq(items=(Scalar(value=str(name), plain=True) as word,)),)):
+            return Word(name, word.span)
+    return None
+
+
+def fill_in(tree: Tree, scope: Scope, report: Report, *, names: bool = False) -> Tree:
+    """The tree with every look-up and string construct replaced by what it means.
+
+    `names`: the tree is a list of names, whose items are filled in one by one instead of being
+    joined to one string. A look-up that fails is reported (SM015) and becomes `known_wrong`.
+    """
+    if isinstance(tree, Scalar):
+        return tree
+    if isinstance(tree, Map):
+        values = [fill_in(entry.value, scope, report) for entry in tree.entries]
+        if all(new is entry.value for new, entry in zip(values, tree.entries, strict=True)):
+            return tree
+        pairs = zip(tree.entries, values, strict=True)
+        return Map(tuple(Entry(entry.key, new) for entry, new in pairs), tree.span)
+    word = look_up_word(tree)
+    if word is not None:
+        return _found(word, scope, report)
+    items = tuple(fill_in(item, scope, report) for item in tree.items)
+    if not names and any(look_up_word(item) is not None for item in tree.items):
+        joined = _joined(items, tree, report)
+        if joined is not None:
+            return joined
+    if all(new is old for new, old in zip(items, tree.items, strict=True)):
+        return tree
+    return Seq(items, tree.span)
+
+
+def _found(word: Word, scope: Scope, report: Report) -> Tree:
+    value = scope.get(word.text)
+    if value is None:
+        report.append(unresolved_look_up(word, scope))
+        return known_wrong(word.span)
+    return value
+
+
+def _joined(items: tuple[Tree, ...], tree: Seq, report: Report) -> Tree | None:
+    """The text of a string construct, or None when a part is a collection: then it is a list."""
+    parts = []
+    for item in items:
+        if not isinstance(item, Scalar):
+            return None
+        parts.append(str(item.value))
+    text = "".join(parts)
+    if len(text) > MAX_TEXT:
+        report.append(
+            too_big(tree.span, f"this string construct makes {len(text):,} characters", None)
+        )
+        return known_wrong(tree.span)
+    # Calls have characters that YAML wants in quotes; of a dotted word quotes say that it is text.
+    quoted = any(isinstance(item, Scalar) and not item.plain for item in tree.items)
+    return Scalar(text, text != "" and (text.endswith(")") or not quoted), tree.span)
+
+
+def child_scope(scope: Scope, own: Tree | None, report: Report) -> Scope:
+    """The params of a state: its own entries over those around it; later ones may use earlier."""
+    if not isinstance(own, Map):
+        return scope
+    inner = dict(scope)
+    for entry in own.entries:
+        value = fill_in(entry.value, inner, report)
+        if value is not entry.value and _size_beyond(value, MAX_NODES):
+            report.append(too_big(entry.value.span, "this param grows beyond the limit", None))
+            value = known_wrong(entry.value.span)
+        inner[str(entry.key.value)] = value
+    return inner
+
+
+def _size_beyond(tree: Tree, limit: int) -> bool:
+    return size_up_to(tree, limit) > limit
+
+
+def size_up_to(tree: Tree, limit: int) -> int:
+    """The nodes of a tree, counted no further than one beyond a limit."""
+    stack, seen = [tree], 0
+    while stack and seen <= limit:
+        seen += 1
+        node = stack.pop()
+        if isinstance(node, Seq):
+            stack.extend(node.items)
+        elif isinstance(node, Map):
+            stack.extend(entry.value for entry in node.entries)
+    return seen

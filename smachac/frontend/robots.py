@@ -1,0 +1,74 @@
+"""The robot that a script names: a built-in one, or one in a URDF file beside the script."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import replace
+
+from smachac.diagnostics.diagnostic import Related, Report, did_you_mean
+from smachac.diagnostics.source import Source, Word
+from smachac.frontend import field_shapes
+from smachac.frontend.errors.references import bad_robot
+from smachac.frontend.loader import Library
+from smachac.frontend.state_types import StateType
+from smachac.frontend.urdf import XACRO, UrdfError, read_urdf
+from smachac.frontend.yaml_tree import Entry, Scalar
+from smachac.ir.robot import BUILT_IN, DEFAULTS, Robot
+
+SUFFIXES = (".urdf", ".xml", ".xacro")
+"""What tells a file from a name."""
+
+
+def robot_of(
+    fields: Mapping[str, Entry], base: StateType, source: Source, library: Library, report: Report
+) -> Robot | None:
+    """The robot of a script; None where it names none, or a thing that only its base knows."""
+    frames = field_shapes.as_names(fields["frames"].value, []) if "frames" in fields else ()
+    found = BUILT_IN.get(DEFAULTS.get(base.name, ""))
+    value = fields["robot"].value if "robot" in fields else None
+    if value is not None:
+        given = value.value if isinstance(value, Scalar) else None
+        found = None
+        if isinstance(given, str):
+            found = _named(Word(given, value.span), base, source, library, report)
+    if found is None:
+        return None
+    return replace(found, added=frozenset(word.text for word in frames))
+
+
+def _named(
+    word: Word, base: StateType, source: Source, library: Library, report: Report
+) -> Robot | None:
+    if word.text in BUILT_IN:
+        return BUILT_IN[word.text]
+    if word.text.lower().endswith(SUFFIXES):
+        return _described(word, source, library, report)
+    if "robot" not in base.variables and not base.open and "variables" not in base.given:
+        known = ", ".join(f"`{name}`" for name in BUILT_IN)
+        help = did_you_mean(word.text, BUILT_IN)
+        help = help or f"known are {known}; for any other name its URDF file, `arm.urdf`"
+        report.append(bad_robot(word, f"there is no robot `{word.text}`", help))
+    return None
+
+
+def _described(word: Word, source: Source, library: Library, report: Report) -> Robot | None:
+    if word.text.lower().endswith(".xacro"):
+        message = f"`{word.text}` describes no robot yet"
+        report.append(bad_robot(word, message, XACRO))
+        return None
+    before = len(report)
+    text = library.script(word.text, source.name)
+    if text is None:
+        if len(report) == before:
+            folders = ", ".join(f"`{folder}`" for folder in library.script_folders(source.name))
+            help = f"searched in {folders}; a path stands for itself below such a folder"
+            message = f"there is no file `{word.text}`"
+            report.append(bad_robot(word, message, help))
+        return None
+    try:
+        return read_urdf(text)
+    except UrdfError as error:
+        message = f"`{word.text}` describes no robot: {error.message}"
+        related = (Related(span=error.span, message="here"),)
+        report.append(bad_robot(word, message, error.help, related))
+        return None

@@ -1,0 +1,163 @@
+"""What a template of SMACHA's kind tells of its state type: its meta block, and its text.
+
+Meta blocks served SMACHA's help only and many are loose; what cannot be read is left out.
+"""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Callable
+from dataclasses import dataclass
+from typing import Literal
+
+from smachac.diagnostics.source import Source, Span, Word
+from smachac.frontend.yaml_tree import Map, Scalar, Seq, Tree, parse
+from smachac.ir.nodes import Outcome
+
+Kind = Literal["base", "container", "state"]
+
+_META = re.compile(r"\{%-?\s*block\s+meta\s*-?%\}(.*?)\{%-?\s*endblock", re.DOTALL)
+_BODY = re.compile(r"\{%[-+]?\s*block\s+body\b")
+_AROUND = re.compile(r"\{\{[-+]?\s*(?:body\b|super\s*\()")
+_EXTENDS = re.compile(r"\{%[-+]?\s*extends\s+[\"']([^\"']+)[\"']")
+_OUTCOMES = re.compile(r"\boutcomes\s*=\s*\[([^\[\]{}]*)\]")
+_DEFAULT = re.compile(r"\bdef\s+\w+\([^()]*$")
+_KEYS = re.compile(r"\b(input|output)_keys\s*=\s*\[([^\[\]{}]*)\]")
+_TAGS = re.compile(r"\{[{%](.*?)[%}]\}", re.DOTALL)
+_BRINGS = re.compile(r"\s*[-+]?\s*(?:extends|include|import|from)\b\s*(.*)", re.DOTALL)
+_WORD = re.compile(r"[^\W\d]\w*")
+_FILES = re.compile(r"[\"']([^\"']+)[\"']")
+_QUOTED = re.compile(r"([\"'])(\w+)\1")
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Meta:
+    """A meta block. Of keys it has those that are always there: others the script lists."""
+
+    kind: Kind
+    doc: str
+    variables: tuple[str, ...]
+    input_keys: tuple[Word, ...]
+    output_keys: tuple[Word, ...]
+    outcomes: tuple[Outcome, ...]
+
+
+def has_body(template: Source) -> bool:
+    """Whether a template prints its state itself."""
+    return _BODY.search(template.text) is not None
+
+
+def extended(template: Source) -> str:
+    """The file that a template extends, or nothing."""
+    found = _EXTENDS.search(template.text)
+    return found.group(1) if found else ""
+
+
+def read_meta(template: Source) -> Meta | None:
+    """The meta block of a template, where it has one that can be read."""
+    found = _META.search(template.text)
+    tree = parse(Source(template.name, found.group(1)), []) if found else None
+    if not isinstance(tree, Map):
+        return None
+
+    def listed(part: str, *, optional: bool) -> tuple[Word, ...]:
+        entry = tree.get(part)
+        return tuple(_names(entry.value, optional)) if entry else ()
+
+    return Meta(
+        kind=_kind(_text(tree, "type"), template),
+        doc=_text(tree, "description"),
+        variables=tuple(word.text for word in listed("variables", optional=True)),
+        input_keys=listed("input_keys", optional=False),
+        output_keys=listed("output_keys", optional=False),
+        outcomes=tuple(
+            Outcome(name=word.text, span=word.span)
+            for word in listed("outcomes", optional=True)
+            if re.fullmatch(r"\w+", word.text)  # some say in words that the script gives them
+        ),
+    )
+
+
+def _kind(word: str, template: Source) -> Kind:
+    """The kind that a meta block names. SMACHA calls some of its states containers, though they do
+    not print what stands in them."""
+    alone = has_body(template) and _AROUND.search(template.text) is None
+    return (
+        "base" if word == "Base" else "container" if word == "Container" and not alone else "state"
+    )
+
+
+def outcomes_in_code(template: Source) -> tuple[Outcome, ...]:
+    """The outcomes of the one class of states in a template, where they are all written out, not as
+    what a parameter is by default."""
+    found = list(_OUTCOMES.finditer(template.text))
+    if found and _DEFAULT.search(template.text, 0, found[0].start()) is not None:
+        return ()
+    words = list(_QUOTED.finditer(found[0].group(1))) if len(found) == 1 else []
+    if not words or _QUOTED.sub("", found[0].group(1)).strip(", \n\t"):
+        return ()
+    start = found[0].start(1)
+    return tuple(
+        Outcome(
+            name=word.group(2),
+            span=Span(template, start + word.start(2), start + word.end(2)),
+        )
+        for word in words
+    )
+
+
+def keys_in_code(template: Source) -> tuple[tuple[str, ...], tuple[str, ...]]:
+    """The keys that the code of a template reads and writes, as far as it lists them."""
+    found: dict[str, dict[str, None]] = {"input": {}, "output": {}}
+    for keys in _KEYS.finditer(template.text):
+        for word in _QUOTED.finditer(keys.group(2)):
+            found[keys.group(1)][word.group(2)] = None
+    return tuple(found["input"]), tuple(found["output"])
+
+
+def words_used(file: str, find: Callable[[str], Source | None]) -> frozenset[str] | None:
+    """The words that the tags of a template use, and of all that it brings in; None where some of
+    it is not known."""
+    words: set[str] = set()
+    todo, seen = [file], {file}
+    while todo:
+        name = todo.pop()
+        template = find(name) or find(f"{name}.py")
+        if template is None:
+            return None
+        for tag in _TAGS.finditer(template.text):
+            words.update(_WORD.findall(tag.group(1)))
+            brings = _BRINGS.match(tag.group(1)) if tag.group(0).startswith("{%") else None
+            if brings is None:
+                continue
+            files = _FILES.findall(brings.group(1)) if brings.group(1)[:1] in "\"'[(" else []
+            if not files:
+                return None
+            todo += [each for each in files if each not in seen]
+            seen.update(files)
+    return frozenset(words)
+
+
+def _text(tree: Map, name: str) -> str:
+    """The text under a name of a mapping, or nothing."""
+    entry = tree.get(name)
+    return str(entry.value.value) if entry and isinstance(entry.value, Scalar) else ""
+
+
+def _names(tree: Tree, optional: bool) -> list[Word]:
+    """Names in a meta list: `- x: {...}` or `- x`; optional ones stand in a nested list, and under
+    the name of a group stands the list of its names."""
+    if isinstance(tree, Scalar):
+        return [Word(str(tree.value), tree.span)] if tree.value is not None else []
+    if isinstance(tree, Map):
+        return [
+            found
+            for entry in tree.entries
+            for found in (
+                _names(entry.value, optional)
+                if isinstance(entry.value, Seq)
+                else [Word(str(entry.key.value), entry.value.span)]
+            )
+        ]
+    inner = (item for item in tree.items if optional or not isinstance(item, Seq))
+    return [found for item in inner for found in _names(item, optional)]

@@ -1,0 +1,138 @@
+"""Suppressions: comments `# smachac: allow SM201 reason`, and the findings that they silence."""
+
+from __future__ import annotations
+
+import re
+from bisect import bisect_right
+from collections.abc import Callable, Iterator, Sequence
+from typing import NamedTuple
+
+from smachac.diagnostics.diagnostic import CODES, Report
+from smachac.diagnostics.severities import is_firm
+from smachac.diagnostics.source import Source, Span, Word
+from smachac.frontend.errors.suppressions import (
+    bad_comment,
+    unfounded_allowance,
+    unknown_code,
+    vain_allowance,
+)
+from smachac.frontend.yaml_tree import Entry, Map, Scalar, Seq, Tree, parse
+
+
+class Allowance(NamedTuple):
+    """One code of a comment `# smachac: allow SM201 reason`, and the line that it speaks of."""
+
+    code: str
+    span: Span
+    line: int
+
+
+Parser = Callable[[Source, Report], "Tree | None"]
+"""As `syntax.parse`, which may remember what it parsed."""
+
+MARK = "smachac:"
+_COMMENT = re.compile(
+    r"(?:^|(?<=\s))#[^\S\n]*smachac:[^\S\n]*(?P<verb>[^\s]*)(?P<rest>[^\n]*)", re.M
+)
+_CODE = re.compile(r"[^\S\n]*(?P<code>[A-Za-z]{2}\d+)\b[,:]?")
+
+
+def allowances(source: Source, report: Report, parse: Parser = parse) -> list[Allowance]:
+    """The allowances of a text, in its order. SM022 for a comment that does not say all it must.
+
+    A comment behind something speaks of its own line, one alone of the next line that holds more
+    than a comment.
+    """
+    if MARK not in source.text:
+        return []
+    hidden = _scalars(source, parse)
+    speaks = _lines_spoken_of(source)
+    found: list[Allowance] = []
+    for comment in _COMMENT.finditer(source.text):
+        before = bisect_right(hidden, (comment.start(), len(source.text)))
+        if before and comment.start() < hidden[before - 1][1]:
+            continue
+        span = Span(source, comment.start(), comment.start() + len(comment.group().rstrip()))
+        if comment["verb"] != "allow":
+            word = Word(comment["verb"], Span(source, *comment.span("verb")))
+            report.append(bad_comment(word))
+            continue
+        found += _codes(source, comment, span, speaks, report)
+    return found
+
+
+def _scalars(source: Source, parse: Parser) -> list[tuple[int, int]]:
+    """The stretches of a YAML text, in order, that hold values: `#` begins no comment there."""
+    tree = parse(source, []) if not source.name.endswith(".py") else None
+    return sorted((span.start, span.end) for span in _spans(tree)) if tree is not None else []
+
+
+def _spans(tree: Tree) -> Iterator[Span]:
+    todo: list[Tree | Entry] = [tree]
+    seen: set[int] = set()
+    while todo:
+        here = todo.pop()
+        if id(here) in seen:  # an alias stands for what was met before
+            continue
+        seen.add(id(here))
+        match here:
+            case Scalar():
+                if MARK in here.span.text:
+                    yield here.span
+            case Seq():
+                todo.extend(here.items)
+            case Map():
+                todo.extend(part for entry in here.entries for part in (entry.key, entry.value))
+
+
+def _codes(
+    source: Source, comment: re.Match[str], span: Span, speaks: Sequence[int], report: Report
+) -> Iterator[Allowance]:
+    line, column = source.position(comment.start())
+    if not source.line(line)[: column - 1].strip():
+        line = speaks[line]
+    at, end = comment.start("rest"), comment.end("rest")
+    words = []
+    while (word := _CODE.match(source.text, at, end)) is not None:
+        words.append(Word(word["code"].upper(), Span(source, *word.span("code"))))
+        at = word.end()
+    for code in words:
+        if code.text not in CODES:
+            report.append(unknown_code(code, CODES))
+        else:
+            yield Allowance(code.text, code.span, line)
+    if not words or not source.text[at:end].strip(" \t\r:,-"):
+        report.append(unfounded_allowance(span, named=bool(words)))
+
+
+def _lines_spoken_of(source: Source) -> list[int]:
+    """For each line, counted from 1, the next one that holds more than a comment."""
+    last = len(source.line_starts)
+    speaks = [last] * (last + 1)
+    for number in range(last - 1, 0, -1):
+        text = source.line(number + 1).strip()
+        speaks[number] = number + 1 if text and text[0] != "#" else speaks[number + 1]
+    return speaks
+
+
+def heeded(report: Report, given: Sequence[Allowance]) -> tuple[Report, set[Allowance]]:
+    """A report without what is allowed, and the allowances that were of use.
+
+    A firm finding stays; the allowance that was to silence it is reported (SM022).
+    """
+    if not given:
+        return report, set()
+    by_place: dict[tuple[int, int, str], Allowance] = {}
+    for allowance in given:
+        place = (id(allowance.span.source), allowance.line, allowance.code)
+        by_place.setdefault(place, allowance)
+    kept, used = [], set()
+    for item in report:
+        fit = by_place.get((id(item.span.source), item.span.line, item.code.code))
+        if fit is not None and fit not in used and is_firm(item):
+            kept.append(vain_allowance(Word(fit.code, fit.span)))
+        if fit is not None:
+            used.add(fit)
+        if fit is None or is_firm(item):
+            kept.append(item)
+    return kept, used

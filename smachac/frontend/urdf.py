@@ -1,0 +1,241 @@
+"""URDF, the robot description of ROS: joints with their limits, and links, out of its XML.
+
+Read with expat alone. A document type, which can make a small file a huge one or name other files,
+is refused; size, depth and number of elements are bounded.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterable, Mapping
+from dataclasses import dataclass, field, replace
+from xml.parsers import expat
+
+from smachac.diagnostics.source import Source, Span
+from smachac.ir.robot import Joint, Robot
+
+MAX_CHARACTERS = 5_000_000
+MAX_ELEMENTS = 100_000
+MAX_DEPTH = 100
+
+TURNING = frozenset(["revolute", "continuous"])
+MOVING = TURNING | {"prismatic", "planar", "floating"}
+KINDS = MOVING | {"fixed"}
+
+Stretch = tuple[Joint, ...]
+"""Joints one behind the other."""
+
+XACRO = "it is a macro file: expand it with `xacro`, and name what comes out"
+
+
+class UrdfError(Exception):
+    """A text that describes no robot: what is wrong, where, and a line of help."""
+
+    def __init__(self, message: str, span: Span, help: str | None = None) -> None:
+        super().__init__(message)
+        self.message, self.span, self.help = message, span, help
+
+
+@dataclass(slots=True)
+class _Link:
+    """A joint as the file has it; `follows`: another one moves it (`<mimic>`)."""
+
+    joint: Joint
+    kind: str
+    parent: str = ""
+    child: str = ""
+    follows: bool = False
+    limits: dict[str, str] = field(default_factory=dict)
+
+
+def read_urdf(source: Source) -> Robot:
+    """The robot that a text describes. Raises UrdfError."""
+    reader = _Reader(source)
+    reader.read()
+    links = frozenset(reader.links)
+    for each in reader.joints.values():
+        for link in (each.parent, each.child):
+            if link not in links:
+                message = f"joint `{each.joint.name}` hangs on a link `{link}` that is not there"
+                raise UrdfError(message, each.joint.span)
+    joints = {name: replace(each, joint=_limited(each)) for name, each in reader.joints.items()}
+    turning = tuple(each.joint for each in joints.values() if each.kind in TURNING)
+    return Robot(
+        name=reader.name,
+        joints=turning,
+        limbs=_limbs(joints, links),
+        frames=links,
+    )
+
+
+class _Reader:
+    """Takes the elements as expat meets them."""
+
+    def __init__(self, source: Source) -> None:
+        self.source = source
+        self.name = ""
+        self.links: dict[str, None] = {}
+        self.joints: dict[str, _Link] = {}
+        self._open: list[str] = []
+        self._count = 0
+        self._joint: _Link | None = None
+        self._parser = expat.ParserCreate("utf-8")
+
+    def read(self) -> None:
+        text = self.source.text
+        if len(text) > MAX_CHARACTERS:
+            raise self.error(f"the file has {len(text):,} characters, more than any robot needs")
+        parser = self._parser
+        parser.StartElementHandler = self.start
+        parser.EndElementHandler = self.end
+        parser.StartDoctypeDeclHandler = self.refuse
+        parser.EntityDeclHandler = self.refuse
+        try:
+            parser.Parse(text.encode("utf-8", "replace"), True)
+        except expat.ExpatError as error:
+            words = expat.ErrorString(error.code)
+            raise UrdfError(
+                f"this is no XML: {words}", self.at(error.lineno, error.offset)
+            ) from None
+
+    def at(self, line: int, column: int) -> Span:
+        starts = self.source.line_starts
+        start = starts[min(line, len(starts)) - 1] + column
+        start = min(start, len(self.source.text))
+        return Span(self.source, start, min(start + 1, len(self.source.text)))
+
+    def here(self, name: str = "") -> Span:
+        """Where the parser is: the name, if it stands in this tag."""
+        span = self.at(self._parser.CurrentLineNumber, self._parser.CurrentColumnNumber)
+        text = self.source.text
+        end = text.find(">", span.start)
+        found = text.find(f'"{name}"', span.start, end if end > 0 else len(text)) if name else -1
+        return span if found < 0 else Span(self.source, found + 1, found + 1 + len(name))
+
+    def error(self, message: str, name: str = "", help: str | None = None) -> UrdfError:
+        return UrdfError(message, self.here(name), help)
+
+    def refuse(self, *_: object) -> None:
+        message = "a document type is not read: it may hold more than it shows"
+        raise self.error(message, help="take out the lines with `<!DOCTYPE` and `<!ENTITY`")
+
+    def start(self, tag: str, given: dict[str, str]) -> None:
+        self._count += 1
+        depth = len(self._open)
+        if self._count > MAX_ELEMENTS or depth > MAX_DEPTH:
+            raise self.error("it is larger, or deeper, than any robot")
+        if tag.startswith("xacro:"):
+            raise self.error(f"`<{tag}>` is not part of a robot", help=XACRO)
+        above = self._open[-1] if self._open else ""
+        self._open.append(tag)
+        if depth == 0:
+            if tag != "robot":
+                raise self.error(f"the outermost element is `<{tag}>`, not `<robot>`")
+            self.name = given.get("name", "")
+        elif depth == 1 and tag in ("link", "joint"):
+            self.part(tag, given)
+        elif depth == 2 and above == "joint" and self._joint is not None:
+            self.detail(tag, given, self._joint)
+
+    def part(self, tag: str, given: dict[str, str]) -> None:
+        name = given.get("name", "")
+        known: Mapping[str, object] = self.links if tag == "link" else self.joints
+        if not name:
+            raise self.error(f"this {tag} has no name")
+        if name in known:
+            raise self.error(f"there are two {tag}s `{name}`", name)
+        if tag == "link":
+            self.links[name] = None
+            return
+        kind = given.get("type", "")
+        if kind not in KINDS:
+            message = (
+                f"joint `{name}` is of type `{kind}`" if kind else f"joint `{name}` has no type"
+            )
+            raise self.error(message, name, f"types are {', '.join(sorted(KINDS))}")
+        self._joint = self.joints[name] = _Link(Joint(name=name, span=self.here(name)), kind)
+
+    def detail(self, tag: str, given: dict[str, str], joint: _Link) -> None:
+        match tag:
+            case "parent":
+                joint.parent = given.get("link", "")
+            case "child":
+                joint.child = given.get("link", "")
+            case "mimic":
+                joint.follows = True
+            case "limit":
+                joint.limits = given
+
+    def end(self, tag: str) -> None:
+        self._open.pop()
+
+
+def _limited(link: _Link) -> Joint:
+    """The joint with its limits; what is left out of a `<limit>` is 0, as the format says."""
+    joint = link.joint
+    if link.kind != "revolute":
+        return joint
+    if not link.limits:
+        message = f"joint `{joint.name}` turns, and has no `<limit>`"
+        raise UrdfError(message, joint.span, "one without limits is of type `continuous`")
+    numbers = []
+    for name in ("lower", "upper"):
+        word = link.limits.get(name, "0")
+        try:
+            number = float(word)
+        except ValueError:
+            number = math.nan
+        if not math.isfinite(number):
+            message = f"the {name} limit of joint `{joint.name}` is `{word}`, which is no number"
+            raise UrdfError(message, joint.span, XACRO if "${" in word else None)
+        numbers.append(number)
+    low, high = numbers
+    if low > high:
+        message = f"the limits of joint `{joint.name}` are {low} to {high}: the first is larger"
+        raise UrdfError(message, joint.span)
+    return replace(joint, lower=low, upper=high)
+
+
+def _limbs(joints: Mapping[str, _Link], links: Iterable[str]) -> tuple[tuple[Joint, ...], ...]:
+    """The joints that a list of angles may be of: each stretch of the tree without a fork, alone
+    or after those that lead to it from the base. Joints that follow others are not commanded.
+    """
+    below: dict[str, list[_Link]] = {}
+    for each in joints.values():
+        below.setdefault(each.parent, []).append(each)
+    hanging = {each.child for each in joints.values()}
+    moving = _moving(joints.values())
+    found: dict[tuple[Joint, ...], None] = {}
+    todo: list[tuple[str, Stretch, Stretch]] = [
+        (link, (), ()) for link in sorted(links) if link not in hanging
+    ]
+    seen: set[str] = set()
+    while todo:
+        link, stretch, before = todo.pop()
+        ways = [each for each in below.get(link, ()) if each.child in moving]
+        if link in seen:
+            continue
+        seen.add(link)
+        if len(ways) == 1:
+            todo.append((ways[0].child, stretch + _commanded(ways[0]), before))
+            continue
+        if stretch:
+            found |= {stretch: None, (*before, *stretch): None}
+        todo += [(each.child, _commanded(each), (*before, *stretch)) for each in reversed(ways)]
+    return tuple(found)
+
+
+def _commanded(link: _Link) -> tuple[Joint, ...]:
+    return (link.joint,) if link.kind in TURNING and not link.follows else ()
+
+
+def _moving(joints: Iterable[_Link]) -> set[str]:
+    """The links that move, or have links below that do, against what they hang on."""
+    above = {each.child: each for each in joints}
+    found: set[str] = set()
+    for each in above.values():
+        link = each if each.kind in MOVING else None
+        while link is not None and link.child not in found:
+            found.add(link.child)
+            link = above.get(link.parent)
+    return found

@@ -1,0 +1,62 @@
+"""Trees to the values of the IR: literals, lists, mappings, expressions."""
+
+from __future__ import annotations
+
+import ast
+
+from smachac.frontend.yaml_tree import Scalar, Seq, Tree
+from smachac.ir.expressions import looks_like_expression, parse_expression
+from smachac.ir.nodes import Data, Expression, Struct, Value
+
+
+def as_value(tree: Tree, *, code: bool = False) -> Value:
+    """The value of a tree. `code`: every string in it is an expression, as in `callbacks`."""
+    return Value(data=_data(tree, code), span=tree.span)
+
+
+def as_written(tree: Tree) -> Value:
+    """The value of a tree as SMACHA's templates expect it: backticks stay in strings."""
+    return Value(data=_data(tree, False, ticks=True), span=tree.span)
+
+
+def _data(tree: Tree, code: bool, ticks: bool = False) -> Data:
+    if isinstance(tree, Scalar):
+        data = _scalar(tree, code)
+        if not ticks or not isinstance(tree.value, str):
+            return data
+        if isinstance(data, Expression):
+            return data if tree.value == data.text else tree.value.strip()
+        if tree.plain and "(" in tree.value and _is_python(tree.value):
+            return Expression(text=tree.value.strip(), span=tree.span)
+        return data
+    if isinstance(tree, Seq):
+        return tuple([_data(item, code, ticks) for item in tree.items])
+    return Struct(
+        entries=tuple(
+            (str(entry.key.value), _data(entry.value, code, ticks)) for entry in tree.entries
+        )
+    )
+
+
+def _is_python(text: str) -> bool:
+    """Whether a text is an expression of Python; SMACHA printed what has a call in it as code."""
+    try:
+        ast.parse(text.strip(), mode="eval")
+    except (SyntaxError, ValueError, RecursionError, MemoryError):
+        return False
+    return True
+
+
+def _scalar(tree: Scalar, code: bool) -> Data:
+    """Backticks mark an expression; in plain scalars so does the look of a call or dotted name."""
+    value = tree.value
+    if not isinstance(value, str):
+        return value
+    text = value.strip()
+    if len(text) > 2 and text[0] == text[-1] == "`":
+        return Expression(text=text[1:-1].strip(), span=tree.span)
+    if code:
+        return Expression(text=text, span=tree.span)
+    if tree.plain and looks_like_expression(value) and parse_expression(value) is not None:
+        return Expression(text=text, span=tree.span)
+    return value

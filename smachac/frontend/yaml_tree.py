@@ -1,0 +1,384 @@
+"""YAML text to a tree whose every part knows its place.
+
+Events come from ruamel.yaml's C parser where it is installed (the extra `fast`) and from its pure
+parser elsewhere, with the same tree: scalars are resolved here, by the YAML 1.2 core schema, so
+`on`, `yes` and `010` mean what they mean there. Duplicate keys stay in the tree.
+"""
+
+from __future__ import annotations
+
+import gc
+import re
+from collections.abc import Callable, Iterator
+from dataclasses import dataclass, field
+from itertools import accumulate
+from typing import Any, TypeAlias
+
+from smachac.diagnostics.diagnostic import Diagnostic, Report
+from smachac.diagnostics.source import Source, Span, Word
+from smachac.frontend.errors.script import duplicate_key, too_big, wrong_shape, yaml_syntax
+
+MAX_CHARACTERS = 10_000_000
+MAX_DEPTH = 3_500
+MAX_ALIASED = 100_000
+"""Limits of a script: its length, its nesting, and the nodes that its aliases stand for, or as many
+as it has characters."""
+
+MOST_REREAD, DEEPEST_REREAD = 50_000, 100
+"""Characters and levels of the largest text that the pure parser reads only to word an error: it
+takes 7 us a character there, and 2 ms a bracket."""
+
+
+@dataclass(frozen=True, slots=True)
+class Scalar:
+    """A single value. `plain`: written without quotes, so it may be a name, look-up or code."""
+
+    value: bool | int | float | str | None
+    plain: bool
+    span: Span = field(compare=False)
+
+
+@dataclass(frozen=True, slots=True)
+class Seq:
+    items: tuple[Tree, ...]
+    span: Span = field(compare=False)
+
+
+@dataclass(frozen=True, slots=True)
+class Entry:
+    key: Scalar
+    value: Tree
+
+
+@dataclass(frozen=True, slots=True)
+class Map:
+    """A mapping in the order of the text; of duplicate keys the first counts."""
+
+    entries: tuple[Entry, ...]
+    span: Span = field(compare=False)
+
+    def get(self, name: str) -> Entry | None:
+        for entry in self.entries:
+            if entry.key.value == name:
+                return entry
+        return None
+
+
+Tree: TypeAlias = Scalar | Seq | Map
+
+
+def known_wrong(span: Span) -> Scalar:
+    """What stands for a value that was reported already, so that nobody reports it again.
+
+    No text parses to it: nothing at all, unquoted, is None there.
+    """
+    return Scalar("", True, span)
+
+
+def is_known_wrong(tree: Tree) -> bool:
+    return isinstance(tree, Scalar) and tree.value == "" and tree.plain
+
+
+_NULL = frozenset(["", "~", "null", "Null", "NULL"])
+_BOOL = {
+    **dict.fromkeys(["true", "True", "TRUE"], True),
+    **dict.fromkeys(["false", "False", "FALSE"], False),
+}
+_INT = re.compile(r"[-+]?[0-9]{1,300}|0o[0-7]{1,300}|0x[0-9a-fA-F]{1,300}")
+_FLOAT = re.compile(
+    r"[-+]?(?:\.[0-9]+|[0-9]+\.[0-9]*|[0-9]+(?=[eE]))(?:[eE][-+]?[0-9]+)?"
+    r"|[-+]?\.(?:inf|Inf|INF)"
+    r"|\.(?:nan|NaN|NAN)"
+)
+_BRACKETS = re.compile(r"[][{}]")
+_MAYBE_NUMBER = frozenset("+-.0123456789")
+
+
+def _resolve(text: str) -> bool | int | float | str | None:
+    """The value of a plain scalar by the core schema (YAML 1.2.2, section 10.3.2)."""
+    if text in _NULL:
+        return None
+    if text in _BOOL:
+        return _BOOL[text]
+    if text[0] not in _MAYBE_NUMBER:
+        return text
+    if _INT.fullmatch(text):
+        return int(text, 0 if text[:2] in ("0o", "0x") else 10)
+    if _FLOAT.fullmatch(text):
+        return float(text.lower().replace(".inf", "inf").replace(".nan", "nan"))
+    return text
+
+
+def parse(source: Source, report: Report) -> Tree | None:
+    """The tree of a source, or None where there is none: empty text or text that is not YAML.
+
+    Problems: SM001 what the YAML parser says, SM002 duplicate keys, SM004 keys that are no
+    scalars, SM006 beyond the limits.
+    """
+    if len(source.text) >= MAX_CHARACTERS:
+        span = Span(source, 0, 0)
+        report.append(
+            too_big(
+                span,
+                f"the script has {len(source.text):,} characters;"
+                f" the limit is {MAX_CHARACTERS - 1:,}",
+                "split it into sub-scripts",
+            )
+        )
+        return None
+    bad = _UNPRINTABLE.search(source.text)
+    if bad is not None:
+        span = Span(source, bad.start(), bad.end())
+        report.append(
+            yaml_syntax(
+                span,
+                f"the character {bad.group()!a} is not allowed in YAML",
+                "is this a text file?",
+            )
+        )
+        return None
+    return _build(source, report)
+
+
+# YAML 1.2.2, section 5.1: what is not printable.
+_UNPRINTABLE = re.compile(
+    "[^\t\n\r\x20-\x7e\x85\xa0-\ud7ff\ue000-\ufefe\uff00-\ufffd\U00010000-\U0010ffff]"
+)
+
+
+def _pure_events(text: str) -> Iterator[Any]:
+    from ruamel.yaml import YAML
+
+    return YAML(typ="safe", pure=True).parse(text)  # type: ignore[no-any-return]
+
+
+def _c_events(text: str) -> Iterator[Any]:
+    """The events of the C parser; none at all where it is not installed."""
+    try:
+        from ruamel.yaml.cyaml import CParser  # type: ignore[attr-defined]
+    except ImportError:
+        return iter(())
+    return iter(CParser(text).get_event, None)
+
+
+def events(text: str) -> Iterator[Any]:
+    """The events of a text that `parse` has made a tree of."""
+    from ruamel.yaml.error import YAMLError
+
+    try:
+        found = list(_c_events(text))
+    except YAMLError:  # there are texts that the pure parser alone can read
+        found = []
+    return iter(found) if found else _pure_events(text)
+
+
+def _build(source: Source, report: Report) -> Tree | None:
+    from ruamel.yaml.error import YAMLError
+
+    collecting = gc.isenabled()
+    gc.disable()  # a large tree makes the collector run again and again over live data
+    try:
+        for events in (_c_events, _pure_events):
+            found: Report = []
+            builder = _Builder(source, found)
+            try:
+                builder.drive(events(source.text))
+            except YAMLError as error:
+                if events is _c_events and _is_reread(source.text, builder.deepest):
+                    continue  # the words of such a syntax error are the pure parser's everywhere
+                builder.root = None
+                found.append(_syntax_error(source, error))
+            except _BeyondLimitError:
+                builder.root = None
+            if builder.seen or events is _pure_events:
+                report.extend(found)
+                return builder.root
+    finally:
+        if collecting:
+            gc.enable()
+    return None
+
+
+def _is_reread(text: str, deepest: int) -> bool:
+    """Whether a text is small enough for the pure parser, in length, levels and open brackets."""
+    if len(text) > MOST_REREAD or deepest > DEEPEST_REREAD:
+        return False
+    depths = accumulate(1 if bracket in "[{" else -1 for bracket in _BRACKETS.findall(text))
+    return max(depths, default=0) <= DEEPEST_REREAD
+
+
+def _syntax_error(source: Source, error: Any) -> Diagnostic:
+    """SM001 from what the parser raised: its words, and its place where it gives one."""
+    mark = getattr(error, "problem_mark", None) or getattr(error, "context_mark", None)
+    at = min(mark.index, len(source.text)) if mark is not None else 0
+    parts = [getattr(error, name, None) for name in ("problem", "context")]
+    words = ", ".join(" ".join(str(part).split()) for part in parts if part)
+    here = source.text[at : at + 1]
+    advice = "indent with spaces: YAML allows no tabs there" if here == "\t" else None
+    span = Span(source, at, at + (here not in ("", "\n")))
+    return yaml_syntax(span, words or "this is not YAML", advice)
+
+
+class _Open:
+    """A collection whose end has not come yet."""
+
+    __slots__ = ("anchor", "flow", "items", "mapping", "size", "start")
+
+    def __init__(self, mapping: bool, flow: bool, start: int, anchor: str | None) -> None:
+        self.mapping = mapping
+        self.flow = flow
+        self.start = start
+        self.anchor = anchor
+        self.items: list[Tree] = []
+        self.size = 1
+
+
+class _BeyondLimitError(Exception):
+    """Parsing ended early; the reason is in the report."""
+
+
+class _Builder:
+    """Builds one tree from events; the stack stands for recursion, so depth costs nothing."""
+
+    def __init__(self, source: Source, report: Report) -> None:
+        self.source = source
+        self.report = report
+        self.stack: list[_Open] = []
+        self.anchors: dict[str, tuple[Tree, int]] = {}
+        self.root: Tree | None = None
+        self.seen = False
+        self.deepest = 0
+        self.aliased = 0
+        self.end = 0
+
+    def drive(self, events: Iterator[Any]) -> None:
+        steps: dict[str, Callable[[Any], None]] = {
+            "ScalarEvent": self._scalar,
+            "MappingStartEvent": self._open,
+            "SequenceStartEvent": self._open,
+            "MappingEndEvent": self._close,
+            "SequenceEndEvent": self._close,
+            "AliasEvent": self._alias,
+        }
+        for event in events:
+            self.seen = True
+            step = steps.get(type(event).__name__)
+            if step is not None:
+                step(event)
+            elif self.root is not None and type(event).__name__ == "DocumentStartEvent":
+                span = Span(self.source, event.start_mark.index, event.end_mark.index)
+                self.report.append(
+                    wrong_shape(
+                        span,
+                        "a second YAML document begins here",
+                        "a script is one document: remove the `---`",
+                    )
+                )
+                break
+
+    def _scalar(self, event: Any) -> None:
+        text: str = event.value
+        start, end = event.start_mark.index, event.end_mark.index
+        plain = not event.style
+        if plain and start == end and not text:  # the parsers disagree on where nothing is
+            start = end = self.end
+        tag = event.tag
+        if tag is not None and str(tag) not in ("tag:yaml.org,2002:str", "!"):
+            self._unknown_tag(event)
+        value = _resolve(text) if plain and tag is None else text
+        self.end = end
+        node = Scalar(value, plain, Span(self.source, start, end))
+        self._add(node, 1, event.anchor)
+
+    def _unknown_tag(self, event: Any) -> None:
+        span = Span(self.source, event.start_mark.index, event.end_mark.index)
+        self.report.append(
+            wrong_shape(
+                span,
+                "YAML tags other than `!!str` mean nothing here",
+                "write the value without a tag",
+            )
+        )
+
+    def _open(self, event: Any) -> None:
+        mapping = type(event).__name__ == "MappingStartEvent"
+        start = event.start_mark.index
+        if event.tag is not None:
+            self._unknown_tag(event)
+        if len(self.stack) >= MAX_DEPTH:
+            self._stop(start, f"nesting is deeper than {MAX_DEPTH} levels")
+        self.deepest = max(self.deepest, len(self.stack))
+        self.stack.append(_Open(mapping, bool(event.flow_style), start, event.anchor))
+        self.end = event.end_mark.index
+
+    def _close(self, event: Any) -> None:
+        done = self.stack.pop()
+        if done.flow:
+            self.end = event.end_mark.index
+        span = Span(self.source, done.start, self.end)
+        if not done.mapping:
+            self._add(Seq(tuple(done.items), span), done.size, done.anchor)
+            return
+        entries = self._entries(done.items)
+        self._add(Map(entries, span), done.size, done.anchor)
+
+    def _alias(self, event: Any) -> None:
+        self.end = event.end_mark.index
+        span = Span(self.source, event.start_mark.index, self.end)
+        known = self.anchors.get(event.anchor)
+        if known is None:
+            name = event.anchor
+            self.report.append(yaml_syntax(span, f"the alias `*{name}` has no anchor"))
+            raise _BeyondLimitError
+        self.aliased += known[1]
+        if self.aliased > max(MAX_ALIASED, len(self.source.text)):
+            self._stop(span.start, "aliases expand to more than the limit of nodes")
+        self._add(known[0], known[1], None)
+
+    def _add(self, node: Tree, size: int, anchor: str | None) -> None:
+        if anchor is not None:
+            self.anchors[anchor] = (node, size)
+        if not self.stack:
+            self.root = node
+            return
+        around = self.stack[-1]
+        around.items.append(node)
+        around.size += size
+
+    def _stop(self, at: int, message: str) -> None:
+        self.report.append(
+            too_big(Span(self.source, at, at + 1), message, "split it into sub-scripts")
+        )
+        raise _BeyondLimitError
+
+    def _entries(self, items: list[Tree]) -> tuple[Entry, ...]:
+        entries: list[Entry] = []
+        merged: list[Entry] = []
+        first: dict[object, Scalar] = {}
+        pairs = iter(items)
+        for key, value in zip(pairs, pairs, strict=True):
+            if not isinstance(key, Scalar):
+                self.report.append(
+                    wrong_shape(key.span, "a key must be a single word, not a collection")
+                )
+                continue
+            if key.value == "<<" and key.plain:
+                merged.extend(self._merge(value))
+                continue
+            known = first.setdefault((type(key.value), key.value), key)
+            if known is not key:
+                self.report.append(duplicate_key(Word(str(key.value), key.span), known.span))
+            entries.append(Entry(key, value))
+        for entry in merged:
+            if (type(entry.key.value), entry.key.value) not in first:
+                first[(type(entry.key.value), entry.key.value)] = entry.key
+                entries.append(entry)
+        return tuple(entries)
+
+    def _merge(self, value: Tree) -> Iterator[Entry]:
+        """What `<<` brings in: the entries of a mapping, or of a list of them."""
+        for item in value.items if isinstance(value, Seq) else (value,):
+            if isinstance(item, Map):
+                yield from item.entries
+            else:
+                self.report.append(wrong_shape(item.span, "`<<` merges mappings; this is none"))

@@ -1,0 +1,317 @@
+"""The value of a portable expression, without Python's `eval`.
+
+Nothing but the given names and a fixed table of functions can be called, and no attribute with a
+leading underscore, nor any of a function, class, module or frame, can be read. Work and size are
+limited, so that no text stops or fills the machine.
+"""
+
+from __future__ import annotations
+
+import operator
+import types
+from collections.abc import Callable, Iterable, Mapping
+from typing import Any
+
+from smachac.diagnostics.source import assert_never
+from smachac.ir.expressions import (
+    Attribute,
+    Binary,
+    Boolean,
+    Call,
+    Compare,
+    Conditional,
+    Constant,
+    DictDisplay,
+    Expr,
+    Index,
+    Lambda,
+    ListDisplay,
+    Name,
+    TupleDisplay,
+    Unary,
+    dotted,
+    print_expression,
+)
+
+MOST_STEPS = 1_000_000
+"""Nodes that one evaluation may visit; what a function goes through counts with its length."""
+
+LARGEST = 100_000
+"""Items and characters, those inside included, of what `+`, `*` and `range` may make."""
+
+MOST_BITS = 10_000
+"""Binary digits of the largest whole number that `**` may make."""
+
+CLOSED = (
+    types.FunctionType,
+    types.BuiltinFunctionType,
+    types.MethodType,
+    types.ModuleType,
+    types.GeneratorType,
+    types.CoroutineType,
+    types.FrameType,
+    types.TracebackType,
+    types.CodeType,
+    type,
+)
+"""Kinds of objects whose attributes lead out of the data."""
+
+METHODS = (types.MethodType, types.BuiltinMethodType)
+"""What an attribute may not be: a function such as `sorted` would call it."""
+
+
+class EvaluationError(Exception):
+    """An expression that has no value: what, and why. The cause is what Python would raise."""
+
+
+def evaluate(expr: Expr, names: Mapping[str, object]) -> object:
+    """The value of an expression over names; a lambda's is a function that raises the same errors.
+
+    A name may be dotted: `{"math.pi": 3.14}` gives `math.pi` a value without `math`.
+    Raises EvaluationError and nothing else.
+    """
+    return _run(_Evaluation(names, {}, _Budget()), expr)
+
+
+class _Budget:
+    """The steps left to an evaluation and the lambdas it calls, until it has ended."""
+
+    def __init__(self) -> None:
+        self.left = MOST_STEPS
+        self.ended = False
+
+
+def _run(evaluation: _Evaluation, expr: Expr) -> object:
+    """Run a whole evaluation, after which its budget is closed."""
+    try:
+        return evaluation.value(expr)
+    except RecursionError as error:
+        raise EvaluationError("the expression is too deep") from error
+    finally:
+        evaluation.budget.ended = True
+
+
+class _Evaluation:
+    """The names given, the parameters bound by the lambdas around, and the budget."""
+
+    def __init__(self, names: Mapping[str, object], bound: Mapping[str, object], budget: _Budget):
+        self.names = names
+        self.bound = bound
+        self.budget = budget
+
+    def value(self, expr: Expr) -> Any:
+        self.spend(1)
+        try:
+            return self.compute(expr)
+        except (EvaluationError, RecursionError):
+            raise
+        except Exception as error:
+            reason = f"{type(error).__name__}: {error}" if str(error) else type(error).__name__
+            raise EvaluationError(f"`{print_expression(expr)}` has no value: {reason}") from error
+
+    def spend(self, steps: int) -> None:
+        self.budget.left -= steps
+        if self.budget.left < 0:
+            raise EvaluationError(f"the expression takes more than {MOST_STEPS} steps")
+
+    def compute(self, expr: Expr) -> Any:
+        match expr:
+            case Constant(value):
+                return value
+            case Name(name):
+                return self.look_up(name)
+            case Attribute(value, name):
+                return self.attribute(expr, value, name)
+            case Index(value, index):
+                return self.value(value)[self.value(index)]
+            case Call():
+                return self.call(expr)
+            case Lambda(parameter, body):
+                return self.function(parameter, body)
+            case Conditional(test, then, otherwise):
+                return self.value(then if self.value(test) else otherwise)
+            case ListDisplay(items):
+                return [self.value(item) for item in items]
+            case TupleDisplay(items):
+                return tuple([self.value(item) for item in items])
+            case DictDisplay(entries):
+                return {self.value(key): self.value(value) for key, value in entries}
+            case Unary(word, operand):
+                return UNARY[word](self.value(operand))
+            case Binary(word, left, right):
+                return self.binary(word, self.value(left), self.value(right))
+            case Compare(first, rest):
+                return self.compare(first, rest)
+            case Boolean(word, operands):
+                return self.boolean(word, operands)
+        return assert_never(expr)
+
+    def look_up(self, name: str) -> object:
+        if name.startswith("_"):
+            raise EvaluationError(f"`{name}`: names with a leading underscore are not for scripts")
+        for table in (self.bound, self.names, FUNCTIONS):
+            if name in table:
+                return table[name]
+        raise EvaluationError(f"`{name}` is not defined")
+
+    def attribute(self, expr: Expr, value: Expr, name: str) -> object:
+        text = dotted(expr) or ""
+        if text in self.names and text.partition(".")[0] not in self.bound:
+            return self.names[text]
+        owner = self.value(value)
+        if name.startswith("_"):
+            raise EvaluationError(f"`{name}`: names with a leading underscore are not for scripts")
+        if isinstance(owner, CLOSED):
+            kind = type(owner).__name__
+            raise EvaluationError(f"`{name}`: attributes of a {kind} are not for scripts")
+        found = getattr(owner, name)
+        if isinstance(found, METHODS):
+            raise EvaluationError(f"`{name}`: methods are not for scripts")
+        return found
+
+    def call(self, expr: Call) -> object:
+        text = dotted(expr.function) or ""
+        function = self.names.get(text, FUNCTIONS.get(text))
+        if not callable(function) or text.partition(".")[0] in self.bound:
+            raise EvaluationError(f"`{print_expression(expr.function)}` is no function known here")
+        arguments = [self.value(argument) for argument in expr.arguments]
+        keywords = {name: self.value(argument) for name, argument in expr.keywords}
+        self.spend(sum(map(_length, arguments)))
+        return function(*arguments, **keywords)
+
+    def function(self, parameter: str | None, body: Expr) -> Callable[..., object]:
+        wanted = 0 if parameter is None else 1
+
+        def call(*arguments: object) -> object:
+            if len(arguments) != wanted:
+                raise EvaluationError(f"a lambda of {wanted} arguments got {len(arguments)}")
+            bound = self.bound if parameter is None else {**self.bound, parameter: arguments[0]}
+            if self.budget.ended:
+                return _run(_Evaluation(self.names, bound, _Budget()), body)
+            return _Evaluation(self.names, bound, self.budget).value(body)
+
+        return call
+
+    def binary(self, word: str, left: Any, right: Any) -> object:
+        if word == "**" and isinstance(left, int) and isinstance(right, int):
+            _limit(left.bit_length() * right, MOST_BITS, "digits")
+        elif word == "*" and isinstance(right, SIZED) and isinstance(left, int):
+            _limit(left * _size(right), LARGEST, "items")
+        elif word == "*" and isinstance(left, SIZED) and isinstance(right, int):
+            _limit(right * _size(left), LARGEST, "items")
+        elif word == "+" and isinstance(left, SIZED) and isinstance(right, SIZED):
+            _limit(_size(left) + _size(right), LARGEST, "items")
+        elif word == "%" and isinstance(left, str):
+            raise EvaluationError("`%` is for numbers here, not for formatting strings")
+        return BINARY[word](left, right)
+
+    def compare(self, first: Expr, rest: tuple[tuple[str, Expr], ...]) -> object:
+        left = self.value(first)
+        result: object = True
+        for place, (word, operand) in enumerate(rest):
+            if place and not result:
+                break
+            right = self.value(operand)
+            self.spend(_length(right))
+            result = COMPARE[word](left, right)
+            left = right
+        return result
+
+    def boolean(self, word: str, operands: tuple[Expr, ...]) -> object:
+        result: object = None
+        for operand in operands:
+            result = self.value(operand)
+            if bool(result) == (word == "or"):
+                break
+        return result
+
+
+SIZED = (str, bytes, list, tuple, dict)
+
+
+def _length(value: object) -> int:
+    return len(value) if isinstance(value, (*SIZED, range)) else 1
+
+
+def _limit(size: int, most: int, what: str) -> None:
+    if size > most:
+        raise EvaluationError(f"the value would have more than {most} {what}")
+
+
+def _size(value: Any) -> int:
+    """Items and characters in a value and in what it holds, counted up to the limit."""
+    total = 0
+    todo = [value]
+    while todo and total <= LARGEST:
+        current = todo.pop()
+        if isinstance(current, SIZED):
+            total += len(current)
+        if isinstance(current, (list, tuple)):
+            todo.extend(current)
+        elif isinstance(current, dict):
+            todo.extend(current.values())
+    return total
+
+
+def _range(*bounds: int) -> range:
+    found = range(*bounds)
+    _limit(len(found), LARGEST, "items")
+    return found
+
+
+def _round(number: Any, ndigits: int | None = None) -> object:
+    _limit(abs(ndigits or 0), 1000, "digits")
+    return round(number, ndigits)
+
+
+def _sum(items: Iterable[Any], start: Any = 0) -> object:
+    items = list(items)
+    _limit(_size(items) + _size(start), LARGEST, "items")
+    return sum(items, start)
+
+
+UNARY: Mapping[str, Callable[[Any], object]] = {
+    "+": operator.pos,
+    "-": operator.neg,
+    "not": operator.not_,
+}
+
+BINARY: Mapping[str, Callable[[Any, Any], object]] = {
+    "+": operator.add,
+    "-": operator.sub,
+    "*": operator.mul,
+    "/": operator.truediv,
+    "//": operator.floordiv,
+    "%": operator.mod,
+    "**": operator.pow,
+}
+
+COMPARE: Mapping[str, Callable[[Any, Any], object]] = {
+    "<": operator.lt,
+    "<=": operator.le,
+    ">": operator.gt,
+    ">=": operator.ge,
+    "==": operator.eq,
+    "!=": operator.ne,
+    "in": lambda left, right: left in right,
+    "not in": lambda left, right: left not in right,
+}
+
+FUNCTIONS: Mapping[str, Callable[..., object]] = {
+    "abs": abs,
+    "bool": bool,
+    "dict": dict,
+    "float": float,
+    "int": int,
+    "len": len,
+    "list": list,
+    "max": max,
+    "min": min,
+    "range": _range,
+    "round": _round,
+    "sorted": sorted,
+    "str": str,
+    "sum": _sum,
+    "tuple": tuple,
+}
+"""The functions that every expression may call, as in Python."""

@@ -1,0 +1,254 @@
+"""Scenarios: what chosen leaves are to do in a run, instead of what their state type does."""
+
+from __future__ import annotations
+
+import copy
+from collections.abc import Iterable, Mapping
+from dataclasses import dataclass
+from typing import NamedTuple
+
+from smachac.diagnostics.diagnostic import did_you_mean
+from smachac.interpreter.builtin_states import stopping_when_asked
+from smachac.interpreter.result import Behaviour
+from smachac.interpreter.userdata import BehaviourError, Userdata
+from smachac.ir.builtin_states import default_outcome
+from smachac.ir.nodes import Iterator, Leaf, Machine, Node
+from smachac.ir.traversal import PREEMPTED, outcome_names, walk
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Step:
+    """One visit of a leaf: the keys it writes, in order, and its outcome.
+
+    No outcome: the one by which such a state usually ends. `stop`: as it begins the whole machine
+    is asked to stop. `wait`: it first waits until it is asked to. `error`: it fails with these
+    words instead.
+    """
+
+    outcome: str | None = None
+    writes: tuple[tuple[str, object], ...] = ()
+    wait: bool = False
+    error: str = ""
+    stop: bool = False
+
+
+LONG = 1e9
+"""Seconds of virtual time: longer than anything else in a run."""
+
+
+STEP_KEYS = ("outcome", "set", "wait", "error", "stop")
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Scenario:
+    """The steps of leaves by path; visit n takes step n, the last one repeats.
+
+    A path may be the end of a full one (`GRASP`, `PICK/GRASP`) where only one leaf has it.
+    """
+
+    steps: Mapping[str, tuple[Step, ...]]
+
+
+def acted(scenario: Scenario, machine: Machine, otherwise: Behaviour) -> Behaviour:
+    """A behaviour that follows the scenario, and `otherwise` for leaves that are not in it.
+
+    Raises ValueError for a path that names no leaf, or several.
+    """
+    by_path = _by_path(scenario, machine)
+    others = stopping_when_asked(otherwise)
+
+    def behave(path: str, leaf: Leaf, visit: int, userdata: Userdata) -> str:
+        steps = by_path.get(path)
+        if not steps:
+            return others(path, leaf, visit, userdata)
+        step = steps[min(visit, len(steps)) - 1]
+        if step.stop:
+            userdata.stop_machine()
+        return follow(step, leaf, userdata)
+
+    return behave
+
+
+def follow(step: Step, leaf: Leaf, userdata: Userdata) -> str:
+    """What a leaf does at a step, once the machine was asked to stop where it is to be."""
+    able = PREEMPTED in outcome_names(leaf)
+    if userdata.preempted and able:
+        userdata.service_preempt()
+        return PREEMPTED
+    if step.wait and not userdata.preempted:
+        userdata.sleep(LONG)
+        if able:
+            return PREEMPTED
+    if step.error:
+        raise BehaviourError(step.error)
+    for key, value in step.writes:
+        userdata[key] = copy.deepcopy(value)
+    return step.outcome if step.outcome is not None else default_outcome(leaf)
+
+
+class Row(NamedTuple):
+    """A step as plain data, for programs that are run."""
+
+    outcome: str
+    writes: dict[str, object]
+    wait: bool
+    error: str
+    stop: bool
+
+
+def plain_steps(scenario: Scenario, machine: Machine) -> dict[str, list[Row]]:
+    """A scenario as rows by full path.
+
+    Raises ValueError for a path that names no leaf, or several.
+    """
+    nodes = dict(walk(machine.root))
+    rows: dict[str, list[Row]] = {}
+    for path, steps in _by_path(scenario, machine).items():
+        leaf = nodes[path]
+        assert isinstance(leaf, Leaf)
+        usual = default_outcome(leaf)
+        rows[path] = [
+            Row(step.outcome or usual, dict(step.writes), step.wait, step.error, step.stop)
+            for step in steps
+        ]
+    return rows
+
+
+def _by_path(scenario: Scenario, machine: Machine) -> dict[str, tuple[Step, ...]]:
+    leaves = _leaves(machine)
+    by_path: dict[str, tuple[Step, ...]] = {}
+    for name, steps in scenario.steps.items():
+        path = _found(name, leaves)
+        if path is None:
+            raise ValueError(_not_found(name, machine, leaves))
+        by_path[path] = steps
+    return by_path
+
+
+def read_scenario(data: object, machine: Machine) -> tuple[Scenario, list[str]]:
+    """A scenario of plain data, as a file holds it, with full paths; and what is wrong with it.
+
+    ```yaml
+    states:
+      sm/PICK/GRASP:
+        - {outcome: aborted}
+        - {outcome: succeeded, set: {width: 0.05}}
+        - {error: the gripper does not answer}
+      CHECK: succeeded
+      TIMER: {wait: true}
+      WALK: [succeeded, {outcome: preempted, stop: true}]
+    ```
+    """
+    problems: list[str] = []
+    steps: dict[str, tuple[Step, ...]] = {}
+    if not isinstance(data, dict) or not isinstance(data.get("states"), dict):
+        return Scenario(steps={}), ["a scenario is a mapping with `states`: a mapping of paths"]
+    problems.extend(
+        f"unknown key `{key}`; a scenario has only `states`" for key in data if key != "states"
+    )
+    leaves = _leaves(machine)
+    for name, given in data["states"].items():
+        path = _found(str(name), leaves)
+        if path is None:
+            problems.append(_not_found(str(name), machine, leaves))
+            continue
+        if path in steps:
+            problems.append(f"`{path}` is given twice, the second time as `{name}`")
+        entries = given if isinstance(given, list) else [given]
+        if not entries:
+            problems.append(f"`{name}` has no steps")
+        reader = _Reader(leaves[path], path, problems)
+        steps[path] = tuple(reader.step(entry, at) for at, entry in enumerate(entries, 1))
+    return Scenario(steps=steps), problems
+
+
+@dataclass(frozen=True, slots=True)
+class _Place:
+    """A leaf, and whether it may write any key."""
+
+    leaf: Leaf
+    loose: bool
+
+
+@dataclass(frozen=True, slots=True)
+class _Reader:
+    """Reads the steps of one leaf and notes what is wrong."""
+
+    place: _Place
+    path: str
+    problems: list[str]
+
+    def step(self, entry: object, number: int) -> Step:
+        if isinstance(entry, str | bool):
+            return Step(outcome=self.outcome(entry, number))
+        if not isinstance(entry, dict):
+            self.problem(number, "a step is an outcome, or a mapping with `outcome` and `set`")
+            return Step()
+        for key in entry:
+            if key not in STEP_KEYS:
+                help_ = did_you_mean(str(key), STEP_KEYS)
+                self.problem(number, f"unknown key `{key}`", help_)
+        writes = entry.get("set") or {}
+        if not isinstance(writes, dict):
+            self.problem(number, "`set` is a mapping of userdata keys to values")
+            writes = {}
+        declared = [key.name for key in self.place.leaf.outputs]
+        for key in writes:
+            if not self.place.loose and key not in declared:
+                help_ = did_you_mean(str(key), declared)
+                self.problem(number, f"`{key}` is not one of its output keys", help_)
+        for key in ("wait", "stop"):
+            if not isinstance(entry.get(key, False), bool):
+                self.problem(number, f"`{key}` is true or false")
+        outcome = self.outcome(entry["outcome"], number) if "outcome" in entry else None
+        return Step(
+            outcome=outcome,
+            writes=tuple((str(key), writes[key]) for key in writes),
+            wait=entry.get("wait") is True,
+            error=str(entry.get("error", "")),
+            stop=entry.get("stop") is True,
+        )
+
+    def outcome(self, given: object, number: int) -> str:
+        """YAML reads the outcomes `true` and `false` as booleans."""
+        name = str(given).lower() if isinstance(given, bool) else str(given)
+        declared = outcome_names(self.place.leaf)
+        if not self.place.leaf.open and name not in declared:
+            help_ = did_you_mean(name, declared)
+            self.problem(number, f"`{name}` is not one of its outcomes", help_)
+        return name
+
+    def problem(self, number: int, message: str, help_: str | None = None) -> None:
+        end = f"; {help_}" if help_ else ""
+        self.problems.append(f"{self.path}, step {number}: {message}{end}")
+
+
+def _leaves(machine: Machine) -> dict[str, _Place]:
+    nodes: dict[str, Node] = dict(walk(machine.root))
+    return {
+        path: _Place(node, node.open or isinstance(nodes[path.rpartition("/")[0]], Iterator))
+        for path, node in nodes.items()
+        if isinstance(node, Leaf)
+    }
+
+
+def _matches(name: str, paths: Iterable[str]) -> list[str]:
+    return [path for path in paths if path == name or path.endswith(f"/{name}")]
+
+
+def _found(name: str, leaves: Mapping[str, object]) -> str | None:
+    if name in leaves:
+        return name
+    matches = _matches(name, leaves)
+    return matches[0] if len(matches) == 1 else None
+
+
+def _not_found(name: str, machine: Machine, leaves: Mapping[str, object]) -> str:
+    matches = _matches(name, leaves)
+    if matches:
+        return f"`{name}` may be any of {', '.join(f'`{path}`' for path in matches)}"
+    if _matches(name, (path for path, _ in walk(machine.root))):
+        return f"`{name}` is a container: it ends as its states make it end"
+    names = [*leaves, *(path.rpartition("/")[2] for path in leaves)]
+    help_ = did_you_mean(name, names)
+    return f"there is no state `{name}`" + (f"; {help_}" if help_ else "")

@@ -1,0 +1,327 @@
+"""Reading a machine from its text (.smir)."""
+
+from __future__ import annotations
+
+import json
+from collections.abc import Callable, Iterator, Mapping
+from dataclasses import fields
+from functools import cache
+from typing import TYPE_CHECKING, Any
+
+from smachac.diagnostics.source import Source, Span
+from smachac.grammars import load
+from smachac.ir import nodes
+from smachac.ir.nodes import (
+    Concurrence,
+    Condition,
+    Data,
+    Expression,
+    Key,
+    Leaf,
+    Machine,
+    Node,
+    Outcome,
+    OutcomeRule,
+    Preset,
+    Remap,
+    StateMachine,
+    Struct,
+    Transition,
+    Value,
+    Variable,
+)
+from smachac.ir.types import ANY, Type, parse_type
+
+if TYPE_CHECKING:
+    from lark import Lark
+    from lark.exceptions import UnexpectedInput
+
+KINDS: Mapping[str, type[Node]] = {
+    "state": Leaf,
+    "machine": StateMachine,
+    "sequence": nodes.Sequence,
+    "concurrence": Concurrence,
+    "iterator": nodes.Iterator,
+}
+
+FIELDS: Mapping[type[object], frozenset[str]] = {
+    owner: frozenset(field.name for field in fields(owner)) for owner in (Machine, *KINDS.values())
+}
+"""The fields of what statements may describe."""
+
+LONGEST_DECIMAL = 4300
+"""Characters of the longest decimal whole number, the limit that Python itself has."""
+
+
+class IrSyntaxError(Exception):
+    """A text that is no machine: what is wrong and where, line and column counted from 1."""
+
+    def __init__(self, message: str, span: Span):
+        super().__init__(f"{span}: {message}")
+        self.message = message
+        self.span = span
+        self.line, self.column = span.source.position(span.start)
+
+
+def parse_machine(text: str, name: str = "<ir>") -> Machine:
+    """The machine that a text describes; its spans point into the text, shown under `name`.
+
+    The span of a node is that of its name. Raises IrSyntaxError, and nothing else.
+    """
+    from lark.exceptions import UnexpectedInput
+
+    source = Source(name, text)
+    try:
+        return _Reader(source).machine(_parser().parse(text))
+    except UnexpectedInput as error:
+        raise _unexpected(error, source) from None
+    except RecursionError:
+        raise IrSyntaxError("a value is nested too deeply", Span(source, 0, 0)) from None
+
+
+@cache
+def _parser() -> Lark:
+    return load("ir", lexer="contextual")
+
+
+MOST_SHOWN = 6
+"""More kinds of what would have fitted than this help nobody."""
+
+
+def _unexpected(error: UnexpectedInput, source: Source) -> IrSyntaxError:
+    """The error of the parser, in words: what it met and what would have fitted."""
+    start = error.pos_in_stream
+    token = getattr(error, "token", None)
+    if start is None or (token is not None and token.type == "$END"):
+        start = len(source.text)
+    rest = source.text[start : start + 100].split()
+    met = f"`{rest[0]}`" if rest else "the end of the text"
+    fitting = sorted(map(_shown, _fitting(error)))
+    wanted = f"; {', '.join(fitting)} would fit" if 0 < len(fitting) <= MOST_SHOWN else ""
+    end = start + len(rest[0]) if rest else start
+    return IrSyntaxError(f"unexpected {met}{wanted}", Span(source, start, end))
+
+
+def _fitting(error: UnexpectedInput) -> set[str]:
+    return set(getattr(error, "accepts", None) or getattr(error, "allowed", None) or ())
+
+
+def _shown(terminal: str) -> str:
+    """A terminal of the grammar as users know it."""
+    if terminal == "$END":
+        return "the end"
+    pattern = _parser().get_terminal(terminal).pattern
+    return f"`{pattern.value}`" if pattern.type == "str" else f"a {terminal.lower()}"
+
+
+class _Reader:
+    """From the tree of one source to nodes. Tokens and trees of the parser are `Any`."""
+
+    def __init__(self, source: Source):
+        self.source = source
+
+    def machine(self, tree: Any) -> Machine:
+        *statements, root = tree.children
+        built: dict[int, Node] = {}
+        # Parents come before their children here, so that the way back builds children first.
+        order = [root]
+        for each in order:
+            order.extend(child for child in each.children if _is_node(child))
+        for each in reversed(order):
+            built[id(each)] = self.node(each, built)
+        outermost = built[id(root)]
+        if not isinstance(outermost, StateMachine):
+            raise IrSyntaxError("the outermost container is a `machine`", self.span(root))
+        return Machine(root=outermost, **self.fields(statements, Machine, "program"))
+
+    def node(self, tree: Any, built: Mapping[int, Node]) -> Node:
+        kind, name, type_, *rest = tree.children
+        fields = self.fields([each for each in rest if not _is_node(each)], KINDS[kind], kind)
+        children = tuple(built[id(each)] for each in rest if _is_node(each))
+        if children and kind == "state":
+            raise IrSyntaxError("a state has no states inside", self.span(tree))
+        if children:
+            fields["children"] = children
+        return KINDS[kind](name=_text(name), type=_text(type_), span=self.span(name), **fields)
+
+    def fields(self, statements: list[Any], owner: type[object], kind: str) -> dict[str, Any]:
+        """The fields that statements fill. Statements of one kind that add up are joined."""
+        several: dict[str, list[Any]] = {}
+        single: dict[str, Any] = {}
+        known = FIELDS[owner]
+        for tree in statements:
+            field = str(tree.data)
+            if field not in known:
+                raise IrSyntaxError(f"a {kind} has no such statement", self.span(tree))
+            if field in SEVERAL:
+                several.setdefault(field, []).extend(SEVERAL[field](self, tree))
+            elif field in single:
+                raise IrSyntaxError("this is given twice", self.span(tree))
+            else:
+                single[field] = SINGLE[field](self, tree)
+                place = PLACES.get(field)
+                if place:
+                    single[place] = self.span(tree.children[0])
+        return {**single, **{field: tuple(found) for field, found in several.items()}}
+
+    def span(self, item: Any) -> Span:
+        """The place of a token or a tree."""
+        place = getattr(item, "meta", item)
+        return Span(self.source, place.start_pos, place.end_pos)
+
+    def outcomes(self, tree: Any) -> Iterator[Outcome]:
+        for each in tree.children:
+            name, doc = each.children
+            yield Outcome(name=_text(name), doc=_text(doc), span=self.span(name))
+
+    def key(self, tree: Any) -> Iterator[Key]:
+        name, type_, doc = tree.children
+        yield Key(name=_text(name), type=self.type(type_), doc=_text(doc), span=self.span(name))
+
+    def type(self, token: Any) -> Type:
+        if token is None:
+            return ANY
+        found = parse_type(_text(token).rstrip())
+        if found is None:
+            raise IrSyntaxError(f"`{_text(token).rstrip()}` is no type", self.span(token))
+        return found
+
+    def names(self, tree: Any) -> Iterator[str]:
+        return map(_text, tree.children)
+
+    def transition(self, tree: Any) -> Iterator[Transition]:
+        outcome, target, origin = tree.children
+        yield Transition(
+            outcome=_text(outcome),
+            target=_text(target),
+            origin="written" if origin is None else str(origin),  # type: ignore[arg-type]
+            span=self.span(outcome),
+            target_span=self.span(target),
+        )
+
+    def remap(self, tree: Any) -> Iterator[Remap]:
+        key, to = tree.children
+        yield Remap(key=_text(key), to=_text(to), span=self.span(key))
+
+    def variable(self, tree: Any) -> Iterator[Variable]:
+        name, type_, data = tree.children
+        yield Variable(
+            name=_text(name), type=self.type(type_), value=self.value(data), span=self.span(name)
+        )
+
+    def preset(self, tree: Any) -> Iterator[Preset]:
+        key, type_, data = tree.children
+        yield Preset(
+            key=_text(key), type=self.type(type_), value=self.value(data), span=self.span(key)
+        )
+
+    def rule(self, tree: Any) -> Iterator[OutcomeRule]:
+        outcome, *conditions = tree.children
+        when = tuple(map(self.condition, filter(None, conditions)))
+        yield OutcomeRule(outcome=_text(outcome), when=when, span=self.span(outcome))
+
+    def condition(self, tree: Any) -> Condition:
+        child, outcome = tree.children
+        return Condition(child=_text(child), outcome=_text(outcome), span=self.span(child))
+
+    def written(self, tree: Any) -> Iterator[tuple[str, tuple[str, ...]]]:
+        outcome, *keys = map(_text, tree.children)
+        yield outcome, tuple(keys)
+
+    def final(self, tree: Any) -> Iterator[tuple[str, str]]:
+        first, last = tree.children
+        yield _text(first), _text(last)
+
+    def name(self, tree: Any) -> str:
+        return _text(tree.children[0])
+
+    def items(self, tree: Any) -> Value:
+        return self.value(tree.children[0])
+
+    def flag(self, tree: Any) -> bool:
+        return True
+
+    def value(self, item: Any) -> Value:
+        return Value(data=self.data(item), span=self.span(item))
+
+    def data(self, item: Any) -> Data:
+        match getattr(item, "data", None) or item.type:
+            case "CONSTANT":
+                return CONSTANTS[item]
+            case "FLOAT":
+                return float(item)
+            case "INTEGER":
+                return self.integer(item)
+            case "STRING":
+                return _text(item)
+            case "EXPRESSION":
+                return Expression(text=str(item[1:-1]), span=self.span(item))
+            case "code":
+                return Expression(text=_text(item.children[0]), span=self.span(item))
+            case "list":
+                return tuple([self.data(each) for each in item.children])
+            case "struct":
+                pairs = (each.children for each in item.children)
+                return Struct(entries=tuple((_text(name), self.data(data)) for name, data in pairs))
+        raise AssertionError(f"the grammar knows a kind of data that the reader does not: {item!r}")
+
+    def integer(self, token: Any) -> int:
+        if "x" in token:
+            return int(token, 16)
+        if len(token) > LONGEST_DECIMAL:
+            raise IrSyntaxError("a decimal number has too many digits", self.span(token))
+        return int(token)
+
+
+def _is_node(tree: Any) -> bool:
+    return getattr(tree, "data", None) == "node"
+
+
+def _text(token: Any) -> str:
+    """What a name, a quoted string or a missing doc stands for."""
+    if token is None:
+        return ""
+    return str(json.loads(token)) if token.type == "STRING" else str(token)
+
+
+CONSTANTS: Mapping[str, bool | None] = {"true": True, "false": False, "null": None}
+
+SEVERAL: Mapping[str, Callable[[_Reader, Any], Iterator[Any]]] = {
+    "outcomes": _Reader.outcomes,
+    "inputs": _Reader.key,
+    "outputs": _Reader.key,
+    "claims": _Reader.names,
+    "transitions": _Reader.transition,
+    "remaps": _Reader.remap,
+    "variables": _Reader.variable,
+    "writes": _Reader.written,
+    "userdata": _Reader.preset,
+    "rules": _Reader.rule,
+    "loop_outcomes": _Reader.names,
+    "final_map": _Reader.final,
+}
+"""The fields that are tuples: what one statement adds to them."""
+
+SINGLE: Mapping[str, Callable[[_Reader, Any], Any]] = {
+    "source": _Reader.name,
+    "digest": _Reader.name,
+    "base": _Reader.name,
+    "doc": _Reader.name,
+    "open": _Reader.flag,
+    "blocking": _Reader.flag,
+    "forever": _Reader.flag,
+    "initial": _Reader.name,
+    "connector_outcome": _Reader.name,
+    "default_outcome": _Reader.name,
+    "join": _Reader.name,
+    "catches": _Reader.name,
+    "sugar": _Reader.name,
+    "items": _Reader.items,
+    "items_key": _Reader.name,
+    "item_key": _Reader.name,
+    "exhausted_outcome": _Reader.name,
+}
+"""The other fields: what the one statement says."""
+
+PLACES: Mapping[str, str] = {"initial": "initial_span", "default_outcome": "default_span"}
+"""Fields that have their place beside them."""

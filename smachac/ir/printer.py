@@ -1,0 +1,286 @@
+"""A machine as text (.smir): stable, complete and readable; grammars/ir.lark is the notation.
+
+Every field is carried but the spans and `via`; what a default says is left out.
+"""
+
+from __future__ import annotations
+
+import json
+import re
+from collections.abc import Iterable, Iterator, Mapping
+from functools import lru_cache
+from typing import Protocol
+
+from smachac.diagnostics.source import assert_never
+from smachac.ir import nodes
+from smachac.ir.nodes import (
+    Concurrence,
+    Data,
+    Expression,
+    Key,
+    Leaf,
+    Machine,
+    Node,
+    OutcomeRule,
+    Preset,
+    Struct,
+    Transition,
+    Variable,
+)
+from smachac.ir.parser import IrSyntaxError, parse_machine
+from smachac.ir.types import ANY, Type
+
+__all__ = ["IrSyntaxError", "parse_machine", "print_data", "print_machine"]
+
+HEADER = "# A state graph of smachac, format 1: one statement a line, as in grammars/ir.lark."
+
+_NAME = re.compile(r"[^\W\d]\w*")
+_PLAIN_TYPE = re.compile(r'[^\s"={}#][^\n"={}#]*')
+_PLAIN_CODE = re.compile(r"[^`\n\r\ud800-\udfff]*")
+_SURROGATE = re.compile(r"[\ud800-\udfff]")
+_encode = json.JSONEncoder(ensure_ascii=False).encode
+
+MOST_BITS = 10_000
+"""Whole numbers of more binary digits are printed in hexadecimal; Python limits decimal ones."""
+
+
+class KeyTypes(Protocol):
+    """The types of keys by node path and key name (made by analysis.type_inference)."""
+
+    @property
+    def keys(self) -> Mapping[tuple[str, str], Type]: ...
+    @property
+    def inputs(self) -> Mapping[tuple[str, str], Type]: ...
+    @property
+    def outputs(self) -> Mapping[tuple[str, str], Type]: ...
+
+
+def print_machine(machine: Machine, types: KeyTypes | None = None) -> str:
+    """The text of a machine, for people and for `parse_machine`, ending in a line feed.
+
+    Of `types` those that no statement says follow as comments. Iterative over the nodes, so that
+    deep nesting costs nothing.
+    """
+    inferred = _inferred(types) if types is not None else {}
+    lines = [HEADER, *_preamble(machine)]
+    todo: list[tuple[Node | None, str, int]] = [(machine.root, machine.root.name, 0)]
+    while todo:
+        node, path, depth = todo.pop()
+        margin = "  " * depth
+        if node is None:
+            lines.append(f"{margin}}}")
+            continue
+        head = f"{_kind(node)} {_name(node.name)}: {_name(node.type)} {{"
+        body = [*_statements(node), *_comments(node, inferred.get(path, ()))]
+        children = () if isinstance(node, Leaf) else node.children
+        lines.append("")
+        if not body and not children:
+            lines.append(f"{margin}{head}}}")
+            continue
+        lines.append(margin + head)
+        lines.extend(f"{margin}  {statement}" for statement in body)
+        todo.append((None, path, depth))
+        todo.extend((each, f"{path}/{each.name}", depth + 1) for each in reversed(children))
+    return "\n".join(lines) + "\n"
+
+
+def _inferred(types: KeyTypes) -> dict[str, list[tuple[str, str, Type]]]:
+    """What is known of keys, by path: the word of the statement, the key, its type."""
+    found: dict[str, list[tuple[str, str, Type]]] = {}
+    maps = (("userdata", types.keys), ("input", types.inputs), ("output", types.outputs))
+    for word, known in maps:
+        for (path, key), type_ in known.items():
+            found.setdefault(path, []).append((word, key, type_))
+    return found
+
+
+def _comments(node: Node, inferred: Iterable[tuple[str, str, Type]]) -> Iterator[str]:
+    """The types of keys that the statements of a node do not say."""
+    held = () if isinstance(node, Leaf) else node.userdata
+    own = {*node.inputs, *node.outputs}
+    said = {key.name for key in own if key.type != ANY} | {p.key for p in held if p.type != ANY}
+    for word, key, type_ in inferred:
+        if type_ != ANY and key not in said:
+            yield f"# {word} {_name(key)}{_type(type_)}"
+
+
+def _preamble(machine: Machine) -> Iterator[str]:
+    if machine.source:
+        yield f"script {_quote(machine.source)}"
+    if machine.digest:
+        yield f"digest {_quote(machine.digest)}"
+    if machine.base != "Base":
+        yield f"base {_name(machine.base)}"
+    yield from map(_variable, machine.variables)
+
+
+def _kind(node: Node) -> str:
+    match node:
+        case Leaf():
+            return "state"
+        case nodes.StateMachine():
+            return "machine"
+        case nodes.Sequence():
+            return "sequence"
+        case Concurrence():
+            return "concurrence"
+        case nodes.Iterator():
+            return "iterator"
+    return assert_never(node)
+
+
+def _statements(node: Node) -> Iterator[str]:
+    """The statements of one node, without its children, in the order they are printed in."""
+    if node.doc:
+        yield f"doc {_quote(node.doc)}"
+    yield from _outcomes(node.outcomes)
+    for key in node.inputs:
+        yield f"input {_key(key)}"
+    for key in node.outputs:
+        yield f"output {_key(key)}"
+    if node.claims:
+        yield f"claims {_names(node.claims)}"
+    yield from _optional("catches", node.catches)
+    if not isinstance(node, Leaf):
+        yield from _line("sugar", node.sugar)
+    match node:
+        case Leaf():
+            yield from _leaf(node)
+        case nodes.StateMachine():
+            yield from map(_preset, node.userdata)
+            yield from _optional("initial", node.initial)
+            yield from ("forever",) * node.forever
+        case nodes.Sequence():
+            yield from map(_preset, node.userdata)
+            yield from _optional("connector", node.connector_outcome)
+            yield from _optional("initial", node.initial)
+        case Concurrence():
+            yield from map(_preset, node.userdata)
+            yield from _concurrence(node)
+        case nodes.Iterator():
+            yield from map(_preset, node.userdata)
+            yield from _iterator(node)
+        case _:
+            assert_never(node)
+    for remap in node.remaps:
+        yield f"remap {_name(remap.key)} -> {_name(remap.to)}"
+    yield from map(_transition, node.transitions)
+
+
+def _outcomes(outcomes: tuple[nodes.Outcome, ...]) -> Iterator[str]:
+    """All in one line, or a line each where one has a doc."""
+    if not any(outcome.doc for outcome in outcomes):
+        names = _names(outcome.name for outcome in outcomes)
+        yield from _line("outcomes", names)
+        return
+    for outcome in outcomes:
+        yield f"outcomes {_name(outcome.name)}{_doc(outcome.doc)}"
+
+
+def _leaf(leaf: Leaf) -> Iterator[str]:
+    yield from ("open",) * leaf.open
+    yield from ("blocking",) * leaf.blocking
+    for outcome, keys in leaf.writes:
+        yield f"writes {_name(outcome)}: {_names(keys)}"
+    yield from map(_variable, leaf.variables)
+
+
+def _concurrence(node: Concurrence) -> Iterator[str]:
+    yield from _optional("default", node.default_outcome)
+    if node.join != "all":
+        yield f"join {node.join}"
+    yield from map(_rule, node.rules)
+
+
+def _iterator(node: nodes.Iterator) -> Iterator[str]:
+    if node.items is not None:
+        yield f"items {print_data(node.items.data)}"
+    if node.items_key:
+        yield f"items from {_name(node.items_key)}"
+    if node.item_key != "it_data":
+        yield f"item {_name(node.item_key)}"
+    if node.exhausted_outcome != "exhausted":
+        yield f"exhausted {_name(node.exhausted_outcome)}"
+    yield from _line("loop", _names(node.loop_outcomes))
+    for first, last in node.final_map:
+        yield f"final {_name(first)} -> {_name(last)}"
+
+
+def _line(word: str, rest: str) -> Iterator[str]:
+    if rest:
+        yield f"{word} {rest}"
+
+
+def _optional(word: str, name: str) -> Iterator[str]:
+    yield from _line(word, _name(name) if name else "")
+
+
+def _key(key: Key) -> str:
+    return f"{_name(key.name)}{_type(key.type)}{_doc(key.doc)}"
+
+
+def _preset(preset: Preset) -> str:
+    return f"userdata {_name(preset.key)}{_type(preset.type)} = {print_data(preset.value.data)}"
+
+
+def _variable(variable: Variable) -> str:
+    return (
+        f"variable {_name(variable.name)}{_type(variable.type)} = {print_data(variable.value.data)}"
+    )
+
+
+def _transition(step: Transition) -> str:
+    origin = "" if step.origin == "written" else f" ({step.origin})"
+    return f"on {_name(step.outcome)} -> {_name(step.target)}{origin}"
+
+
+def _rule(rule: OutcomeRule) -> str:
+    conditions = ", ".join(f"{_name(each.child)} = {_name(each.outcome)}" for each in rule.when)
+    return f"rule {_name(rule.outcome)}{' when ' if conditions else ''}{conditions}"
+
+
+def _type(type_: Type) -> str:
+    if type_ == ANY:
+        return ""
+    text = str(type_)
+    return f": {text if _PLAIN_TYPE.fullmatch(text) else _quote(text)}"
+
+
+def _doc(doc: str) -> str:
+    return f" {_quote(doc)}" if doc else ""
+
+
+def _names(names: Iterable[str]) -> str:
+    return ", ".join(map(_name, names))
+
+
+@lru_cache(maxsize=10_000)
+def _name(name: str) -> str:
+    return name if _NAME.fullmatch(name) else _quote(name)
+
+
+def _quote(text: str) -> str:
+    return json.dumps(text) if _SURROGATE.search(text) else _encode(text)
+
+
+def print_data(data: Data) -> str:
+    """A value in one line; code stands in backticks."""
+    match data:
+        case float():
+            return repr(data)
+        case str():
+            return _quote(data)
+        case None:
+            return "null"
+        case bool():
+            return "true" if data else "false"
+        case int():
+            return hex(data) if data.bit_length() > MOST_BITS else repr(data)
+        case Expression(text=text):
+            return f"`{text}`" if _PLAIN_CODE.fullmatch(text) else f"code {_quote(text)}"
+        case Struct(entries=entries):
+            pairs = (f"{_name(name)}: {print_data(item)}" for name, item in entries)
+            return f"{{{', '.join(pairs)}}}"
+        case tuple():
+            return f"[{', '.join(map(print_data, data))}]"
+    return assert_never(data)

@@ -1,0 +1,87 @@
+"""Robots: what rules need to know of them, whichever file or list it comes from."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Mapping
+from dataclasses import dataclass, field
+
+from smachac.diagnostics.source import NOWHERE, Span
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Joint:
+    """A joint that turns, and its limits (rad); one that turns without an end has infinite ones.
+
+    `span` is its place in the robot's file, where there is one.
+    """
+
+    name: str
+    lower: float = -math.inf
+    upper: float = math.inf
+    span: Span = field(default=NOWHERE, compare=False, repr=False)
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Robot:
+    """A robot: its joints, the limbs that lists of angles are of, the names of its frames.
+
+    A limb is joints from the base to the hand. `frames` are its links, none where they are not
+    known; `added` are those that the script lists beside them.
+    """
+
+    name: str
+    joints: tuple[Joint, ...]
+    limbs: tuple[tuple[Joint, ...], ...]
+    frames: frozenset[str] = frozenset()
+    added: frozenset[str] = frozenset()
+
+
+def _limb(names: list[str], limits: tuple[tuple[float, float], ...]) -> tuple[Joint, ...]:
+    pairs = zip(names, limits, strict=True)
+    return tuple(Joint(name=name, lower=low, upper=high) for name, (low, high) in pairs)
+
+
+_BAXTER = (
+    (-1.70168, 1.70168),
+    (-2.147, 1.047),
+    (-3.05418, 3.05418),
+    (-0.05, 2.618),
+    (-3.059, 3.059),
+    (-1.5708, 2.094),
+    (-3.059, 3.059),
+)
+"""Of either arm: baxter_common (Rethink Robotics), baxter_base.urdf.xacro."""
+
+_PANDA = (
+    (-2.9671, 2.9671),
+    (-1.8326, 1.8326),
+    (-2.9671, 2.9671),
+    (-3.1416, 0.0),
+    (-2.9671, 2.9671),
+    (-0.0873, 3.8223),
+    (-2.9671, 2.9671),
+)
+"""franka_panda/panda.urdf of PyBullet's data, the limits of the joints."""
+
+_PANDA_LINKS = (*(f"link{k}" for k in range(9)), "hand", "leftfinger", "rightfinger", "grasptarget")
+
+_LEFT, _RIGHT = (
+    _limb([f"{side}_{joint}" for joint in ("s0", "s1", "e0", "e1", "w0", "w1", "w2")], _BAXTER)
+    for side in ("left", "right")
+)
+_ARM = _limb([f"panda_joint{k}" for k in range(1, 8)], _PANDA)
+
+BUILT_IN: Mapping[str, Robot] = {
+    "baxter": Robot(name="baxter", joints=(*_LEFT, *_RIGHT), limbs=(_LEFT, _RIGHT)),
+    "panda": Robot(
+        name="panda",
+        joints=_ARM,
+        limbs=(_ARM,),
+        frames=frozenset(f"panda_{link}" for link in _PANDA_LINKS),
+    ),
+}
+"""The robots known by name. Baxter has no frames here: its files give it more than one set."""
+
+DEFAULTS = {"PyBulletBase": "panda"}
+"""The robot of a base template where the script names none."""

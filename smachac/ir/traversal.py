@@ -1,0 +1,79 @@
+"""Nodes with their paths, in the order of the script."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from typing import TYPE_CHECKING
+
+from smachac.ir.nodes import Container, Data, Expression, Leaf, Node, Struct, Transition
+from smachac.ir.nodes import Iterator as IteratorNode
+
+if TYPE_CHECKING:
+    pass
+
+
+PREEMPTED = "preempted"
+"""The outcome by which a state says that it stopped because it was asked to."""
+
+
+def walk(node: Node, path: str = "") -> Iterator[tuple[str, Node]]:
+    """A node and all below it with their paths, parents before children.
+
+    Iterative, so that deep nesting costs nothing.
+    """
+    stack: list[tuple[str, Node]] = [(path or node.name, node)]
+    while stack:
+        here, current = stack.pop()
+        yield here, current
+        if not isinstance(current, Leaf):
+            stack.extend((f"{here}/{child.name}", child) for child in reversed(current.children))
+
+
+def containers(node: Node) -> Iterator[tuple[str, Container]]:
+    """The containers among `walk(node)`. Leaves, which are most of a machine, cost nothing."""
+    stack = [] if isinstance(node, Leaf) else [(node.name, node)]
+    while stack:
+        here, current = stack.pop()
+        yield here, current
+        for child in reversed(current.children):
+            if not isinstance(child, Leaf):
+                stack.append((f"{here}/{child.name}", child))
+
+
+def outcome_names(node: Node) -> tuple[str, ...]:
+    return tuple([outcome.name for outcome in node.outcomes])
+
+
+def own_outcomes(node: Node) -> tuple[str, ...]:
+    """The outcomes that the state's own code may give: without the one that exceptions become."""
+    return tuple([outcome.name for outcome in node.outcomes if outcome.name != node.catches])
+
+
+def leads_to_child(transition: Transition, children: frozenset[str]) -> bool:
+    """Whether a transition goes to a sibling, not out of the container (see Transition)."""
+    return transition.origin != "implicit" and transition.target in children
+
+
+def expressions(node: Node) -> Iterator[Expression]:
+    """The code in the values of one node, in the order of the script."""
+    for held in node.variables if isinstance(node, Leaf) else node.userdata:
+        yield from _expressions(held.value.data)
+    if isinstance(node, IteratorNode) and node.items is not None:
+        yield from _expressions(node.items.data)
+
+
+def _expressions(data: Data) -> Iterator[Expression]:
+    match data:
+        case Expression():
+            yield data
+        case Struct(entries=entries):
+            for _, value in entries:
+                yield from _expressions(value)
+        case tuple():
+            for value in data:
+                yield from _expressions(value)
+
+
+def remapping(node: Node) -> dict[str, str]:
+    """The container's keys by those of the node, where they differ."""
+    return {remap.key: remap.to for remap in node.remaps}

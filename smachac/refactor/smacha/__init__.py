@@ -1,0 +1,1 @@
+"""Migration: where SMACHA's scripts and templates mean something else in smachac."""

@@ -1,0 +1,122 @@
+"""What becomes of SMACHA's scripts and templates: a table, JSON, or Markdown."""
+
+from __future__ import annotations
+
+import json
+from collections.abc import Iterator, Sequence
+from dataclasses import asdict, dataclass
+
+from smachac.refactor.smacha.script_differences import What
+
+FORMATS = ("text", "json", "md")
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Item:
+    """One thing to know of a file. `name` is a code of smachac or the name of a quirk."""
+
+    line: int
+    column: int
+    what: What
+    name: str
+    message: str
+    help: str = ""
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class File:
+    """A script, sub-script or template. `fails`: it is no part of a program as it is."""
+
+    name: str
+    kind: str
+    fails: bool
+    items: tuple[Item, ...]
+
+    def count(self, what: What) -> int:
+        return sum(item.what == what for item in self.items)
+
+
+def render_migration(files: Sequence[File], form: str) -> str:
+    """The report in one of FORMATS."""
+    match form:
+        case "json":
+            return _json(files)
+        case "md":
+            return _markdown(files)
+    return _text(files)
+
+
+def _state(file: File) -> str:
+    return "edit" if file.fails else "works"
+
+
+def _counts(file: File) -> str:
+    words = (("edit", "to edit"), ("changed", "changed"), ("told", "told"))
+    found = [(file.count(what), word) for what, word in words]  # type: ignore[arg-type]
+    return ", ".join(f"{number} {word}" for number, word in found if number)
+
+
+def _summary(files: Sequence[File]) -> str:
+    failing = sum(file.fails for file in files)
+    changed = sum(file.count("changed") for file in files)
+    good = len(files) - failing
+    return (
+        f"{good} of {len(files)} files work as they are, {failing} have to be edited; "
+        f"{changed} places mean something else here"
+    )
+
+
+def _text(files: Sequence[File]) -> str:
+    width = max((len(file.name) for file in files), default=0)
+    lines = []
+    for file in files:
+        counts = _counts(file)
+        lines.append(f"{file.name:<{width}}  {file.kind:<10}  {_state(file):<5}  {counts}".rstrip())
+    for file, item in _told(files):
+        lines.append("")
+        lines.append(
+            f"{file.name}:{item.line}:{item.column}: {item.what}: {item.message} [{item.name}]"
+        )
+        if item.help and item.what == "edit":
+            lines.append(f"  help: {item.help}")
+    return "\n".join([*lines, "", _summary(files), ""])
+
+
+def _told(files: Sequence[File]) -> Iterator[tuple[File, Item]]:
+    """What has to be edited in all files, then what has changed; what is told is counted alone."""
+    for what in ("edit", "changed"):
+        for file in files:
+            yield from ((file, item) for item in file.items if item.what == what)
+
+
+def _markdown(files: Sequence[File]) -> str:
+    lines = [
+        "| file | kind | works | to edit | changed | told |",
+        "| --- | --- | --- | --- | --- | --- |",
+    ]
+    for file in files:
+        counts = " | ".join(str(file.count(what)) for what in ("edit", "changed", "told"))
+        lines.append(
+            f"| {_cell(file.name)} | {file.kind} | {'no' if file.fails else 'yes'} | {counts} |"
+        )
+    told = list(_told(files))
+    if told:
+        lines += ["", "| place | what | name | message |", "| --- | --- | --- | --- |"]
+    for file, item in told:
+        place = f"{file.name}:{item.line}"
+        lines.append(f"| {_cell(place)} | {item.what} | {item.name} | {_cell(item.message)} |")
+    return "\n".join([*lines, "", f"{_summary(files)}.", ""])
+
+
+def _cell(text: str) -> str:
+    return text.replace("|", "\\|").replace("\n", " ")
+
+
+def _json(files: Sequence[File]) -> str:
+    data = {
+        "files": [{**asdict(file), "state": _state(file)} for file in files],
+        "works": sum(not file.fails for file in files),
+        "edit": sum(file.fails for file in files),
+        "changed": sum(file.count("changed") for file in files),
+    }
+    return json.dumps(data, indent=2, ensure_ascii=False) + "\n"

@@ -1,0 +1,142 @@
+"""What a code means: the docstring of its problem or rule, as a text and as docs/rules.md."""
+
+from __future__ import annotations
+
+import inspect
+import re
+from collections.abc import Iterator, Mapping
+from dataclasses import dataclass, field
+from textwrap import dedent, fill, indent
+
+# Filing all codes is what these imports do.
+from smachac import checks
+from smachac.diagnostics.diagnostic import CODES, Code
+from smachac.frontend.errors import references, script, suppressions
+from smachac.targets import errors
+
+__all__ = ["CODES", "GROUPS", "Explanation", "checks", "errors", "explanation", "references"]
+__all__ += ["render_code", "render_rules", "render_section", "script", "suppressions"]
+
+MAIN = "main.yml"
+
+WIDTH = 88
+"""Columns of prose on a terminal."""
+
+GROUPS: Mapping[str, str] = {
+    "SM0": "Text and shape",
+    "SM1": "Names and outcomes",
+    "SM2": "The graph",
+    "SM3": "Userdata",
+    "SM4": "Concurrences",
+    "SM5": "The robot",
+    "SM6": "Targets",
+    "SM7": "Properties",
+}
+"""What the codes of each hundred are about."""
+
+_HEADINGS = re.compile(r"^(Wrong|Right):$", re.MULTILINE)
+_FILE = re.compile(r"^== (\S+) ==\n", re.MULTILINE)
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Explanation:
+    """A docstring of a code in its parts; examples are texts by file name, the script first."""
+
+    summary: str
+    reason: str
+    wrong: Mapping[str, str] = field(default_factory=dict)
+    right: Mapping[str, str] = field(default_factory=dict)
+
+
+def explanation(code: Code) -> Explanation:
+    """The parts of what a code says of itself."""
+    text = inspect.cleandoc(code.explanation)
+    prose, *sections = _HEADINGS.split(text)
+    examples = dict(zip(sections[::2], map(_files, sections[1::2]), strict=True))
+    summary, _, reason = prose.strip().partition("\n\n")
+    return Explanation(
+        summary=" ".join(summary.split()),
+        reason="\n\n".join(" ".join(part.split()) for part in reason.split("\n\n")).strip(),
+        wrong=examples.get("Wrong", {}),
+        right=examples.get("Right", {}),
+    )
+
+
+def _files(block: str) -> dict[str, str]:
+    first, *others = _FILE.split(dedent(block.strip("\n")))
+    texts = {MAIN: first, **dict(zip(others[::2], others[1::2], strict=True))}
+    return {name: text.strip("\n") + "\n" for name, text in texts.items()}
+
+
+def render_code(code: Code) -> str:
+    """What `smachac explain` prints of a code, without a line feed at the end."""
+    parts = explanation(code)
+    prose = [parts.summary, *parts.reason.split("\n\n")]
+    firm = ", firm" if code.firm else ""
+    lines = [f"{code.code} {code.name} ({code.severity.value}{firm})"]
+    lines += [fill(text, WIDTH, break_on_hyphens=False) for text in prose]
+    for title, files in (("Wrong", parts.wrong), ("Right", parts.right)):
+        for name, text in files.items():
+            head = f"{title}, {name}:" if len(files) > 1 else f"{title}:"
+            lines.append(f"{head}\n\n{indent(text, '    ').rstrip()}")
+    return "\n\n".join(lines)
+
+
+def render_rules() -> str:
+    """All codes as one Markdown document, by hundreds, with a table of contents."""
+    return "\n\n".join([_PREFACE, _contents(), *_sections()]) + "\n"
+
+
+_PREFACE = """# What smachac finds
+
+Generated from the docstrings of the rules: `make docs` writes this file, a test compares it.
+
+An error stops a build, a warning does so under `--strict`, an info never does. Some findings
+are milder or graver than their code: the text says when. Errors of a code that is called firm
+leave nothing to print: no comment, setting or option silences them. Each example marked as wrong
+gives exactly its code, and each one marked as right gives nothing above an info; the tests run
+them all. A line `# --- name` begins another file."""
+
+
+def _groups() -> Iterator[tuple[str, list[Code]]]:
+    for prefix, title in GROUPS.items():
+        codes = [CODES[name] for name in sorted(CODES) if name.startswith(prefix)]
+        if codes:
+            yield f"{prefix}xx {title}", codes
+
+
+def _anchor(title: str) -> str:
+    return re.sub(r"[^a-z0-9 -]", "", title.lower()).replace(" ", "-")
+
+
+def _contents() -> str:
+    lines = []
+    for title, codes in _groups():
+        lines.append(f"- [{title}](#{_anchor(title)})")
+        for code in codes:
+            heading = f"{code.code} {code.name}"
+            summary = explanation(code).summary
+            lines.append(f"  - [{heading}](#{_anchor(heading)}): {summary}")
+    return "\n".join(lines)
+
+
+def _sections() -> Iterator[str]:
+    for title, codes in _groups():
+        yield f"## {title}"
+        yield from (f"### {code.code} {code.name}\n\n{render_section(code)}" for code in codes)
+
+
+def render_section(code: Code) -> str:
+    """What a code says of itself as Markdown, without its heading."""
+    parts = explanation(code)
+    firm = ", firm" if code.firm else ""
+    lines = [f"*{code.severity.value}{firm}*: {parts.summary}", parts.reason]
+    for title, files in (("Wrong:", parts.wrong), ("Right:", parts.right)):
+        if files:
+            lines += [title, _fenced(files)]
+    return "\n\n".join(filter(None, lines))
+
+
+def _fenced(files: Mapping[str, str]) -> str:
+    texts = [text if name == MAIN else f"# --- {name}\n{text}" for name, text in files.items()]
+    return f"```yaml\n{''.join(texts)}```"

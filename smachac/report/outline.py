@@ -1,0 +1,71 @@
+"""The form of explanations: a headline, and lines behind the words that they belong to."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Iterator, Sequence
+
+from smachac.analysis.def_use import Status
+from smachac.diagnostics.source import NOWHERE, Span
+from smachac.report.terminal import visible
+from smachac.report.text import shortened
+
+STATUS: dict[Status, str] = {
+    "always": "always set",
+    "sometimes": "set on some paths, not on all",
+    "never": "never set",
+    "unreachable": "never asked for, as no path leads there",
+}
+"""Whether a key is set when a state is entered, in words."""
+
+WIDTH = 100
+"""Columns that a way may take."""
+
+Paragraph = tuple[str, list[str]]
+"""A word, and the lines that it stands in front of."""
+
+
+def paragraphs(headline: str, parts: Iterable[Paragraph]) -> str:
+    """A text that ends in a line feed; parts without lines are left out."""
+    told = [(word, lines) for word, lines in parts if lines]
+    size = max((len(word) for word, _ in told), default=0)
+    lines = [headline]
+    for word, sentences in told:
+        first = True
+        for sentence in sentences:
+            lines.append(f"  {word if first else '':<{size}}  {sentence}")
+            first = False
+    return "".join(f"{visible(line)}\n" for line in lines)
+
+
+def place(span: Span) -> str:
+    """A place in brackets, behind what stands there; empty where no script holds it."""
+    return "" if span.source is NOWHERE.source else f" ({span})"
+
+
+def at(span: Span) -> str | None:
+    """A place as `file:line:column`, if it is one of a script."""
+    return None if span.source is NOWHERE.source else str(span)
+
+
+def alternatives(names: Sequence[str]) -> str:
+    """Names as one says them: `a, b or c`."""
+    return " or ".join(filter(None, [", ".join(names[:-1]), *names[-1:]]))
+
+
+def article(noun: str) -> str:
+    """A noun with the article that belongs to it."""
+    return f"{'an' if noun[:1].lower() in 'aeiou' else 'a'} {noun}"
+
+
+def way(head: str, path: tuple[str, ...]) -> Iterator[str]:
+    """A way in lines that are not too long, its middle left out where there are too many states."""
+    if not path:
+        return
+    line = head
+    for part in shortened(path):
+        if len(line) + len(part) > WIDTH and line.strip():
+            yield line
+            line = " " * len(head) + part.lstrip()
+        else:
+            line += part
+    yield line

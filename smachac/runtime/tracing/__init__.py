@@ -1,0 +1,1 @@
+"""Traces of a running machine: its events, recorded, compared and shown."""

@@ -1,0 +1,56 @@
+"""Scenes that differ by seed, and the judgement of where a body came to lie."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Mapping, Sequence
+from typing import TYPE_CHECKING, Any
+
+from smachac.sim import transforms
+from smachac.sim.skills import Result
+
+if TYPE_CHECKING:
+    from smachac.sim.world import World
+
+_TRIES = 1000
+_TILT = math.radians(3.0)
+
+
+def scattered(
+    world: World, pose: Any, spread: Sequence[float], apart: Mapping[str, float] | None = None
+) -> list[list[float]]:
+    """`pose` moved at random by up to `spread` (x m, y m, yaw rad) either way, evenly.
+
+    Drawn from the world's seed until it is at least `apart` (m, in x and y) from the bodies named
+    there. Raises ValueError when no such place is found.
+    """
+    position, rotation = transforms.as_pose(pose)
+    others = {name: (world.pose(name)[0], least) for name, least in (apart or {}).items()}
+    for _ in range(_TRIES):
+        dx, dy, yaw = (each * world.random.uniform(-1.0, 1.0) for each in spread)
+        moved = (position[0] + dx, position[1] + dy, position[2])
+        if all(math.dist(moved[:2], at[:2]) >= least for at, least in others.values()):
+            turned = transforms.multiply(transforms.about_z(yaw), rotation)
+            return transforms.as_lists((moved, turned))
+    raise ValueError(f"no place within {list(spread)} is {dict(apart or {})} apart")
+
+
+def check_placed(world: World, body: str, pose: Any, tolerance: float) -> Result:
+    """Whether a body stands upright and at rest within `tolerance` (m) of `pose`.
+
+    The value is its distance from there; None when there is no such body.
+    """
+    if body not in world.bodies:
+        return Result("aborted", str(world.unknown("body", body, world.bodies)))
+    error = world.error(body, pose)
+    if error > tolerance:
+        reason = f"`{body}` is {1000 * error:.2f} mm from where it was to be"
+        return Result("aborted", reason, error)
+    if not world.at_rest(body):
+        return Result("aborted", f"`{body}` still moves", error)
+    (_, rotation) = transforms.as_pose(world.pose(body))
+    up = transforms.rotate(rotation, (0.0, 0.0, 1.0))
+    tilt = math.acos(max(-1.0, min(1.0, max(abs(each) for each in up[2:]))))
+    if tilt > _TILT:
+        return Result("aborted", f"`{body}` is tilted by {math.degrees(tilt):.1f} deg", error)
+    return Result("succeeded", value=error)

@@ -1,0 +1,168 @@
+"""Leaves whose code is a class of C++ that the user wrote: how it is called, made and checked."""
+
+from __future__ import annotations
+
+import zlib
+from dataclasses import dataclass
+
+from smachac.frontend.state_types import StateType
+from smachac.frontend.values import as_value
+from smachac.ir.nodes import Data, Key, Leaf
+from smachac.ir.traversal import PREEMPTED
+from smachac.ir.types import Type
+from smachac.targets.cpp.builtin_states import STOP, LeafCode
+from smachac.targets.cpp.identifiers import identifier
+from smachac.targets.cpp.plan import Scope, converts
+from smachac.targets.cpp.types import UnportableError, cpp_literal, cpp_type, cpp_value, plain
+
+BY_VALUE = ("bool", "int", "float")
+"""Types that a class gets as values: copying them is cheaper than to refer to them."""
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class ClassCode:
+    """A class of the user for a state type: its name, the header to include, and the parameter
+    that its constructor takes first, such as `my_robot::Arm &arm`."""
+
+    type: StateType
+    name: str
+    header: str
+    parameter: str = ""
+
+
+def argument(parameter: str) -> str:
+    """The name of a parameter."""
+    return parameter.replace("&", " ").replace("*", " ").split()[-1]
+
+
+def class_code(type_: StateType) -> ClassCode | None:
+    """The class that an interface names for C++; None where it names none."""
+    given = type_.classes.get("cpp")
+    if given is None:
+        return None
+    parameter = " ".join(given.get("with", "").replace("&", " & ").replace("*", " * ").split())
+    return ClassCode(
+        type=type_,
+        name=f"::{given['class'].removeprefix('::')}",
+        header=given["header"],
+        parameter=parameter.replace("& ", "&").replace("* ", "*"),
+    )
+
+
+def left_to_scripts(type_: StateType) -> list[str]:
+    """What a type leaves to the script though a class cannot."""
+    return sorted(type_.given - {"variables"})
+
+
+def class_leaf(code: ClassCode, leaf: Leaf, scope: Scope) -> LeafCode:
+    """A leaf that is an object of a class. Raises UnportableError."""
+    type_ = code.type
+    left = left_to_scripts(type_)
+    if left:
+        what = ", ".join(left)
+        raise UnportableError(f"`{type_.name}` leaves its {what} to scripts, a class cannot")
+    state = f"states.{identifier(leaf.name)}"
+    names = scope.names(leaf)
+    inputs = [_input(scope, key, names.get(key.name, key.name)) for key in type_.input_keys]
+    outs = [_output(scope, key, names.get(key.name, key.name)) for key in type_.output_keys]
+    arguments = [
+        *([f"{{{', '.join(inputs)}}}"] if inputs else []),
+        *([f"{{{', '.join(f'run.out({out})' for out in outs)}}}"] if outs else []),
+        *([STOP] if stops(type_) else []),
+    ]
+    call = f"{state}.execute({', '.join(arguments)})"
+    if outs:
+        told = [
+            f"smachac::Output{{{cpp_literal(key.name)}, {out}}}"
+            for key, out in zip(type_.output_keys, outs, strict=True)
+        ]
+        call = f"run.wrote({call}, {', '.join(told)})"
+    made = [*([argument(code.parameter)] if code.parameter else []), *_variables(type_, leaf)]
+    return LeafCode(type=code.name, call=call, made_with=", ".join(made), parameter=code.parameter)
+
+
+def stops(type_: StateType) -> bool:
+    """Whether `execute` is given the requests to stop."""
+    return type_.blocking or any(each.name == PREEMPTED for each in type_.outcomes)
+
+
+def _input(scope: Scope, key: Key, outer: str) -> str:
+    given, wanted = scope.key(outer), plain(key.type)
+    if not converts(given, wanted):
+        raise UnportableError(f"its input `{key.name}` is `{wanted}`, `{outer}` is `{given}`")
+    spelt = scope.read(outer, key.name).text
+    if wanted.name == "optional" and outer not in scope.sure:
+        return f"smachac::maybe<{cpp_type(wanted)}>(ud.{identifier(outer)})"
+    return spelt if given == wanted else f"smachac::convert<{cpp_type(wanted)}>({spelt})"
+
+
+def _output(scope: Scope, key: Key, outer: str) -> str:
+    given, wanted = plain(key.type), scope.key(outer)
+    if given != wanted:
+        raise UnportableError(f"its output `{key.name}` is `{given}`, `{outer}` is `{wanted}`")
+    return f"ud.{identifier(outer)}"
+
+
+def _variables(type_: StateType, leaf: Leaf) -> list[str]:
+    """The arguments for the variables of the interface, in its order, with its defaults."""
+    set_: dict[str, Data] = {each.name: each.value.data for each in leaf.variables}
+    found = []
+    for name, variable in type_.variables.items():
+        if name not in set_ and variable.default is not None:
+            set_[name] = as_value(variable.default).data
+        try:
+            found.append(cpp_value(set_.get(name), plain(variable.type)))
+        except UnportableError as error:
+            raise UnportableError(f"its variable `{name}`: {error}") from error
+    return found
+
+
+def parameter_type(type_: Type) -> str:
+    """How a class takes a value of a type."""
+    text = cpp_type(type_)
+    return text if plain(type_).name in BY_VALUE else f"const {text} &"
+
+
+def field_type(part: str, type_: Type) -> str:
+    """The type of a field of `In` or `Out`."""
+    return parameter_type(type_) if part == "In" else f"smachac::Key<{cpp_type(type_)}> &"
+
+
+def interface_hash(type_: StateType) -> str:
+    """A number that changes with everything of an interface that its class depends on."""
+    told = [
+        type_.name,
+        *(f"var {name} {plain(each.type)}" for name, each in type_.variables.items()),
+        *(f"in {key.name} {plain(key.type)}" for key in type_.input_keys),
+        *(f"out {key.name} {plain(key.type)}" for key in type_.output_keys),
+        *(f"outcome {each.name}" for each in type_.outcomes),
+        f"stop {stops(type_)}",
+    ]
+    return f"0x{zlib.crc32(chr(10).join(told).encode()):08x}U"
+
+
+def assertions(code: ClassCode) -> list[str]:
+    """What the compiler checks of a class, with messages that say what is to be mended."""
+    type_, name = code.type, code.name
+    short, file = name.removeprefix("::"), f"{code.type.name}.yml"
+    lines = [
+        f"static_assert({name}::smachac_interface == {interface_hash(type_)},",
+        f'              "{short} was written for another {file}: compare them, then set '
+        f'smachac_interface");',
+    ]
+    for part, keys in (("In", type_.input_keys), ("Out", type_.output_keys)):
+        wanted = {identifier(key.name): field_type(part, key.type) for key in keys}
+        for field, text in wanted.items():
+            lines += [
+                f"static_assert(std::is_same_v<decltype({name}::{part}::{field}), {text}>,",
+                f'              "{short}::{part}::{field} must be {text}");',
+            ]
+        if len(set(wanted.values())) < len(wanted):
+            fields = ", ".join(f"keys.{field}" for field in wanted)
+            types, order = ", ".join(wanted.values()), ", ".join(wanted)
+            lines += [
+                f"static_assert(smachac::in_order<{name}::{part}, {types}>(",
+                f"                  [](auto keys) {{ return smachac::before_mark({fields}); }}),",
+                f'              "{short}::{part} must have its fields in the order {order}");',
+            ]
+    return lines

@@ -1,0 +1,273 @@
+"""What is drawn between the parts of a container: marks, joins and edges."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Iterator
+from typing import NamedTuple
+
+from smachac.diagnostics.source import assert_never
+from smachac.ir import nodes
+from smachac.ir.nodes import Concurrence, Container, Data, Expression, Sequence, StateMachine
+from smachac.ir.traversal import leads_to_child, outcome_names
+from smachac.targets.dot.style import (
+    FAINT,
+    INK,
+    LOOP_BORDER,
+    TONES,
+    attributes,
+    font,
+    html,
+    lines,
+    spaced,
+    tone,
+)
+
+
+class Spot(NamedTuple):
+    """A node of the picture that edges may touch; `cluster` is the frame that they end at."""
+
+    id: str
+    cluster: str = ""
+
+
+class Piece(NamedTuple):
+    """A state as it is drawn: where edges enter, and from where each outcome leaves.
+
+    `ports` (by outcome) is empty where the whole state is one box.
+    """
+
+    entry: Spot
+    ports: dict[str, str]
+
+
+class Edge(NamedTuple):
+    """An arrow that an outcome takes, empty for the start.
+
+    `tacit`: what it touches already says the outcome. `main`: on the way that is hoped for, so it
+    is drawn straight. `back`: to something earlier in the script. `hidden`: holds things apart.
+    """
+
+    tail: str
+    head: Spot
+    outcome: str = ""
+    tacit: bool = False
+    dashed: bool = False
+    main: bool = False
+    back: bool = False
+    hidden: bool = False
+
+
+Drawn = dict[str, Piece]
+"""The children of a container by name."""
+
+
+def entry_mark(container: Container, id: str, *, sideways: bool) -> str:
+    """The mark at which a container begins: a bar that forks, a loop, or the usual dot.
+
+    `sideways`: the picture runs to a side, so bars stand upright.
+    """
+    if isinstance(container, Concurrence):
+        return _bar(id, INK, "all at once", "1.2", sideways=sideways)
+    if isinstance(container, nodes.Iterator):
+        head = font(f"for each <B>{html(container.item_key)}</B>", colour=INK, size=11)
+        label = spaced([head, font(html(items(container)), colour=FAINT, size=9)])
+        return f'"{id}"{attributes({"color": LOOP_BORDER}, label)}'
+    dot = {"label": "", "tooltip": "start", "shape": "circle"}
+    size = {"width": "0.14", "height": "0.14", "fixedsize": "true"}
+    return f'"{id}"{attributes(dot | {"fillcolor": INK, "color": INK} | size)}'
+
+
+def _bar(id: str, colour: str, tooltip: str, length: str, *, sideways: bool) -> str:
+    look = {"label": "", "tooltip": tooltip, "style": "filled"}
+    width, height = ("0.06", length) if sideways else (length, "0.06")
+    size = {"width": width, "height": height, "fixedsize": "true"}
+    return f'"{id}"{attributes(look | {"fillcolor": colour, "color": colour} | size)}'
+
+
+def items(container: nodes.Iterator) -> str:
+    """What an iterator runs over, in a few words."""
+    if container.items is None:
+        return f"in {container.items_key}"
+    text = _short(container.items.data)
+    return f"in {text if len(text) <= 24 else text[:23] + '…'}"
+
+
+def _short(data: Data) -> str:
+    match data:
+        case Expression(text=text):
+            return text
+        case tuple() if len(data) > 4:
+            return f"{len(data)} items"
+        case tuple():
+            return f"[{', '.join(map(_short, data))}]"
+        case nodes.Struct():
+            return "{…}"
+        case _:
+            return str(data)
+
+
+def edges(container: Container, start: str, exits: dict[str, str], drawn: Drawn) -> Iterator[Edge]:
+    """The arrows between the children of a container, from its start and to its exits."""
+    match container:
+        case StateMachine() | Sequence():
+            found = list(_transitions(container, start, exits, drawn))
+        case Concurrence():
+            found = list(_rules(container, start, exits, drawn))
+        case nodes.Iterator():
+            found = list(_loop(container, start, exits, drawn))
+        case _:
+            assert_never(container)
+    yield from found
+    if container.catches in exits:
+        yield Edge(start, Spot(exits[container.catches]), container.catches, dashed=True)
+    exit = next(iter(exits.values()), None)
+    if exit is not None:
+        yield from _hidden(found, Spot(exit), drawn)
+
+
+def _hidden(found: list[Edge], exit: Spot, drawn: Drawn) -> Iterator[Edge]:
+    """Keeps exits below the children that lead back only."""
+    onward = {edge.tail for edge in found if not edge.back}
+    for piece in drawn.values():
+        tails = [*piece.ports.values()] or [piece.entry.id]
+        if onward.isdisjoint(tails):
+            yield Edge(tails[0], exit, hidden=True)
+
+
+def _leave(piece: Piece, outcome: str, head: Spot, exit: str = "") -> Edge:
+    """The arrow on which an outcome leaves a child: from its port, or from its box.
+
+    `exit` is the name that the head bears, if it is an exit.
+    """
+    port = piece.ports.get(outcome)
+    tacit = port is not None or outcome == exit
+    main = tone(outcome) in ("success", "neutral")
+    return Edge(port or piece.entry.id, head, outcome, tacit, main=main)
+
+
+def _transitions(
+    container: StateMachine | Sequence, start: str, exits: dict[str, str], drawn: Drawn
+) -> Iterator[Edge]:
+    if container.initial in drawn:
+        yield Edge(start, drawn[container.initial].entry, main=True)
+    order = {name: index for index, name in enumerate(drawn)}
+    names = frozenset(order)
+    for child in container.children:
+        piece = drawn[child.name]
+        for step in child.transitions:
+            if leads_to_child(step, names):
+                back = order[step.target] <= order[child.name]
+                edge = _leave(piece, step.outcome, drawn[step.target].entry)
+                yield edge._replace(back=back)
+            elif step.target in exits:
+                edge = _leave(piece, step.outcome, Spot(exits[step.target]), step.target)
+                yield edge._replace(dashed=step.origin == "implicit")
+
+
+def _rules(
+    container: Concurrence, start: str, exits: dict[str, str], drawn: Drawn
+) -> Iterator[Edge]:
+    for piece in drawn.values():
+        yield Edge(start, piece.entry)
+    for number, rule in enumerate(container.rules):
+        if rule.outcome not in exits:
+            continue
+        exit = Spot(exits[rule.outcome])
+        bar = Spot(join_id(start, number))
+        for condition in rule.when:
+            if condition.child not in drawn:
+                continue
+            piece = drawn[condition.child]
+            if len(rule.when) == 1:
+                yield _leave(piece, condition.outcome, exit, rule.outcome)
+            else:
+                yield _leave(piece, condition.outcome, bar)
+        if len(rule.when) != 1:
+            yield Edge(bar.id, exit, rule.outcome, tacit=True, main=True)
+    yield from _otherwise(container, exits, drawn)
+
+
+def _otherwise(container: Concurrence, exits: dict[str, str], drawn: Drawn) -> Iterator[Edge]:
+    """From children that no rule looks at to the outcome that then remains."""
+    if container.default_outcome not in exits:
+        return
+    exit = Spot(exits[container.default_outcome])
+    judged = {condition.child for rule in container.rules for condition in rule.when}
+    for name, piece in drawn.items():
+        if name not in judged:
+            for tail in [*piece.ports.values()] or [piece.entry.id]:
+                yield Edge(tail, exit, dashed=True)
+
+
+def join_id(start: str, number: int) -> str:
+    """The name of the bar at which the conditions of a rule come together."""
+    return f"{start}+{number}"
+
+
+def joins(container: Container, start: str, *, sideways: bool) -> Iterator[str]:
+    """The bars of a concurrence: one for each rule that does not have just one condition."""
+    if not isinstance(container, Concurrence):
+        return
+    for number, rule in enumerate(container.rules):
+        if len(rule.when) != 1:
+            colour = TONES[tone(rule.outcome)][0]
+            yield _bar(
+                join_id(start, number), colour, f"all: {rule.outcome}", "0.8", sideways=sideways
+            )
+
+
+def _loop(
+    container: nodes.Iterator, start: str, exits: dict[str, str], drawn: Drawn
+) -> Iterator[Edge]:
+    renamed = dict(container.final_map)
+    exhausted = renamed.get(container.exhausted_outcome, container.exhausted_outcome)
+    for child in container.children:
+        piece = drawn[child.name]
+        yield Edge(start, piece.entry, main=True)
+        for outcome in outcome_names(child):
+            target = renamed.get(outcome, outcome)
+            if outcome in container.loop_outcomes:
+                yield _leave(piece, outcome, Spot(start))._replace(back=True)
+            elif target in exits:
+                yield _leave(piece, outcome, Spot(exits[target]), target)
+    if exhausted in exits:
+        tacit = exhausted == container.exhausted_outcome
+        yield Edge(start, Spot(exits[exhausted]), container.exhausted_outcome, tacit, main=True)
+
+
+def merged(edges: Iterable[Edge]) -> Iterator[str]:
+    """Statements for the arrows, one for all between the same two nodes."""
+    bundles: dict[tuple[str, str], list[Edge]] = {}
+    for edge in edges:
+        bundles.setdefault((edge.tail, edge.head.id), []).append(edge)
+    for bundle in bundles.values():
+        yield _arrow(bundle)
+
+
+def _arrow(bundle: list[Edge]) -> str:
+    first = bundle[0]
+    outcomes = [edge.outcome for edge in bundle if edge.outcome]
+    look = {"color": TONES[_common([tone(edge.outcome) for edge in bundle])][0]}
+    label = ""
+    if outcomes and not all(edge.tacit for edge in bundle):
+        rows = [font(html(name), colour=TONES[tone(name)][0]) for name in outcomes]
+        label = lines(f" {row} " for row in rows)
+    if outcomes:
+        look["tooltip"] = ", ".join(outcomes)
+    if all(edge.hidden for edge in bundle):
+        look = {"style": "invis"}
+    elif all(edge.dashed for edge in bundle):
+        look["style"] = "dashed"
+    if any(edge.main and not edge.back for edge in bundle):
+        look["weight"] = "20"
+    frame = first.head.cluster
+    if frame and not first.tail.startswith((f"{frame}/", f"{frame}=", f"{frame}#")):
+        look["lhead"] = f"cluster_{frame}"
+    return f'"{first.tail}" -> "{first.head.id}"{attributes(look, label)}'
+
+
+def _common(tones: list[str]) -> str:
+    """The tone of an arrow on which several outcomes leave."""
+    if len(set(tones)) == 1:
+        return tones[0]
+    return "failure" if set(tones) == {"failure", "warning"} else "neutral"

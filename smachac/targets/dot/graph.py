@@ -1,0 +1,171 @@
+"""The picture of a machine: containers as frames, states as boxes, outcomes as exits."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from typing import NamedTuple
+
+from smachac.ir import nodes
+from smachac.ir.nodes import Concurrence, Container, Leaf, Machine, Node
+from smachac.ir.traversal import outcome_names
+from smachac.targets.dot.edges import Piece, Spot, edges, entry_mark, joins, merged
+from smachac.targets.dot.style import (
+    BORDER,
+    FAINT,
+    FILLS,
+    FONT,
+    INK,
+    LOOP_BORDER,
+    LOOP_FILL,
+    PARALLEL_BORDER,
+    PARALLEL_FILL,
+    STATE_FILL,
+    TONES,
+    attributes,
+    font,
+    html,
+    identifier,
+    quoted,
+    spaced,
+    tone,
+)
+
+
+class Place(NamedTuple):
+    """Where in the machine: the path, the same as the name of a node, and how deep it is."""
+
+    path: str
+    id: str
+    level: int
+
+    def below(self, name: str) -> Place:
+        return Place(f"{self.path}/{name}", f"{self.id}/{identifier(name)}", self.level + 1)
+
+    @property
+    def start(self) -> str:
+        return f"{self.id}#start"
+
+    def exits(self, node: Node) -> dict[str, str]:
+        """The nodes of the outcomes of the container that is here."""
+        return {name: f"{self.id}={identifier(name)}" for name in outcome_names(node)}
+
+
+def picture(machine: Machine, *, depth: int | None, rankdir: str) -> Iterator[str]:
+    """The lines of a DOT file. Containers more than `depth` levels down are drawn closed."""
+    root = machine.root
+    yield f"digraph {quoted(root.name)} {{"
+    for line in _settings(machine, rankdir):
+        yield f"  {line}"
+    todo: list[str | tuple[Place, Container]] = ["}"]
+    todo.append((Place(root.name, identifier(root.name), 1), root))
+    while todo:
+        item = todo.pop()
+        if isinstance(item, str):
+            yield item
+            continue
+        place, container = item
+        pad = "  " * place.level
+        opened = []
+        todo += reversed([pad + line for line in _arrows(place, container, depth)])
+        for line in _marks(place, container, sideways=rankdir in ("LR", "RL")):
+            yield pad + line
+        for child in container.children:
+            if isinstance(child, Leaf) or place.level == depth:
+                yield pad + _box(child, place.below(child.name))
+            else:
+                opened.append(child)
+        for child in reversed(opened):
+            inner = place.below(child.name)
+            todo += [f"{pad}}}", (inner, child)]
+            todo += reversed([pad + line for line in _frame(child, inner)])
+
+
+def _settings(machine: Machine, rankdir: str) -> Iterator[str]:
+    root = machine.root
+    title = spaced([f"<B>{html(root.name)}</B>", font(html(machine.base), colour=FAINT, size=10)])
+    look = {
+        "rankdir": rankdir,
+        "compound": "true",
+        "newrank": "true",
+        "fontname": FONT,
+        "fontsize": "15",
+    }
+    space = {"nodesep": "0.35", "ranksep": "0.4", "pad": "0.2"}
+    tip = {"tooltip": root.doc or root.name}
+    top = {"labelloc": "t", "fontcolor": INK}
+    yield f"graph{attributes(look | space | top | tip, title)}"
+    node = {"fontname": FONT, "fontsize": "11", "fontcolor": INK, "color": BORDER}
+    box = {"shape": "box", "style": "rounded,filled", "fillcolor": STATE_FILL, "penwidth": "1.1"}
+    yield f"node{attributes(node | box)}"
+    edge = {"fontname": FONT, "fontsize": "9", "color": INK, "arrowsize": "0.7"}
+    yield f"edge{attributes(edge)}"
+
+
+def _frame(container: Container, place: Place) -> Iterator[str]:
+    """The opening lines of a container's cluster."""
+    kind = html(container.type)
+    fill, border, style = FILLS[place.level % 2], BORDER, "rounded,filled"
+    match container:
+        case Concurrence():
+            fill, border, style = PARALLEL_FILL, PARALLEL_BORDER, "rounded,filled,dashed"
+            kind = f"|| {kind}" + (", first to end" if container.join == "any" else "")
+        case nodes.Iterator():
+            fill, border = LOOP_FILL, LOOP_BORDER
+    title = f"<B>{html(container.name)}</B>  {font(kind, colour=FAINT, size=9)}"
+    look = {"labeljust": "c", "labelloc": "t", "style": style}
+    colours = {"fillcolor": fill, "color": border, "fontsize": "11"}
+    yield f'subgraph "cluster_{place.id}" {{'
+    tip = {"tooltip": container.doc or place.path}
+    yield f"  graph{attributes(look | colours | tip, title)}"
+
+
+def _box(node: Node, place: Place) -> str:
+    """A leaf, or a container that is drawn closed."""
+    rows = [f"<B>{html(node.name)}</B>"]
+    kind = html(node.type) if isinstance(node, Leaf) else f"{html(node.type)} <B>+</B>"
+    if node.type:
+        rows.append(font(kind, colour=FAINT, size=9))
+    tip = {"tooltip": node.doc or place.path}
+    return f'"{place.id}"{attributes(tip, spaced(rows))}'
+
+
+def _exit(container: Container, outcome: nodes.Outcome, id: str, *, final: bool) -> str:
+    """An outcome of a container: double lines if the whole machine ends with it."""
+    line, fill = TONES[tone(outcome.name)]
+    label = html(outcome.name)
+    if isinstance(container, Concurrence) and outcome.name == container.default_outcome:
+        label = spaced([label, font("otherwise", colour=FAINT, size=8)])
+    look = {"shape": "ellipse", "fillcolor": fill, "color": line, "fontcolor": line}
+    if final:
+        look |= {"peripheries": "2", "fontsize": "11"}
+    else:
+        look |= {"fontsize": "9", "margin": "0.04,0.02", "height": "0.25", "width": "0.5"}
+    tip = {"tooltip": outcome.doc or outcome.name}
+    return f'"{id}"{attributes(look | tip, label)}'
+
+
+def _marks(place: Place, container: Container, *, sideways: bool) -> Iterator[str]:
+    """The start and the exits of a container, at its top and bottom."""
+    yield entry_mark(container, place.start, sideways=sideways)
+    yield from joins(container, place.start, sideways=sideways)
+    ids = place.exits(container)
+    by_id = {ids[outcome.name]: outcome for outcome in container.outcomes}
+    final = place.level == 1
+    drawn = [_exit(container, outcome, id, final=final) for id, outcome in by_id.items()]
+    if drawn:
+        yield f"{{ rank=same; {'; '.join(drawn)} }}"
+
+
+def _arrows(place: Place, container: Container, depth: int | None) -> Iterator[str]:
+    closed = place.level == depth
+    drawn = {c.name: _piece(c, place.below(c.name), closed=closed) for c in container.children}
+    if isinstance(container, Concurrence) and drawn:
+        level = "; ".join(f'"{piece.entry.id}"' for piece in drawn.values())
+        yield f"{{ rank=same; {level} }}"
+    yield from merged(edges(container, place.start, place.exits(container), drawn))
+
+
+def _piece(node: Node, place: Place, *, closed: bool) -> Piece:
+    if closed or isinstance(node, Leaf):
+        return Piece(Spot(place.id), {})
+    return Piece(Spot(place.start, place.id), place.exits(node))

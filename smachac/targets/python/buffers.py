@@ -1,0 +1,145 @@
+"""What the templates of a machine's states bring, by block, and where each block goes."""
+
+from __future__ import annotations
+
+import ast
+from collections.abc import Callable, Iterator
+from dataclasses import dataclass, field, replace
+
+from smachac.diagnostics.diagnostic import Diagnostic, Related, Report
+from smachac.diagnostics.source import Span
+from smachac.frontend.errors.references import template_error
+from smachac.frontend.state_types import StateType
+from smachac.ir.nodes import Node
+from smachac.targets import Context
+from smachac.targets.errors import defined_twice, python_2_code
+from smachac.targets.python import structure
+from smachac.targets.python.python2 import modern
+from smachac.targets.python.smacha_context import Headers
+from smachac.targets.templates.engine import BlockError, Blocks, Page
+
+APPENDED = ("base_header", "imports", "defs", "class_defs", "cb_defs", "main_def")
+"""Blocks that come out in the order of the states."""
+
+PREPENDED = ("footer", "execute", "base_footer", "main")
+"""Blocks that come out in reverse order, so that what was opened last is closed first."""
+
+KEYED = ("header", "header_userdata")
+"""Blocks that go to the container around the state, before its states."""
+
+Buffers = dict[str, dict[str, None]]
+"""Texts by block, each once, in the order of the states."""
+
+
+def buffers() -> Buffers:
+    return {name: {} for name in (*APPENDED, *PREPENDED)}
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Used:
+    """A state type as this module uses it: its class, and the template that brings it.
+
+    `whole`: the template prints its own `body`, as SMACHA's do, so all of it is rendered for each
+    state; else the class is brought once.
+    """
+
+    type: StateType
+    class_name: str
+    template: str = ""
+    whole: bool = False
+
+
+@dataclass(slots=True)
+class Gathered:
+    """What the states bring, by name of block, and what they share while they are printed.
+
+    `faults` are the templates' errors, each once, and what was changed in their code.
+    """
+
+    blocks: Blocks
+    context: Context
+    fresh: Callable[[str, bool], str] = field(default_factory=structure.variable_names)
+    buffers: Buffers = field(default_factory=buffers)
+    used: dict[str, Used] = field(default_factory=dict)
+    defined_headers: Headers = field(default_factory=Headers)
+    functions: list[str] = field(default_factory=list)
+    faults: Report = field(default_factory=list)
+    defined: dict[str, tuple[str, Node]] = field(default_factory=dict)
+
+    def fault(self, error: BlockError, node: Node) -> None:
+        """Note an error, with the first state that it was met for."""
+        found = error.diagnostic
+        if found.span.source is not node.span.source:
+            place = Related(span=node.span, message=f"printed here for `{node.name}`")
+            finding = replace(found.finding, related=(*found.finding.related, place))
+            found = Diagnostic(code=found.code, severity=found.severity, finding=finding)
+        self.note(found)
+
+    def note(self, found: Diagnostic) -> None:
+        same = (found.span, found.finding.message)
+        if all((known.span, known.finding.message) != same for known in self.faults):
+            self.faults.append(found)
+
+    def gather(self, page: Page, node: Node) -> None:
+        """Put the blocks of a template to those of the same name, those it includes before it."""
+        for inner in page.inner:
+            self.gather(inner, node)
+        for name in (*APPENDED, *PREPENDED):
+            if name not in page.own:
+                continue
+            text = self.code(page, name, node, alone=True)
+            buffer = self.buffers[name]
+            if text.strip() and text not in buffer:  # templates share definitions by `extends`
+                buffer[text] = None
+                if name in ("defs", "class_defs", "cb_defs"):
+                    self.define(text, page, name, node)
+
+    def define(self, text: str, page: Page, block: str, node: Node) -> None:
+        """Tell of what is defined a second time and otherwise: the program has the last alone."""
+        try:
+            tree = ast.parse(text)
+        except (SyntaxError, ValueError, RecursionError, MemoryError):
+            return
+        for each in tree.body:
+            if isinstance(each, ast.ClassDef | ast.FunctionDef):
+                new = ast.dump(each)
+                old, first = self.defined.setdefault(each.name, (new, node))
+                if old != new:
+                    what = "class" if isinstance(each, ast.ClassDef) else "function"
+                    line = text.splitlines()[each.lineno - 1]
+                    span = self._place(page, block, line) or node.span
+                    states = ((first.name, first.span), (node.name, node.span))
+                    self.note(defined_twice(span, what, each.name, states))
+
+    def code(self, page: Page, block: str, node: Node, *, alone: bool = False) -> str:
+        """A block that holds Python, as Python 3; `alone`: without what the template includes."""
+        text, changes = modern(page.render(block, alone=alone))
+        for line, change in changes:
+            self.note(python_2_code(self._place(page, block, line) or node.span, change))
+        try:
+            ast.parse(text)
+        except (SyntaxError, ValueError, RecursionError, MemoryError) as error:
+            words = getattr(error, "msg", None) or str(error) or "it is nested too deep"
+            number = getattr(error, "lineno", None) or 1
+            lines = text.splitlines() or [""]
+            line = lines[min(number, len(lines)) - 1]
+            span = self._place(page, block, line) or node.span
+            message = f"block `{block}` makes no Python: {words}"
+            help = f"the line it prints is `{line.strip()}`"
+            self.fault(BlockError(template_error(span, message, help)), node)
+        return text
+
+    def _place(self, page: Page, block: str, line: str) -> Span | None:
+        """Where a printed line comes from; if it is not to be found, the block."""
+        for each in walk_pages(page):
+            found = self.blocks.line_span(each.file, line)
+            if found is not None:
+                return found
+        return self.blocks.block_span(page.file, block)
+
+
+def walk_pages(page: Page) -> Iterator[Page]:
+    """A template and those that it includes."""
+    yield page
+    for inner in page.inner:
+        yield from walk_pages(inner)

@@ -1,0 +1,170 @@
+"""Runs a generated Python program here and now, watched and stoppable."""
+
+from __future__ import annotations
+
+import linecache
+import random
+import signal
+import sys
+import threading
+from collections.abc import Callable, Iterator
+from contextlib import contextmanager
+from pathlib import Path
+from types import FrameType, ModuleType
+from typing import Any
+
+from smachac.ir.nodes import Machine
+from smachac.ir.traversal import walk
+
+Event = dict[str, Any]
+
+
+def places(machine: Machine) -> dict[str, str]:
+    """Path of each state to its place in the script, `pick_block.yml:12`."""
+    return {
+        path: f"{Path(node.span.source.name).name}:{node.span.line}"
+        for path, node in walk(machine.root)
+    }
+
+
+def execute(
+    name: str,
+    text: str,
+    machine: Machine,
+    observe: Callable[[Event], None] | None,
+    *,
+    folder: Path,
+    seed: int = 0,
+    gui: bool = False,
+    record: Path | None = None,
+    on_preempt: Callable[[], None] = lambda: None,
+) -> str | None:
+    """Run the module `text` and return the outcome of its machine.
+
+    `folder` is where the program may import modules of the user from: that of the script.
+    `observe` gets every event of the trace. Ctrl-C asks the machine to preempt (`on_preempt` is
+    called), a second one raises KeyboardInterrupt. What the program raises passes through.
+    """
+    from smachac.runtime.tracing import trace
+
+    random.seed(seed)
+    with loaded(name, text, folder) as module:
+        if record is not None or gui or "smachac.sim" in sys.modules:
+            from smachac import sim
+
+            sim.configure(seed=seed, gui=gui, record=record)
+        built: list[Any] = []
+
+        def watch(root: Any) -> None:
+            if observe is not None:
+                trace.attach(root, machine.root.name, observe, places(machine))
+            built.append(root)
+
+        with (
+            _watching(module, watch) as outcomes,
+            quiet(module["smach"], _told),
+            _preempting(built, on_preempt),
+        ):
+            outcome: str | None = module[main_function(machine)]()
+        return outcomes[0] if outcomes else outcome
+
+
+@contextmanager
+def _watching(module: dict[str, Any], watch: Callable[[Any], None]) -> Iterator[list[str | None]]:
+    """Show the machine to `watch` before it runs.
+
+    A program with `build` shows what that makes, and its main function returns the outcome; of one
+    that is all one function, as SMACHA's are, the first machine that runs is the whole, and its
+    outcome is what the list gets.
+    """
+    outcomes: list[str | None] = []
+    build = module.get("build")
+    if build is not None:
+
+        def watched_build() -> Any:
+            root = build()
+            watch(root)
+            return root
+
+        module["build"] = watched_build
+        yield outcomes
+        return
+    kind = module["smach"].StateMachine
+    execute = kind.execute
+
+    def watched_execute(self: Any, *arguments: Any) -> Any:
+        kind.execute = execute
+        watch(self)
+        outcome = self.execute(*arguments)
+        outcomes.append(outcome)
+        return outcome
+
+    kind.execute = watched_execute
+    try:
+        yield outcomes
+    finally:
+        kind.execute = execute
+
+
+@contextmanager
+def loaded(name: str, text: str, folder: Path) -> Iterator[dict[str, Any]]:
+    """The names of the module `text`; while it is used it may import modules of the user from
+    `folder`. What loading it raises passes through."""
+    module = ModuleType(name.removesuffix(".py"))
+    module.__file__ = name
+    linecache.cache[name] = (len(text), None, text.splitlines(keepends=True), name)
+    sys.path.insert(0, str(folder.resolve()))
+    try:
+        exec(compile(text, name, "exec"), module.__dict__)
+        yield module.__dict__
+    finally:
+        sys.path.remove(str(folder.resolve()))
+
+
+def hidden(message: str, *arguments: object) -> None:
+    """What SMACH logs, and nobody is to read."""
+
+
+def _told(message: str, *arguments: object) -> None:
+    print(message % arguments if arguments else message, file=sys.stderr)
+
+
+@contextmanager
+def quiet(smach: Any, log: Callable[..., None]) -> Iterator[None]:
+    """Progress is shown from the trace; of what SMACH logs, warnings and errors go to `log`."""
+    before = smach.loginfo, smach.logwarn, smach.logdebug, smach.logerr
+    smach.set_loggers(hidden, log, hidden, log)
+    try:
+        yield
+    finally:
+        smach.set_loggers(*before)
+
+
+def main_function(machine: Machine) -> str:
+    """The name of the generated program's main function."""
+    for variable in machine.variables:
+        if variable.name == "function_name" and isinstance(variable.value.data, str):
+            return variable.value.data
+    return "main"
+
+
+@contextmanager
+def _preempting(built: list[Any], on_preempt: Callable[[], None]) -> Iterator[None]:
+    """Ctrl-C as a preempt request; the second one as ever."""
+
+    def preempt(number: int, frame: FrameType | None) -> None:
+        signal.signal(signal.SIGINT, signal.default_int_handler)
+        if not built:
+            raise KeyboardInterrupt
+        # Not from here: the signal may have come in the middle of a write to the trace.
+        threading.Thread(target=request, daemon=True).start()
+
+    def request() -> None:
+        on_preempt()
+        built[-1].request_preempt()
+
+    before = signal.signal(signal.SIGINT, preempt)
+    try:
+        yield
+    finally:
+        signal.signal(signal.SIGINT, before)

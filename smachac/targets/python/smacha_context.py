@@ -1,0 +1,244 @@
+"""What SMACHA gave to the templates of its users: plain data under the names they expect, and the
+tests and filters by which they tell code from text.
+"""
+
+from __future__ import annotations
+
+import hashlib
+import re
+from collections.abc import Callable, Iterable, Mapping
+from typing import Any
+
+from smachac.ir.nodes import Concurrence, Container, Data, Expression, Leaf, Node, Struct, Variable
+from smachac.ir.traversal import own_outcomes, remapping
+from smachac.targets.python import structure
+from smachac.targets.python.formatter import call, flat, literal, string
+
+
+class Code(str):
+    """Text that is code: printed as it is, also inside a list."""
+
+    __slots__ = ()
+
+    def __repr__(self) -> str:
+        return str(self)
+
+
+class Text(str):
+    """Text of the script that is no code, whatever it looks like."""
+
+    __slots__ = ()
+
+
+class Headers(list[str]):
+    """`defined_headers`: what has been printed once. Asking is as quick with thousands of them."""
+
+    def __init__(self, names: Iterable[str] = ()) -> None:
+        super().__init__(names)
+        self._known = set(self)
+
+    def copy(self) -> Headers:
+        """Another that knows the same."""
+        return Headers(self)
+
+    def append(self, name: str) -> None:
+        self._known.add(name)
+        super().append(name)
+
+    def __contains__(self, name: object) -> bool:
+        return name in self._known
+
+
+_TICKED = re.compile(r"`(.*)`", re.DOTALL)
+_DOTTED_OR_CALL = re.compile(r"\D+[.]\D+|.*\(.*\)")
+
+
+def is_expression(value: object) -> bool:
+    """SMACHA's test `expression`: a string in backticks. Code of a script is one without."""
+    if isinstance(value, Code):
+        return True
+    return isinstance(value, str) and _TICKED.fullmatch(value) is not None
+
+
+def is_not_string(value: object) -> bool:
+    """SMACHA's test `not_string`: what is printed without quotes.
+
+    Strings that come from a script are known to be text or code; others are judged by their look.
+    """
+    if not isinstance(value, str) or isinstance(value, Code):
+        return value is not None
+    if isinstance(value, Text) or value.startswith("'"):
+        return False
+    try:
+        float(value)
+    except ValueError:
+        return _DOTTED_OR_CALL.match(value) is not None
+    return True
+
+
+def without_ticks(value: object) -> object:
+    """SMACHA's filter `exptostr`: the expression in backticks."""
+    if not isinstance(value, str):
+        return value
+    return Code(_TICKED.sub(r"\1", value))
+
+
+def as_literal(value: object) -> str:
+    """A value as Python code, in double quotes where it is text."""
+    return flat(literal(_data(value)))
+
+
+def _data(value: object) -> Data:
+    if isinstance(value, Mapping):
+        return Struct(entries=tuple((str(key), _data(each)) for key, each in value.items()))
+    if isinstance(value, list | tuple):
+        return tuple(_data(each) for each in value)
+    if isinstance(value, Code) or (isinstance(value, str) and is_not_string(value)):
+        from smachac.diagnostics.source import NOWHERE
+
+        return Expression(text=str(value), span=NOWHERE)
+    if isinstance(value, str):
+        quoted = len(value) > 1 and value[0] == value[-1] == "'" and not isinstance(value, Text)
+        return value[1:-1] if quoted else str(value)
+    return value if isinstance(value, int | float) or value is None else str(value)
+
+
+TESTS: Mapping[str, Callable[..., Any]] = {
+    "expression": is_expression,
+    "not_string": is_not_string,
+}
+
+
+def ros_class(value: object) -> Code:
+    """The class that a ROS type names: `Trigger` of `std_srvs/Trigger`, `std_srvs.srv.Trigger`."""
+    return Code(re.split(r"[/.]", str(value))[-1])
+
+
+def ros_import(
+    value: object, part: str, ending: str = "", other: str = "", code: object = ""
+) -> str:
+    """The import of a ROS type that names its package; of others the module's code is to know.
+
+    Code may name a class beside it: `TestGoal` beside `TestAction`, with `other` for `ending`.
+    """
+    words = re.split(r"[/.]", str(value))
+    if len(words) < 2 or not all(word.isidentifier() for word in words):
+        return ""
+    beside = words[-1].removesuffix(ending) + other
+    names = [words[-1], *([beside] if isinstance(code, str) and f"{beside}(" in code else [])]
+    return f"from {words[0]}.{part} import {', '.join(names)}"
+
+
+FILTERS: Mapping[str, Callable[..., Any]] = {
+    "ros_class": ros_class,
+    "ros_import": ros_import,
+    "exptostr": without_ticks,
+    "literal": as_literal,
+    "code": lambda value: Code(value) if isinstance(value, str) else value,
+    "quoted": lambda value: string(str(value)),
+}
+
+
+def plain(data: Data) -> object:
+    """A value as Python data; expressions and strings remain told apart."""
+    match data:
+        case Expression(text=text):
+            return Code(text)
+        case Struct(entries=entries):
+            return {key: plain(value) for key, value in entries}
+        case tuple():
+            return [plain(item) for item in data]
+        case str():
+            return Text(data)
+    return data
+
+
+def written(variables: Iterable[Variable]) -> dict[str, object]:
+    """Variables as a script has them."""
+    return {variable.name: plain(variable.value.data) for variable in variables}
+
+
+def stable_id(path: str) -> str:
+    """`uuid`: 32 hexadecimal digits, the same in each build for the same state."""
+    return hashlib.sha256(path.encode("utf-8", "surrogatepass")).hexdigest()[:32]
+
+
+def adding(node: Node, parent: Container, depth: int, callbacks: Data = None) -> Callable[..., str]:
+    """A function for templates: the line that adds the state that a class makes.
+
+    `callbacks` are called before it. Named arguments that are missing are left out; strings are
+    printed as text, code as it is.
+    """
+
+    def add(class_name: object, *values: object, **named: object) -> str:
+        from jinja2 import Undefined
+
+        arguments = [("", literal(_data(value))) for value in values]
+        arguments += [
+            (f"{name}=", literal(_data(value)))
+            for name, value in named.items()
+            if not isinstance(value, Undefined)
+        ]
+        made = structure.made(node, call(str(class_name), arguments), callbacks)
+        return structure.add(node, parent, made, depth)
+
+    return add
+
+
+def place_variables(parent: Container, parent_sm_name: str, path: str) -> dict[str, object]:
+    """Where a state stands."""
+    return {
+        "uuid": stable_id(path),
+        "parent_name": parent.name,
+        "parent_sm_name": parent_sm_name,
+        "parent_type": type(parent).__name__,
+        "parent_template": parent.type,
+    }
+
+
+def edges(node: Node, parent: Container | None) -> dict[str, object]:
+    """The `transitions` and `remapping` of a state, where it has any. In a Concurrence there are no
+    transitions: its `add` takes none."""
+    steps = {edge.outcome: edge.target for edge in node.transitions if edge.origin == "written"}
+    remaps = remapping(node)
+    found = {"transitions": {} if isinstance(parent, Concurrence) else steps, "remapping": remaps}
+    return {name: value for name, value in found.items() if value}
+
+
+def state_variables(
+    leaf: Leaf, parent: Container, parent_sm_name: str, path: str
+) -> dict[str, object]:
+    """The variables of a leaf's template: those that its script writes, and where it stands."""
+    variables = written(leaf.written)
+    # What a script says of both stands at the container that sugar makes around a state.
+    variables.pop("transitions", None)
+    variables.pop("remapping", None)
+    return {
+        **variables,
+        **edges(leaf, parent),
+        **place_variables(parent, parent_sm_name, path),
+        "name": leaf.name,
+        "class_name": leaf.type,
+    }
+
+
+def container_variables(
+    node: Container, parent: Container | None, parent_sm_name: str, path: str
+) -> dict[str, object]:
+    """The variables of a container's template, or with no parent of the base's."""
+    variables: dict[str, object] = {
+        "outcomes": list(own_outcomes(node)),
+        "input_keys": [key.name for key in node.inputs],
+        "output_keys": [key.name for key in node.outputs],
+        "userdata": {preset.key: plain(preset.value.data) for preset in node.userdata},
+    }
+    if isinstance(node, Concurrence):
+        variables["default_outcome"] = node.default_outcome or node.rules[-1].outcome
+        variables["outcome_map"] = {
+            rule.outcome: {one.child: one.outcome for one in rule.when} for rule in node.rules
+        }
+    variables = {name: value for name, value in variables.items() if value or name == "outcomes"}
+    around = place_variables(parent, parent_sm_name, path) if parent is not None else {}
+    own = {"name": node.name, "class_name": node.type}
+    variables |= edges(node, parent)
+    return {**written(node.written), **variables, **around, **own}

@@ -1,0 +1,215 @@
+"""The structure of a machine in Python: each container, its states and their transitions."""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Callable, Iterator
+from dataclasses import replace
+from keyword import iskeyword
+
+from smachac.ir.nodes import (
+    Concurrence,
+    Container,
+    Data,
+    Key,
+    Node,
+    Sequence,
+    StateMachine,
+    Transition,
+)
+from smachac.ir.nodes import Iterator as IteratorNode
+from smachac.targets.python.formatter import (
+    WIDTH,
+    Doc,
+    Group,
+    call,
+    flat,
+    laid_out,
+    literal,
+    mapping,
+    names,
+    string,
+)
+
+OURS = (
+    *("smach", "build", "main", "error_as_outcome", "with_callbacks"),
+    *("rospy", "smach_ros", "start_node", "preempt_at_shutdown", "server", "sis"),
+)
+"""Names of the module that containers must not take."""
+
+MOST_NESTED = 12
+"""Containers nested deeper get a function of their own: Python allows 20 nested blocks."""
+
+_METHODS = frozenset(["keys", "update", "extract", "merge"])
+"""Attributes of smach.UserData that a key of the same name must not replace."""
+
+Arguments = list[tuple[str, Doc]]
+
+
+def variable_names() -> Callable[[str, bool], str]:
+    """A function that makes a fresh variable name for a container, as SMACHA named them."""
+    taken: dict[str, int] = dict.fromkeys(OURS, 1)
+
+    def fresh(name: str, root: bool) -> str:
+        word = re.sub(r"\W+", "_", name.lower()).strip("_")
+        if not root or not word or word[0].isdigit() or iskeyword(word) or word in taken:
+            word = f"sm_{word}".rstrip("_")
+        taken[word] = taken.get(word, 0) + 1
+        return word if taken[word] == 1 else fresh(f"{name}_{taken[word]}", root)
+
+    return fresh
+
+
+def construct(node: Container, variable: str, depth: int) -> str:
+    """The line that makes a container."""
+    arguments: Arguments = [("outcomes=", names(outcome.name for outcome in node.outcomes))]
+    match node:
+        case Sequence():
+            arguments.append(("connector_outcome=", string(node.connector_outcome)))
+        case Concurrence():
+            # SMACH insists on a default; rules that leave nothing out never come to it.
+            default = node.default_outcome or node.rules[-1].outcome
+            arguments.append(("default_outcome=", string(default)))
+        case IteratorNode():
+            items: Doc = f"lambda: {variable}.userdata[{string(node.items_key)}]"
+            if node.items is not None:
+                items = literal(node.items.data)
+            arguments.append(("it=", items))
+            arguments.append(("it_label=", string(node.item_key)))
+            arguments.append(("exhausted_outcome=", string(node.exhausted_outcome)))
+        case StateMachine():
+            pass
+    arguments += key_arguments(node.inputs, node.outputs)
+    if isinstance(node, Concurrence):
+        if len({rule.outcome for rule in node.rules}) < len(node.rules):
+            arguments.append(("outcome_cb=", _outcome_function(node)))
+        elif node.rules:
+            arguments.append(("outcome_map=", _outcome_map(node)))
+        if node.join == "any":
+            arguments.append(("child_termination_cb=", "lambda outcomes: True"))
+    head = f"{variable} = "
+    return head + laid_out(call(f"smach.{kind(node)}", arguments), width(depth), len(head))
+
+
+def kind(node: Container) -> str:
+    """The name of SMACH's class for a container."""
+    return type(node).__name__
+
+
+def width(depth: int) -> int:
+    """What is left of a line inside `depth` blocks."""
+    return max(40, WIDTH - 4 * depth)
+
+
+def key_arguments(inputs: tuple[Key, ...], outputs: tuple[Key, ...]) -> Iterator[tuple[str, Doc]]:
+    for name, keys in (("input_keys=", inputs), ("output_keys=", outputs)):
+        if keys:
+            yield name, names(key.name for key in keys)
+
+
+def _outcome_map(node: Concurrence) -> Group:
+    """Rules from fewer to more children: so both branches of SMACH agree on several matches
+    (smach-semantics N6)."""
+    rules = sorted(node.rules, key=lambda rule: len(rule.when))
+    return mapping(
+        (rule.outcome, mapping((one.child, string(one.outcome)) for one in rule.when))
+        for rule in rules
+    )
+
+
+def _outcome_function(node: Concurrence) -> str:
+    """The rules as a function, where an outcome has several: a map has room for one."""
+    text = "None"
+    for rule in sorted(node.rules, key=lambda rule: len(rule.when)):
+        holds = " and ".join(
+            f"ended[{string(one.child)}] == {string(one.outcome)}" for one in rule.when
+        )
+        text = f"{string(rule.outcome)} if {holds or True} else {text}"
+    return f"lambda ended: {text}"
+
+
+def userdata(node: Container, variable: str, depth: int) -> list[str]:
+    """The lines that give a container its userdata before the run."""
+    lines = []
+    for preset in node.userdata:
+        key = preset.key
+        plain = key.isidentifier() and not iskeyword(key) and key[0] != "_"
+        place = f".{key}" if plain and key not in _METHODS else f"[{string(key)}]"
+        head = f"{variable}.userdata{place} = "
+        lines.append(head + laid_out(literal(preset.value.data), width(depth), len(head)))
+    return lines
+
+
+def initial(node: Container, variable: str) -> list[str]:
+    """The line that sets another initial state than the first, if there is one."""
+    if not isinstance(node, (StateMachine, Sequence)) or not node.children:
+        return []
+    if node.initial == node.children[0].name:
+        return []
+    return [f"{variable}.set_initial_state({flat(names([node.initial]))})"]
+
+
+def made(node: Node, state: Doc, callbacks: Data = None) -> Doc:
+    """What makes a state, which calls functions first and catches its exceptions where the script
+    says so."""
+    if callbacks is not None:
+        state = call("with_callbacks", [("", state), ("", literal(callbacks))])
+    if not node.catches:
+        return state
+    return call("error_as_outcome", [("", state), ("", string(node.catches))])
+
+
+def add(node: Node, parent: Container, made: Doc, depth: int) -> str:
+    """The line that puts a state, made by `made`, into its container."""
+    arguments: Arguments = [("", string(node.name)), ("", made)]
+    if isinstance(parent, IteratorNode):
+        arguments.append(("loop_outcomes=", names(parent.loop_outcomes)))
+        if parent.final_map:
+            pairs = ((key, string(to)) for key, to in parent.final_map)
+            arguments.append(("final_outcome_map=", mapping(pairs)))
+        return laid_out(call("smach.Iterator.set_contained_state", arguments), width(depth))
+    if not isinstance(parent, Concurrence):
+        edges = [
+            (edge.outcome, string(edge.target))
+            for edge in (*node.transitions, *_never_taken(node))
+            if edge.origin != "connector"
+        ]
+        if edges:
+            arguments.append(("transitions=", mapping(edges)))
+    if node.remaps:
+        pairs = ((remap.key, string(remap.to)) for remap in node.remaps)
+        arguments.append(("remapping=", mapping(pairs)))
+    return laid_out(call(f"smach.{kind(parent)}.add", arguments), width(depth))
+
+
+def _never_taken(node: Node) -> Iterator[Transition]:
+    """SMACH's Iterator registers its exhausted outcome even where the final map renames it, and
+    its container insists on a transition for it (smach-semantics I1, M3)."""
+    if not isinstance(node, IteratorNode):
+        return
+    renamed = dict(node.final_map).get(node.exhausted_outcome)
+    if any(outcome.name == node.exhausted_outcome for outcome in node.outcomes):
+        return
+    for edge in node.transitions:
+        if edge.outcome == renamed:
+            yield replace(edge, outcome=node.exhausted_outcome, origin="written")
+
+
+def children(node: Container) -> Iterator[Node]:
+    """The states of a container, without the implicit exits that share their name with a state:
+    written out they would lead to that state, left out they do not (smach-semantics M7)."""
+    names = frozenset(child.name for child in node.children)
+    for child in node.children:
+        kept = [
+            edge
+            for edge in child.transitions
+            if edge.origin != "implicit" or edge.target not in names
+        ]
+        shadowed = len(kept) < len(child.transitions)
+        yield replace(child, transitions=tuple(kept)) if shadowed else child
+
+
+def place(node: Node) -> str:
+    """Where a state stands in its script: `pick_block.yml:12`, without folders."""
+    name = node.span.source.name.replace("\\", "/").rsplit("/", 1)[-1]
+    return f"{name}:{node.span.line}"

@@ -1,0 +1,15 @@
+"""The files of `runtime/` that generated code is compiled against."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from importlib import resources
+
+
+def runtime_files(paths: Mapping[str, str]) -> dict[str, str]:
+    """The texts of the files that generated code needs beside it, by their names there.
+
+    `paths` maps each name to the path of its file below `runtime/`.
+    """
+    root = resources.files("smachac.runtime")
+    return {name: root.joinpath(path).read_text("utf-8") for name, path in paths.items()}

@@ -1,0 +1,336 @@
+"""Templates whose blocks are rendered one by one and gathered, as SMACHA did.
+
+The text of a block goes where the target puts blocks of that name. Templates are Jinja, sandboxed
+and bounded; they may extend and include one another.
+"""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Callable, Iterator, Mapping
+from typing import TYPE_CHECKING, Any
+
+from smachac.diagnostics.diagnostic import Diagnostic
+from smachac.diagnostics.source import Source, Span
+from smachac.frontend.errors.references import template_error
+
+if TYPE_CHECKING:
+    from jinja2 import Template, nodes
+    from jinja2.runtime import Context as JinjaContext
+
+Find = Callable[[str], Source | None]
+
+SKIPPED = ("meta", "upper_comments", "lower_comments", "introspection_server", "spin")
+"""Blocks that are not printed unless they are asked for."""
+
+
+class BlockError(Exception):
+    """A template does not parse or render; `diagnostic` says where and why."""
+
+    def __init__(self, diagnostic: Diagnostic) -> None:
+        super().__init__(diagnostic.finding.message)
+        self.diagnostic = diagnostic
+
+
+class Blocks:
+    """The templates of one build, by file name. `shown` are those of SKIPPED to be printed."""
+
+    def __init__(
+        self,
+        find: Find,
+        *,
+        filters: Mapping[str, Callable[..., Any]] | None = None,
+        tests: Mapping[str, Callable[..., Any]] | None = None,
+        shown: frozenset[str] = frozenset(),
+    ) -> None:
+        from jinja2.loaders import FunctionLoader
+
+        from smachac.targets.templates.sandbox import BoundedEnvironment
+
+        self._sources: dict[str, Source | None] = {}
+        self._find = find
+        self._chains: dict[str, list[Template]] = {}
+        self._names: dict[str, frozenset[str]] = {}
+        self._page: Page | None = None
+        self._skipped = frozenset(SKIPPED) - shown
+        self._environment = BoundedEnvironment(
+            self._include,
+            loader=FunctionLoader(self._load),
+            extensions=["jinja2.ext.do"],
+            lstrip_blocks=True,
+            keep_trailing_newline=True,
+            autoescape=False,  # the output is code, not HTML
+            cache_size=-1,
+        )
+        self._environment.filters.update(filters or {})
+        self._environment.tests.update(tests or {})
+
+    def source(self, file: str) -> Source | None:
+        """The text of a template, read once. `X.tpl` and `X.tpl.py` stand in for one another."""
+        if file not in self._sources:
+            other = file.removesuffix(".py") if file.endswith(".tpl.py") else f"{file}.py"
+            found = self._find(file)
+            if found is None and other.endswith((".tpl", ".tpl.py")):
+                found = self._find(other)
+            self._sources[file] = found
+        return self._sources[file]
+
+    def parsed(self, file: str) -> None:
+        """Raises BlockError where a template cannot be parsed."""
+        with self._located(file):
+            self._environment.get_template(file)
+
+    def names(self, file: str) -> frozenset[str]:
+        """The blocks that a template, those it extends and those it includes have."""
+        with self._located(file):
+            return self._all_names(file, frozenset())
+
+    def page(self, file: str, variables: Mapping[str, object]) -> Page:
+        """A template with the variables of one state. Raises BlockError."""
+        with self._located(file):
+            self._environment.meter.begin([*variables.values()])
+            return Page(self, file, variables)
+
+    def render(self, file: str, block: str, variables: Mapping[str, object]) -> str:
+        """One block of a template, without the line ends around it. Raises BlockError."""
+        return self.page(file, variables).render(block)
+
+    def render_whole(self, file: str, variables: Mapping[str, object]) -> str:
+        """A whole template, without the space around it. Raises BlockError."""
+        with self._located(file):
+            self._environment.meter.begin([*variables.values()])
+            template = self._chain(file)[0]
+            context = template.new_context(dict(variables))
+            for name in self._skipped & self._all_names(file, frozenset()):
+                context.blocks[name] = [_nothing]
+            return "".join(template.root_render_func(context)).strip()
+
+    def block_span(self, file: str, block: str) -> Span | None:
+        """Where a block begins, in the template or in one that it extends."""
+        opening = re.compile(rf"\{{%[-+]?\s*block\s+{re.escape(block)}\b")
+        for template in self._chain(file):
+            source = self.source(str(template.name))
+            found = opening.search(source.text) if source is not None else None
+            if source is not None and found is not None:
+                return Span(source, *found.span())
+        return None
+
+    def line_span(self, file: str, line: str) -> Span | None:
+        """Where a line of output stands in a template, or in one that it extends."""
+        for template in self._chain(file):
+            source = self.source(str(template.name))
+            for number, start in enumerate(source.line_starts if source else (), start=1):
+                assert source is not None
+                text = source.line(number)
+                if text.strip() == line.strip():
+                    return Span(source, start + len(text) - len(text.lstrip()), start + len(text))
+        return None
+
+    def _load(self, file: str) -> tuple[str, str, Callable[[], bool]] | None:
+        source = self.source(file)
+        return None if source is None else (source.text, file, lambda: True)
+
+    def _chain(self, file: str) -> list[Template]:
+        """A template, the one it extends, and so on."""
+        if file not in self._chains:
+            chain = [self._environment.get_template(file)]
+            seen = {file}
+            while (parent := self._parent(str(chain[-1].name))) is not None:
+                if parent in seen:
+                    raise RecursionError(f"`{parent}` extends itself")
+                seen.add(parent)
+                chain.append(self._environment.get_template(parent))
+            self._chains[file] = chain
+        return self._chains[file]
+
+    def _parent(self, file: str) -> str | None:
+        from jinja2 import nodes
+
+        for found in self._tree(file, "extends").find_all(nodes.Extends):
+            if isinstance(found.template, nodes.Const):
+                return str(found.template.value)
+        return None
+
+    def _tree(self, file: str, word: str) -> nodes.Template:
+        """The tree of a template that has a word in it; else an empty one."""
+        from jinja2 import Environment, nodes
+
+        source = self.source(file)
+        if source is None or word not in source.text:
+            return nodes.Template([])
+        return Environment._parse(self._environment, source.text, file, file)
+
+    def _all_names(self, file: str, seen: frozenset[str]) -> frozenset[str]:
+        if file in seen:
+            raise RecursionError(f"`{file}` includes itself")
+        if file not in self._names:
+            chain = self._chain(file)
+            names = {name for template in chain for name in template.blocks}
+            for template in chain:
+                for other in _included(self._tree(str(template.name), "include")):
+                    if self.source(other) is not None:
+                        names |= self._all_names(other, seen | {file})
+            self._names[file] = frozenset(names)
+        return self._names[file]
+
+    def _include(self, names: Any, context: JinjaContext, may_be_missing: bool) -> str:
+        """What `{% include %}` prints: the block that is being rendered, out of the template."""
+        from jinja2 import TemplateNotFound
+
+        files = [names] if isinstance(names, str) else [str(name) for name in names]
+        file = next((name for name in files if self.source(name) is not None), None)
+        if file is None:
+            if may_be_missing:
+                return ""
+            raise TemplateNotFound(", ".join(files))
+        page = self._page
+        if page is None or not self._all_names(file, frozenset()):
+            template = self._environment.get_template(file)
+            inner = template.new_context(context.get_all(), shared=True)
+            return "".join(template.root_render_func(inner))
+        if page.target is None:
+            page.included.append(file)
+            return ""
+        return Page(self, file, context.get_all(), page.target).text(page.target)
+
+    def _located(self, file: str) -> _Located:
+        return _Located(self, file)
+
+
+class Page:
+    """A template with variables: its blocks, its own and those of what it includes.
+
+    `target` is the block that is being rendered. The top level has been run for its imports, `set`s
+    and includes; its text is dropped.
+    """
+
+    def __init__(
+        self, blocks: Blocks, file: str, variables: Mapping[str, object], target: str | None = None
+    ) -> None:
+        self.blocks = blocks
+        self.file = file
+        self.target: str | None = None
+        self.included: list[str] = []
+        chain = blocks._chain(file)
+        self.own = {name for template in chain for name in template.blocks}
+        self.context = chain[0].new_context(dict(variables))
+        before, blocks._page = blocks._page, self
+        try:
+            if any(_HAS_TOP_LEVEL.search(_text(blocks, template)) for template in chain):
+                self.context.blocks = {name: [_nothing] for name in self.own}
+                for _ in chain[0].root_render_func(self.context):
+                    pass
+        finally:
+            blocks._page = before
+        self.context.blocks = {}
+        for template in chain:
+            for name, function in template.blocks.items():
+                self.context.blocks.setdefault(name, []).append(function)
+        self.inner: list[Page] = [
+            Page(blocks, other, self.context.get_all()) for other in self.included
+        ]
+        self.names: set[str] = self.own.union(*(page.names for page in self.inner))
+        self.target = target
+
+    def render(self, block: str, *, alone: bool = False) -> str:
+        """One block, without the line ends around it. Raises BlockError."""
+        with self.blocks._located(self.file):
+            return self.text(block, alone=alone).strip("\n").rstrip()
+
+    def text(self, block: str, *, alone: bool = False) -> str:
+        """What templates included at the top level have in the block, then what this one has; of
+        `body`, which adds the state, there is one."""
+        parts = []
+        if not alone and (block != "body" or block not in self.own):
+            parts = [page.text(block) for page in self.inner if block in page.names]
+        if block in self.own:
+            before, self.blocks._page = self.blocks._page, self
+            self.target = block
+            try:
+                parts.append("".join(self.context.blocks[block][0](self.context)))
+            finally:
+                self.blocks._page = before
+        return "\n".join(part for part in parts if part.strip())
+
+
+_HAS_TOP_LEVEL = re.compile(r"\{%[-+]?\s*(?:set|import|from|do|macro|include)\b")
+
+
+def _nothing(context: JinjaContext) -> Iterator[str]:
+    return iter(())
+
+
+def _text(blocks: Blocks, template: Template) -> str:
+    source = blocks.source(str(template.name))
+    return source.text if source is not None else ""
+
+
+def _included(tree: nodes.Template) -> Iterator[str]:
+    """The templates that a template includes outside of its blocks."""
+    from jinja2 import nodes
+
+    todo: list[nodes.Node] = [tree]
+    while todo:
+        node = todo.pop()
+        if isinstance(node, nodes.Include) and isinstance(node.template, nodes.Const):
+            value = node.template.value
+            yield from [value] if isinstance(value, str) else map(str, value)
+        elif not isinstance(node, nodes.Block):
+            todo.extend(node.iter_child_nodes())
+
+
+class _Located:
+    """Turns what Jinja raises into a BlockError with the line of the template."""
+
+    def __init__(self, blocks: Blocks, file: str) -> None:
+        self.blocks = blocks
+        self.file = file
+
+    def __enter__(self) -> None:
+        return None
+
+    def __exit__(self, kind: object, error: BaseException | None, trace: Any) -> None:
+        if error is None or isinstance(error, BlockError) or not isinstance(error, Exception):
+            return
+        span = self._place(error, trace)
+        raise BlockError(template_error(span, *_words(error))) from error
+
+    def _place(self, error: Exception, trace: Any) -> Span:
+        """The line of the template that an exception comes from."""
+        from jinja2 import TemplateError
+
+        file, line = self.file, 1
+        if isinstance(error, TemplateError) and getattr(error, "lineno", None):
+            file = getattr(error, "name", None) or file
+            line = int(getattr(error, "lineno", 1))
+        else:
+            while trace is not None:
+                name = trace.tb_frame.f_code.co_filename
+                if self.blocks.source(name) is not None:
+                    template = self.blocks._environment.get_template(name)
+                    file, line = name, template.get_corresponding_lineno(trace.tb_lineno)
+                trace = trace.tb_next
+        source = self.blocks.source(file) or Source(file, "")
+        starts = source.line_starts
+        start = starts[min(line, len(starts)) - 1]
+        return Span(source, start, start + len(source.line(line)))
+
+
+def _words(error: Exception) -> tuple[str, str | None]:
+    """What is wrong, in our words where Jinja's are not for the reader."""
+    from jinja2 import TemplateNotFound
+    from jinja2.exceptions import SecurityError
+
+    words = getattr(error, "message", None) or str(error) or type(error).__name__
+    words = words.split(". ")[0].rstrip(".")  # Jinja explains at length
+    if isinstance(error, RecursionError):
+        return "the template extends, includes or calls itself without an end", None
+    if isinstance(error, MemoryError):
+        return "the template needs more memory than there is", None
+    if isinstance(error, TemplateNotFound):
+        help = "templates are looked for in the folders of templates, and nowhere else"
+        return f"there is no template `{words}`", help
+    if isinstance(error, SecurityError):
+        help = "templates see the variables of their state, not the insides of Python"
+        return words, help
+    return words, None

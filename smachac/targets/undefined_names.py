@@ -1,0 +1,108 @@
+"""Names that code of a script uses, and that nothing in its program defines (SM019).
+
+What templates define is told by their text alone: a name that stands anywhere in those of the
+script is defined for all we know, and nothing is said where they make names or import all there is.
+"""
+
+from __future__ import annotations
+
+import ast
+import builtins
+import re
+import sys
+import warnings
+from collections.abc import Iterator
+
+from smachac.analysis.accesses import callbacks
+from smachac.diagnostics.diagnostic import Diagnostic
+from smachac.frontend.errors.script import undefined_name
+from smachac.frontend.loader import Library
+from smachac.frontend.state_types import TEMPLATE_FILES, find_state_type
+from smachac.ir.expressions import looks_like_expression
+from smachac.ir.nodes import Expression, Leaf, Machine, Node
+from smachac.ir.traversal import expressions, walk
+
+USERDATA = ("ud", "userdata")
+"""What code that is no function calls the userdata."""
+
+_MAKES_NAMES = re.compile(r"import \*|[\"']\*[\"']|\w\{\{|\}\}\w")
+_OTHERS = re.compile(r"\{%[-+]?\s*(?:extends|include|import|from)\s+[\"']([^\"']+)[\"']")
+_BLOCK = re.compile(r"\{%[-+]?\s*(?:end)?block\b[^%]*%\}")
+_WORDS = re.compile(r"[^\W\d]\w*")
+_DEFINED = re.compile(r"^\s*(?:def|class|import|from \S+ import)\s+(\w+)|^\s*(\w+) = ", re.M)
+
+
+def undefined_names(machine: Machine, library: Library) -> Iterator[Diagnostic]:
+    """Each name that is defined nowhere, at the code that uses it."""
+    used = [
+        (node, expression, name)
+        for _, node in walk(machine.root)
+        if not (isinstance(node, Leaf) and node.written)  # its template prints it as it likes
+        for expression in expressions(node)
+        for name in _free(expression.text)
+    ]
+    known = _known(machine, library) if used else None
+    for node, expression, name in used:
+        if known is not None and name not in known:
+            by_look = _by_look(node, expression)
+            yield undefined_name(expression.span, name, expression.text, by_look)
+
+
+def _by_look(node: Node, expression: Expression) -> bool:
+    """Whether nothing but its look makes a text of the script code."""
+    if isinstance(node, Leaf) and expression in (callbacks(node) or {}).values():
+        return False
+    written = expression.span.text
+    made = written.startswith("[") and "`" not in written  # a string construct
+    return made or (written == expression.text and looks_like_expression(written))
+
+
+def _free(text: str) -> list[str]:
+    """The names that code takes from its module, but for those that every module has."""
+    try:
+        with warnings.catch_warnings():
+            warnings.simplefilter("ignore", SyntaxWarning)
+            nodes = [*ast.walk(ast.parse(text.strip(), mode="eval"))]
+    except (SyntaxError, ValueError, RecursionError, MemoryError):
+        return []  # SM016
+    bound = {node.arg for node in nodes if isinstance(node, ast.arg)}
+    names = [node for node in nodes if isinstance(node, ast.Name)]
+    bound |= {name.id for name in names if not isinstance(name.ctx, ast.Load)}
+    found = dict.fromkeys(name.id for name in names if name.id not in bound)
+    return [
+        name
+        for name in found
+        if name not in USERDATA and not hasattr(builtins, name)
+        if name not in sys.stdlib_module_names
+    ]
+
+
+def _known(machine: Machine, library: Library) -> set[str] | None:
+    """The words of all templates of a script, and what is imported for them; None where these
+    make names."""
+    from smachac.targets.python.imports import importable
+
+    types = {machine.base, *(node.type for _, node in walk(machine.root))}
+    known, seen = importable(), set[str]()
+    todo = [file for name in sorted(types) for file in _files(name, library)]
+    while todo:
+        file = todo.pop()
+        source = library.template(file) if file not in seen else None
+        seen.add(file)
+        if source is None:
+            continue
+        if library.own_template(file) is None:
+            known.update(word for pair in _DEFINED.findall(source.text) for word in pair if word)
+        elif _MAKES_NAMES.search(source.text):
+            return None
+        else:
+            known.update(_WORDS.findall(_BLOCK.sub("", source.text)))
+        todo += _OTHERS.findall(source.text)
+    return known
+
+
+def _files(name: str, library: Library) -> list[str]:
+    """Where the code of a state type may be."""
+    type_ = find_state_type(name, library, []) if name else None
+    code = [type_.code["python"]] if type_ is not None and "python" in type_.code else []
+    return [*code, *(pattern.format(name) for pattern in TEMPLATE_FILES)]

@@ -1,0 +1,277 @@
+"""Which way a machine is likely to reach an end, or a chosen outcome of one of its containers."""
+
+from __future__ import annotations
+
+from collections import deque
+from collections.abc import Callable, Iterator, Mapping
+from types import MappingProxyType
+
+from smachac.analysis.outcome_rules import Combination, Domains, Rules, UndecidedError
+from smachac.ir import nodes
+from smachac.ir.graph import START, Edge, Place, edges, exit_place
+from smachac.ir.nodes import Concurrence, Container, Leaf, Machine, Node
+from smachac.ir.traversal import PREEMPTED, containers, outcome_names, walk
+
+Wanted = Mapping[str, "str | Mapping[str, str]"]
+"""By path of a container: the outcome it is to have, or outcomes of its children by name."""
+
+
+def leaf_outcomes(leaf: Leaf) -> tuple[str, ...]:
+    """The outcomes that a leaf can have, as far as known: of an open one those that lead on."""
+    declared = outcome_names(leaf)
+    led = tuple(edge.outcome for edge in leaf.transitions) if leaf.open else ()
+    return tuple(dict.fromkeys((*declared, *led)))
+
+
+def winner(node: Concurrence, ended: Mapping[str, str]) -> int:
+    """Which rule decides how a concurrence ends: its number, or -1 for the default."""
+    best, most = -1, 0
+    for number, rule in enumerate(node.rules):
+        holds = all(ended.get(one.child) == one.outcome for one in rule.when)
+        if holds and len(rule.when) >= most:
+            best, most = number, len(rule.when)
+    return best
+
+
+def count_of_items(node: nodes.Iterator) -> int | None:
+    """How many items an iterator has, where the script says so."""
+    data = node.items.data if node.items is not None else None
+    return len(data) if isinstance(data, tuple) else None
+
+
+class Steering:
+    """A machine with what can be entered and how it can end, judged by its graph alone.
+
+    `possible` are the outcomes that each state can have, `entered` the states that can be entered.
+    Linear in the size of the machine, but for concurrences with many rules.
+    """
+
+    def __init__(self, machine: Machine) -> None:
+        self.root = machine.root
+        self.nodes: dict[str, Node] = dict(walk(machine.root))
+        self.possible: dict[str, frozenset[str]] = {}
+        self.entered: set[str] = {machine.root.name}
+        self._edges: dict[str, list[Edge]] = {}
+        self._distances: dict[tuple[str, str | None], dict[Place, int]] = {}
+        self._sources: dict[str, dict[Place, list[Edge]]] = {}
+        self._rules: dict[str, Rules] = {}
+        self._combined: dict[tuple[str, str | int | None], Combination | None] = {}
+        self._undecided: set[str] = set()
+        self._scenic: dict[str, tuple[str, ...]] = {}
+        self._judge()
+
+    def _judge(self) -> None:
+        inside: dict[str, frozenset[str]] = {}
+        for path, node in reversed(list(containers(self.root))):
+            for child in node.children:
+                if isinstance(child, Leaf):
+                    self.possible[f"{path}/{child.name}"] = frozenset(leaf_outcomes(child))
+            found = self._edges[path] = [
+                edge
+                for edge in edges(node)
+                if not isinstance(edge.source, str)
+                or edge.outcome in self.possible[f"{path}/{edge.source}"]
+            ]
+            if isinstance(node, nodes.Iterator) and count_of_items(node) == 0:
+                found[:] = [
+                    edge for edge in found if edge.kind == "exhausted" and edge.source == START
+                ]
+            places = _places(found)
+            inside[path] = frozenset(each for each in places if isinstance(each, str))
+            ends = (place[1] for place in places if isinstance(place, tuple) and len(place) == 2)
+            if isinstance(node, Concurrence):
+                ends = (end for end in ends if not self.never(path, end))
+            caught = frozenset([node.catches] if node.catches and self._raises(node) else [])
+            self.possible[path] = frozenset(ends) | caught
+        for path, _ in containers(self.root):
+            if path in self.entered:
+                self.entered.update(f"{path}/{name}" for name in inside[path])
+
+    def ends(self) -> bool:
+        """Whether the machine can end at all."""
+        return bool(self.possible[self.root.name])
+
+    def aim(self, wanted: Wanted = MappingProxyType({})) -> Callable[[str], str | None]:
+        """A function from a leaf's path to the outcome that brings the machine to its end soonest,
+        if any does; containers in `wanted` are to end so on the way. Whether that comes true may
+        hang on what happens beside the leaf."""
+        choices: dict[str, str | None] = {}
+
+        def aimed(path: str) -> str | None:
+            if path in choices and path not in wanted:
+                return choices[path]
+            here = self.root.name
+            goal = wanted.get(here)
+            for name in path[len(here) + 1 :].split("/"):
+                child = f"{here}/{name}"
+                if child not in choices:
+                    choices[child] = self._best(here, goal, name)
+                here, goal = child, wanted.get(child, choices[child])
+            return choices[path]
+
+        return aimed
+
+    def scenic(self, path: str) -> tuple[str, ...]:
+        """The outcomes of a leaf, those that lead farthest from the end of its container first.
+
+        Those that end the machine at once are left out.
+        """
+        if path not in self._scenic:
+            around, _, name = path.rpartition("/")
+            ordered = self._ordered(path)
+            if isinstance(self.nodes[around], nodes.StateMachine | nodes.Sequence):
+                distances = self._distance(around, None)
+                far = {
+                    edge.outcome: distances[edge.target]
+                    for edge in self._outward(around, name)
+                    if edge.target in distances
+                }
+                ordered.sort(key=lambda outcome: -far.get(outcome, -1))
+                if around == self.root.name:
+                    ordered = [outcome for outcome in ordered if far.get(outcome) != 0]
+            self._scenic[path] = tuple(ordered)
+        return self._scenic[path]
+
+    def _best(self, path: str, goal: str | Mapping[str, str] | None, name: str) -> str | None:
+        """The outcome that a child of a container had best have."""
+        node, here = self.nodes[path], f"{path}/{name}"
+        if goal is not None and not isinstance(goal, str):
+            return goal.get(name, next(iter(self._ordered(here)), None))
+        if isinstance(node, Concurrence):
+            found = self.combination(path, goal) or {}
+            return found.get(name, next(iter(self._ordered(here)), None))
+        if isinstance(node, nodes.Iterator):
+            return self._looping(node, goal, here)
+        distances = self._distance(path, goal)
+        known = {
+            edge.outcome: distances[edge.target]
+            for edge in self._outward(path, name)
+            if edge.target in distances
+        }
+        ordered = [outcome for outcome in self._ordered(here) if outcome in known]
+        return min(ordered, key=known.__getitem__, default=None)
+
+    def _ordered(self, path: str) -> list[str]:
+        """The possible outcomes of a state as its script lists them."""
+        node = self.nodes[path]
+        names = leaf_outcomes(node) if isinstance(node, Leaf) else outcome_names(node)
+        return [name for name in names if name in self.possible[path]]
+
+    def _outward(self, path: str, name: str) -> list[Edge]:
+        if path not in self._sources:
+            found = self._sources[path] = {}
+            for edge in self._edges[path]:
+                found.setdefault(edge.source, []).append(edge)
+        return self._sources[path].get(name, [])
+
+    def _looping(self, node: nodes.Iterator, goal: str | None, here: str) -> str | None:
+        """Go on to the last item, unless the child has to end the iteration itself."""
+        renamed = dict(node.final_map)
+        ordered = self._ordered(here)
+        loops = [outcome for outcome in ordered if outcome in node.loop_outcomes]
+        if goal is None or renamed.get(node.exhausted_outcome, node.exhausted_outcome) == goal:
+            return next(iter([*loops, *ordered]), None)
+        breaks = [name for name in ordered if name not in loops and renamed.get(name, name) == goal]
+        return next(iter([*breaks, *ordered]), None)
+
+    def combination(self, path: str, goal: str | int | None) -> Combination | None:
+        """Outcomes of the children with which a concurrence ends so: by an outcome, or by the rule
+        of that number (-1: by its default). None where there are none, as far as can be told."""
+        if (path, goal) not in self._combined:
+            node = self.nodes[path]
+            assert isinstance(node, Concurrence)
+            try:
+                self._combined[path, goal] = self._combination(path, node, goal)
+            except UndecidedError:
+                self._combined[path, goal] = None
+                self._undecided.add(path)
+        return self._combined[path, goal]
+
+    def never(self, path: str, goal: str | int) -> bool:
+        """Whether a concurrence surely never ends so (see `combination`)."""
+        return self.combination(path, goal) is None and path not in self._undecided
+
+    def _combination(
+        self, path: str, node: Concurrence, goal: str | int | None
+    ) -> Combination | None:
+        rules = self._rules.get(path)
+        if rules is None:
+            conditions = ({one.child: one.outcome for one in rule.when} for rule in node.rules)
+            rules = self._rules[path] = Rules(conditions)
+        results = dict(enumerate(rule.outcome for rule in node.rules))
+        for number, result in {**results, -1: node.default_outcome}.items():
+            if goal is not None and goal != (number if isinstance(goal, int) else result):
+                continue
+            given = rules.conditions[number] if number >= 0 else {}
+            avoided = rules.larger_than(len(given)) if number >= 0 else rules.all
+            for domains in self._domains(path, node):
+                found = rules.find(domains, given, avoided)
+                if found is not None:
+                    return found
+        return None
+
+    def _domains(self, path: str, node: Concurrence) -> Iterator[Domains]:
+        """What the children can end with. Where the first to end stops the others, leaves that can
+        say so end as preempted."""
+        able = {child.name: self._ordered(f"{path}/{child.name}") for child in node.children}
+        if node.join == "all":
+            yield able
+            return
+        stopped = {
+            child.name: [PREEMPTED]
+            for child in node.children
+            if isinstance(child, Leaf) and PREEMPTED in able[child.name]
+        }
+        for first in able:
+            yield {**able, **stopped, first: able[first]}
+
+    def _distance(self, path: str, goal: str | None) -> dict[Place, int]:
+        """How many states lie between each place of a container and its end."""
+        if (path, goal) not in self._distances:
+            node = self.nodes[path]
+            assert not isinstance(node, Leaf)
+            ends = (goal,) if goal is not None else outcome_names(node)
+            planned = [edge for edge in self._edges[path] if not self._caught(path, edge)]
+            self._distances[path, goal] = _back(planned, [exit_place(end) for end in ends])
+        return self._distances[path, goal]
+
+    def _raises(self, node: Container) -> bool:
+        """Whether an exception can come from inside a container."""
+        if any(not child.catches for child in node.children):
+            return True
+        return isinstance(node, nodes.Iterator) and count_of_items(node) is None
+
+    def _caught(self, path: str, edge: Edge) -> bool:
+        """Whether it takes an exception somewhere inside a container to get on so."""
+        node = self.nodes.get(f"{path}/{edge.source}")
+        return node is not None and not isinstance(node, Leaf) and edge.outcome == node.catches
+
+
+def _places(found: list[Edge]) -> dict[Place, None]:
+    """The places that can be reached from the start."""
+    following: dict[Place, list[Place]] = {}
+    for edge in found:
+        following.setdefault(edge.source, []).append(edge.target)
+    seen: dict[Place, None] = {START: None}
+    todo = [START]
+    while todo:
+        for place in following.get(todo.pop(), ()):
+            if place not in seen:
+                seen[place] = None
+                todo.append(place)
+    return seen
+
+
+def _back(found: list[Edge], ends: list[Place]) -> dict[Place, int]:
+    before: dict[Place, list[Place]] = {}
+    for edge in found:
+        before.setdefault(edge.target, []).append(edge.source)
+    distances: dict[Place, int] = dict.fromkeys(ends, 0)
+    todo = deque(ends)
+    while todo:
+        here = todo.popleft()
+        for place in before.get(here, ()):
+            if place not in distances:
+                distances[place] = distances[here] + 1
+                todo.append(place)
+    return distances

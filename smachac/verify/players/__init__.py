@@ -1,0 +1,1 @@
+"""Players: each runs test cases on the program that a target generates."""

@@ -1,0 +1,121 @@
+"""Plays scenes on a generated C++ program: compiled once, then all of them in one run."""
+
+from __future__ import annotations
+
+import functools
+import importlib.util
+import json
+import shutil
+import subprocess
+import sys
+import tempfile
+from collections.abc import Iterator, Sequence
+from pathlib import Path
+from typing import NamedTuple
+
+import smachac
+from smachac.diagnostics.diagnostic import Report
+from smachac.frontend.loader import Library
+from smachac.ir.nodes import Machine
+from smachac.targets.cpp.plan import plan
+from smachac.targets.cpp.types import UnportableError
+from smachac.verify.players.cpp_program import Program
+from smachac.verify.test_case import Event, Player, Scene, UnplayableError
+
+HEADERS = Path(smachac.__file__).parent / "runtime" / "cpp"
+"""The folder that holds smachac/*.hpp."""
+
+FLAGS = ("-std=c++17", "-O0", "-ffp-contract=off", "-pthread", f"-I{HEADERS}")
+"""Floats as Python computes them, also where the machine could fuse two operations."""
+
+DONE = "--"
+"""The line after each trace."""
+
+MOST_ERRORS = 5
+"""Lines of a compiler that are shown."""
+
+
+def player(machine: Machine, library: Library, report: Report) -> Player:
+    """A player of what the target prints; what C++ cannot say of the machine is reported.
+
+    It compiles when it gets its scenes. Raises UnplayableError where there is no compiler, or where
+    it does not compile.
+    """
+    planned = plan(machine)
+    report.extend(Program(planned, library, ()).refused())
+
+    def play(scenes: Sequence[Scene]) -> Iterator[list[Event]]:
+        found = compilers()
+        if not found:
+            words = "no C++ compiler is here: install g++ or clang++, or the Python package ziglang"
+            raise UnplayableError(words)
+        program = Program(planned, library, scenes)
+        try:
+            text = program.text()
+        except UnportableError as error:
+            raise UnplayableError(f"the C++ program cannot be printed: {error}") from error
+        yield from traces(text, program.script(), found[0])
+
+    return play
+
+
+def traces(text: str, scenes: str, compiler: Compiler) -> Iterator[list[Event]]:
+    """What a program prints for scenes, one trace after the other, as it runs. One that breaks off
+    ends the last trace with an event that nobody expects."""
+    with tempfile.TemporaryDirectory() as folder, tempfile.TemporaryFile("w+") as given:
+        made = compiled(text, compiler, Path(folder))
+        given.write(scenes)
+        given.seek(0)
+        run = subprocess.Popen([made], stdin=given, stdout=subprocess.PIPE, text=True)
+        assert run.stdout is not None
+        events: list[Event] = []
+        try:
+            for line in run.stdout:
+                if line.strip() == DONE:
+                    yield events
+                    events = []
+                else:
+                    events.append(json.loads(line))
+            if run.wait() != 0:
+                how = f"the program ended with {run.returncode}"
+                yield [*events, {"event": "error", "path": "", "outcome": how}]
+        finally:
+            run.kill()
+            run.wait()
+            run.stdout.close()
+
+
+def compiled(text: str, compiler: Compiler, folder: Path) -> str:
+    """The program of a text. Raises UnplayableError with the first errors of the compiler."""
+    made = str(folder / "verify")
+    call = [*compiler.command, *FLAGS, "-x", "c++", "-", "-o", made]
+    run = subprocess.run(call, input=text, capture_output=True, text=True, check=False)
+    if run.returncode != 0:
+        lines = run.stderr.splitlines()
+        errors = [line for line in lines if "error" in line] or lines
+        raise UnplayableError(
+            "\n".join(["the C++ program does not compile:", *errors[:MOST_ERRORS]])
+        )
+    return made
+
+
+class Compiler(NamedTuple):
+    """A compiler by its kind, `g++` or `clang++`, and how it is called."""
+
+    name: str
+    command: tuple[str, ...]
+
+
+@functools.cache
+def compilers() -> tuple[Compiler, ...]:
+    """`g++` and `clang++`, one of each, where they are; else the one in the package `ziglang`."""
+    versions = [f"clang++-{number}" for number in range(22, 11, -1)]
+    found = [*_first("g++", ["g++"]), *_first("clang++", ["clang++", *versions])]
+    if not found and importlib.util.find_spec("ziglang"):
+        found = [Compiler("clang++", (sys.executable, "-m", "ziglang", "c++"))]
+    return tuple(found)
+
+
+def _first(kind: str, names: Sequence[str]) -> list[Compiler]:
+    found = next(filter(None, map(shutil.which, names)), None)
+    return [Compiler(kind, (found,))] if found else []

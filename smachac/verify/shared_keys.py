@@ -1,0 +1,45 @@
+"""What two branches of a concurrence share: there a run hangs on who comes first."""
+
+from __future__ import annotations
+
+from collections import Counter
+
+from smachac.ir.nodes import Concurrence, Leaf, Machine, Node
+from smachac.ir.traversal import containers, remapping, walk
+
+
+def contended(machine: Machine) -> dict[str, tuple[str, ...]]:
+    """The concurrences, by path, in which a branch writes keys that another reads or writes.
+
+    A branch that may write anything, because its state type has no interface, counts for no key.
+    """
+    found = {}
+    for path, node in containers(machine.root):
+        if isinstance(node, Concurrence):
+            users: Counter[str] = Counter()
+            written: set[str] = set()
+            for child in node.children:
+                reads, writes = _keys(child)
+                users.update(reads | writes)
+                written |= writes
+            if shared := tuple(sorted(key for key in written if users[key] > 1)):
+                found[path] = shared
+    return found
+
+
+def _keys(child: Node) -> tuple[set[str], set[str]]:
+    names = remapping(child)
+    reads, writes = (
+        {names.get(key.name, key.name) for key in keys} for keys in (child.inputs, child.outputs)
+    )
+    return reads, writes
+
+
+def sure_reads(machine: Machine) -> dict[str, tuple[str, ...]]:
+    """The inputs of each leaf that hold the same whichever branch comes first, by path."""
+    loose = tuple(f"{path}/" for path in contended(machine))
+    return {
+        path: tuple(key.name for key in node.inputs)
+        for path, node in walk(machine.root)
+        if isinstance(node, Leaf) and node.inputs and not path.startswith(loose)
+    }

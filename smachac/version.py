@@ -1,0 +1,3 @@
+"""The version of smachac."""
+
+__version__ = "0.1.0"
