@@ -1,1 +1,1 @@
-"""What is computed from a machine: the data flow, control flow, types and outcomes that rules use."""
+"""What is computed from a machine: data flow, control flow, types and outcomes."""

@@ -11,5 +11,7 @@ def runtime_files(paths: Mapping[str, str]) -> dict[str, str]:
 
     `paths` maps each name to the path of its file below `runtime/`.
     """
-    root = resources.files("smachac.runtime")
-    return {name: root.joinpath(path).read_text("utf-8") for name, path in paths.items()}
+    return {
+        name: resources.files("smachac.runtime").joinpath(path).read_text("utf-8")
+        for name, path in paths.items()
+    }
