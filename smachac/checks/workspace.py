@@ -143,7 +143,7 @@ def unreachable(machine: Machine) -> Report:
 
 def _asked(wanted: Iterable[Reach]) -> Report:
     from smachac.sim import robots
-    from smachac.sim.inverse_kinematics import Shadow
+    from smachac.sim.inverse_kinematics import Kinematics
     from smachac.sim.transforms import IDENTITY, Pose, as_pose, grasp_pose, shifted
 
     robot = robots.panda()
@@ -158,17 +158,17 @@ def _asked(wanted: Iterable[Reach]) -> Report:
             return None
 
     found: Report = []
-    shadow = Shadow(robot)
+    kinematics = Kinematics(robot)
     try:
         for each in wanted:
             pose = goal(each)
             if pose is None:
                 continue
             if pose not in known:
-                known[pose] = shadow.solve(limb, pose) is not None
+                known[pose] = kinematics.solve(limb, pose) is not None
             if not known[pose]:
                 place = ", ".join(f"{number:.3f}" for number in pose[0])
                 found.append(out_of_reach(each.flow, f"({place})"))
     finally:
-        shadow.close()
+        kinematics.close()
     return found

@@ -1,8 +1,8 @@
-"""The one stepper: it alone moves simulated time, and only when every live branch waits for it.
+"""The simulated clock: skills in several threads advance in lockstep with the physics.
 
-A skill is a generator that yields once per physics step. A thread hands its skill over with `run`
-and waits; the thread that finds everybody waiting does the stepping for all. So what happens, and
-when in simulated time, does not depend on how the threads are scheduled.
+A skill is a generator that yields once per physics step. A thread submits its skill with `run` and
+waits. As soon as every live branch waits, one of the waiting threads steps the physics and advances
+all skills. So events and their simulated times do not depend on how the threads are scheduled.
 """
 
 import contextlib
@@ -12,17 +12,22 @@ from typing import Any, TypeAlias, TypeVar
 
 T = TypeVar("T")
 
+TIME_STEP = 1 / 240
+"""Length of a physics step (s); 1/120 to 1/1000 work, with 1/60 grasps are lost."""
+
 Skill: TypeAlias = Generator[None, None, T]
 Key: TypeAlias = tuple[int, ...]
-"""A branch: its place among its siblings, after the key of the branch they fork from. Skills
+"""A branch: the key of the branch that it forks from, then its number among its siblings. Skills
 advance in the order of the keys."""
 
 _GUEST = 1 << 30
+"""First number in the key of a thread without a branch: such threads come after all branches."""
 _SLICES = 10
+"""Number of waits that `patience` is divided into."""
 
 
 class _Job:
-    """A skill handed over, and in the end its value or its error."""
+    """A submitted skill, and once it is done its value or its error."""
 
     __slots__ = ("advanced", "done", "error", "skill", "value")
 
@@ -34,7 +39,7 @@ class _Job:
         self.error: BaseException | None = None
 
     def advance(self) -> None:
-        """Go on to the next yield, or to the end."""
+        """Run the skill to its next yield, or to its end."""
         try:
             next(self.skill)
             self.advanced = True
@@ -47,21 +52,27 @@ class _Job:
 
 
 class _Fork:
-    """Branches that run together while the branch they come from stands still."""
+    """Branches that run together while the branch `parent` waits for them.
+
+    Attributes:
+        open: the branches that have not left.
+        preempted: the branches that have a preempt request.
+    """
 
     def __init__(self, parent: Key | None, keys: Sequence[Key]) -> None:
         self.parent = parent
         self.open = set(keys)
-        self.told: set[Key] = set()
+        self.preempted: set[Key] = set()
 
 
 class Clock:
-    """Lockstep over threads. `step` makes one physics step.
+    """Lockstep of threads. `step` makes one physics step.
 
-    A thread without a branch is a guest: time waits for it only while a skill of its own runs.
-    A live branch that stays away for `patience` wall seconds (it sleeps, or waits for something
-    that is not simulated) is left behind and named to `left_behind`; it counts again as soon as it
-    hands over a skill. Waiting for it would stop the world for good.
+    Simulated time waits for a thread without a branch (a guest) only while its own skill runs.
+    A live branch that submits no skill for `patience` seconds of wall time (it sleeps, or waits for
+    something outside the simulation) is left behind: time no longer waits for it, and `left_behind`
+    is called with its key. It counts again as soon as it submits a skill. Without this limit the
+    simulation would stop for ever.
     """
 
     def __init__(
@@ -78,26 +89,26 @@ class Clock:
         self._live: set[Key] = set()
         self._waiting: dict[Key, _Job] = {}
         self._forks: dict[Key, _Fork] = {}
-        self._promised: set[Key] = set()
+        self._expected_preempts: set[Key] = set()
         self._starting: set[Key] = set()
         self._stepping = False
         self._guests = 0
-        self._beats = 0
-        self._mine = threading.local()
+        self._rounds = 0
+        self._thread = threading.local()
 
     # Skills
 
     def run(self, skill: Skill[T]) -> T:
         """Run a skill to its end in simulated time and return its value, or raise its error."""
         job = _Job(skill)
-        key = self._hand_over(job)
+        key = self._submit(job)
         try:
             while not job.done:
                 if self._take_turn(job):
-                    self._drive(job)
+                    self._step_for_all(job)
         finally:
-            self._take_back(key)
-            # Another thread may be in it just now, when this one was interrupted.
+            self._withdraw(key)
+            # After an interrupt of this thread another one may be running the generator.
             with contextlib.suppress(ValueError):
                 skill.close()
         if job.error is not None:
@@ -105,7 +116,7 @@ class Clock:
         value: T = job.value
         return value
 
-    def _hand_over(self, job: _Job) -> Key:
+    def _submit(self, job: _Job) -> Key:
         with self._changed:
             key = self.current
             if key is None:
@@ -117,13 +128,13 @@ class Clock:
             self._changed.notify_all()
             return key
 
-    def _take_back(self, key: Key) -> None:
+    def _withdraw(self, key: Key) -> None:
         with self._changed:
             self._waiting.pop(key, None)
             self._changed.notify_all()
 
     def _take_turn(self, job: _Job) -> bool:
-        """Wait for something to do; true when this thread is to step for all."""
+        """Wait for a change; True if this thread is to step for all threads."""
         with self._changed:
             if job.done:
                 return False
@@ -134,30 +145,31 @@ class Clock:
             return False
 
     def _ready(self) -> bool:
-        return not self._promised and self._live <= self._waiting.keys()
+        return not self._expected_preempts and self._live <= self._waiting.keys()
 
     def _absent(self) -> list[Key]:
         return sorted(self._live - self._waiting.keys())
 
     def _wait(self) -> None:
-        """Wait for a change; when there is none for too long, leave behind whom all wait for."""
-        beat = self._beats
-        # In slices: a process that was stopped meanwhile has not waited, it only looks so.
+        """Wait for a change; after `patience` without one, leave the absent branches behind."""
+        round_ = self._rounds
+        # In slices: the time in which the whole process was suspended counts as one slice only.
         for _ in range(_SLICES):
             woken = self._changed.wait(self._patience / _SLICES)
-            if woken or beat != self._beats or self._stepping:
+            if woken or round_ != self._rounds or self._stepping:
                 return
         lost = [key for key in self._absent() if key not in self._starting]
         self._live.difference_update(lost)
-        self._promised.clear()
+        self._expected_preempts.clear()
         self._changed.notify_all()
         for key in lost:
             self._left_behind(key)
 
-    def _drive(self, mine: _Job) -> None:
+    def _step_for_all(self, own: _Job) -> None:
+        """Step the physics and advance all skills, until the skill `own` of this thread is done."""
         try:
-            while not mine.done:
-                jobs = self._crew()
+            while not own.done:
+                jobs = self._runnable_jobs()
                 if not jobs:
                     return
                 if self._advance(jobs):
@@ -170,28 +182,28 @@ class Clock:
                 self._changed.notify_all()
 
     def _advance(self, jobs: list[_Job]) -> bool:
-        """Take every skill to its next yield; false as soon as one ends instead.
+        """Advance every skill to its next yield; False as soon as one ends.
 
-        Then its thread goes first: what it does next comes before the branches after it.
+        The thread of an ended skill then continues before the skills of later branches advance.
         """
         for job in jobs:
             if not job.advanced:
                 job.advance()
                 if job.done:
-                    self._dismiss()
+                    self._release_finished()
                     return False
         return True
 
-    def _crew(self) -> list[_Job]:
-        """The skills that run, in the order of their branches; none while somebody is missing."""
+    def _runnable_jobs(self) -> list[_Job]:
+        """The submitted skills in the order of their branches; none while a branch is absent."""
         with self._changed:
-            self._beats += 1
+            self._rounds += 1
             if not self._ready():
                 return []
             return [job for _, job in sorted(self._waiting.items(), key=lambda item: item[0])]
 
-    def _dismiss(self) -> None:
-        """Let the threads of ended skills go on."""
+    def _release_finished(self) -> None:
+        """Wake the threads whose skills have ended."""
         with self._changed:
             for key in [key for key, job in self._waiting.items() if job.done]:
                 del self._waiting[key]
@@ -201,15 +213,15 @@ class Clock:
 
     @property
     def current(self) -> Key | None:
-        """The branch this thread is in, None for a guest."""
-        key: Key | None = getattr(self._mine, "key", None)
+        """The branch of this thread; None for a guest."""
+        key: Key | None = getattr(self._thread, "key", None)
         return key
 
     @contextlib.contextmanager
     def fork(self, count: int) -> Iterator[tuple[Key, ...]]:
         """Split this thread's branch into `count` branches until the end of the block.
 
-        Time stands still until each of them waits in a skill or has left.
+        Simulated time does not advance until each of them has submitted a skill or has left.
         """
         parent = self.current
         keys = tuple((*(parent or ()), k) for k in range(count))
@@ -225,12 +237,12 @@ class Clock:
                 self.leave(key)
 
     def enter(self, key: Key) -> None:
-        """This thread is the branch `key` from now on.
+        """Make this thread the branch `key`.
 
-        It goes on when the branches before it wait in a skill or have left: so branches also begin
-        one after the other, and what they share they touch in a fixed order.
+        Returns when every earlier branch has submitted a skill or has left. So branches begin one
+        after the other, and access what they share in a fixed order.
         """
-        self._mine.key = key
+        self._thread.key = key
         with self._changed:
             self._starting.add(key)
             try:
@@ -240,15 +252,15 @@ class Clock:
                 self._starting.discard(key)
 
     def leave(self, key: Key) -> None:
-        """The branch `key` has ended; after the last of a fork the one before lives on."""
+        """End the branch `key`; the parent branch is live again after its last child."""
         if self.current == key:
-            self._mine.key = None
+            self._thread.key = None
         with self._changed:
             fork = self._forks.pop(key, None)
             if fork is None:
                 return
             self._live.discard(key)
-            self._promised.discard(key)
+            self._expected_preempts.discard(key)
             fork.open.discard(key)
             if not fork.open and fork.parent in self._forks:
                 self._live.add(fork.parent)
@@ -257,22 +269,22 @@ class Clock:
     # Preemption
 
     def expect_preempts(self, keys: Iterable[Key]) -> None:
-        """Stand still until each of these branches has been told to stop, or has left.
+        """Stop simulated time until each of these branches has a preempt request, or has left.
 
-        A container asks its children to stop from a thread of its own; without this, how far they
-        get until then would be a matter of luck.
+        A container preempts its children from a thread of its own. Without this wait, the simulated
+        time of the request would depend on how the threads are scheduled.
         """
         with self._changed:
             for key in keys:
                 fork = self._forks.get(key)
-                if fork is not None and key not in fork.told and key != self.current:
-                    self._promised.add(key)
+                if fork is not None and key not in fork.preempted and key != self.current:
+                    self._expected_preempts.add(key)
 
     def preempted(self, key: Key) -> None:
-        """The branch `key` has been told to stop."""
+        """Record that the branch `key` has a preempt request."""
         with self._changed:
             fork = self._forks.get(key)
             if fork is not None:
-                fork.told.add(key)
-            self._promised.discard(key)
+                fork.preempted.add(key)
+            self._expected_preempts.discard(key)
             self._changed.notify_all()

@@ -1,26 +1,29 @@
-"""Faults as data: what goes wrong, to what, when, how likely. Same seed, same misfortune."""
+"""Injected faults as data: the kind, the target, the time, and the probability.
+
+Which faults happen is drawn from the seed of the world: the same seed gives the same faults.
+"""
 
 from __future__ import annotations
 
 import random
-from collections.abc import Callable, Iterable, Mapping
+from collections.abc import Callable, Iterable, Mapping, Sequence
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 from smachac.sim import models
+from smachac.sim.arm import Arm, arm_named
+from smachac.sim.physics import UnknownNameError
+from smachac.sim.scene import Scene
 from smachac.sim.transforms import as_pose, shifted
-
-if TYPE_CHECKING:
-    from smachac.sim.world import World
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Fault:
-    """One thing that goes wrong once.
+    """A fault that happens at most once.
 
     `kind` is one of KINDS; `target` names a body, a joint or a limb (empty: the only limb);
-    `value` is what the kind needs. It happens at `at` (s, simulated), or when the state whose path
-    is or ends with `state` begins, in `probability` of all seeds.
+    `value` is the parameter of the kind. The fault happens at the simulated time `at` (s), or when
+    a state begins whose path is or ends with `state`; in the share `probability` of all seeds.
     """
 
     kind: str
@@ -31,52 +34,55 @@ class Fault:
     probability: float = 1.0
 
 
-def _move_body(world: World, fault: Fault) -> None:
-    body = world.body(fault.target)
-    pose = models.where(world.engine, body)
-    models.place(world.engine, body, shifted(pose, as_pose(fault.value)))
+Arms = Sequence[Arm]
 
 
-def _remove_body(world: World, fault: Fault) -> None:
-    world.remove(fault.target)
+def _move_body(scene: Scene, arms: Arms, fault: Fault) -> None:
+    body = scene.body(fault.target)
+    pose = models.where(scene.engine, body)
+    models.place(scene.engine, body, shifted(pose, as_pose(fault.value)))
 
 
-def _gripper_dead(world: World, fault: Fault) -> None:
-    arm = world.arm(fault.target or None)
+def _remove_body(scene: Scene, arms: Arms, fault: Fault) -> None:
+    scene.remove(fault.target)
+
+
+def _gripper_dead(scene: Scene, arms: Arms, fault: Fault) -> None:
+    arm = arm_named(arms, fault.target)
     arm.stick(arm.fingers)
 
 
-def _grip_force(world: World, fault: Fault) -> None:
-    # Friction is no way to lose a block: the contacts of a held one keep what they began with.
-    arm = world.arm(fault.target or None)
+def _grip_force(scene: Scene, arms: Arms, fault: Fault) -> None:
+    # Lower friction would not drop a held block: PyBullet's contacts keep their first friction.
+    arm = arm_named(arms, fault.target)
     arm.grip_force = float(fault.value)
     arm.squeeze()
 
 
-def _lock_joint(world: World, fault: Fault) -> None:
-    for arm in world.arms:
+def _lock_joint(scene: Scene, arms: Arms, fault: Fault) -> None:
+    for arm in arms:
         if fault.target in arm.limb.joints:
             arm.stick([arm.indices[arm.limb.joints.index(fault.target)]])
             return
-    known = tuple(name for arm in world.arms for name in arm.limb.joints)
-    raise world.unknown("joint", fault.target, known)
+    known = tuple(name for arm in arms for name in arm.limb.joints)
+    raise UnknownNameError("joint", fault.target, known)
 
 
-KINDS: dict[str, Callable[[World, Fault], None]] = {
+KINDS: dict[str, Callable[[Scene, Arms, Fault], None]] = {
     "move_body": _move_body,
     "remove_body": _remove_body,
     "gripper_dead": _gripper_dead,
     "grip_force": _grip_force,
     "lock_joint": _lock_joint,
 }
-"""What each kind does. `move_body`: value is the shift as a pose, along the world's axes;
-`grip_force`: value in N; the others need none."""
+"""The effect of each kind. The value of `move_body` is the shift as a pose along the world's axes,
+the value of `grip_force` a force in N; the other kinds have none."""
 
 
 def read(faults: Iterable[Fault | Mapping[str, Any]]) -> tuple[Fault, ...]:
     """Faults from values or from mappings with the same keys.
 
-    Raises ValueError for an unknown kind or key, or where the time is not given in just one way.
+    Raises ValueError for an unknown kind or key, and unless just one of `at` and `state` is given.
     """
     found = []
     for each in faults:
@@ -92,12 +98,12 @@ def read(faults: Iterable[Fault | Mapping[str, Any]]) -> tuple[Fault, ...]:
     return tuple(found)
 
 
-class Misfortune:
-    """The faults that will happen to one world, drawn from its seed, and those still to come."""
+class FaultSchedule:
+    """The faults of one world that are still to happen, drawn from its seed."""
 
     def __init__(self, faults: Iterable[Fault | Mapping[str, Any]], seed: int) -> None:
-        # One draw each, from a source of its own: adding a fault leaves the others as they were.
-        self._left = [
+        # One draw for each fault from its own source: one more fault does not change the others.
+        self._pending = [
             fault
             for k, fault in enumerate(read(faults))
             if random.Random(f"{seed}/{k}").random() < fault.probability
@@ -105,27 +111,30 @@ class Misfortune:
         self._due: list[Fault] = []
 
     def enter(self, paths: Iterable[str]) -> None:
-        """These states are active now."""
+        """Make the faults due that wait for one of these active states."""
         active = tuple(f"/{path}" for path in paths)
-        self._call(lambda fault: _begins(fault, active))
+        self._make_due(lambda fault: _begins(fault, active))
 
-    def strike(self, world: World) -> None:
-        """Let happen what is due, before a physics step."""
-        if not self._left and not self._due:
+    def apply(self, scene: Scene, arms: Arms) -> None:
+        """Apply the faults that are due; to be called before each physics step.
+
+        Each adds an Event. A fault whose target does not exist has no effect.
+        """
+        if not self._pending and not self._due:
             return
-        self._call(lambda fault: fault.at is not None and fault.at <= world.time)
+        self._make_due(lambda fault: fault.at is not None and fault.at <= scene.time)
         due, self._due = self._due, []
         for fault in due:
             try:
-                KINDS[fault.kind](world, fault)
+                KINDS[fault.kind](scene, arms, fault)
             except KeyError as error:
-                world.note("fault", f"{fault.kind} did not happen: {error}")
+                scene.note("fault", f"{fault.kind} did not happen: {error}")
             else:
-                world.note("fault", " ".join(filter(None, (fault.kind, fault.target))))
+                scene.note("fault", " ".join(filter(None, (fault.kind, fault.target))))
 
-    def _call(self, now: Callable[[Fault], bool]) -> None:
-        self._due += [fault for fault in self._left if now(fault)]
-        self._left = [fault for fault in self._left if not now(fault)]
+    def _make_due(self, condition: Callable[[Fault], bool]) -> None:
+        self._due += [fault for fault in self._pending if condition(fault)]
+        self._pending = [fault for fault in self._pending if not condition(fault)]
 
 
 def _begins(fault: Fault, active: tuple[str, ...]) -> bool:

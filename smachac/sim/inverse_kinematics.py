@@ -1,7 +1,7 @@
-"""Inverse kinematics on a second, empty physics client that holds the robot alone.
+"""Forward and inverse kinematics of a robot, on a physics client that holds only the robot.
 
-PyBullet's solver is a damped step, not an answer: it is repeated and each result is checked by
-forward kinematics, so that a solution reported is a solution.
+PyBullet's solver makes damped least-squares steps and may stop far from the goal. So it is
+repeated, and each result is checked by forward kinematics against the tolerances below.
 """
 
 import random
@@ -13,15 +13,20 @@ from smachac.sim.robots import Limb, Robot
 from smachac.sim.transforms import Pose, angle_between
 
 POSITION_TOLERANCE = 1e-4
-"""m."""
+"""Largest distance (m) of a solution from the goal along each axis."""
 ANGLE_TOLERANCE = 1e-3
-"""rad."""
+"""Largest angle (rad) between a solution and the goal."""
 _ROUNDS = 50
+"""Solver calls for each start posture."""
 _TRIES = 10
+"""Random start postures, after the given ones."""
 
 
-class Shadow:
-    """The robot in an empty world, base at the origin; safe to ask from any thread."""
+class Kinematics:
+    """The robot in an empty world with its base at the origin. Any thread may call it.
+
+    Raises SimUnavailable without PyBullet. To be closed, which frees the physics client.
+    """
 
     def __init__(self, robot: Robot) -> None:
         self._engine = Engine()
@@ -47,7 +52,7 @@ class Shadow:
         }
 
     def close(self) -> None:
-        """Free the client."""
+        """Free the physics client."""
         self._engine.close()
 
     def tip(self, limb: Limb, joints: Sequence[float]) -> Pose:
@@ -60,8 +65,8 @@ class Shadow:
     ) -> tuple[float, ...] | None:
         """Joints (rad) that bring the tip of `limb` to `pose` (base frame), or None.
 
-        Seeds: `seed` if given, then the limb's home, then random ones, the same at every call:
-        the answer depends on the arguments alone.
+        Start postures: `seed` if given, then the limb's home, then random ones, which are the same
+        at every call. So the result depends on the arguments alone.
         """
         with self._lock:
             for start in self._seeds(limb, seed):

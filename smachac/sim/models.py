@@ -1,4 +1,4 @@
-"""Things to put into the world: primitives as data, or any URDF or SDF file."""
+"""Models of bodies: boxes as data, and URDF or SDF files; how bodies are made and placed."""
 
 from dataclasses import dataclass
 from pathlib import Path
@@ -20,9 +20,11 @@ class Box:
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Model:
-    """A rigid body of boxes. Mass 0 (kg) stands still; `solid` false is only seen, never touched.
+    """A rigid body of boxes.
 
-    `colours` are taken in turn, so that two blocks can be told apart.
+    `mass` is in kg; a body of mass 0 does not move. A body that is not `solid` is drawn and has no
+    contacts. `friction` is the lateral friction coefficient. Bodies of one model take the `colours`
+    in turn.
     """
 
     boxes: tuple[Box, ...]
@@ -33,7 +35,7 @@ class Model:
 
 
 def _table(size: tuple[float, float], height: float, wood: RGB) -> Model:
-    """A table with its origin on the floor, in the middle; 4 cm thick top on four legs."""
+    """A table of `size` (x, y) and `height` (m) on four legs; its origin is on the floor."""
     x, y = size[0] / 2 - 0.04, size[1] / 2 - 0.04
     leg, low = height - 0.04, (height - 0.04) / 2
     grey = (0.38, 0.40, 0.44)
@@ -74,8 +76,10 @@ MODELS: dict[str, Model] = {
 
 
 def build(engine: Engine, model: Model, pose: Pose, turn: int = 0) -> int:
-    """Make the body of `model` at `pose` (world frame) and return its number; `turn` picks
-    the colour."""
+    """Make a body of `model` at `pose` (world frame) and return its number.
+
+    `turn` counts the bodies of this model and selects the colour.
+    """
     paint = model.colours[turn % len(model.colours)]
     halves = [[edge / 2 for edge in box.size] for box in model.boxes]
     centres = [list(box.centre) for box in model.boxes]
@@ -111,13 +115,13 @@ def stand(
     height = base[0][2]
     if height <= 0.0:
         return
-    # A little lower than the base, so that the two never touch.
+    # 2 mm lower than the base, so that the two never touch.
     box = Box(size=(*size, height - 0.002), centre=(*centre, -height / 2 - 0.001))
     build(engine, Model(boxes=(box,), colours=((0.30, 0.33, 0.38),)), base)
 
 
 def touch(engine: Engine, body: int, friction: float) -> None:
-    """Give every link of `body` the friction that grasps were measured with."""
+    """Set the contact parameters with which the grasps were measured, on every link of `body`."""
     for link in range(-1, engine.getNumJoints(body)):
         engine.changeDynamics(
             body, link, lateralFriction=friction, spinningFriction=0.001, restitution=0.0
@@ -125,7 +129,7 @@ def touch(engine: Engine, body: int, friction: float) -> None:
 
 
 def read(engine: Engine, path: str | Path, pose: Pose) -> int | str:
-    """Load a URDF or SDF file at `pose` (world frame): the body's number, or why not."""
+    """Load a URDF or SDF file at `pose` (world frame): the body's number, or the error as text."""
     found = data_file(path)
     if found is None:
         return f"model file `{path}` not found"
@@ -159,6 +163,6 @@ def where(engine: Engine, body: int) -> Pose:
 
 
 def _mass_frame(engine: Engine, body: int) -> Pose:
-    """The frame PyBullet speaks of, at the centre of mass, seen from the model frame."""
+    """The frame of PyBullet's base poses, at the centre of mass, in the model frame."""
     known = engine.getDynamicsInfo(body, -1)
     return known[3], known[4]

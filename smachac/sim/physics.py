@@ -1,4 +1,8 @@
-"""PyBullet itself: found or missed with a clear word, silent, one client to an object."""
+"""Access to PyBullet: the import with a clear error, silenced output, one client per object.
+
+PyBullet writes to the process-wide file descriptors 1 and 2, so one process-wide lock guards their
+redirection.
+"""
 
 import contextlib
 import functools
@@ -10,14 +14,15 @@ from pathlib import Path
 from typing import Any
 
 _QUIET = threading.RLock()
+"""Held while the file descriptors 1 and 2 are redirected."""
 
 
 class SimUnavailable(RuntimeError):  # noqa: N818
-    """The simulation cannot start here; the text says what is missing and how to get it."""
+    """The simulation cannot start here; the message names what is missing and how to install it."""
 
 
 class UnknownNameError(KeyError):
-    """A limb, body or frame that the world does not have; the text names those it has."""
+    """The world has no limb, body or frame of that name; the message lists the known names."""
 
     def __init__(self, kind: str, name: str, known: object) -> None:
         names = ", ".join(f"`{each}`" for each in known) if isinstance(known, tuple) else known
@@ -29,9 +34,10 @@ class UnknownNameError(KeyError):
 
 @contextlib.contextmanager
 def quiet() -> Iterator[None]:
-    """Nothing written to the file descriptors 1 and 2 meanwhile gets out.
+    """Discard everything that is written to the file descriptors 1 and 2 inside the block.
 
-    PyBullet prints from C, below sys.stdout; a trace on standard output must stay readable.
+    PyBullet prints from C code, not through sys.stdout; a trace on standard output must stay
+    readable.
     """
     with _QUIET, contextlib.ExitStack() as undo:
         for stream in (sys.stdout, sys.stderr):
@@ -50,10 +56,10 @@ def quiet() -> Iterator[None]:
 
 @functools.cache
 def pybullet() -> Any:
-    """The pybullet module. Raises SimUnavailable when it or numpy is not installed."""
+    """The pybullet module, imported once. Raises SimUnavailable without pybullet or numpy."""
     try:
         with quiet():
-            # pybullet fails deep inside C without numpy, so numpy is asked for first.
+            # Without numpy, pybullet fails inside C code, so numpy is imported first.
             import numpy  # noqa: F401
             import pybullet
     except ImportError as error:
@@ -84,11 +90,14 @@ def data_file(path: str | Path) -> Path | None:
 
 
 class Engine:
-    """One physics client: every function of pybullet, with the client already given."""
+    """One physics client, with every function of pybullet as a method.
+
+    Raises SimUnavailable without PyBullet, or if `gui` is set and there is no display.
+    """
 
     def __init__(self, *, gui: bool = False) -> None:
         module = pybullet()
-        # Without a display PyBullet does not fail, it ends the process.
+        # Without a display PyBullet raises no error; it ends the process.
         if gui and sys.platform == "linux" and not os.environ.get("DISPLAY"):
             raise SimUnavailable("no display for the window (DISPLAY is not set); run without gui")
         with quiet():
@@ -105,7 +114,7 @@ class Engine:
         return found
 
     def close(self) -> None:
-        """Free the client; a second time does nothing."""
+        """Free the client; a second call has no effect."""
         if self.client >= 0:
             self.disconnect()
             self.client = -1

@@ -1,4 +1,8 @@
-"""Robots as data: which file, which joints make a limb, and the figures its control needs."""
+"""Robots: their descriptions as data, those that are known, and how one is loaded.
+
+A description names a URDF file and the joints of each limb; it needs no PyBullet. `mount` loads the
+robot into a physics client and looks the names up there. Lengths in m, angles in rad.
+"""
 
 from __future__ import annotations
 
@@ -10,6 +14,8 @@ from typing import Any
 from smachac.sim import models
 from smachac.sim.physics import Engine, UnknownNameError, data_file, quiet
 from smachac.sim.transforms import IDENTITY, Pose, as_pose
+
+# Descriptions
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -25,9 +31,11 @@ class Finger:
 class Limb:
     """An arm with a gripper: joints from the base to the hand, tip frame, fingers, home.
 
-    `gear` couples the two fingers (ratio of a JOINT_GEAR constraint; -1 where both open with the
-    same sign); `settled` is how near (rad) each joint has to come; `turn` is the hand's yaw (rad)
-    when a cube of yaw 0 is gripped; `efforts` replace the file's limits by joint name (N m).
+    `home` holds the joint positions (rad) at the start. `gear` couples the two fingers (ratio of a
+    JOINT_GEAR constraint; -1 where both open with the same sign). `settled` is the tolerance (rad)
+    of each joint at the end of a move. `turn` is the yaw of the hand (rad) when it grips a cube of
+    yaw 0. `efforts` are pairs of a joint name and its largest torque (N m), which replaces that of
+    the file.
     """
 
     name: str
@@ -43,7 +51,10 @@ class Limb:
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Stand:
-    """The box a robot stands on: footprint (m) about a point of the base frame, floor to base."""
+    """The box under a robot, from the floor to its base: footprint `size` (x, y) in m.
+
+    `centre` (x, y) of the footprint is in m in the base frame.
+    """
 
     size: tuple[float, float]
     centre: tuple[float, float] = (0.0, 0.0)
@@ -70,13 +81,16 @@ def from_urdf(
 ) -> Robot:
     """The robot in a URDF file on disk or in PyBullet's data; one limb or many.
 
-    Raises FileNotFoundError when there is no such file. Joint and link names are looked up when a
-    world loads it.
+    Raises FileNotFoundError when there is no such file. Joint and link names are checked when a
+    world loads the robot.
     """
     found = data_file(path)
     if found is None:
         raise FileNotFoundError(f"no robot description `{path}`")
     return Robot(name=name or found.stem, path=found, base=as_pose(base), limbs=limbs, stand=stand)
+
+
+# Known robots
 
 
 PANDA_ARM = Limb(
@@ -102,14 +116,20 @@ def panda(base: Any = ((0.0, 0.0, 0.4), (0.0, 0.0, 0.0, 1.0))) -> Robot:
     )
 
 
+# Loading
+
+
 _FINGER_FRICTION = 1.0
+"""Lateral friction coefficient of the fingers."""
+_GEAR_FORCE = 50.0
+"""Largest force (N) of the constraint that couples two fingers."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
-class Parts:
-    """A limb's joints, tip and fingers by PyBullet's numbers, with its joints' limits.
+class MountedLimb:
+    """A limb with PyBullet's numbers of its joints, fingers and tip link, and its joint limits.
 
-    Positions in rad, speeds in rad/s, efforts in N m.
+    `limits` are (lowest, highest) positions in rad, `speeds` in rad/s, `efforts` in N m.
     """
 
     limb: Limb
@@ -121,8 +141,8 @@ class Parts:
     efforts: tuple[float, ...]
 
 
-def mount(engine: Engine, robot: Robot) -> tuple[int, tuple[Parts, ...]]:
-    """Load the robot, on its stand, held still: its body and the parts of each limb.
+def mount(engine: Engine, robot: Robot) -> tuple[int, tuple[MountedLimb, ...]]:
+    """Load the robot on its stand, every joint held at 0: its body and its limbs.
 
     Raises UnknownNameError when a limb names a joint or link that the file does not have.
     """
@@ -133,20 +153,22 @@ def mount(engine: Engine, robot: Robot) -> tuple[int, tuple[Parts, ...]]:
     known = [engine.getJointInfo(body, k) for k in range(engine.getNumJoints(body))]
     for each in known:
         if each[2] != engine.JOINT_FIXED:
-            # The default motors would fight an arm's own; what no arm owns is held still.
+            # PyBullet's default velocity motors act against position control: they are switched
+            # off. Joints that belong to no limb stay at 0.
             engine.setJointMotorControl2(body, each[0], engine.VELOCITY_CONTROL, force=0.0)
             engine.setJointMotorControl2(
                 body, each[0], engine.POSITION_CONTROL, targetPosition=0.0, force=each[10]
             )
     joints = {each[1].decode(): each for each in known}
     links = {each[12].decode(): each[0] for each in known}
-    parts = tuple(_parts(limb, joints, links) for limb in robot.limbs)
-    for each in parts:
-        _ready_fingers(engine, body, each)
-    return body, parts
+    limbs = tuple(_mounted(limb, joints, links) for limb in robot.limbs)
+    for each in limbs:
+        _configure_fingers(engine, body, each)
+    return body, limbs
 
 
-def _parts(limb: Limb, joints: dict[str, Any], links: dict[str, int]) -> Parts:
+def _mounted(limb: Limb, joints: dict[str, Any], links: dict[str, int]) -> MountedLimb:
+    """The limb with the numbers of its names; `joints` are PyBullet's records by joint name."""
     for name in (*limb.joints, *(finger.joint for finger in limb.fingers)):
         if name not in joints:
             raise UnknownNameError("joint", name, tuple(joints))
@@ -154,7 +176,7 @@ def _parts(limb: Limb, joints: dict[str, Any], links: dict[str, int]) -> Parts:
         raise UnknownNameError("link", limb.tip, tuple(links))
     efforts = dict(limb.efforts)
     found = [joints[name] for name in limb.joints]
-    return Parts(
+    return MountedLimb(
         limb=limb,
         joints=tuple(each[0] for each in found),
         fingers=tuple(joints[finger.joint][0] for finger in limb.fingers),
@@ -165,8 +187,9 @@ def _parts(limb: Limb, joints: dict[str, Any], links: dict[str, int]) -> Parts:
     )
 
 
-def _ready_fingers(engine: Engine, body: int, parts: Parts) -> None:
-    for finger in parts.fingers:
+def _configure_fingers(engine: Engine, body: int, mounted: MountedLimb) -> None:
+    """Set the friction of the fingers and couple them, if there are two."""
+    for finger in mounted.fingers:
         engine.changeDynamics(
             body,
             finger,
@@ -174,17 +197,17 @@ def _ready_fingers(engine: Engine, body: int, parts: Parts) -> None:
             spinningFriction=0.001,
             restitution=0.0,
         )
-    if len(parts.fingers) != 2:
+    if len(mounted.fingers) != 2:
         return
-    # Without the gear a closing hand drags the block along, 12 mm.
+    # Without this coupling a closing hand moves the block by 12 mm.
     gear = engine.createConstraint(
         body,
-        parts.fingers[0],
+        mounted.fingers[0],
         body,
-        parts.fingers[1],
+        mounted.fingers[1],
         engine.JOINT_GEAR,
         (1, 0, 0),
         (0, 0, 0),
         (0, 0, 0),
     )
-    engine.changeConstraint(gear, gearRatio=parts.limb.gear, erp=0.1, maxForce=50)
+    engine.changeConstraint(gear, gearRatio=mounted.limb.gear, erp=0.1, maxForce=_GEAR_FORCE)

@@ -1,7 +1,8 @@
-"""SMACH containers on the simulated clock, by their public interface and without their help.
+"""SMACH machines on the simulated clock, through the public interface of SMACH's containers.
 
-`attach` is called once on the finished root container. It tells the clock when a Concurrence
-splits into threads and when each of them ends, and the world which states are active.
+`attach` wraps the methods of the states below a finished root container: the clock is informed when
+a Concurrence forks into threads and when each of them ends, and the world when a state begins. No
+SMACH is imported, so machines of SMACH itself and of the bundled runtime work.
 """
 
 import functools
@@ -15,20 +16,20 @@ from smachac.sim.clock import Clock, Key
 def attach(root: Any, clock: Clock, show: Callable[[tuple[str, ...]], None], name: str) -> None:
     """Put all states below `root`, a container of any SMACH, on `clock`.
 
-    `show` gets the paths of the active leaves, in the order of their branches, whenever one
-    begins. Each state's `execute` is replaced on the instance.
+    `show` is called with the paths of the active leaves, in the order of their branches, whenever
+    a leaf begins. `name` is the path of `root`. The methods are replaced on each instance.
     """
-    active = Active(show)
-    # Children first: a branch has to be entered before what its state does at the start.
+    active = _ActiveLeaves(show)
+    # Children first: the branch of a child is entered before any other wrapper of its state runs.
     for path, state in reversed(list(_walk(root, name))):
         if not hasattr(state, "get_children"):
             _wrap(state, "execute", clock, functools.partial(_leaf, clock, active, path))
         elif _is_concurrence(state):
-            Split(clock, active, state)
+            _ConcurrenceBranches(clock, active, state)
 
 
-class Active:
-    """The active leaf of every branch."""
+class _ActiveLeaves:
+    """The path of the active leaf of every branch."""
 
     def __init__(self, show: Callable[[tuple[str, ...]], None]) -> None:
         self._show = show
@@ -36,37 +37,41 @@ class Active:
         self._paths: dict[Key, str] = {}
 
     def begin(self, key: Key, path: str) -> None:
-        """The branch `key` is in the leaf `path` now."""
+        """Record that the branch `key` is in the leaf `path`."""
         with self._lock:
             self._paths[key] = path
             self._show(tuple(self._paths[each] for each in sorted(self._paths)))
 
     def end(self, key: Key) -> None:
-        """The branch `key` is over, or is split further."""
+        """Remove the branch `key`, which has ended or forks, and all branches below it."""
         with self._lock:
             for each in [each for each in self._paths if each[: len(key)] == key]:
                 del self._paths[each]
 
 
-class Split:
-    """One Concurrence: its children's threads are branches of the clock."""
+class _ConcurrenceBranches:
+    """A Concurrence, the threads of whose children are branches of the clock.
 
-    def __init__(self, clock: Clock, active: Active, container: Any) -> None:
+    Branches and children are matched by the identity of the child, as one state may be the child
+    under several labels.
+    """
+
+    def __init__(self, clock: Clock, active: _ActiveLeaves, container: Any) -> None:
         self._clock = clock
         self._active = active
         self._container = container
         self._keys: dict[int, list[Key]] = {}
         self._unclaimed: dict[int, list[Key]] = {}
-        # The one private name: where it is missing, preemption by a sibling still works, but how
-        # far the others get until then depends on the threads.
-        self._judged = getattr(container, "_child_termination_cb", None) is not None
-        for child in _different(container.get_children().values()):
+        # The only private name of SMACH used here. In a SMACH without it preemption by a sibling
+        # still works, but its simulated time depends on how the threads are scheduled.
+        self._has_termination_cb = getattr(container, "_child_termination_cb", None) is not None
+        for child in _distinct(container.get_children().values()):
             _wrap(child, "execute", clock, functools.partial(self._child, child))
             if hasattr(child, "request_preempt"):
                 _wrap(child, "request_preempt", clock, functools.partial(self._preempt, child))
         _wrap(container, "execute", clock, self._execute)
-        if self._judged:
-            _wrap(container, "_child_termination_cb", clock, self._judge)
+        if self._has_termination_cb:
+            _wrap(container, "_child_termination_cb", clock, self._terminate)
 
     def _execute(self, original: Callable[..., Any], *args: Any, **kwargs: Any) -> Any:
         children = list(self._container.get_children().values())
@@ -94,8 +99,8 @@ class Split:
             self._expect_preempts()
             raise
         finally:
-            # With an outcome the container's own verdict comes next, in this thread.
-            if outcome is None or not self._judged:
+            # After an outcome the container calls its termination callback next in this thread.
+            if outcome is None or not self._has_termination_cb:
                 self._leave(key)
 
     def _claim(self, child: Any) -> Key | None:
@@ -104,21 +109,21 @@ class Split:
             return None
         return keys.pop(0)
 
-    def _judge(self, original: Callable[..., Any], *args: Any, **kwargs: Any) -> Any:
+    def _terminate(self, original: Callable[..., Any], *args: Any, **kwargs: Any) -> Any:
         key = self._clock.current
-        verdict: Any = True
+        stop_others: Any = True
         try:
-            verdict = original(*args, **kwargs)
-            return verdict
+            stop_others = original(*args, **kwargs)
+            return stop_others
         finally:
             if key is not None:
-                if verdict:
+                if stop_others:
                     self._expect_preempts()
                 self._leave(key)
 
     def _expect_preempts(self) -> None:
-        for child in _different(self._container.get_children().values()):
-            # A container tells nobody twice.
+        for child in _distinct(self._container.get_children().values()):
+            # A container does not preempt a child that has a request already.
             if not (hasattr(child, "preempt_requested") and child.preempt_requested()):
                 self._clock.expect_preempts(self._keys.get(id(child), ()))
 
@@ -135,7 +140,7 @@ class Split:
 
 
 def together(clock: Clock, calls: Sequence[Callable[[], Any]]) -> list[Any]:
-    """Call each in a thread of its own as a branch; see World.together."""
+    """Call each in a thread of its own as a branch of the clock; see `World.together`."""
     values: list[Any] = [None] * len(calls)
     errors: dict[int, BaseException] = {}
 
@@ -159,13 +164,15 @@ def together(clock: Clock, calls: Sequence[Callable[[], Any]]) -> list[Any]:
     return values
 
 
-def _leaf(clock: Clock, active: Active, path: str, original: Callable[..., Any], *args: Any) -> Any:
+def _leaf(
+    clock: Clock, active: _ActiveLeaves, path: str, original: Callable[..., Any], *args: Any
+) -> Any:
     active.begin(clock.current or (), path)
     return original(*args)
 
 
 def _wrap(state: Any, method: str, clock: Clock, around: Callable[..., Any]) -> None:
-    """Put `around` about a method of this one object; what an earlier world put there goes."""
+    """Wrap a method of this object with `around`; a wrapper of another clock is removed."""
     original = getattr(state, method)
     while getattr(original, "clock", clock) is not clock:
         original = original.__wrapped__
@@ -181,7 +188,7 @@ def _walk(state: Any, path: str) -> Iterator[tuple[str, Any]]:
             yield from _walk(child, f"{path}/{label}")
 
 
-def _different(states: Any) -> list[Any]:
+def _distinct(states: Any) -> list[Any]:
     return list({id(state): state for state in states}.values())
 
 

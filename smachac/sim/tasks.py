@@ -1,28 +1,29 @@
-"""Scenes that differ by seed, and the judgement of where a body came to lie."""
+"""Pick-and-place tasks: random poses drawn from the seed, and the check of a placed body."""
 
 from __future__ import annotations
 
 import math
 from collections.abc import Mapping, Sequence
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 from smachac.sim import transforms
-from smachac.sim.skills import Result
-
-if TYPE_CHECKING:
-    from smachac.sim.world import World
+from smachac.sim.outcome import Result
+from smachac.sim.physics import UnknownNameError
+from smachac.sim.scene import Scene
 
 _TRIES = 1000
+"""Poses drawn before `scattered` gives up."""
 _TILT = math.radians(3.0)
+"""Largest tilt (rad) of a body that stands upright."""
 
 
 def scattered(
-    world: World, pose: Any, spread: Sequence[float], apart: Mapping[str, float] | None = None
+    world: Scene, pose: Any, spread: Sequence[float], apart: Mapping[str, float] | None = None
 ) -> list[list[float]]:
-    """`pose` moved at random by up to `spread` (x m, y m, yaw rad) either way, evenly.
+    """`pose` with a uniform random shift of at most +-`spread` (x m, y m, yaw rad).
 
-    Drawn from the world's seed until it is at least `apart` (m, in x and y) from the bodies named
-    there. Raises ValueError when no such place is found.
+    Drawn from the world's seed until its distance in x and y from every body named in `apart` is at
+    least the one given there (m). Raises ValueError if 1000 draws find none, and UnknownNameError.
     """
     position, rotation = transforms.as_pose(pose)
     others = {name: (world.pose(name)[0], least) for name, least in (apart or {}).items()}
@@ -35,13 +36,13 @@ def scattered(
     raise ValueError(f"no place within {list(spread)} is {dict(apart or {})} apart")
 
 
-def check_placed(world: World, body: str, pose: Any, tolerance: float) -> Result:
-    """Whether a body stands upright and at rest within `tolerance` (m) of `pose`.
+def check_placed(world: Scene, body: str, pose: Any, tolerance: float) -> Result:
+    """Check that a body stands upright and at rest within `tolerance` (m) of `pose`.
 
-    The value is its distance from there; None when there is no such body.
+    The value is its distance from `pose` (m); None if there is no such body.
     """
     if body not in world.bodies:
-        return Result("aborted", str(world.unknown("body", body, world.bodies)))
+        return Result("aborted", str(UnknownNameError("body", body, tuple(world.bodies))))
     error = world.error(body, pose)
     if error > tolerance:
         reason = f"`{body}` is {1000 * error:.2f} mm from where it was to be"

@@ -1,4 +1,4 @@
-"""Poses: positions in metres, quaternions x y z w, plain floats.
+"""Poses and rotations: positions in m, unit quaternions x y z w, angles in rad, plain floats.
 
 A pose is written `[[x, y, z], [qx, qy, qz, qw]]` in scripts and held as two tuples here.
 """
@@ -15,10 +15,10 @@ IDENTITY: Pose = ((0.0, 0.0, 0.0), (0.0, 0.0, 0.0, 1.0))
 
 
 def as_pose(value: Any) -> Pose:
-    """`value`, a pose as scripts write it, checked and with its quaternion normalized.
+    """The pose in `value`, which is written as in scripts; its quaternion is normalized.
 
-    The quaternion may be left out; all zeros stands for no rotation, as many scripts mean it.
-    Raises ValueError when the numbers are not three and four finite ones.
+    The quaternion may be left out; four zeros mean no rotation, as in many scripts.
+    Raises ValueError unless there are three and four finite numbers.
     """
     try:
         position, rotation = value if len(value) == 2 else (value, IDENTITY[1])
@@ -32,7 +32,7 @@ def as_pose(value: Any) -> Pose:
 
 
 def as_lists(pose: Pose) -> list[list[float]]:
-    """The pose as scripts write it."""
+    """The pose `[[x, y, z], [qx, qy, qz, qw]]`, as it is written in scripts."""
     return [list(pose[0]), list(pose[1])]
 
 
@@ -44,7 +44,7 @@ def _normalized(q: Sequence[float]) -> Quaternion:
 
 
 def multiply(a: Quaternion, b: Quaternion) -> Quaternion:
-    """The rotation `b` followed by `a`, both seen from the outer frame."""
+    """The Hamilton product a b: the rotation `b`, then `a`, about the axes of the outer frame."""
     ax, ay, az, aw = a
     bx, by, bz, bw = b
     return (
@@ -61,18 +61,18 @@ def conjugate(q: Quaternion) -> Quaternion:
 
 
 def rotate(q: Quaternion, v: Vector) -> Vector:
-    """`v` turned by `q`."""
+    """The vector `v` rotated by `q`."""
     x, y, z, _ = multiply(multiply(q, (*v, 0.0)), conjugate(q))
     return (x, y, z)
 
 
 def compose(outer: Pose, inner: Pose) -> Pose:
-    """The pose `inner`, given in the frame `outer`, seen from where `outer` is given."""
+    """The pose `inner` of the frame `outer`, seen from the frame that `outer` is given in."""
     return add(outer[0], rotate(outer[1], inner[0])), multiply(outer[1], inner[1])
 
 
 def inverse(pose: Pose) -> Pose:
-    """The pose that undoes `pose`."""
+    """The inverse transform: composed with `pose` it is the identity."""
     back = conjugate(pose[1])
     x, y, z = rotate(back, pose[0])
     return (-x, -y, -z), back
@@ -84,18 +84,18 @@ def add(a: Vector, b: Vector) -> Vector:
 
 
 def shifted(pose: Pose, offset: Pose) -> Pose:
-    """`pose` moved and turned by `offset`, both along the axes of the frame it is given in."""
+    """`pose` moved and rotated by `offset`, along and about the axes of the frame of `pose`."""
     return add(pose[0], offset[0]), multiply(offset[1], pose[1])
 
 
 def angle_between(a: Quaternion, b: Quaternion) -> float:
-    """The angle in rad between two rotations; by atan2, since acos is blind below 1e-3 rad."""
+    """The angle (rad) between two rotations; by atan2, because acos is inexact below 1e-3 rad."""
     x, y, z, w = multiply(a, conjugate(b))
     return 2.0 * math.atan2(math.hypot(x, y, z), abs(w))
 
 
 def slerp(a: Quaternion, b: Quaternion, t: float) -> Quaternion:
-    """The rotation `t` (0..1) of the short way from `a` to `b`, at even speed."""
+    """Spherical linear interpolation: the rotation at the fraction `t` (0..1) from `a` to `b`."""
     cosine = sum(x * y for x, y in zip(a, b, strict=True))
     if cosine < 0.0:
         b, cosine = (-b[0], -b[1], -b[2], -b[3]), -cosine
@@ -107,7 +107,7 @@ def slerp(a: Quaternion, b: Quaternion, t: float) -> Quaternion:
 
 
 def straight(start: Pose, end: Pose, count: int) -> Iterable[Pose]:
-    """`count` poses evenly along the straight line from `start` (left out) to `end`."""
+    """`count` evenly spaced poses on the straight line from `start` (not included) to `end`."""
     for k in range(1, count + 1):
         t = k / count
         x, y, z = ((1 - t) * a + t * b for a, b in zip(start[0], end[0], strict=True))
@@ -115,21 +115,22 @@ def straight(start: Pose, end: Pose, count: int) -> Iterable[Pose]:
 
 
 def yaw_of(q: Quaternion) -> float:
-    """The turn about the vertical axis, in rad."""
+    """The yaw of a rotation (rad): the angle about the vertical axis."""
     x, y, z, w = q
     return math.atan2(2.0 * (w * z + x * y), 1.0 - 2.0 * (y * y + z * z))
 
 
 def about_z(yaw: float) -> Quaternion:
-    """The rotation by `yaw` about the vertical axis."""
+    """The rotation by `yaw` (rad) about the vertical axis."""
     return (0.0, 0.0, math.sin(yaw / 2), math.cos(yaw / 2))
 
 
 def grasp_pose(block_pose: Any, turn: float = 0.0) -> list[list[float]]:
     """The tool pose that grips a cube at `block_pose`: at its centre, tool straight down.
 
-    A cube looks the same every quarter turn, so its yaw is folded into +-45 degrees and the wrist
-    never turns further than it must. `turn` (rad) is the hand's own mounting, see robots.Limb.
+    A cube is symmetric under quarter turns, so its yaw is reduced to +-45 degrees, the smallest
+    rotation of the wrist. `turn` (rad) is the yaw of the hand when the cube has yaw 0, see
+    robots.Limb. Raises ValueError for a value that is no pose.
     """
     position, rotation = as_pose(block_pose)
     yaw = yaw_of(rotation)

@@ -1,4 +1,4 @@
-"""Films of a world: drawn on the CPU at a steady rate, captioned, written as GIF or MP4."""
+"""Video of a scene: frames rendered on the CPU at a fixed rate, with a caption, as GIF or MP4."""
 
 from __future__ import annotations
 
@@ -7,32 +7,36 @@ import math
 import os
 from collections.abc import Callable, Generator, Iterable, Iterator
 from pathlib import Path
-from typing import TYPE_CHECKING, Any, Protocol, TypeAlias
+from typing import Any, Protocol, TypeAlias
 
 from smachac.sim.models import MODELS
 from smachac.sim.physics import SimUnavailable, pybullet
+from smachac.sim.scene import Scene
 from smachac.sim.transforms import Vector
 
-if TYPE_CHECKING:
-    from smachac.sim.world import World
-
 RATE = 6
-"""Frames in a simulated second."""
+"""Frames per simulated second."""
 SPEED = 12
-"""Frames in a second of watching; the bar under the picture says the simulated time."""
+"""Frames per second of playback; the caption shows the simulated time."""
 Camera: TypeAlias = tuple[Any, Any]
-"""View and projection matrix."""
+"""View matrix and projection matrix, as PyBullet makes them."""
 
 _FIELD = 38.0
+"""Vertical field of view (degrees)."""
 _FILLED = 0.88
+"""Part of the picture that the scene fills."""
 _BELOW = 0.12
+"""Depth (m) below the robot's base that stays in the picture."""
 _VIEW = (0.80, -0.55, 0.42)
+"""Direction from the scene to the camera (world frame)."""
 _BAR = 0.09
+"""Height of the caption bar as a part of the frame."""
 _LONGEST = 80
+"""Longest caption (characters)."""
 _ASPECT = 4 / 3 / (1 - _BAR)
 _SKY = ((206, 219, 232), (240, 245, 249))
 _PAPER, _INK, _FAINT = (250, 251, 252), (38, 44, 54), (120, 128, 140)
-# Nearer than 10 m the shadow map is all stripes, farther off there are no shadows.
+# A light nearer than 10 m gives a shadow map with stripes, one farther off gives no shadows.
 _LIGHT = {
     "lightDirection": (0.3, -0.5, 2.0),
     "lightDistance": 10.0,
@@ -41,26 +45,31 @@ _LIGHT = {
     "lightSpecularCoeff": 0.05,
 }
 _COLOURS = 64
+"""Colours of a GIF."""
 _LIT = (1.05, 0.85, 0.7)
+"""Brightness factors with which the colour of a model goes into the palette of a GIF."""
 
 
 class Writer(Protocol):
-    """Takes frames, RGB images of `size` (width, height), and makes a file of them when closed."""
+    """Encodes frames, RGB images of `size` (width, height) in pixels, into a file."""
 
     size: tuple[int, int]
 
     def add(self, image: Any) -> None:
-        """The next frame."""
+        """Add the next frame."""
 
     def close(self) -> None:
         """Finish the file."""
 
 
 class Film:
-    """A film of `world` in the file `path`, which appears whole when the film is closed."""
+    """A film of `scene` in the file `path` (.gif or .mp4), which appears when the film is closed.
 
-    def __init__(self, world: World, path: str | Path) -> None:
-        self._world = world
+    Raises ValueError for another file name and SimUnavailable without Pillow or imageio-ffmpeg.
+    """
+
+    def __init__(self, scene: Scene, path: str | Path) -> None:
+        self._scene = scene
         self._path = Path(path)
         self._part = self._path.with_name(f".{self._path.stem}.part{self._path.suffix}")
         self._frames = 0
@@ -73,9 +82,9 @@ class Film:
         self._path.parent.mkdir(parents=True, exist_ok=True)
         self._writer: Writer = makers[self._path.suffix.lower()](self._part)
 
-    def watch(self) -> None:
-        """Take a frame if one is due."""
-        if self._world.time * RATE >= self._frames:
+    def update(self) -> None:
+        """Take a frame if one is due; to be called before each physics step."""
+        if self._scene.time * RATE >= self._frames:
             self.take()
 
     def take(self) -> None:
@@ -84,12 +93,11 @@ class Film:
         self._writer.add(self._frame())
 
     def _frame(self) -> Any:
-        world = self._world
-        picture = draw(world, self._fitted(), self._writer.size)
-        return caption(picture, world.caption, world.time)
+        picture = draw(self._scene, self._fitted(), self._writer.size)
+        return caption(picture, self._scene.caption, self._scene.time)
 
     def close(self) -> None:
-        """Write the file; what was filmed so far is kept however the run ended."""
+        """Write the file; it holds all frames so far, also after a run that failed."""
         try:
             self.take()
             self._writer.close()
@@ -99,26 +107,26 @@ class Film:
                 self._part.unlink()
 
     def _fitted(self) -> Camera:
-        """The camera, set up anew only when bodies have come."""
-        if self._camera is None or not self._seen >= self._world.bodies.keys():
-            self._seen = set(self._world.bodies)
-            self._camera = fit(self._world)
+        """The camera; it is fitted again only when there are new bodies."""
+        if self._camera is None or not self._seen >= self._scene.bodies.keys():
+            self._seen = set(self._scene.bodies)
+            self._camera = fit(self._scene)
         return self._camera
 
 
-def fit(world: World) -> Camera:
-    """The camera that looks at the robot and all bodies from a fixed side, as near as it can."""
+def fit(scene: Scene) -> Camera:
+    """The nearest camera in the fixed direction that shows the robot and all bodies."""
     norm = math.hypot(*_VIEW)
     back = tuple(each / norm for each in _VIEW)
     flat = math.hypot(back[0], back[1])
     right = (-back[1] / flat, back[0] / flat, 0.0)
     up = (-back[2] * right[1], back[2] * right[0], flat)
-    points = [(_dot(right, each), _dot(up, each), _dot(back, each)) for each in _corners(world)]
+    points = [(_dot(right, each), _dot(up, each), _dot(back, each)) for each in _corners(scene)]
     tall = math.tan(math.radians(_FIELD) / 2) * _FILLED
     wide = tall * _ASPECT
     across = rise = 0.0
     away = math.inf
-    # Moving the camera sideways changes what is nearest to it, hence a few rounds.
+    # A sideways shift of the camera changes which point limits its distance: a few iterations.
     for _ in range(8):
         away = max(
             depth + max(abs(x - across) / wide, abs(y - rise) / tall) for x, y, depth in points
@@ -140,13 +148,13 @@ def _dot(a: Iterable[float], b: Iterable[float]) -> float:
     return sum(x * y for x, y in zip(a, b, strict=True))
 
 
-def _corners(world: World) -> Iterator[Vector]:
-    """Points the picture has to show: boxes about the robot's links and the bodies.
+def _corners(scene: Scene) -> Iterator[Vector]:
+    """The points that the picture has to show: corners of the bounding boxes of all links.
 
-    What is far below the robot's base, the legs of tables, may be cut off.
+    Points more than 12 cm below the robot's base (the legs of tables) are raised to that height.
     """
-    engine, floor = world.engine, world.robot.base[0][2] - _BELOW
-    for body in (world.robot_body, *world.bodies.values()):
+    engine, floor = scene.engine, scene.robot.base[0][2] - _BELOW
+    for body in (scene.robot_body, *scene.bodies.values()):
         for link in range(-1, engine.getNumJoints(body)):
             low, high = engine.getAABB(body, link)
             for x in (low[0], high[0]):
@@ -155,22 +163,22 @@ def _corners(world: World) -> Iterator[Vector]:
                         yield x, y, max(z, floor)
 
 
-def draw(world: World, camera: Camera, size: tuple[int, int]) -> Any:
-    """One picture of the world, an RGB image as wide as a frame of `size` and lower by the bar."""
+def draw(scene: Scene, camera: Camera, size: tuple[int, int]) -> Any:
+    """An RGB image of the scene: a frame of `size` (pixels) without its caption bar."""
     import numpy
 
     pil = _pillow()
     width, height = size[0], round(size[1] * (1 - _BAR))
-    _, _, pixels, _, things = world.engine.getCameraImage(
+    _, _, pixels, _, things = scene.engine.getCameraImage(
         width,
         height,
         viewMatrix=camera[0],
         projectionMatrix=camera[1],
-        renderer=world.engine.ER_TINY_RENDERER,
+        renderer=scene.engine.ER_TINY_RENDERER,
         shadow=1,
         **_LIGHT,
     )
-    # Without numpy support in its build PyBullet gives a plain tuple.
+    # A PyBullet that was built without numpy support returns a plain tuple.
     picture = numpy.array(pixels, dtype=numpy.uint8).reshape(height, width, 4)[:, :, :3]
     nothing = numpy.asarray(things).reshape(height, width) < 0
     sky = numpy.linspace(_SKY[0], _SKY[1], height).astype(numpy.uint8)
@@ -179,7 +187,10 @@ def draw(world: World, camera: Camera, size: tuple[int, int]) -> Any:
 
 
 def caption(image: Any, text: str, clock: float) -> Any:
-    """The image above a bar with `text`, shortened at its front to fit, and the time (s)."""
+    """The image above a bar with `text` and the time `clock` (s).
+
+    A text that is too long loses its beginning.
+    """
     from PIL import ImageDraw, ImageFont
 
     width, height = image.size
@@ -210,7 +221,7 @@ def _pillow() -> Any:
 
 
 class Gif:
-    """An animated GIF of few colours, without dither, so that what rests costs nothing."""
+    """An animated GIF of few colours; without dither, so that still areas compress to nothing."""
 
     size: tuple[int, int] = (320, 240)
 
@@ -220,13 +231,13 @@ class Gif:
         self._palette: Any = None
 
     def add(self, image: Any) -> None:
-        """The next frame."""
+        """Add the next frame."""
         if self._palette is None:
             self._palette = _palette(image)
         self._images.append(image.quantize(palette=self._palette, dither=_pillow().Dither.NONE))
 
     def close(self) -> None:
-        """Finish the file; the end stays in view for a while."""
+        """Write the file; the last frame is shown for 2 s."""
         first, *rest = self._images
         times = [1000 // SPEED] * len(rest) + [2000]
         first.save(
@@ -235,8 +246,8 @@ class Gif:
 
 
 def _palette(image: Any) -> Any:
-    """The colours of a film: those of the first frame and, since bodies are small in it or come
-    later, the paints of all models, lit more and less."""
+    """The palette of a film: the colours of its first frame, and those of all models in several
+    brightnesses, because bodies are small in the first frame or appear later."""
     paints = list(dict.fromkeys(paint for model in MODELS.values() for paint in model.colours))
     swatch = _pillow().new("RGB", (image.width, image.height + len(paints) * len(_LIT)))
     swatch.paste(image, (0, 0))
@@ -247,7 +258,7 @@ def _palette(image: Any) -> Any:
 
 
 class Mp4:
-    """An MP4 by the ffmpeg that imageio-ffmpeg brings."""
+    """An MP4, written by the ffmpeg of imageio-ffmpeg. Raises SimUnavailable without it."""
 
     size: tuple[int, int] = (640, 480)
 
@@ -264,7 +275,7 @@ class Mp4:
         self._frames.send(None)
 
     def add(self, image: Any) -> None:
-        """The next frame."""
+        """Add the next frame."""
         self._frames.send(image.tobytes())
 
     def close(self) -> None:

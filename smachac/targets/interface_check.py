@@ -8,7 +8,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Iterable, Iterator
 from dataclasses import dataclass, replace
-from typing import TYPE_CHECKING
+from typing import Protocol
 
 from smachac.diagnostics.diagnostic import Diagnostic, Severity
 from smachac.diagnostics.source import Span, Word
@@ -17,9 +17,6 @@ from smachac.frontend.state_types import StateType, find_state_type
 from smachac.ir.nodes import Leaf, Machine
 from smachac.ir.traversal import walk
 from smachac.targets.errors import interfaces_differ, stale_code
-
-if TYPE_CHECKING:
-    from smachac.targets import Target
 
 Words = tuple[Word, ...]
 
@@ -42,7 +39,16 @@ class Declared:
     stale: Word | None = None
 
 
-Load = Callable[[str], "Target | None"]
+class Language(Protocol):
+    """The part of a Target that reads the user's classes: its name and its class reader."""
+
+    @property
+    def name(self) -> str: ...
+    @property
+    def declared(self) -> Callable[[StateType, Library], Declared | None]: ...
+
+
+Load = Callable[[str], Language | None]
 
 
 def code_faults(machine: Machine, library: Library, load: Load) -> Iterator[Diagnostic]:
@@ -50,7 +56,7 @@ def code_faults(machine: Machine, library: Library, load: Load) -> Iterator[Diag
 
     These are warnings: only what is built for the language of the code fails.
     """
-    targets: dict[str, Target | None] = {}
+    targets: dict[str, Language | None] = {}
     for leaf, type_ in own_types(machine, library):
         for language in languages(type_):
             if language not in targets:
@@ -60,7 +66,7 @@ def code_faults(machine: Machine, library: Library, load: Load) -> Iterator[Diag
                 yield replace(item, severity=Severity.WARNING)
 
 
-def target_faults(machine: Machine, library: Library, target: Target) -> Iterator[Diagnostic]:
+def target_faults(machine: Machine, library: Library, target: Language) -> Iterator[Diagnostic]:
     """What `code_faults` says of one language, as errors."""
     for leaf, type_ in own_types(machine, library):
         if target.name in languages(type_):
@@ -85,7 +91,7 @@ def own_types(machine: Machine, library: Library) -> Iterator[tuple[Leaf, StateT
 
 
 def type_faults(
-    leaf: Leaf, type_: StateType, target: Target, library: Library
+    leaf: Leaf, type_: StateType, target: Language, library: Library
 ) -> Iterator[Diagnostic]:
     """The faults of the code of one state type in one language."""
     found = target.declared(type_, library)

@@ -94,6 +94,6 @@ def test_without_a_simulation_it_says_so(
         raise SimUnavailable("PyBullet is not installed")
 
     machine_of(tmp_path, FAR)
-    monkeypatch.setattr(inverse_kinematics, "Shadow", missing)
+    monkeypatch.setattr(inverse_kinematics, "Kinematics", missing)
     assert main(["check", str(tmp_path / "main.yml"), "--sim"]) == 2
     assert "PyBullet is not installed" in capsys.readouterr().err

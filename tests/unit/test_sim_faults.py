@@ -9,7 +9,7 @@ import pytest
 
 from smachac import sim
 from smachac.sim import faults
-from smachac.sim.faults import Fault, Misfortune
+from smachac.sim.faults import Fault, FaultSchedule
 
 pytest.importorskip("pybullet")
 
@@ -94,10 +94,11 @@ def test_configured_faults_come_to_every_world() -> None:
 
 def test_a_probability_is_drawn_from_the_seed() -> None:
     fault = Fault(kind="gripper_dead", at=0.0, probability=0.3)
-    drawn = [len(Misfortune([fault], seed)._left) for seed in range(300)]
-    assert drawn == [len(Misfortune([fault], seed)._left) for seed in range(300)]
+    drawn = [len(FaultSchedule([fault], seed)._pending) for seed in range(300)]
+    assert drawn == [len(FaultSchedule([fault], seed)._pending) for seed in range(300)]
     assert 60 < sum(drawn) < 120
-    assert len(Misfortune([fault], 0)._left) == len(Misfortune([fault, fault], 0)._left[:1])
+    one, two = FaultSchedule([fault], 0), FaultSchedule([fault, fault], 0)
+    assert len(one._pending) == len(two._pending[:1])
 
 
 @pytest.mark.parametrize(

@@ -10,7 +10,7 @@ import pytest
 
 from smachac import sim
 from smachac.sim import transforms
-from smachac.sim.skills import TIME_STEP
+from smachac.sim.clock import TIME_STEP
 
 pytest.importorskip("pybullet")
 
@@ -193,7 +193,7 @@ def test_solutions_are_checked_by_forward_kinematics(idle: sim.World) -> None:
             )
             joints = arm.solve_ik(pose)
             assert joints is not None
-            tip = idle.shadow.tip(arm.limb, joints)
+            tip = idle.kinematics.tip(arm.limb, joints)
             assert math.dist(tip[0], pose[0]) < 2e-4
             assert transforms.angle_between(tip[1], pose[1]) < 1e-3
 

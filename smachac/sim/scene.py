@@ -1,0 +1,207 @@
+"""The scene: a robot in a physics client, bodies by name, frames, simulated time, events."""
+
+from __future__ import annotations
+
+import hashlib
+import math
+import random
+import struct
+from collections.abc import Callable
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any, TypeVar
+
+from smachac.sim import models, transforms
+from smachac.sim.clock import TIME_STEP, Clock, Key, Skill
+from smachac.sim.inverse_kinematics import Kinematics
+from smachac.sim.outcome import Result
+from smachac.sim.physics import Engine, UnknownNameError
+from smachac.sim.robots import Robot, mount
+from smachac.sim.transforms import IDENTITY, Pose, as_pose
+
+T = TypeVar("T")
+
+_GRAVITY = -9.81
+"""m/s^2, along z."""
+_SOLVER_ITERATIONS = 50
+"""Iterations of the constraint solver in each physics step."""
+_REST_SPEED = 0.005
+"""Speed (m/s) below which a body is at rest."""
+_REST_RATE = 0.05
+"""Angular speed (rad/s) below which a body is at rest."""
+
+
+@dataclass(frozen=True, slots=True)
+class Event:
+    """An entry of the world's event log: simulated time (s), name, and text."""
+
+    time: float
+    name: str
+    text: str
+
+
+class Scene:
+    """A robot on the floor of a physics client, and the bodies around it.
+
+    Metres, rad, s, kg; gravity along -z. Raises SimUnavailable without PyBullet, and
+    UnknownNameError for a joint or link that the robot's file does not have.
+
+    Attributes:
+        random: the source of random numbers, seeded with `seed`.
+        events: the events so far.
+        bodies: name -> PyBullet's number, without the robot.
+        caption: the text under the film: the paths of the active states.
+        steps: the number of physics steps so far.
+        robot_body: PyBullet's number of the robot.
+        limbs: the limbs of the robot with PyBullet's numbers.
+        kinematics: forward and inverse kinematics of the robot.
+    """
+
+    def __init__(
+        self,
+        robot: Robot,
+        seed: int,
+        *,
+        gui: bool = False,
+        on_event: Callable[[Event], None] | None = None,
+        patience: float = 5.0,
+    ) -> None:
+        self.robot = robot
+        self.seed = seed
+        self.gui = gui
+        self.random = random.Random(seed)
+        self.events: list[Event] = []
+        self.bodies: dict[str, int] = {}
+        self.caption = ""
+        self.steps = 0
+        self.clock = Clock(self._step, patience=patience, left_behind=self._left_behind)
+        self._on_event = on_event
+        self._model_counts: dict[str, int] = {}
+        self.engine = Engine(gui=gui)
+        try:
+            self.engine.setGravity(0.0, 0.0, _GRAVITY)
+            self.engine.setPhysicsEngineParameter(
+                fixedTimeStep=TIME_STEP,
+                numSolverIterations=_SOLVER_ITERATIONS,
+                deterministicOverlappingPairs=1,
+            )
+            models.floor(self.engine)
+            self.robot_body, self.limbs = mount(self.engine, robot)
+            self.kinematics = Kinematics(robot)
+        except BaseException:
+            self.engine.close()
+            raise
+
+    def close(self) -> None:
+        """Free both physics clients; a second call has no effect."""
+        self.kinematics.close()
+        self.engine.close()
+
+    # Time and events
+
+    @property
+    def time(self) -> float:
+        """Simulated seconds since the start."""
+        return self.steps * TIME_STEP
+
+    def run(self, skill: Skill[T]) -> T:
+        """Run a skill, a generator that yields once per physics step; its value."""
+        return self.clock.run(skill)
+
+    def note(self, name: str, text: str) -> None:
+        """Add an event."""
+        event = Event(self.time, name, text)
+        self.events.append(event)
+        if self._on_event is not None:
+            self._on_event(event)
+
+    def _step(self) -> None:
+        """Make one physics step."""
+        self.engine.stepSimulation()
+        self.steps += 1
+
+    def _left_behind(self, key: Key) -> None:
+        branch = "/".join(map(str, key))
+        self.note("clock", f"branch {branch} does not wait for simulated time; it is left behind")
+
+    # Frames
+
+    def frame(self, name: str | None) -> Pose:
+        """The pose of a frame in the world frame. Raises UnknownNameError.
+
+        Frames are "base" or the robot's name (also None and ""), "world", and the bodies by name.
+        """
+        if name in (None, "", "base", self.robot.name):
+            return self.robot.base
+        if name == "world":
+            return IDENTITY
+        if name not in self.bodies:
+            raise UnknownNameError("frame", str(name), ("base", "world", *self.bodies))
+        return models.where(self.engine, self.bodies[str(name)])
+
+    def seen_from(self, frame: str, pose: Pose) -> Pose:
+        """A pose of the world frame in the frame `frame`. Raises UnknownNameError."""
+        return transforms.compose(transforms.inverse(self.frame(frame)), pose)
+
+    # Bodies
+
+    def add(self, model: str, pose: Any, name: str, path: str | Path | None, frame: str) -> Result:
+        """Put a model at `pose` without an event, between two physics steps; see `World.load`."""
+        if name in self.bodies:
+            return Result("aborted", f"a body `{name}` is there already")
+        try:
+            place = transforms.compose(self.frame(frame), as_pose(pose))
+        except UnknownNameError as error:
+            return Result("aborted", str(error))
+        body: int | str
+        if path:
+            body = models.read(self.engine, path, place)
+        elif model in models.MODELS:
+            count = self._model_counts.get(model, 0)
+            self._model_counts[model] = count + 1
+            body = models.build(self.engine, models.MODELS[model], place, count)
+        else:
+            body = str(UnknownNameError("model", model, tuple(models.MODELS)))
+        if isinstance(body, str):
+            return Result("aborted", body)
+        self.bodies[name] = body
+        return Result("succeeded", value=name)
+
+    def remove(self, name: str) -> None:
+        """Remove a body. Raises UnknownNameError."""
+        self.engine.removeBody(self.body(name))
+        del self.bodies[name]
+
+    def body(self, name: str) -> int:
+        """PyBullet's number of a body. Raises UnknownNameError."""
+        if name not in self.bodies:
+            raise UnknownNameError("body", name, tuple(self.bodies))
+        return self.bodies[name]
+
+    def pose(self, name: str, frame: str = "base") -> list[list[float]]:
+        """The pose of a body in `frame`. Raises UnknownNameError."""
+        place = models.where(self.engine, self.body(name))
+        return transforms.as_lists(self.seen_from(frame, place))
+
+    def error(self, name: str, pose: Any, frame: str = "base") -> float:
+        """The distance (m) of a body from the position of `pose`. Raises UnknownNameError."""
+        return math.dist(self.pose(name, frame)[0], as_pose(pose)[0])
+
+    def at_rest(self, name: str) -> bool:
+        """Whether a body moves slower than 5 mm/s and turns slower than 0.05 rad/s."""
+        linear, angular = self.engine.getBaseVelocity(self.body(name))
+        return math.hypot(*linear) < _REST_SPEED and math.hypot(*angular) < _REST_RATE
+
+    def hash(self) -> str:
+        """A digest of all poses, joint positions and velocities, exact to the last bit."""
+        numbers: list[float] = []
+        for name in sorted(self.bodies):
+            body = self.bodies[name]
+            for part in self.engine.getBasePositionAndOrientation(body):
+                numbers += part
+            for part in self.engine.getBaseVelocity(body):
+                numbers += part
+        count = self.engine.getNumJoints(self.robot_body)
+        for state in self.engine.getJointStates(self.robot_body, range(count)):
+            numbers += state[:2]
+        return hashlib.blake2b(struct.pack(f"{len(numbers)}d", *numbers), digest_size=8).hexdigest()
