@@ -1,1 +1,1 @@
-"""What generated programs need to run: SMACH's names for machines without ROS, and traces."""
+"""The runtime of generated programs: SMACH without ROS, its ROS states, traces, C++ headers."""

@@ -115,7 +115,7 @@ def test_a_goal_that_is_recalled_on_request_is_preempted(graph: Graph) -> None:
 def test_a_goal_that_the_server_does_not_know_is_lost(graph: Graph) -> None:
     graph.node("slow_server", "deaf")
     impatient = client(work(1)).replace(
-        "client.node()", "smach_ros.watch.ACKNOWLEDGED = 0.2\nclient.node()"
+        "client.node()", "smach_ros.server_watch.ACKNOWLEDGE_LIMIT = 0.2\nclient.node()"
     )
     output = graph.run(impatient)
     assert "the goal of action 'work' is lost: the server does not know it" in output

@@ -1,4 +1,4 @@
-"""The order of the layers: who may import whom, and what may be imported only where it is used."""
+"""The order of the layers, no import circles, and heavy packages only where they are used."""
 
 from __future__ import annotations
 
@@ -7,6 +7,7 @@ import sys
 from collections.abc import Iterator, Mapping
 from pathlib import Path, PurePosixPath
 
+import networkx as nx
 import pytest
 
 LAYERS = (
@@ -103,6 +104,22 @@ def fault_of(part: str, module: str) -> str | None:
     return f"`{part}` may not import `{other}`"
 
 
+def import_circles(tree: Tree) -> list[str]:
+    """The modules that import each other, one line for each circle of all that are entangled.
+
+    Imports inside functions and for types alone count too.
+    """
+    modules = {module_name(path) for path in tree}
+    graph = nx.DiGraph()
+    for path, text in tree.items():
+        for node in ast.walk(ast.parse(text)):
+            for module in imported(node, path, modules):
+                if module in modules and module != module_name(path):
+                    graph.add_edge(module_name(path), module)
+    components = nx.strongly_connected_components(graph)
+    return sorted(" ".join(sorted(each)) for each in components if len(each) > 1)
+
+
 def heavy_faults(tree: Tree) -> Iterator[str]:
     """Each heavy package that is loaded as soon as a module is."""
     late = {module_name(path) for path in LATE}
@@ -136,6 +153,10 @@ def ours() -> Tree:
 
 def test_our_imports_keep_the_order_of_the_layers(ours: Tree) -> None:
     assert list(layer_faults(ours)) == []
+
+
+def test_our_modules_do_not_import_each_other_in_a_circle(ours: Tree) -> None:
+    assert import_circles(ours) == []
 
 
 def test_our_modules_load_no_heavy_package_when_imported(ours: Tree) -> None:
@@ -207,6 +228,28 @@ def test_packages_that_generated_programs_may_not_need_are_found(path: str, pack
 def test_a_room_without_a_layer_is_found() -> None:
     expected = "smachac/novelty.py:1: `novelty` has no layer: give it a place in LAYERS"
     assert list(layer_faults(example("smachac/novelty.py", ""))) == [expected]
+
+
+@pytest.mark.parametrize(
+    "text",
+    [
+        "from smachac.sim import world",
+        "from . import world",
+        "import smachac.sim.world",
+        "def f():\n    from smachac.sim.world import World",
+        "from typing import TYPE_CHECKING\nif TYPE_CHECKING:\n    from .world import World",
+    ],
+)
+def test_circles_are_found(text: str) -> None:
+    tree = {**example("smachac/sim/arm.py", text), "smachac/sim/world.py": "from .arm import Arm"}
+    assert import_circles(tree) == ["smachac.sim.arm smachac.sim.world"]
+
+
+def test_a_package_that_its_own_module_imports_is_a_circle() -> None:
+    tree = {"smachac/ir/__init__.py": "from .nodes import Leaf", "smachac/ir/nodes.py": ""}
+    assert import_circles(tree) == []
+    tree["smachac/ir/nodes.py"] = "from smachac import ir"
+    assert import_circles(tree) == ["smachac.ir smachac.ir.nodes"]
 
 
 @pytest.mark.parametrize(

@@ -1,16 +1,18 @@
-"""SMACH's public names, for machines without ROS.
+"""The state machines of SMACH, under its public names, without ROS.
 
 Code written for `import smach` runs on this package unchanged:
-`from smachac.runtime import smach`. What differs from SMACH is what could not be relied on there:
-hangs raise, an exception while building leaves nothing open, the caller's dicts and lists are not
-written to, Ctrl-C stops a machine, and values in userdata are never wrapped. docs/semantics.md
-lists every difference; `compat` takes back those that a script may depend on.
+`from smachac.runtime import smach`. It differs from SMACH where SMACH hangs or is unreliable: a
+container that cannot run raises an error, an exception during construction leaves no container
+open, the caller's dicts and lists are not modified, Ctrl-C stops a machine, and values in userdata
+are never wrapped. docs/semantics.md, section "Where the bundled runtime differs from SMACH", lists
+every difference. `compat` (see `settings`) restores those that a script may depend on.
 """
 
 from __future__ import annotations
 
-import os
+import sys
 from collections.abc import Callable
+from types import ModuleType
 
 from smachac.runtime.smach import (
     concurrence,
@@ -19,6 +21,7 @@ from smachac.runtime.smach import (
     iterator,
     log,
     sequence,
+    settings,
     state,
     state_machine,
     user_data,
@@ -34,6 +37,7 @@ from smachac.runtime.smach.exceptions import (
 )
 from smachac.runtime.smach.iterator import Iterator
 from smachac.runtime.smach.sequence import Sequence
+from smachac.runtime.smach.settings import set_loggers, set_shutdown_check
 from smachac.runtime.smach.state import CBState, State
 from smachac.runtime.smach.state_machine import StateMachine
 from smachac.runtime.smach.user_data import Remapper, UserData
@@ -76,29 +80,34 @@ __all__ = [
     "util",
 ]
 
-compat: bool = os.environ.get("SMACHAC_COMPAT", "") == "1"
-"""Whether to do as SMACH does also where a script should not depend on it:
-
-Ctrl-C and SystemExit become errors of the state; what the items of an Iterator raise ends them;
-`keys` of remapped userdata gives the container's names, `update` writes them, declared or not; a
-Concurrence keeps its children from a request that came before they ran, and leaves one that they
-did not answer to their next visit. To be set before a machine runs.
-"""
-
-loginfo: log.Logger = log.loginfo
-logwarn: log.Logger = log.logwarn
-logdebug: log.Logger = log.logdebug
-logerr: log.Logger = log.logerr
-is_shutdown: Callable[[], bool] = log.is_shutdown
+compat: bool
+loginfo: log.Logger
+logwarn: log.Logger
+logdebug: log.Logger
+logerr: log.Logger
+is_shutdown: Callable[[], bool]
 
 
-def set_loggers(info: log.Logger, warn: log.Logger, debug: log.Logger, error: log.Logger) -> None:
-    """Replace the four loggers. Info lines of a run are not built for one that does nothing."""
-    global loginfo, logwarn, logdebug, logerr
-    loginfo, logwarn, logdebug, logerr = log.audible(info), warn, debug, error
+def _setting(name: str) -> property:
+    """A property that reads and sets a value in `settings`."""
+    return property(
+        lambda package: getattr(settings, name),
+        lambda package, value: setattr(settings, name, value),
+    )
 
 
-def set_shutdown_check(cb: Callable[[], bool]) -> None:
-    """Replace the function that running containers ask whether to stop."""
-    global is_shutdown
-    is_shutdown = cb
+class _Package(ModuleType):
+    """This package. Its settings are those of `settings`, so that its modules need not import it.
+
+    A script may set them here, as `smach.compat = True`.
+    """
+
+    compat = _setting("compat")
+    loginfo = _setting("loginfo")
+    logwarn = _setting("logwarn")
+    logdebug = _setting("logdebug")
+    logerr = _setting("logerr")
+    is_shutdown = _setting("is_shutdown")
+
+
+sys.modules[__name__].__class__ = _Package

@@ -1,4 +1,4 @@
-"""Concurrence: all children at the same time, one thread each."""
+"""Concurrence: a container that runs all its children at the same time, one thread each."""
 
 from __future__ import annotations
 
@@ -6,7 +6,7 @@ import traceback
 from collections.abc import Callable, Iterable, Mapping, Sequence
 from typing import Any, TypeVar
 
-from smachac.runtime import smach
+from smachac.runtime.smach import settings
 from smachac.runtime.smach.container import Container, open_container, withdraw
 from smachac.runtime.smach.exceptions import (
     InvalidStateError,
@@ -20,15 +20,15 @@ from smachac.runtime.smach.user_data import UserData
 
 S = TypeVar("S", bound=State)
 OutcomeMap = Mapping[str, Mapping[str, str]]
-"""Outcome of the concurrence -> child label -> outcome that the child must have ended with."""
+"""Outcome of the concurrence -> its rule: child label -> the outcome of that child."""
 
 
 class Concurrence(Container):
     """A container whose children start together; it ends when all have ended.
 
-    Of the entries of `outcome_map` that hold, the last decides; `default_outcome` if none does;
-    `outcome_cb` overrides both when it returns a string. When `child_termination_cb` returns
-    something true, the children that still run are preempted.
+    Its outcome is the last key of `outcome_map` whose rule holds, or `default_outcome` if none
+    holds; a string returned by `outcome_cb` overrides both. When `child_termination_cb` returns a
+    true value, the children that still run are preempted.
     """
 
     def __init__(
@@ -68,7 +68,7 @@ class Concurrence(Container):
     def add(label: str, state: S, remapping: Mapping[str, str] | None = None) -> S:
         """Add a child to the innermost open concurrence, in place of one of the same label."""
         concurrence = open_container(Concurrence)
-        smach.logdebug(f"adding state '{label}'")
+        settings.logdebug(f"adding state '{label}'")
         concurrence._states[label] = state
         concurrence._remappings[label] = {} if remapping is None else remapping
         return state
@@ -107,7 +107,7 @@ class Concurrence(Container):
         return list(self._states)
 
     def get_active_states(self) -> list[str]:
-        """The labels that still run; after an error, those that failed stay."""
+        """The labels that still run; after an error, the failed ones are included."""
         return [] if self._branches is None else list(self._branches.active)
 
     def get_internal_edges(self) -> list[tuple[str, str, str | None]]:
@@ -121,7 +121,7 @@ class Concurrence(Container):
     # Execution
 
     def execute(self, parent_ud: Any = None) -> str | None:
-        """Run all children to their ends, and say what they amount to.
+        """Run all children to their ends; the outcome of the concurrence.
 
         Raises:
             InvalidStateError: there are no children, a child raised or returned no outcome, or
@@ -135,12 +135,12 @@ class Concurrence(Container):
             branches = self._branches = Branches(self._states, self._run_child)
             self._recall_leftovers()
             self.copy_input_keys(parent_ud)
-            if smach.loginfo is not quiet:
-                smach.loginfo(f"concurrence starting with userdata {self.userdata.keys()}")
+            if settings.loginfo is not quiet:
+                settings.loginfo(f"concurrence starting with userdata {self.userdata.keys()}")
             self.call_start_cbs()
             self._run_branches(branches)
             outcome = self._outcome(branches.outcomes)
-            self._settle(branches)
+            self._settle_preempts(branches)
             self.call_termination_cbs(list(self._states), outcome)
             self.copy_output_keys(parent_ud)
             return outcome
@@ -148,12 +148,12 @@ class Concurrence(Container):
             self._running.release()
 
     def _run_branches(self, branches: Branches) -> None:
-        """Run the children, and pass on preempt requests meanwhile. Raises what went wrong."""
+        """Run the children and pass preempt requests on to them. Raises the error of a branch."""
         try:
             branches.start()
             if self._preempt_requested:
                 branches.request()
-            if branches.take() and not smach.compat:
+            if branches.take_request() and not settings.compat:
                 self._preempt(branches)
             branches.release()
             while branches.wait():
@@ -169,28 +169,28 @@ class Concurrence(Container):
             return
         self._left_flagged = True
         label, error = branches.failure
-        if not (isinstance(error, Exception) or smach.compat):
+        if not (isinstance(error, Exception) or settings.compat):
             raise error
         raise InvalidStateError(f"branch '{label}' failed: {error}") from error
 
     def _run_child(self, branches: Branches, label: str) -> None:
-        """What the thread of a child does."""
+        """Run one child; the function of its thread."""
         state = self._states[label]
         self.call_transition_cbs()
         outcome = state.execute(self._view(state, self._remappings[label]))
-        if outcome is None and not smach.is_shutdown():
+        if outcome is None and not settings.is_shutdown():
             raise InvalidStateError(f"state '{label}' ended without an outcome")
         with branches.ending:
             branches.outcomes[label] = outcome
             del branches.active[label]
-            if smach.loginfo is not quiet:
-                smach.loginfo(f"branch '{label}' ended with outcome '{outcome}'")
+            if settings.loginfo is not quiet:
+                settings.loginfo(f"branch '{label}' ended with outcome '{outcome}'")
             if self._child_termination_cb is not None and self._ends_all(branches):
                 branches.stop()
         self.call_transition_cbs()
 
     def _ends_all(self, branches: Branches) -> bool:
-        """Whether the callback wants the children still running preempted."""
+        """Whether the termination callback requests that the other children are preempted."""
         assert self._child_termination_cb is not None
         try:
             return bool(self._child_termination_cb(branches.outcomes))
@@ -200,7 +200,7 @@ class Concurrence(Container):
             ) from error
 
     def _outcome(self, outcomes: dict[str, str | None]) -> str | None:
-        """What the children's outcomes amount to. Raises KeyError for an unknown label."""
+        """The outcome for these outcomes of the children. Raises KeyError for an unknown label."""
         result = self._default
         for name, rule in self._outcome_map.items():
             if all(outcomes[label] == outcome for label, outcome in rule.items()):
@@ -214,14 +214,14 @@ class Concurrence(Container):
                 ) from error
             if chosen and isinstance(chosen, str):
                 result = chosen
-        if smach.loginfo is not quiet:
-            smach.loginfo(f"concurrence ending with outcome '{result}' from {outcomes}")
+        if settings.loginfo is not quiet:
+            settings.loginfo(f"concurrence ending with outcome '{result}' from {outcomes}")
         return result
 
     # Preemption
 
     def request_preempt(self) -> None:
-        """Ask all children that run, or else all that start next, to end early."""
+        """Request that the running children end early; if none runs, those of the next run."""
         super().request_preempt()
         if self._branches is not None:
             self._branches.request()
@@ -233,11 +233,11 @@ class Concurrence(Container):
                 if not state.preempt_requested():
                     state.request_preempt()
             except Exception:
-                smach.logerr(f"request_preempt failed:\n{traceback.format_exc()}")
+                settings.logerr(f"request_preempt failed:\n{traceback.format_exc()}")
 
-    def _settle(self, branches: Branches) -> None:
-        """Take back what the children did not answer; see `Branches.answered`."""
-        if smach.compat and not self._preempt_requested:
+    def _settle_preempts(self, branches: Branches) -> None:
+        """Recall the requests that children did not answer; mark the concurrence's as answered."""
+        if settings.compat and not self._preempt_requested:
             return
         flagged = [state for state in self._states.values() if state.preempt_requested()]
         for state in flagged:
@@ -246,7 +246,7 @@ class Concurrence(Container):
             self.service_preempt()
 
     def _recall_leftovers(self) -> None:
-        """Take back what the children were told in a run that failed."""
+        """Recall the requests that children got in an earlier run that failed."""
         if self._left_flagged:
             self._left_flagged = False
             for state in self._states.values():

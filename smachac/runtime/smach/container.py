@@ -1,4 +1,4 @@
-"""Container: a state made of states, with a userdata store and callbacks of its own."""
+"""Container: a state that contains states, with its own userdata and callbacks."""
 
 from __future__ import annotations
 
@@ -9,7 +9,7 @@ from contextlib import contextmanager
 from types import TracebackType
 from typing import Any, ClassVar, TypeVar
 
-from smachac.runtime import smach
+from smachac.runtime.smach import settings
 from smachac.runtime.smach.exceptions import (
     InvalidConstructionError,
     InvalidStateError,
@@ -23,7 +23,10 @@ Callbacks = list[tuple[Callable[..., object], tuple[Any, ...]]]
 
 
 class _Open(threading.local):
-    """The containers open for construction in this thread, innermost last."""
+    """The containers that are open for construction in this thread, innermost last.
+
+    Module state, as in SMACH: `add` is a static method without a container argument.
+    """
 
     def __init__(self) -> None:
         self.stack: list[Container] = []
@@ -93,7 +96,7 @@ class Container(State):
         try:
             self.check_consistency()
         except (InvalidStateError, InvalidTransitionError):
-            smach.logerr("the container is inconsistent")
+            settings.logerr("the container is inconsistent")
 
     def __enter__(self) -> None:
         self.open()
@@ -111,10 +114,10 @@ class Container(State):
         if error is None:
             raise InvalidStateError(f"a {type(self).__name__} is closed before what it contains")
         if not isinstance(error, (InvalidStateError, InvalidTransitionError)):
-            smach.logerr(f"construction failed: {type(error).__name__}: {error}")
+            settings.logerr(f"construction failed: {type(error).__name__}: {error}")
 
     def _abandon(self) -> None:
-        """Take this container, and what was left open above it, off the stack."""
+        """Remove this container, and those left open inside it, from the stack."""
         stack = _open.stack
         for depth in range(len(stack) - 1, -1, -1):
             if stack[depth] is self:
@@ -123,7 +126,7 @@ class Container(State):
 
     @contextmanager
     def opened(self: C, *args: object, **kwargs: object) -> Iterator[C]:
-        """Open for the length of a `with` block that names the container; takes no arguments."""
+        """Open the container for a `with` block, as its value. The arguments are ignored."""
         with self:
             yield self
 
@@ -136,7 +139,7 @@ class Container(State):
         if not self.is_opened():
             raise InvalidConstructionError(msg)
 
-    # What a kind of container defines
+    # Defined by each kind of container
 
     def get_children(self) -> dict[str, State]:
         """The contained states by label."""
@@ -182,23 +185,23 @@ class Container(State):
             raise InvalidStateError(f"a {type(self).__name__} is executed while it runs")
 
     def copy_input_keys(self, parent_ud: Any) -> None:
-        """Take the input keys from the parent (UserData, Remapper or mapping; None: nothing)."""
+        """Copy the input keys from the parent (UserData, Remapper or mapping; None: nothing)."""
         if parent_ud is None or not self._input_keys:
             return
         missing = read_keys(parent_ud, self._input_keys, store(self.userdata))
         if missing:
-            smach.logwarn(f"input keys absent in the parent's userdata: {missing}")
+            settings.logwarn(f"input keys absent in the parent's userdata: {missing}")
 
     def copy_output_keys(self, parent_ud: Any) -> None:
-        """Give the output keys to the parent (UserData, Remapper or mapping; None: nothing)."""
+        """Copy the output keys to the parent (UserData, Remapper or mapping; None: nothing)."""
         if parent_ud is None or not self._output_keys:
             return
         missing = write_keys(parent_ud, self._output_keys, store(self.userdata))
         if missing:
-            smach.logwarn(f"output keys never written: {missing}")
+            settings.logwarn(f"output keys never written: {missing}")
 
     def _view(self, state: State, remapping: Mapping[str, str]) -> Remapper:
-        """What a child sees of the store; live, as far as the child is a State."""
+        """The userdata of a child. Later changes of a State's keys apply to it too."""
         if isinstance(state, State):
             return Remapper(self.userdata, state._input_keys, state._output_keys, remapping)
         inputs, outputs = state.get_registered_input_keys(), state.get_registered_output_keys()
@@ -240,11 +243,11 @@ class Container(State):
             for callback, more in callbacks:
                 callback(self.userdata, *args, *more)
         except Exception:
-            smach.logerr(f"a callback failed:\n{traceback.format_exc()}")
+            settings.logerr(f"a callback failed:\n{traceback.format_exc()}")
 
 
 def withdraw(state: State) -> None:
-    """Recall the preempt request that a state, and what runs inside it, left unanswered."""
+    """Recall the unanswered preempt request of a state and of the states inside it."""
     if not state.preempt_requested():
         return
     state.recall_preempt()

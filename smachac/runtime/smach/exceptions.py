@@ -1,29 +1,29 @@
-"""What goes wrong with machines: four classes under one base."""
+"""The exceptions of SMACH: four classes with a common base."""
 
 from __future__ import annotations
 
-from smachac.runtime import smach
+from smachac.runtime.smach import settings
 
 
 class SmachError(Exception):
-    """The common base. Making one, caught later or not, writes it to the error logger."""
+    """The common base. As in SMACH, creating one writes its message to the error logger."""
 
     def __init__(self, message: str) -> None:
         super().__init__(message)
-        smach.logerr(f"{type(self).__name__}: {message}")
+        settings.logerr(f"{type(self).__name__}: {message}")
 
 
 class InvalidTransitionError(SmachError):
-    """A transition or an outcome that leads nowhere."""
+    """A transition or an outcome without a valid target."""
 
 
 class InvalidStateError(SmachError):
-    """A container put together or run the wrong way, or a branch of a concurrence that failed."""
+    """A container that is built or run incorrectly, or a failed branch of a concurrence."""
 
 
 class InvalidConstructionError(SmachError):
-    """A container that should have been open for construction and is not."""
+    """A container that is not open for construction where it has to be."""
 
 
 class InvalidUserCodeError(SmachError):
-    """The code of a state or of a callback raised, or read a key that it does not declare."""
+    """The code of a state or a callback raised, or read a key that it does not declare."""

@@ -1,4 +1,4 @@
-"""Iterator: one state, run once for each item."""
+"""Iterator: a container that runs one state for each item of an iterable."""
 
 from __future__ import annotations
 
@@ -6,7 +6,7 @@ import traceback
 from collections.abc import Callable, Iterable, Mapping, Sequence
 from typing import Any
 
-from smachac.runtime import smach
+from smachac.runtime.smach import settings
 from smachac.runtime.smach.container import Container, open_container, withdraw
 from smachac.runtime.smach.exceptions import InvalidUserCodeError
 from smachac.runtime.smach.log import quiet
@@ -17,10 +17,10 @@ _NO_MORE = object()
 
 
 class Iterator(Container):
-    """A container that runs its one child for each item in turn.
+    """A container that runs its only child for each item in turn.
 
-    The child gets the iterator's own userdata, where the item is under `it_label`.
-    `it` is an iterable, or a callable without arguments that gives one at each start.
+    The child gets the iterator's own userdata, with the item in the key `it_label`.
+    `it` is an iterable, or a function without arguments that returns one at each start.
     """
 
     def __init__(
@@ -57,15 +57,15 @@ class Iterator(Container):
     ) -> None:
         """Set the child of the innermost open iterator.
 
-        With `break_outcomes` all other outcomes of the child go on with the next item; otherwise
-        only `loop_outcomes` do. With neither, the first item is the last.
+        With `break_outcomes`, all other outcomes of the child continue with the next item; without,
+        only `loop_outcomes` do. With neither, the iterator ends after the first item.
         `final_outcome_map` renames the outcome with which the iterator ends.
         """
         iterator = open_container(Iterator)
         breaking, looping = tuple(break_outcomes), tuple(loop_outcomes)
         if breaking:
             if looping:
-                smach.logwarn(f"'{label}': loop_outcomes are ignored beside break_outcomes")
+                settings.logwarn(f"'{label}': loop_outcomes are ignored beside break_outcomes")
             looping = tuple(o for o in state.get_registered_outcomes() if o not in breaking)
         iterator._label, iterator._state = label, state
         iterator._looping, iterator._breaking = looping, breaking
@@ -80,7 +80,7 @@ class Iterator(Container):
         iterator._items, iterator._item_key = it, it_label
 
     def check_consistency(self) -> None:
-        """Nothing is asked of an iterator before it runs."""
+        """Check nothing: an iterator is not checked before it runs."""
 
     def set_initial_state(
         self, initial_states: Sequence[str], userdata: UserData | None = None
@@ -123,7 +123,7 @@ class Iterator(Container):
     def execute(self, parent_ud: Any = None) -> str | None:
         """Run the child for each item, up to a breaking outcome or the last item.
 
-        Raises InvalidUserCodeError if the child raises; what the items raise passes unchanged.
+        Raises InvalidUserCodeError if the child raises; exceptions of the items are not changed.
         """
         self._claim()
         try:
@@ -141,23 +141,23 @@ class Iterator(Container):
             self._running.release()
 
     def _loop(self, items: Any) -> str | None:
-        """Item after item; the outcome, as renamed by the final map."""
+        """Run the child for each item; the outcome, renamed by the final outcome map."""
         state: Any = self._state
         self._active = state
         outcome: str | None = self._exhausted
-        while not smach.is_shutdown():
+        while not settings.is_shutdown():
             try:
                 item = next(items, _NO_MORE)
             except Exception:
-                if not smach.compat:
+                if not settings.compat:
                     raise
                 item = _NO_MORE
             if item is _NO_MORE:
                 outcome = self._exhausted
                 break
             self.userdata[self._item_key] = item
-            if smach.loginfo is not quiet:
-                smach.loginfo(f"iterator running '{self._label}' for {item!r}")
+            if settings.loginfo is not quiet:
+                settings.loginfo(f"iterator running '{self._label}' for {item!r}")
             outcome = self._run_child(state)
             if self._preempt_requested:
                 with self._preempting:
@@ -175,7 +175,7 @@ class Iterator(Container):
         except InvalidUserCodeError:
             raise
         except BaseException as error:
-            if not (isinstance(error, Exception) or smach.compat):
+            if not (isinstance(error, Exception) or settings.compat):
                 raise
             raise InvalidUserCodeError(
                 f"state '{self._label}' of type {type(state).__name__} failed:\n"
@@ -191,7 +191,7 @@ class Iterator(Container):
     # Preemption
 
     def request_preempt(self) -> None:
-        """Ask the iterator to end after the current item, and its child to end early."""
+        """Request that the iterator ends after the current item, and that its child ends early."""
         with self._preempting:
             super().request_preempt()
             state = self._active
@@ -202,4 +202,4 @@ class Iterator(Container):
                 if not state.preempt_requested():
                     state.request_preempt()
             except Exception:
-                smach.logerr(f"request_preempt failed:\n{traceback.format_exc()}")
+                settings.logerr(f"request_preempt failed:\n{traceback.format_exc()}")

@@ -1,24 +1,25 @@
-"""The default loggers, the one that drops everything, and the default shutdown check."""
+"""The default loggers and shutdown check, and the logger that drops every message."""
 
 from __future__ import annotations
 
 from collections.abc import Callable
 
 Logger = Callable[[str], object]
-"""Takes one message; what it returns is ignored."""
+"""A function of one message; its return value is ignored."""
 
 
 def quiet(message: str) -> None:
-    """The logger that drops every message; info lines are not even built for it."""
+    """Drop the message. Info lines are not built at all while this is the info logger."""
 
 
-_CONSTANT = (lambda: None).__code__.co_code
+_EMPTY_BYTECODE = (lambda: None).__code__.co_code
+"""The bytecode of a function that only returns a constant."""
 
 
 def audible(logger: Logger) -> Logger:
     """The logger itself, or `quiet` if it is a function that does nothing but return."""
     code = getattr(logger, "__code__", None)
-    return quiet if code is not None and code.co_code == _CONSTANT else logger
+    return quiet if code is not None and code.co_code == _EMPTY_BYTECODE else logger
 
 
 def loginfo(message: str) -> None:
@@ -42,5 +43,5 @@ def logerr(message: str) -> None:
 
 
 def is_shutdown() -> bool:
-    """The shutdown check of a machine that nothing outside can stop: never."""
+    """The default shutdown check: never."""
     return False

@@ -1,11 +1,11 @@
-"""Sequence: a state machine whose states lead to each other in the order of adding."""
+"""Sequence: a state machine whose states run in the order in which they were added."""
 
 from __future__ import annotations
 
 from collections.abc import Iterable, Mapping
 from typing import Any, TypeVar
 
-from smachac.runtime import smach
+from smachac.runtime.smach import settings
 from smachac.runtime.smach.container import open_container
 from smachac.runtime.smach.state import State
 from smachac.runtime.smach.state_machine import StateMachine
@@ -50,12 +50,12 @@ class Sequence(StateMachine):
         return state
 
     def _link(self, label: str) -> None:
-        """Let the connector of the state last added lead to `label`, if it leads nowhere yet."""
+        """Connect the state added last to `label`, unless its connector outcome has a target."""
         if self._last is None:
             return
         targets = self._table.targets[self._last]
         if self._connector not in targets:
-            smach.logerr(f"'{self._last}' lacks the connector outcome '{self._connector}'")
+            settings.logerr(f"'{self._last}' lacks the connector outcome '{self._connector}'")
         if targets.get(self._connector) is None:
             targets[self._connector] = label
             self._changed()

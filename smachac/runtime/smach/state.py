@@ -1,4 +1,4 @@
-"""State, the leaf of a machine, and CBState, a leaf around a function."""
+"""State, the leaf of a machine, and CBState, a leaf that calls a function."""
 
 from __future__ import annotations
 
@@ -9,9 +9,9 @@ from smachac.runtime.smach.util import has_smach_interface
 
 
 class State:
-    """Something with outcomes that runs on userdata.
+    """A state: it runs on userdata and ends with one of its outcomes.
 
-    `input_keys` may be read from the userdata, `output_keys` written, `io_keys` both;
+    It may read the userdata keys `input_keys`, write `output_keys`, and do both with `io_keys`;
     all three are lists. Subclasses define `execute`.
     """
 
@@ -23,7 +23,7 @@ class State:
         io_keys: list[str] | None = None,
     ) -> None:
         shared = io_keys or []
-        # Dicts as ordered sets: what is listed later does not hang on the hash seed.
+        # Dicts as ordered sets: the order of outcomes and keys must not depend on the hash seed.
         self._outcomes: dict[str, None] = dict.fromkeys(outcomes or ())
         self._input_keys: dict[str, None] = dict.fromkeys((input_keys or []) + shared)
         self._output_keys: dict[str, None] = dict.fromkeys((output_keys or []) + shared)
@@ -64,7 +64,7 @@ class State:
         return tuple(self._output_keys)
 
     def request_preempt(self) -> None:
-        """Ask the state to end early; it may take notice through `preempt_requested`."""
+        """Request that the state ends early; its code may check `preempt_requested`."""
         self._preempt_requested = True
 
     def service_preempt(self) -> None:
@@ -72,18 +72,18 @@ class State:
         self._preempt_requested = False
 
     def recall_preempt(self) -> None:
-        """Take the request back."""
+        """Withdraw the request."""
         self._preempt_requested = False
 
     def preempt_requested(self) -> bool:
-        """Whether a request waits for an answer."""
+        """Whether there is a request that is not marked as answered."""
         return self._preempt_requested
 
 
 class CBState(State):
-    """A state that calls `cb(userdata, *cb_args, **cb_kwargs)` and ends with what it returns.
+    """A state that calls `cb(userdata, *cb_args, **cb_kwargs)`; the return value is its outcome.
 
-    A callback that declares outcomes and keys (see `cb_interface`) adds them to the state's.
+    Outcomes and keys that the callback declares (see `cb_interface`) are added to the state.
     """
 
     def __init__(

@@ -1,4 +1,4 @@
-"""StateMachine: one state at a time, and transitions between them."""
+"""StateMachine: a container that runs one state at a time and follows transitions."""
 
 from __future__ import annotations
 
@@ -6,7 +6,7 @@ import traceback
 from collections.abc import Iterable, Mapping, Sequence
 from typing import Any, TypeVar
 
-from smachac.runtime import smach
+from smachac.runtime.smach import settings
 from smachac.runtime.smach.container import Container, open_container
 from smachac.runtime.smach.exceptions import (
     InvalidStateError,
@@ -22,11 +22,12 @@ S = TypeVar("S", bound=State)
 
 
 class _Step:
-    """A place in a running machine: a child with what it sees, or an end (`state` is None).
+    """A step of a running machine: a child with its userdata, or an end (`state` is None).
 
     Attributes:
         label: the child's label, or the outcome with which the machine ends.
-        next: where the outcomes seen so far lead.
+        view: the userdata of the child.
+        next: outcome -> the next step, for the outcomes seen so far.
     """
 
     __slots__ = ("constants", "label", "next", "state", "view")
@@ -40,7 +41,7 @@ class _Step:
 
 
 class StateMachine(Container):
-    """A container whose children run one after the other, as their outcomes tell.
+    """A container whose children run one after the other; outcomes select the next child.
 
     An outcome's target is a label of the machine or one of its own outcomes;
     without a target the machine ends with the child's outcome.
@@ -112,12 +113,12 @@ class StateMachine(Container):
         remapping: Mapping[str, str] | None,
         constants: Mapping[str, Any] | None,
     ) -> None:
-        smach.logdebug(f"adding state '{label}'")
+        settings.logdebug(f"adding state '{label}'")
         self._table.add(label, state, transitions, remapping, constants)
         self._changed()
 
     def _changed(self) -> None:
-        """Look up all targets anew."""
+        """Discard the checked consistency and the cached targets."""
         self._consistent = False
         for step in self._steps.values():
             step.next.clear()
@@ -130,9 +131,11 @@ class StateMachine(Container):
     def set_initial_state(
         self, initial_states: Sequence[str], userdata: UserData | None = None
     ) -> None:
-        """Choose where all later runs start, and merge `userdata` into the machine's."""
+        """Set the initial state of all later runs, and merge `userdata` into the machine's."""
         if len(initial_states) > 1:
-            smach.logwarn(f"a state machine has one initial state; ignored: {initial_states[1:]}")
+            settings.logwarn(
+                f"a state machine has one initial state; ignored: {initial_states[1:]}"
+            )
         if initial_states:
             self._table.initial = initial_states[0]
             self._changed()
@@ -179,7 +182,7 @@ class StateMachine(Container):
             try:
                 self.check_consistency()
             except (InvalidStateError, InvalidTransitionError):
-                smach.logerr("the state machine is inconsistent and does not run")
+                settings.logerr("the state machine is inconsistent and does not run")
                 return None
             self._consistent = True
         self._claim()
@@ -195,9 +198,9 @@ class StateMachine(Container):
         self._preempted = None
         step = self._current = self._step(str(self._table.initial))
         self.copy_input_keys(parent_ud)
-        if smach.loginfo is not quiet:
+        if settings.loginfo is not quiet:
             keys = self.userdata.keys()
-            smach.loginfo(f"state machine starting in '{step.label}' with userdata {keys}")
+            settings.loginfo(f"state machine starting in '{step.label}' with userdata {keys}")
         if self._start_cbs:
             self.call_start_cbs()
         outcome = self._walk(step)
@@ -206,7 +209,7 @@ class StateMachine(Container):
 
     def _walk(self, step: _Step) -> str | None:
         """Run child after child; the outcome reached, None after a shutdown."""
-        while not smach.is_shutdown():
+        while not settings.is_shutdown():
             state: Any = step.state
             self._active = state
             if self._preempt_requested:
@@ -219,7 +222,7 @@ class StateMachine(Container):
             except InvalidUserCodeError:
                 raise
             except BaseException as error:
-                if not (isinstance(error, Exception) or smach.compat):
+                if not (isinstance(error, Exception) or settings.compat):
                     raise
                 raise InvalidUserCodeError(
                     f"state '{step.label}' of type {type(state).__name__} failed:\n"
@@ -233,15 +236,15 @@ class StateMachine(Container):
             if following.state is None:
                 self._end(step.label, following.label)
                 return following.label
-            if smach.loginfo is not quiet:
-                smach.loginfo(f"transition '{step.label}':'{outcome}'-->'{following.label}'")
+            if settings.loginfo is not quiet:
+                settings.loginfo(f"transition '{step.label}':'{outcome}'-->'{following.label}'")
             step = self._current = following
             if self._transition_cbs:
                 self.call_transition_cbs()
         return None
 
     def _step(self, label: str) -> _Step:
-        """The place of a child, made at its first visit; an end if there is no such child."""
+        """The step of a child, made at its first visit; an end if there is no such child."""
         step = self._steps.get(label)
         if step is not None:
             return step
@@ -255,26 +258,26 @@ class StateMachine(Container):
         return step
 
     def _follow(self, label: str, outcome: Any) -> _Step:
-        """Where an outcome not seen before leads. Raises InvalidTransitionError if nowhere."""
+        """The next step for an outcome not seen before. Raises InvalidTransitionError."""
         target = self._table.target(label, outcome)
         return self._step(target) if target else _Step(outcome)
 
     def _end(self, label: str, outcome: str) -> None:
-        """Settle the preempt request and tell the callbacks."""
+        """Settle the preempt request and run the termination callbacks."""
         self._current = None
         if self._preempt_requested:
             with self._preempting:
                 if self._preempted is not None and not self._preempted.preempt_requested():
                     self.service_preempt()
-        if smach.loginfo is not quiet:
-            smach.loginfo(f"state machine ending at '{label}' with outcome '{outcome}'")
+        if settings.loginfo is not quiet:
+            settings.loginfo(f"state machine ending at '{label}' with outcome '{outcome}'")
         if self._termination_cbs:
             self.call_termination_cbs([label], outcome)
 
     # Preemption
 
     def request_preempt(self) -> None:
-        """Ask the machine to end early: the child that runs, or else the next one, is told."""
+        """Request that the machine ends early; the running child, or else the next one, gets it."""
         with self._preempting:
             super().request_preempt()
             if self._active is not None:
@@ -294,10 +297,10 @@ class StateMachine(Container):
             self._pass_on(state)
 
     def _pass_on(self, state: State, again: bool = True) -> None:
-        """Preempt a child; one that already knows is told `again` or not."""
+        """Preempt a child; one with a request gets another one only if `again`."""
         self._preempted = state
         try:
             if again or not state.preempt_requested():
                 state.request_preempt()
         except Exception:
-            smach.logerr(f"request_preempt failed:\n{traceback.format_exc()}")
+            settings.logerr(f"request_preempt failed:\n{traceback.format_exc()}")

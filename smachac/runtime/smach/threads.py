@@ -1,4 +1,4 @@
-"""The threads of one execution of a concurrence, and what they share."""
+"""The threads of one execution of a concurrence, and their shared state."""
 
 from __future__ import annotations
 
@@ -6,21 +6,21 @@ import threading
 import traceback
 from collections.abc import Callable, Iterable
 
-from smachac.runtime import smach
+from smachac.runtime.smach import settings
 
-_POLL = 0.1
-"""Seconds between two looks at the shutdown check while children run."""
+_POLL_INTERVAL = 0.1
+"""Seconds between two calls of the shutdown check while children run."""
 
 
 class Branches:
-    """One thread for each child, all released together.
+    """The branches of a concurrence: one thread for each child, all released together.
 
     Attributes:
         outcomes: label -> outcome; None while the child runs, or if it ended with none.
         active: the labels of the children that have not ended with an outcome.
-        failure: the first (label, error) that left a branch, or None.
-        ending: held while a child's end is recorded and judged, so one at a time.
-        told: whether preempt requests from outside reached the children.
+        failure: (label, exception) of the first branch that raised, or None.
+        ending: held while the end of a child is recorded and the termination callback runs.
+        passed_on: whether a preempt request from outside was passed on to the children.
     """
 
     def __init__(self, labels: Iterable[str], run: Callable[[Branches, str], None]) -> None:
@@ -28,7 +28,7 @@ class Branches:
         self.active = dict.fromkeys(self.outcomes)
         self.failure: tuple[str, BaseException] | None = None
         self.ending = threading.Lock()
-        self.told = False
+        self.passed_on = False
         self._run = run
         self._threads: list[threading.Thread] = []
         self._gate = threading.Event()
@@ -39,7 +39,7 @@ class Branches:
         self._stopping = self._stopped = False
 
     def start(self) -> None:
-        """Make the threads; they wait until `release` or `abort`."""
+        """Start the threads; they wait for `release` or `abort`."""
         for label in self.outcomes:
             thread = threading.Thread(target=self._branch, args=(label,), name=f"branch {label}")
             thread.start()
@@ -47,18 +47,18 @@ class Branches:
             self._alive += 1
 
     def release(self) -> None:
-        """Let the children run."""
+        """Let the threads run the children."""
         self._gate.set()
 
     def abort(self) -> bool:
-        """End the threads if they still wait; whether the children had been released before."""
+        """End the threads if they were not released; whether they were."""
         released = self._gate.is_set()
         self._aborted = not released
         self._gate.set()
         return released
 
     def join(self) -> None:
-        """Wait for the threads to be gone."""
+        """Wait for the end of all threads."""
         for thread in self._threads:
             thread.join()
 
@@ -75,47 +75,47 @@ class Branches:
                 self._changed.notify_all()
 
     def _fail(self, label: str, error: BaseException) -> None:
-        smach.logerr(f"branch '{label}' failed:\n{traceback.format_exc()}")
+        settings.logerr(f"branch '{label}' failed:\n{traceback.format_exc()}")
         with self._changed:
             if self.failure is None:
                 self.failure = (label, error)
         self.stop()
 
     def request(self) -> None:
-        """Have the running children preempted, as somebody outside asks."""
+        """Add a preempt request from outside for the running children."""
         with self._changed:
             self._requested = True
             self._changed.notify_all()
 
     def stop(self) -> None:
-        """Have the running children preempted, once, as the concurrence itself ends them."""
+        """Add a preempt request of the concurrence itself; only the first one counts."""
         with self._changed:
             self._stopping = True
             self._changed.notify_all()
 
-    def take(self) -> bool:
-        """Whether the children are to be preempted now; the request counts as passed on."""
+    def take_request(self) -> bool:
+        """Whether there is a request to pass on to the children; it then counts as passed on."""
         with self._changed:
-            return self._take()
+            return self._take_request()
 
     def wait(self) -> bool:
-        """Wait until the children are to be preempted (True) or all have ended (False)."""
+        """Wait for a request to pass on (True) or the end of all children (False)."""
         with self._changed:
             while self._alive:
-                if smach.is_shutdown():
+                if settings.is_shutdown():
                     self._stopping = True
-                if self._take():
+                if self._take_request():
                     return True
-                self._changed.wait(_POLL)
+                self._changed.wait(_POLL_INTERVAL)
             return False
 
-    def _take(self) -> bool:
+    def _take_request(self) -> bool:
         due = self._requested or (self._stopping and not self._stopped)
-        self.told = self.told or self._requested
+        self.passed_on = self.passed_on or self._requested
         self._requested = False
         self._stopped = self._stopping
         return due
 
     def answered(self) -> bool:
-        """Whether every request from outside was passed on to children."""
-        return self.told and not self._requested
+        """Whether there were requests from outside and all were passed on to the children."""
+        return self.passed_on and not self._requested

@@ -1,4 +1,4 @@
-"""What a state machine is made of: its children, and where their outcomes lead."""
+"""The transition table of a state machine: its children and the targets of their outcomes."""
 
 from __future__ import annotations
 
@@ -10,7 +10,7 @@ from smachac.runtime.smach.state import State
 
 
 class Transitions:
-    """Children by label with their transitions, in the order of adding.
+    """Children by label with their transitions, in the order in which they were added.
 
     Attributes:
         initial: the label that runs first; the first one ever added, unless it is set.
@@ -65,7 +65,7 @@ class Transitions:
             self.targets[source].update(dict.fromkeys(connectors, label))
 
     def connect(self, label: str, outcomes: Iterable[str]) -> None:
-        """Let these outcomes of a child lead to the one added next, whatever they led to.
+        """Set the child that is added next as the target of these outcomes of a child.
 
         Raises InvalidStateError for an outcome that the child lacks.
         """
@@ -76,7 +76,7 @@ class Transitions:
         self._connected = (label, connectors)
 
     def faults(self, outcomes: Collection[str]) -> list[str]:
-        """What keeps a machine with these outcomes from running, in words."""
+        """The errors, as text, that keep a machine with these outcomes from running."""
         faults = []
         if self.initial is None:
             faults.append("there is no initial state")
@@ -98,7 +98,7 @@ class Transitions:
         ]
 
     def target(self, label: str, outcome: Any) -> str | None:
-        """Where an outcome that a child returned leads.
+        """The target of an outcome that a child returned; None: the machine ends with it.
 
         Raises InvalidTransitionError if it is no outcome of the child, or was registered too late.
         """

@@ -1,5 +1,5 @@
 # ruff: noqa: SIM401 (reads and writes are hot, and `d.get(k, k)` is the slower form)
-"""Userdata: the store of a container, and the part of it that one child may see."""
+"""Userdata: the store of a container, and the restricted view of it that a child gets."""
 
 from __future__ import annotations
 
@@ -10,7 +10,7 @@ from operator import itemgetter
 from types import MappingProxyType
 from typing import Any, ClassVar, TypeAlias
 
-from smachac.runtime import smach
+from smachac.runtime.smach import settings
 from smachac.runtime.smach.exceptions import InvalidUserCodeError
 
 View: TypeAlias = tuple[
@@ -62,7 +62,7 @@ class UserData:
         return list(self._data)
 
     def update(self, ud: UserData) -> None:
-        """Take over every key of another store."""
+        """Copy every key of another store by reference."""
         for key in ud.keys():  # noqa: SIM118 (a store is no mapping)
             self._data[key] = ud[key]
 
@@ -70,26 +70,26 @@ class UserData:
         """A new store with shallow copies of `keys`, renamed by the inverse of `remapping`."""
         inverse = {outer: inner for inner, outer in remapping.items()}
         if len(inverse) != len(remapping):
-            smach.logerr(f"the remapping {dict(remapping)} cannot be inverted")
+            settings.logerr(f"the remapping {dict(remapping)} cannot be inverted")
         extracted = UserData()
         for key in keys:
             extracted[inverse.get(key, key)] = copy.copy(self[key])
         return extracted
 
     def merge(self, ud: UserData, keys: Iterable[str], remapping: Mapping[str, str]) -> None:
-        """Take shallow copies of `keys` from another store, renamed by `remapping`."""
+        """Store shallow copies of `keys` of another store, renamed by `remapping`."""
         for key in keys:
             self._data[remapping.get(key, key)] = copy.copy(ud[key])
 
 
 class Remapper:
-    """What a child sees of its container's store: declared keys, under the child's own names.
+    """A child's view of its container's store: the declared keys, under the child's own names.
 
-    `input_keys` may be read, `output_keys` written, at once visible to the container.
+    The child may read `input_keys` and write `output_keys`; writes reach the container at once.
     `remapping` (child's key -> container's key) is followed one step.
     Reading an undeclared key raises InvalidUserCodeError, an absent one KeyError;
     writing an undeclared key is logged as an error and dropped.
-    Dicts given as keys or remapping are used as they are, so that later changes show.
+    Dicts given as keys or remapping are not copied, so later changes of them apply.
     """
 
     __iter__: ClassVar[None] = None
@@ -152,13 +152,13 @@ class Remapper:
     def keys(self) -> list[str]:
         """The declared inputs that are present, under the child's names."""
         inputs, _, remapping, data = self._view
-        if smach.compat:
+        if settings.compat:
             return [remapping.get(key, key) for key in data if key in inputs]
         return [key for key in inputs if key in self]
 
     def update(self, ud: UserData | Remapper) -> None:
         """Write every key of another store, by the same rules as single writes."""
-        target = self._view[3] if smach.compat else self
+        target = self._view[3] if settings.compat else self
         for key in ud.keys():  # noqa: SIM118 (a store is no mapping)
             target[key] = ud[key]
 
@@ -174,16 +174,17 @@ class Remapper:
 
     def _drop(self, key: str) -> None:
         outputs = list(self._view[1])
-        smach.logerr(
+        settings.logerr(
             f"userdata key '{key}' is written, but is no output key; output keys: {outputs}"
         )
 
 
 @functools.cache
 def _with_properties(keys: frozenset[str]) -> type[Remapper]:
-    """A Remapper that reads these attributes without a detour over `__getattr__`.
+    """The Remapper class with a property for each of these keys, cached for the process.
 
-    The detour costs 1.4 us in CPython 3.11, which makes an AttributeError first.
+    Without properties, a read by attribute goes through `__getattr__`, which costs 1.4 us in
+    CPython 3.11, because it first creates an AttributeError.
     """
     names = [key for key in keys if not key.startswith("_") and not hasattr(Remapper, key)]
     return type("Remapper", (Remapper,), {name: property(itemgetter(name)) for name in names})
@@ -233,5 +234,5 @@ def write_keys(target: Any, keys: Collection[str], data: Mapping[str, Any]) -> l
 
 def _absent(key: object, data: Collection[str]) -> KeyError:
     present = list(data) if isinstance(data, dict) else "another kind of store"
-    smach.logerr(f"userdata key '{key}' is absent; present: {present}")
+    settings.logerr(f"userdata key '{key}' is absent; present: {present}")
     return KeyError()

@@ -1,4 +1,4 @@
-"""Functions that declare outcomes and userdata keys, as states do."""
+"""Callbacks that declare outcomes and userdata keys, as states do."""
 
 from __future__ import annotations
 
@@ -7,7 +7,7 @@ from typing import Any, Protocol, TypeGuard
 
 
 class Interface(Protocol):
-    """Whatever says which outcomes it has and which userdata keys it reads and writes."""
+    """An object that declares its outcomes and the userdata keys that it reads and writes."""
 
     def get_registered_outcomes(self) -> tuple[str, ...]: ...
     def get_registered_input_keys(self) -> tuple[str, ...]: ...
@@ -24,7 +24,7 @@ def has_smach_interface(obj: object) -> TypeGuard[Interface]:
 
 
 class CBInterface:
-    """A callable with declared outcomes and keys; calls go through to `cb` unchanged."""
+    """A callable with declared outcomes and keys; it calls `cb` with the same arguments."""
 
     def __init__(
         self,

@@ -1,9 +1,9 @@
-"""The ROS states of SMACH's smach_ros, for machines whose ROS 1 came without SMACH, as Debian's.
+"""The ROS states of SMACH's smach_ros, for ROS 1 installations without SMACH, such as Debian's.
 
-`from smachac.runtime import smach, smach_ros` stands for `import smach, smach_ros`: the same names,
-over rospy and actionlib. These are imported when the first state is made, so this module can be
-imported without ROS; making a state then raises ImportError, which says what to install.
-docs/ros.md lists what differs from smach_ros.
+`from smachac.runtime import smach, smach_ros` replaces `import smach, smach_ros`: the public names
+are the same, on top of rospy and actionlib. These are imported when the first state is made, so
+this package can be imported without ROS; making a state then raises ImportError, whose message
+contains the packages to install. docs/ros.md lists the differences from smach_ros.
 """
 
 from __future__ import annotations

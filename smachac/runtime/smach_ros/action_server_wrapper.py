@@ -1,4 +1,4 @@
-"""ActionServerWrapper: a machine that is started by goals."""
+"""ActionServerWrapper: an action server that runs a machine for each goal."""
 
 from __future__ import annotations
 
@@ -16,13 +16,14 @@ from smachac.runtime.smach_ros import ros
 class ActionServerWrapper:
     """An action server that runs a container for each goal.
 
-    Goal, feedback and result are in userdata of its own, from which the container takes its input
-    keys and to which it gives its output keys. A goal succeeds, or is preempted, by the outcomes
-    listed for that; any other outcome, and an exception, aborts it. The feedback is published at
-    every transition if the container's userdata has it.
+    Goal, feedback and result are stored in the wrapper's userdata, from which the container copies
+    its input keys and to which it copies its output keys. The outcomes listed as succeeded or
+    preempted end the goal so; any other outcome, and an exception, aborts it. The feedback is
+    published at every transition if the container's userdata has it.
 
-    The slot maps go from fields of the message to keys; `expand_goal_slots` gives a key to each
-    field of the goal, and `pack_result_slots` fills the result from keys named as its fields.
+    The slot maps are from fields of the message to keys. `expand_goal_slots` writes each field of
+    the goal to the key of the same name; `pack_result_slots` fills the fields of the result from
+    the keys of the same names.
     """
 
     def __init__(
@@ -69,7 +70,7 @@ class ActionServerWrapper:
         wrapped_container.register_transition_cb(self._publish_feedback)
 
     def run_server(self) -> None:
-        """Begin to take goals; returns at once."""
+        """Start the server; returns at once."""
         self._server.start()
 
     def _execute(self, goal: Any) -> None:
@@ -98,7 +99,7 @@ class ActionServerWrapper:
             self._server.set_aborted(result)
 
     def _result(self) -> Any:
-        """The result as the container left it in the userdata."""
+        """The result message, filled from the userdata after the container ended."""
         result = self.userdata[self._keys[2]]
         packed = [slot for slot in result.__slots__ if self._pack and slot in self.userdata]
         for slot, key in (self._result_slots | {slot: slot for slot in packed}).items():

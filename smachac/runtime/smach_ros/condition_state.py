@@ -1,4 +1,4 @@
-"""ConditionState: asks a function until it says yes."""
+"""ConditionState: polls a function until it returns true."""
 
 from __future__ import annotations
 
@@ -12,11 +12,11 @@ from smachac.runtime.smach_ros.ros_state import RosState
 
 
 class ConditionState(RosState):
-    """Ends as true as soon as `cond_cb(userdata)` is true.
+    """Ends with the outcome `true` as soon as `cond_cb(userdata)` is true.
 
-    It ends as false after `max_checks` calls (-1: no limit) or `timeout`; between two calls it
-    waits for `poll_rate`. Both are lengths of ROS time. A condition that raises is an
-    InvalidUserCodeError.
+    It ends as `false` after `max_checks` calls (-1: no limit) or after `timeout`; between two calls
+    it waits for `poll_rate`. Both are durations in ROS time (s, or rospy.Duration). An exception of
+    the condition becomes InvalidUserCodeError.
     """
 
     def __init__(
@@ -37,7 +37,7 @@ class ConditionState(RosState):
         self._max_checks = max_checks
 
     def execute(self, ud: Any, /) -> str:
-        """Ask until the answer is yes or the patience ends."""
+        """Poll the condition until it is true or a limit is reached."""
         end = None if self._limit is None else self._rospy.get_time() + self._limit
         checks = 0
         while not self._rospy.is_shutdown():

@@ -1,4 +1,4 @@
-"""IntrospectionServer: tells the ROS graph what a machine is made of and what it does."""
+"""IntrospectionServer: publishes the structure and the status of a machine on ROS topics."""
 
 from __future__ import annotations
 
@@ -19,21 +19,22 @@ INIT_TOPIC = "/smach/container_init"
 STRUCTURE_TOPIC = "/smach/container_structure"
 
 HEARTBEAT = 2.0
-"""Seconds between two reports on everything."""
+"""Seconds between two reports on all containers."""
 
 PROTOCOL = 2
-"""The pickle protocol that SMACH's viewer reads, in Python 2 too."""
+"""The pickle protocol of userdata; SMACH's viewer reads it, in Python 2 too."""
 
 
 class IntrospectionServer:
-    """Reports on the container `state` and those below it, under the names of `path`.
+    """Reports on the container `state`, whose path is `path`, and on all containers below it.
 
-    On `<server_name>/smach/container_structure` and `container_status`, as SMACH's viewer reads
-    them: every start, transition and end of a container, all of it for each new subscriber, and
-    every two seconds.
+    It publishes on `<server_name>/smach/container_structure` and `container_status`, in the format
+    of SMACH's viewer: at every start, transition and end of a container, and on all containers for
+    each new subscriber and every two seconds.
 
-    On `container_init` a viewer may order where a container starts from now on. The userdata of
-    such an order is a pickle, which can run any code: it is dropped, unless `unpickle` is true.
+    On `container_init` a viewer may set the initial state of a container for all later runs. The
+    userdata of such a command is a pickle, which can run any code: it is dropped, unless `unpickle`
+    is true.
     """
 
     def __init__(self, server_name: str, state: State, path: str, unpickle: bool = False) -> None:
@@ -43,19 +44,19 @@ class IntrospectionServer:
         self._path = path
         self._unpickle = unpickle
         self._paths: dict[str, Container] = {}
-        self._hooked: list[Container] = []
+        self._registered: list[Container] = []
         self._due = threading.Event()
         self._running = False
         self._topics: list[Any] = []
 
     def start(self) -> None:
-        """Begin to report. Raises InvalidStateError for a state that is no container."""
+        """Start to report. Raises InvalidStateError for a state that is no container."""
         if not isinstance(self._state, Container):
             raise InvalidStateError(f"a {type(self._state).__name__} has nothing to look into")
         if self._running:
             return
         self._paths = dict(_containers(self._path, self._state))
-        topic, listener = self._rospy.Publisher, _Listener(self._due)
+        topic, listener = self._rospy.Publisher, _SubscriberListener(self._due)
         self._structures = topic(
             self._name + STRUCTURE_TOPIC,
             messages.container_structure(),
@@ -69,28 +70,30 @@ class IntrospectionServer:
             subscriber_listener=listener,
             queue_size=max(100, len(self._paths)),
         )
-        orders = self._rospy.Subscriber(
-            self._name + INIT_TOPIC, messages.initial_status_command(), self._obey
+        commands = self._rospy.Subscriber(
+            self._name + INIT_TOPIC, messages.initial_status_command(), self._on_init_command
         )
-        self._topics = [self._structures, self._statuses, orders]
+        self._topics = [self._structures, self._statuses, commands]
         self._running = True
         for path, container in self._paths.items():
-            self._hook(path, container)
+            self._register_callbacks(path, container)
             self._report(path, container, "Initial state")
-        threading.Thread(target=self._beat, name=f"{self._name}:heartbeat", daemon=True).start()
+        threading.Thread(
+            target=self._heartbeat, name=f"{self._name}:heartbeat", daemon=True
+        ).start()
 
     def stop(self) -> None:
-        """Fall silent."""
+        """Stop to report and leave the topics."""
         self._running = False
         self._due.set()
         while self._topics:
             self._topics.pop().unregister()
 
-    def _hook(self, path: str, container: Container) -> None:
-        """Report what the container does from now on; once, however often the server starts."""
-        if any(container is hooked for hooked in self._hooked):
+    def _register_callbacks(self, path: str, container: Container) -> None:
+        """Report on the container from now on; once, however often the server is started."""
+        if any(container is each for each in self._registered):
             return
-        self._hooked.append(container)
+        self._registered.append(container)
 
         def report(userdata: UserData, *what: object) -> None:
             self._report(path, container, repr(what))
@@ -99,8 +102,8 @@ class IntrospectionServer:
         container.register_transition_cb(report)
         container.register_termination_cb(report)
 
-    def _beat(self) -> None:
-        """Report on everything every now and then, and when somebody begins to listen."""
+    def _heartbeat(self) -> None:
+        """Report on all containers every two seconds, and for each new subscriber."""
         while self._running and not self._rospy.is_shutdown():
             for path, container in self._paths.items():
                 self._describe(path, container)
@@ -109,7 +112,7 @@ class IntrospectionServer:
             self._due.clear()
 
     def _describe(self, path: str, container: Container) -> None:
-        """Publish what a container is made of."""
+        """Publish the structure of a container."""
         edges = [[str(part) for part in edge] for edge in container.get_internal_edges()]
         self._publish(
             self._structures,
@@ -122,7 +125,7 @@ class IntrospectionServer:
         )
 
     def _report(self, path: str, container: Container, info: str) -> None:
-        """Publish what a container does."""
+        """Publish the status of a container, if there are subscribers."""
         if not self._running or not self._statuses.get_num_connections():
             return
         self._publish(
@@ -142,36 +145,37 @@ class IntrospectionServer:
         except self._rospy.ROSException as error:
             smach.logdebug(f"nothing is reported: {error}")
 
-    def _obey(self, order: Any) -> None:
-        """Start a container elsewhere from now on, as a viewer orders."""
-        container = self._paths.get(order.path)
+    def _on_init_command(self, command: Any) -> None:
+        """Set the initial state of a container for all later runs."""
+        container = self._paths.get(command.path)
         if container is None:
             return
         known = container.get_children()
-        unknown = [label for label in order.initial_states if label not in known]
+        unknown = [label for label in command.initial_states if label not in known]
         if unknown:
-            smach.logerr(f"container '{order.path}' has no states {unknown} to start in")
+            smach.logerr(f"container '{command.path}' has no states {unknown} to start in")
             return
         userdata = UserData()
-        if order.local_data and self._unpickle:
-            store(userdata).update(pickle.loads(base64.b64decode(order.local_data)))
-        elif order.local_data not in ("", _pickled(UserData())):
+        if command.local_data and self._unpickle:
+            store(userdata).update(pickle.loads(base64.b64decode(command.local_data)))
+        elif command.local_data not in ("", _pickled(UserData())):
             smach.logwarn(
-                f"container '{order.path}' is given an initial state; the userdata that came with "
-                "it is dropped, for unpickling it may run any code (IntrospectionServer: unpickle)"
+                f"container '{command.path}' is given an initial state; the userdata that came "
+                "with it is dropped, for unpickling it may run any code (IntrospectionServer: "
+                "unpickle)"
             )
-        container.set_initial_state(order.initial_states, userdata)
-        self._report(order.path, container, "REMOTE_INIT")
+        container.set_initial_state(command.initial_states, userdata)
+        self._report(command.path, container, "REMOTE_INIT")
 
 
 class IntrospectionClient:
-    """What a viewer does: finds servers, and orders containers to start elsewhere."""
+    """The viewer's side: finds servers, and sets the initial states of their containers."""
 
     def __init__(self) -> None:
         self._rospy = ros.rospy()
 
     def get_servers(self) -> list[str]:
-        """The names of the servers on the graph."""
+        """The names of the introspection servers on the ROS graph."""
         topics = self._rospy.get_published_topics()
         return [name[: -len(STATUS_TOPIC)] for name, _ in topics if name.endswith(STATUS_TOPIC)]
 
@@ -183,31 +187,33 @@ class IntrospectionClient:
         initial_userdata: UserData | None = None,
         timeout: ros.Time | None = None,
     ) -> bool | None:
-        """Order a container to start in these states; whether it says so within `timeout`.
+        """Set the initial states of a container; whether it confirms them within `timeout`.
 
-        Without a time limit the order is sent and nothing is waited for: None.
+        Without a timeout the command is sent without waiting, and the result is None.
         """
-        obeyed = threading.Event()
+        confirmed = threading.Event()
 
-        def heed(status: Any) -> None:
+        def on_status(status: Any) -> None:
             if status.path == path and list(status.initial_states) == list(initial_states):
-                obeyed.set()
+                confirmed.set()
 
         type_, limit = messages.initial_status_command(), ros.seconds(timeout)
-        orders = self._rospy.Publisher(server + INIT_TOPIC, type_, queue_size=1, latch=True)
+        commands = self._rospy.Publisher(server + INIT_TOPIC, type_, queue_size=1, latch=True)
         data = _pickled(initial_userdata or UserData())
-        orders.publish(type_(path=path, initial_states=initial_states, local_data=data))
+        commands.publish(type_(path=path, initial_states=initial_states, local_data=data))
         if limit is None:
             return None
-        statuses = self._rospy.Subscriber(server + STATUS_TOPIC, messages.container_status(), heed)
-        obeyed.wait(limit)
+        statuses = self._rospy.Subscriber(
+            server + STATUS_TOPIC, messages.container_status(), on_status
+        )
+        confirmed.wait(limit)
         statuses.unregister()
-        orders.unregister()
-        return obeyed.is_set()
+        commands.unregister()
+        return confirmed.is_set()
 
 
-class _Listener:
-    """What rospy tells of new subscribers."""
+class _SubscriberListener:
+    """The listener that rospy calls for new subscribers: it sets the event `due`."""
 
     def __init__(self, due: threading.Event) -> None:
         self._due = due
@@ -216,7 +222,7 @@ class _Listener:
         self._due.set()
 
     def peer_unsubscribe(self, topic: str, peers: int) -> None:
-        """Nothing is due."""
+        """No report is due."""
 
 
 def _containers(path: str, container: Container) -> Iterator[tuple[str, Container]]:
@@ -231,7 +237,7 @@ def _containers(path: str, container: Container) -> Iterator[tuple[str, Containe
 
 
 def _pickled(userdata: UserData) -> str:
-    """The userdata as SMACH's viewer reads it; what cannot be pickled stands as its text."""
+    """The userdata in the format of SMACH's viewer; the `repr` of values that cannot be pickled."""
     held = dict(store(userdata))
     try:
         data = pickle.dumps(held, PROTOCOL)

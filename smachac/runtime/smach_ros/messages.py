@@ -1,7 +1,7 @@
-"""The messages of smach_msgs, made when needed: Debian has no such package.
+"""The message types of smach_msgs, generated when needed, as Debian has no such package.
 
-What rospy's tools and SMACH's viewer on other machines go by is the checksum (MD5) over the fields,
-their types and their order, here those of SMACH 2.5 for ROS 1. tests/ros holds the sums.
+ROS identifies a message type by a checksum (MD5) over its fields, their types and their order. They
+are those of SMACH 2.5 for ROS 1, so SMACH's viewer reads the messages; tests/ros holds the sums.
 """
 
 from __future__ import annotations
@@ -26,7 +26,7 @@ string[] active_states
 string local_data
 string info
 """
-"""What a container does now. local_data: its userdata, a dict, pickled and in base 64."""
+"""The status of a container. local_data: its userdata as a dict, pickled, in base 64."""
 
 STRUCTURE = """Header header
 string path
@@ -36,18 +36,18 @@ string[] outcomes_from
 string[] outcomes_to
 string[] container_outcomes
 """
-"""What a container is made of; one entry in each of three lists for a transition."""
+"""The structure of a container. A transition has an entry in each of the three outcome lists."""
 
 COMMAND = """string path
 string[] initial_states
 string local_data
 """
-"""The order to start a container elsewhere from now on."""
+"""The command that sets the initial states of a container."""
 
 
 @functools.cache
 def message(name: str, text: str) -> Any:
-    """The class of the message `smach_msgs/<name>`."""
+    """The class of the message `smach_msgs/<name>`; cached, as a type may exist only once."""
     full = f"smach_msgs/{name}"
     return ros.load("genpy.dynamic").generate_dynamic(full, text)[full]
 

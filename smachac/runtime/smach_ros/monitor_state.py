@@ -1,4 +1,4 @@
-"""MonitorState: watches a topic while its messages meet a condition."""
+"""MonitorState: checks the messages of a topic against a condition."""
 
 from __future__ import annotations
 
@@ -11,10 +11,10 @@ from smachac.runtime.smach_ros.ros_state import RosState
 
 
 class MonitorState(RosState):
-    """Ends as invalid at the first message for which `cond_cb(userdata, message)` is not true.
+    """Ends as `invalid` at the first message for which `cond_cb(userdata, message)` is false.
 
-    After `max_checks` messages for which it is true the state ends as valid; -1 is no limit.
-    A condition that raises counts as not true.
+    After `max_checks` messages for which it is true the state ends as `valid`; -1 is no limit.
+    A condition that raises counts as false.
     """
 
     def __init__(
@@ -33,15 +33,15 @@ class MonitorState(RosState):
         self._max_checks = max_checks
 
     def execute(self, ud: Any, /) -> str:
-        """Watch the topic until the messages decide."""
+        """Check messages until one decides the outcome."""
         if self._preempted():
             return "preempted"
-        verdict: list[str] = []
+        decided: list[str] = []
         held = 0
 
         def check(message: Any) -> None:
             nonlocal held
-            if verdict:
+            if decided:
                 return
             try:
                 holds = bool(self._condition(ud, message))
@@ -50,14 +50,14 @@ class MonitorState(RosState):
                 holds = False
             held += holds
             if not holds or 0 < self._max_checks <= held:
-                verdict.append("valid" if holds else "invalid")
-                self._tell()
+                decided.append("valid" if holds else "invalid")
+                self._wake()
 
         subscriber = self._rospy.Subscriber(self._topic, self._type, check)
         try:
-            self._wait(lambda: bool(verdict))
+            self._wait(lambda: bool(decided))
         finally:
             subscriber.unregister()
         if self._preempted():
             return "preempted"
-        return verdict[0] if verdict else "preempted"
+        return decided[0] if decided else "preempted"

@@ -1,4 +1,4 @@
-"""rospy and its neighbours, imported when they are first needed."""
+"""Access to rospy and related packages, which are imported when they are first needed."""
 
 from __future__ import annotations
 
@@ -10,22 +10,22 @@ from urllib.parse import urlsplit
 from smachac.runtime import smach
 from smachac.runtime.smach import log
 
-PROBE = 1.0
-"""Seconds that a node has to accept a connection before nothing can be said of it."""
+PROBE_TIMEOUT = 1.0
+"""Seconds that a node has to accept a connection; after them its state counts as unknown."""
 
 
 class Duration(Protocol):
-    """What rospy.Duration has."""
+    """The interface of rospy.Duration."""
 
     def to_sec(self) -> float: ...
 
 
 Time: TypeAlias = "Duration | float"
-"""A length of time: rospy.Duration, or a number of seconds."""
+"""A duration: rospy.Duration, or a number of seconds."""
 
 
 def load(name: str) -> Any:
-    """The ROS module of that name. Raises ImportError, with what to do, if there is none."""
+    """The ROS module of that name. Raises ImportError with the packages to install."""
     try:
         return import_module(name)
     except ImportError as error:
@@ -36,7 +36,7 @@ def load(name: str) -> Any:
 
 
 def rospy() -> Any:
-    """The module rospy; SMACH's log and shutdown check are its from now on, unless replaced."""
+    """The module rospy. SMACH gets its loggers and shutdown check, unless a script set others."""
     module = load("rospy")
     if (smach.loginfo, smach.logerr) == (log.loginfo, log.logerr):
         smach.set_loggers(module.loginfo, module.logwarn, module.logdebug, module.logerr)
@@ -46,28 +46,28 @@ def rospy() -> Any:
 
 
 def seconds(time: Time | None) -> float | None:
-    """A length of time as a number of seconds; None stays None."""
+    """A duration as a number of seconds; None stays None."""
     if time is None or isinstance(time, (int, float)):
         return time
     return time.to_sec()
 
 
 def limit(time: Time | None) -> float | None:
-    """A length of time as a number of seconds; None, and 0 as in smach_ros, is without limit."""
+    """A time limit as a number of seconds; None, and 0 as in smach_ros, means no limit."""
     return seconds(time) or None
 
 
 def is_gone(node: str) -> bool:
-    """Whether a node is known to have ended: unknown to the master, or nobody at its address."""
+    """Whether a node has certainly ended: unknown to the master, or its address refuses."""
     master = load("rosgraph").Master(rospy().get_name())
     try:
         address = urlsplit(master.lookupNode(node))
     except load("rosgraph").MasterError:
         return True
-    except Exception:  # no master, no verdict
+    except Exception:  # without a master the state of the node is unknown
         return False
     try:
-        with socket.create_connection((address.hostname, address.port), PROBE):
+        with socket.create_connection((address.hostname, address.port), PROBE_TIMEOUT):
             return False
     except ConnectionRefusedError:
         return True

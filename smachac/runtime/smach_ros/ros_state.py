@@ -1,4 +1,4 @@
-"""A leaf that waits for something outside, and the callbacks that ROS states are given."""
+"""RosState: a leaf that waits for ROS and can be preempted; the user callbacks of such leaves."""
 
 from __future__ import annotations
 
@@ -11,12 +11,12 @@ from smachac.runtime import smach
 from smachac.runtime.smach import InvalidStateError, Remapper, State, has_smach_interface
 from smachac.runtime.smach_ros import ros
 
-STEP = 0.05
-"""Seconds between two looks at what does not tell of itself: shutdown, ROS time."""
+POLL_INTERVAL = 0.05
+"""Seconds between two checks of the conditions that notify nobody: shutdown, ROS time."""
 
 
 class RosState(State):
-    """A state that waits, and wakes for a preempt request, a shutdown of the node, a time limit."""
+    """A state whose waits end at a preempt request, a shutdown of the node, or a time limit."""
 
     def __init__(
         self,
@@ -26,20 +26,20 @@ class RosState(State):
     ) -> None:
         super().__init__(outcomes, input_keys, output_keys)
         self._rospy = ros.rospy()
-        self._news = threading.Condition()
+        self._changed = threading.Condition()
 
     def request_preempt(self) -> None:
-        """Ask the state to end early; what it waits for is given up."""
+        """Request that the state ends early; its wait ends."""
         super().request_preempt()
-        self._tell()
+        self._wake()
 
-    def _tell(self) -> None:
-        """Let the waiting thread look again."""
-        with self._news:
-            self._news.notify_all()
+    def _wake(self) -> None:
+        """Make the waiting thread check its condition again."""
+        with self._changed:
+            self._changed.notify_all()
 
     def _stopped(self) -> bool:
-        """Whether there is a reason to wait no longer."""
+        """Whether waits are to end: a preempt request or a shutdown."""
         return self.preempt_requested() or bool(self._rospy.is_shutdown())
 
     def _wait(
@@ -48,18 +48,21 @@ class RosState(State):
         limit: float | None = None,
         stopped: Callable[[], bool] | None = None,
     ) -> bool:
-        """Wait until `ready`, at most `limit` seconds of ROS time, or till `stopped`; if ready."""
+        """Wait until `ready()`, `stopped()`, or `limit` seconds of ROS time; whether it is ready.
+
+        `stopped` defaults to a preempt request or a shutdown.
+        """
         stopped = stopped or self._stopped
         end = None if limit is None else self._rospy.get_time() + limit
         while not ready():
             if stopped() or (end is not None and self._rospy.get_time() >= end):
                 return False
-            with self._news:
-                self._news.wait(STEP)
+            with self._changed:
+                self._changed.wait(POLL_INTERVAL)
         return True
 
     def _preempted(self) -> bool:
-        """Whether the state is to end as preempted; the request is answered then."""
+        """Whether there is a preempt request; if so, it is marked as answered."""
         if not self.preempt_requested():
             return False
         self.service_preempt()
@@ -68,7 +71,7 @@ class RosState(State):
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Callback:
-    """A function of the user that sees its own part of the userdata."""
+    """A function of the user, with the userdata keys that it may read and write."""
 
     function: Callable[..., Any]
     args: tuple[Any, ...]
@@ -77,7 +80,7 @@ class Callback:
     outputs: tuple[str, ...]
 
     def __call__(self, ud: Any, *given: Any) -> Any:
-        """What the function returns for its userdata, what the state gives, what the user gave."""
+        """Call it with its userdata, the arguments of the state, then those of the user."""
         view = Remapper(ud, self.inputs, self.outputs, {})
         return self.function(view, *given, *self.args, **self.kwargs)
 
@@ -90,9 +93,10 @@ def callback(
     kwargs: Mapping[str, Any] | None,
     keys: tuple[Iterable[str], Iterable[str]],
 ) -> Callback | None:
-    """The callback of a state, with the keys it declares itself or else those of the state.
+    """The callback `function` of a state; None if there is none.
 
-    What it declares is registered with the state. Raises InvalidStateError if it is no function.
+    Its keys are those that it declares (see `smach.cb_interface`), which are registered with the
+    state, or else `keys` (input keys, output keys). Raises InvalidStateError if it is not callable.
     """
     if function is None:
         return None

@@ -1,4 +1,4 @@
-"""Whether the server that works on a goal is still there."""
+"""Detection of an action server that has ended or does not know a goal."""
 
 from __future__ import annotations
 
@@ -7,40 +7,40 @@ from typing import Any
 
 from smachac.runtime.smach_ros import ros
 
-SILENCE = 1.0
-"""Seconds without a word of the server after which its node is looked for (a word is due 5/s)."""
+SILENCE_LIMIT = 1.0
+"""Seconds without a status message (due five times a second) after which the node is checked."""
 
-ACKNOWLEDGED = 5.0
-"""Seconds that a server which talks has to mention a new goal."""
+ACKNOWLEDGE_LIMIT = 5.0
+"""Seconds within which a live server has to list a new goal in its status messages."""
 
 
-class Watch:
-    """Looks after the goal of one handle.
+class GoalMonitor:
+    """Checks whether the goal of one handle can still end.
 
-    actionlib tells when a server that talks has forgotten a goal; not when the server is gone, nor
-    when the goal never arrived, as after a restart of the server.
+    actionlib detects that a live server has dropped a goal. It does not detect that the server has
+    ended, nor that a goal never arrived, as after a restart of the server.
 
     Attributes:
-        lost: why the goal will never end; None while it may.
+        lost: the reason why the goal will never end; None while it may end.
     """
 
     def __init__(self, client: Any, handle: Any) -> None:
         self.lost: str | None = None
         self._client = client
         self._handle = handle
-        self._word = client.last_status_msg
-        self._sent = self._heard = time.monotonic()
+        self._status = client.last_status_msg
+        self._sent = self._received = time.monotonic()
         self._waiting = ros.load("actionlib").CommState.WAITING_FOR_GOAL_ACK
 
-    def look(self) -> None:
-        """Look once. This may take a moment when the server is silent."""
-        now, word = time.monotonic(), self._client.last_status_msg
-        if word is not self._word:
-            self._word, self._heard = word, now
-            unknown = self._handle.get_comm_state() == self._waiting
-            if unknown and now - self._sent > ACKNOWLEDGED:
+    def check(self) -> None:
+        """Update `lost`. This takes up to a second if the server is silent."""
+        now, status = time.monotonic(), self._client.last_status_msg
+        if status is not self._status:
+            self._status, self._received = status, now
+            unacknowledged = self._handle.get_comm_state() == self._waiting
+            if unacknowledged and now - self._sent > ACKNOWLEDGE_LIMIT:
                 self.lost = "the server does not know it"
-        elif now - self._heard > SILENCE:
-            self._heard = now
-            if ros.is_gone(word._connection_header["callerid"]):
+        elif now - self._received > SILENCE_LIMIT:
+            self._received = now
+            if ros.is_gone(status._connection_header["callerid"]):
                 self.lost = "the server is gone"

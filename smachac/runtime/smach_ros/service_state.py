@@ -1,4 +1,4 @@
-"""ServiceState: one call of a service."""
+"""ServiceState: a state that calls a ROS service once."""
 
 from __future__ import annotations
 
@@ -12,20 +12,20 @@ from smachac.runtime import smach
 from smachac.runtime.smach import has_smach_interface
 from smachac.runtime.smach_ros.ros_state import RosState, callback, check_slots, is_outcome
 
-CONTACT = 0.5
-"""Seconds to reach a service before it is said that it is waited for."""
+FIRST_WAIT = 0.5
+"""Seconds to wait for a service before the wait is logged."""
 
-SLOW = 5.0
-"""Seconds for each further try, on the slowest machine; rospy looks three times a second."""
+NEXT_WAIT = 5.0
+"""Seconds of each further wait, which is logged too."""
 
 
 class ServiceState(RosState):
     """Waits for a service and calls it; ends as succeeded, aborted or preempted.
 
-    The request is `request` or an empty one, replaced by what is under `request_key`, its fields
-    `request_slots` set from the keys of the same names, then given to `request_cb(userdata,
-    request)`, which changes it or returns another. A key that is absent, a callback that raises
-    and a call that fails end the state as aborted.
+    The request is `request` (default: an empty one) or the value of `request_key`. Its fields
+    `request_slots` are set from the keys of the same names; then `request_cb(userdata, request)`
+    may change it or return another. An absent key, a callback that raises, and a call that fails
+    end the state as aborted.
 
     `response_cb(userdata, response)` may return an outcome; the response goes to `response_key`,
     its fields `response_slots` to the keys of the same names.
@@ -54,7 +54,7 @@ class ServiceState(RosState):
         self._name = service_name
         self._type = service_spec
         self._proxy: Any = None
-        self._search: threading.Thread | None = None
+        self._search_thread: threading.Thread | None = None
         self._request = service_spec._request_class() if request is None else request
         self._request_key = request_key
         self._response_key = response_key
@@ -90,49 +90,51 @@ class ServiceState(RosState):
         return "aborted" if response is None else self._take_response(ud, response)
 
     def _find_service(self) -> bool:
-        """Wait for the service, in a thread of its own: rospy's wait cannot be broken off."""
-        if self._proxy is None and (self._search is None or not self._search.is_alive()):
-            self._search = threading.Thread(target=self._look, daemon=True)
-            self._search.start()
+        """Wait for the service, in a thread of its own: rospy's wait cannot be interrupted."""
+        if self._proxy is None and (
+            self._search_thread is None or not self._search_thread.is_alive()
+        ):
+            self._search_thread = threading.Thread(target=self._search, daemon=True)
+            self._search_thread.start()
         return self._wait(lambda: self._proxy is not None)
 
-    def _look(self) -> None:
-        limit = CONTACT
+    def _search(self) -> None:
+        limit = FIRST_WAIT
         while not self._rospy.is_shutdown():
             try:
                 self._rospy.wait_for_service(self._name, limit)
             except self._rospy.ROSException:
                 if not self._rospy.is_shutdown():
                     smach.logwarn(f"waiting for service '{self._name}'")
-                limit = SLOW
+                limit = NEXT_WAIT
                 continue
             self._proxy = self._rospy.ServiceProxy(self._name, self._type)
-            self._tell()
+            self._wake()
             break
 
     def _call(self, request: Any) -> Any:
-        """What the service answers, None at a shutdown. Raises what rospy raises.
+        """The response of the service; None at a shutdown. Raises the exceptions of rospy.
 
-        The call has a thread of its own, for rospy swallows Ctrl-C and goes on waiting.
+        The call has a thread of its own, because rospy ignores Ctrl-C during a call.
         """
-        answers: list[Any] = []
-        faults: list[Exception] = []
+        responses: list[Any] = []
+        errors: list[Exception] = []
 
         def call() -> None:
             try:
-                answers.append(self._proxy(request))
+                responses.append(self._proxy(request))
             except Exception as error:
-                faults.append(error)
-            self._tell()
+                errors.append(error)
+            self._wake()
 
         threading.Thread(target=call, name=f"call of {self._name}", daemon=True).start()
-        self._wait(lambda: bool(answers or faults), stopped=self._rospy.is_shutdown)
-        for fault in faults:
-            raise fault
-        return answers[0] if answers else None
+        self._wait(lambda: bool(responses or errors), stopped=self._rospy.is_shutdown)
+        for error in errors:
+            raise error
+        return responses[0] if responses else None
 
     def _fill_request(self, ud: Any) -> Any:
-        """The request to send, None if the userdata or the callback is at fault."""
+        """The request to send; None if a key is absent or the callback raised."""
         wanted = [*filter(None, [self._request_key]), *self._request_slots]
         absent = [key for key in wanted if key not in ud]
         if absent:
@@ -143,15 +145,15 @@ class ServiceState(RosState):
             setattr(request, slot, ud[slot])
         if self._request_cb is not None:
             try:
-                other = self._request_cb(ud, request)
+                changed = self._request_cb(ud, request)
             except Exception:
                 smach.logerr(f"the request callback failed:\n{traceback.format_exc()}")
                 return None
-            request = request if other is None else other
+            request = request if changed is None else changed
         return request
 
     def _take_response(self, ud: Any, response: Any) -> str:
-        """Hand the response to the user; the outcome."""
+        """Pass the response to the callback and the userdata; the outcome."""
         outcome = None
         if self._response_cb is not None:
             try:

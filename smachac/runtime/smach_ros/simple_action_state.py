@@ -1,4 +1,4 @@
-"""SimpleActionState: one goal for an action server."""
+"""SimpleActionState: a state that sends one goal to an action server and waits for its end."""
 
 from __future__ import annotations
 
@@ -13,27 +13,27 @@ from smachac.runtime import smach
 from smachac.runtime.smach import InvalidStateError, has_smach_interface
 from smachac.runtime.smach_ros import ros
 from smachac.runtime.smach_ros.ros_state import RosState, callback, check_slots, is_outcome
-from smachac.runtime.smach_ros.server_watch import Watch
+from smachac.runtime.smach_ros.server_watch import GoalMonitor
 
-STOPPING = 5.0
-"""Seconds that a node which shuts down waits for the server to confirm that it stopped."""
+SHUTDOWN_WAIT = 5.0
+"""Seconds that a shutdown of the node waits for the end of a cancelled goal."""
 
 
 class SimpleActionState(RosState):
     """Sends a goal and waits for its end; ends as succeeded, aborted or preempted.
 
-    The goal is `goal` or an empty one, replaced by what is under `goal_key`, its fields
-    `goal_slots` set from the keys of the same names, then given to `goal_cb(userdata, goal)`, which
-    changes it or returns another; one that raises ends the state as aborted, with nothing sent.
+    The goal is `goal` (default: an empty one) or the value of `goal_key`. Its fields `goal_slots`
+    are set from the keys of the same names; then `goal_cb(userdata, goal)` may change it or return
+    another. If that raises, no goal is sent and the state ends as aborted.
 
-    `result_cb(userdata, status, result)` may return an outcome; the result goes to `result_key`,
-    its fields `result_slots` to the keys of the same names. `feedback_cb(userdata, feedback)` is
-    called meanwhile, in a thread of rospy.
+    `result_cb(userdata, status, result)` may return an outcome; the result is written to
+    `result_key`, its fields `result_slots` to the keys of the same names. During the wait a thread
+    of rospy calls `feedback_cb(userdata, feedback)`.
 
-    A preempt request and `exec_timeout` cancel the goal. The state then ends as the server says:
-    preempted if it stopped on request, aborted if it stopped for the timeout. It is aborted too
-    when there is no server within `server_wait_timeout`, when a cancelled goal has not ended
-    within `preempt_timeout`, and when the server is gone. The three are lengths of ROS time.
+    A preempt request and `exec_timeout` cancel the goal. The state then ends with the server's
+    status: preempted after a request, aborted after the timeout. It is also aborted when there is
+    no server within `server_wait_timeout`, when a cancelled goal has not ended within
+    `preempt_timeout`, and when the server has ended. The three are durations in ROS time.
     """
 
     def __init__(
@@ -89,8 +89,8 @@ class SimpleActionState(RosState):
         self._preempt_timeout = ros.seconds(preempt_timeout)
         self._server_wait_timeout = ros.seconds(server_wait_timeout)
         self._client: Any = None
-        self._search: threading.Thread | None = None
-        self._guarded = False
+        self._search_thread: threading.Thread | None = None
+        self._has_shutdown_hook = False
 
     def execute(self, ud: Any, /) -> str:
         """Send one goal and wait for its end."""
@@ -107,38 +107,41 @@ class SimpleActionState(RosState):
             smach.logerr(f"no goal is sent to action '{self._name}':\n{traceback.format_exc()}")
             return "aborted"
         handle = self._client.send_goal(
-            goal, lambda handle: self._tell(), lambda handle, feedback: self._heed(ud, feedback)
+            goal,
+            lambda handle: self._wake(),
+            lambda handle, feedback: self._on_feedback(ud, feedback),
         )
         try:
-            ended = self._pursue(handle)
+            ended = self._await_end(handle)
         finally:
             self._cancel(handle)
-        return self._conclude(ud, handle) if ended else "aborted"
+        return self._take_result(ud, handle) if ended else "aborted"
 
     # The server
 
     def _find_server(self) -> bool:
-        """Wait for the server, in a thread of its own: rospy's wait cannot be broken off."""
+        """Wait for the server, in a thread of its own: rospy's wait cannot be interrupted."""
         if self._client is None:
             self._client = ros.load("actionlib").ActionClient(self._name, self._type)
-        if self._search is None or not self._search.is_alive():
-            self._search = threading.Thread(target=self._look, daemon=True)
-            self._search.start()
-        thread = self._search
-        gone = self._wait(lambda: not thread.is_alive(), self._server_wait_timeout)
-        return gone and not self._rospy.is_shutdown()
+        if self._search_thread is None or not self._search_thread.is_alive():
+            self._search_thread = threading.Thread(target=self._search, daemon=True)
+            self._search_thread.start()
+        thread = self._search_thread
+        found = self._wait(lambda: not thread.is_alive(), self._server_wait_timeout)
+        return found and not self._rospy.is_shutdown()
 
-    def _look(self) -> None:
-        if not self._guarded:  # not in the main thread: at a shutdown this may wait for its end
-            self._rospy.on_shutdown(self._stop)
-            self._guarded = True
+    def _search(self) -> None:
+        # Not in the main thread: on_shutdown may wait for the end of a shutdown that is under way.
+        if not self._has_shutdown_hook:
+            self._rospy.on_shutdown(self._cancel_at_shutdown)
+            self._has_shutdown_hook = True
         self._client.wait_for_server()
 
-    def _stop(self) -> None:
-        """Cancel the goal as the node shuts down, while there is still a way to tell the server.
+    def _cancel_at_shutdown(self) -> None:
+        """Cancel the goal during a shutdown of the node, while its topics still work.
 
-        This may run in a signal handler, in the midst of sending: the goal is asked of actionlib,
-        and what could wait for a lock of the interrupted code is done in another thread.
+        This may run in a signal handler that interrupts the sending of a goal: so the goals are
+        taken from actionlib, and another thread does what may need a lock of the interrupted code.
         """
         goals = [reference() for reference in list(self._client.manager.statuses)]
         handle = ros.load("actionlib").ClientGoalHandle
@@ -154,12 +157,12 @@ class SimpleActionState(RosState):
 
         thread = threading.Thread(target=cancel, daemon=True)
         thread.start()
-        thread.join(STOPPING)
+        thread.join(SHUTDOWN_WAIT)
 
     # The goal
 
     def _fill_goal(self, ud: Any) -> Any:
-        """The goal to send; a copy, so that nothing of it is left to the next."""
+        """The goal to send; a copy, so that each visit starts from the given goal."""
         if self._goal_key is None:
             goal = copy.deepcopy(self._goal)
         else:
@@ -168,22 +171,22 @@ class SimpleActionState(RosState):
             setattr(goal, slot, ud[slot])
         if self._goal_cb is None:
             return goal
-        other = self._goal_cb(ud, goal)
-        return goal if other is None else other
+        changed = self._goal_cb(ud, goal)
+        return goal if changed is None else changed
 
-    def _pursue(self, handle: Any) -> bool:
-        """Wait for the end of a goal, which is cancelled if need be; whether it has ended."""
-        watch = Watch(self._client, handle)
+    def _await_end(self, handle: Any) -> bool:
+        """Wait for the end of a goal, and cancel it if necessary; whether it has ended."""
+        monitor = GoalMonitor(self._client, handle)
 
         def done() -> bool:
-            return self._is_done(handle) or watch.lost is not None
+            return self._is_done(handle) or monitor.lost is not None
 
         def stopped() -> bool:
-            watch.look()
+            monitor.check()
             return self._stopped()
 
         def shut_down() -> bool:
-            watch.look()
+            monitor.check()
             return bool(self._rospy.is_shutdown())
 
         if not self._wait(done, self._exec_timeout, stopped):
@@ -192,8 +195,8 @@ class SimpleActionState(RosState):
             self._cancel(handle)
             if not self._wait(done, self._preempt_timeout, shut_down):
                 smach.logerr(f"action '{self._name}' was cancelled and has not ended")
-        if watch.lost is not None and not self._is_done(handle):
-            smach.logerr(f"the goal of action '{self._name}' is lost: {watch.lost}")
+        if monitor.lost is not None and not self._is_done(handle):
+            smach.logerr(f"the goal of action '{self._name}' is lost: {monitor.lost}")
         return self._is_done(handle)
 
     def _is_done(self, handle: Any) -> bool:
@@ -206,14 +209,14 @@ class SimpleActionState(RosState):
         except self._rospy.ROSException as error:
             smach.logdebug(f"action '{self._name}' is not told that it is cancelled: {error}")
 
-    def _heed(self, ud: Any, feedback: Any) -> None:
+    def _on_feedback(self, ud: Any, feedback: Any) -> None:
         if self._feedback_cb is not None:
             self._feedback_cb(ud, feedback)
 
     # The result
 
-    def _conclude(self, ud: Any, handle: Any) -> str:
-        """Hand the result of a goal that has ended to the user; the outcome."""
+    def _take_result(self, ud: Any, handle: Any) -> str:
+        """Pass the result of an ended goal to the callback and the userdata; the outcome."""
         status, result = handle.get_goal_status(), handle.get_result()
         if result is None:
             smach.logerr(f"action '{self._name}' ended without a result")
@@ -231,11 +234,10 @@ class SimpleActionState(RosState):
             ud[self._result_key] = result
         for slot in self._result_slots:
             ud[slot] = getattr(result, slot)
-        plain = self._plain_outcome(status)
-        return plain if outcome is None else outcome
+        return self._status_outcome(status) if outcome is None else outcome
 
-    def _plain_outcome(self, status: int) -> str:
-        """What the server's status amounts to."""
+    def _status_outcome(self, status: int) -> str:
+        """The outcome for the status that the server gave."""
         known = ros.load("actionlib_msgs.msg").GoalStatus
         if status == known.SUCCEEDED:
             return "succeeded"

@@ -1,4 +1,4 @@
-"""set_preempt_handler: a machine is preempted when ROS shuts down."""
+"""set_preempt_handler: preempts a machine when the ROS node shuts down."""
 
 from __future__ import annotations
 
@@ -12,10 +12,10 @@ from smachac.runtime.smach_ros import ros
 
 
 def set_preempt_handler(sc: Container) -> None:
-    """Preempt a container when the node is asked to shut down, and wait until it has ended.
+    """Preempt a container when the node shuts down, and wait until the container has ended.
 
-    A container that is executed by the thread which handles the signal cannot end before the
-    handler does: it is preempted and not waited for.
+    A container that is executed by the thread that handles the signal cannot end before the
+    handler returns: it is preempted without waiting.
     """
 
     def preempt() -> None:
@@ -28,7 +28,7 @@ def set_preempt_handler(sc: Container) -> None:
 
 
 def _is_run_below(container: Container) -> bool:
-    """Whether this very thread executes the container, further down its stack."""
+    """Whether this thread executes the container, further down its stack."""
     frame: Any = sys._getframe(1)
     while frame is not None:
         if frame.f_code.co_name == "execute" and frame.f_locals.get("self") is container:

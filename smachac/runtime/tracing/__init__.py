@@ -1,1 +1,1 @@
-"""Traces of a running machine: its events, recorded, compared and shown."""
+"""Traces of a running machine: recording its events, comparing and showing them."""

@@ -1,4 +1,4 @@
-"""Whether two runs did the same: traces compared up to what threads and clocks decide."""
+"""Comparison of two traces, without times and the order between branches of a concurrence."""
 
 from __future__ import annotations
 
@@ -8,11 +8,11 @@ from typing import Any, NamedTuple
 Event = Mapping[str, Any]
 
 COMPARED = ("event", "path", "outcome", "to", "key", "value")
-"""What counts of an event. Messages of errors are worded by whoever ran the machine."""
+"""The compared fields of an event. Messages of errors differ between the programs compared."""
 
 
 class Difference(NamedTuple):
-    """Two traces in comparable order, and the number, from 0, of the first event that differs."""
+    """Two traces in comparable order, and the index of the first event that differs."""
 
     first: list[Event]
     second: list[Event]
@@ -20,9 +20,10 @@ class Difference(NamedTuple):
 
 
 def difference(first: Iterable[Event], second: Iterable[Event]) -> Difference | None:
-    """Where two traces begin to differ, or None.
+    """The first difference between two traces, or None.
 
-    Times, places, numbers of events and the order between branches of a concurrence do not count.
+    Times, places in the script, numbers of events, messages, and the order between the branches of
+    a concurrence are not compared.
     """
     one, other = list(first), list(second)
     concurrences = _concurrences(one) | _concurrences(other)
@@ -36,7 +37,7 @@ def difference(first: Iterable[Event], second: Iterable[Event]) -> Difference | 
 
 
 def compare(first: Iterable[Event], second: Iterable[Event]) -> str | None:
-    """The first difference between two traces (see `difference`) in words, or None."""
+    """The first difference between two traces (see `difference`) as text, or None."""
     found = difference(first, second)
     if found is None:
         return None
@@ -48,7 +49,7 @@ def compare(first: Iterable[Event], second: Iterable[Event]) -> str | None:
 
 
 def core(event: Event) -> dict[str, Any]:
-    """What counts of an event."""
+    """The compared fields of an event."""
     return {name: event[name] for name in COMPARED if name in event}
 
 
@@ -57,7 +58,7 @@ def _words(event: Event) -> str:
 
 
 def _concurrences(events: Sequence[Event]) -> set[str]:
-    """Containers whose children overlap, or end without a transition."""
+    """The paths of concurrences: containers whose children overlap, or end without a transition."""
     found: set[str] = set()
     running: dict[str, set[str]] = {}
     left: set[str] = set()
@@ -77,10 +78,11 @@ def _concurrences(events: Sequence[Event]) -> set[str]:
 
 
 OPENING = {"start": "finish", "enter": "exit"}
+"""The event that begins a state -> the event that ends it."""
 
 
 def _in_order(events: Sequence[Event], concurrences: set[str]) -> list[Event]:
-    """The events with those of a concurrence sorted by branch, each branch in its own order."""
+    """The events, those inside a concurrence sorted by branch and in their own order there."""
     ordered: list[Event] = []
     at = 0
     while at < len(events):

@@ -1,4 +1,4 @@
-"""A watch in front of each state of a machine built with SMACH: it tells what the state does."""
+"""Instrumentation of a machine built with SMACH: wrapped states that record their events."""
 
 from __future__ import annotations
 
@@ -10,147 +10,154 @@ from typing import Any
 from smachac.runtime.tracing.writer import Event, Recorder
 
 
-class Stay:
-    """A state at one of its places, with what is told there again and again.
+class PathEvents:
+    """The prepared events of a state at one of its paths; they recur at each visit.
 
     Attributes:
-        parent: the watch of the container around it.
-        ends: outcome -> what is told when it ends so.
-        userdata: what the leaf was given last.
-        written: the same, with every write told.
+        parent: the container around the state; None for the machine itself.
+        entered: the event of its start.
+        exits: outcome -> the events of an end with that outcome.
+        userdata: the userdata of the leaf's last visit.
+        traced_userdata: the same, wrapped so that writes are recorded.
     """
 
-    __slots__ = ("ends", "entered", "label", "parent", "path", "userdata", "written")
+    __slots__ = ("entered", "exits", "label", "parent", "path", "traced_userdata", "userdata")
 
-    def __init__(self, parent: Watch | None, label: str, path: str, entered: Any) -> None:
+    def __init__(
+        self, parent: InstrumentedState | None, label: str, path: str, entered: Any
+    ) -> None:
         self.parent, self.label, self.path, self.entered = parent, label, path, entered
-        self.ends: dict[Any, Any] = {}
+        self.exits: dict[Any, Any] = {}
         self.userdata: Any = None
-        self.written: Any = None
+        self.traced_userdata: Any = None
 
 
-class Watch:
-    """Stands in front of `execute` and `request_preempt` of one state.
+class InstrumentedState:
+    """A state whose `execute` and `request_preempt` are wrapped to record events.
 
     Attributes:
-        places: the containers that hold it, each with its label there.
-        path: where it ran last.
-        failed: a state inside has told of its error in this run.
+        places: the containers that hold the state, each with its label there.
+        path: the path at which it ran last.
+        failed: whether the error of a state inside was recorded in this run.
     """
 
-    def __init__(self, state: Any, recorder: Recorder, family: Mapping[int, Watch]) -> None:
+    def __init__(
+        self, state: Any, recorder: Recorder, others: Mapping[int, InstrumentedState]
+    ) -> None:
         self.state = state
         self.recorder = recorder
-        self._family = family
-        self.places: list[tuple[Watch | None, str]] = []
+        self._others = others
+        self.places: list[tuple[InstrumentedState | None, str]] = []
         self.path = ""
         self.failed = False
         self._is_container = is_container(state)
         self._is_iterator = _is_a(state, "Iterator")
         self._is_concurrence = _is_a(state, "Concurrence")
-        self._catches = hasattr(state, "caught")  # a state of ours that ends with its exceptions
-        self._stays: dict[str, Stay] = {}
-        self._only: Stay | None = None
+        # A generated state that turns exceptions into an outcome keeps the exception here.
+        self._catches = hasattr(state, "caught")
+        self._events: dict[str, PathEvents] = {}
+        self._only_events: PathEvents | None = None
         self._exits: dict[tuple[str, str], str | None] | None = None
-        self._looped: tuple[str, str] | None = None
+        self._iteration: tuple[str, str] | None = None
         self._execute = state.execute
         self._request_preempt = state.request_preempt
-        state.execute = self._watched_execute
-        state.request_preempt = self._watched_request
+        state.execute = self._traced_execute
+        state.request_preempt = self._traced_request
 
-    def _forget(self) -> None:
-        """Ask the machine anew where things lead: it may have been changed between two runs."""
-        self._only = self._exits = None
-        self._stays.clear()
+    def _clear_cache(self) -> None:
+        """Forget paths and transitions: the machine may be changed between two runs."""
+        self._only_events = self._exits = None
+        self._events.clear()
 
-    def _watched_execute(self, *arguments: Any, **named: Any) -> Any:
-        stay = self._only or self._stay()
-        parent = stay.parent
-        if parent is not None and parent._looped is not None:
-            parent.looping()
+    def _traced_execute(self, *arguments: Any, **named: Any) -> Any:
+        here = self._only_events or self._events_here()
+        parent = here.parent
+        if parent is not None and parent._iteration is not None:
+            parent.record_next_iteration()
         if self._is_container:
-            self.failed, self._looped = False, None
+            self.failed, self._iteration = False, None
         elif arguments:
-            arguments = (self._watched_userdata(stay, arguments[0]), *arguments[1:])
-        tell = self.recorder.tell
-        tell(stay.entered)
+            arguments = (self._trace_writes(here, arguments[0]), *arguments[1:])
+        record = self.recorder.record
+        record(here.entered)
         try:
             outcome = self._execute(*arguments, **named)
         except BaseException as error:
-            self._fail(parent, _message(error))
+            self._record_failure(parent, _message(error))
             raise
         if self._catches and self.state.caught is not None:
-            self._tell_error(_message(self.state.caught))
+            self._record_error(_message(self.state.caught))
             self.state.caught = None
         if outcome is None:
-            self._fail(parent, "ended without an outcome")
+            self._record_failure(parent, "ended without an outcome")
             return outcome
-        if self._looped is not None:
-            self._leaving(outcome)
+        if self._iteration is not None:
+            self._record_last_iteration(outcome)
         try:
-            ended = stay.ends[outcome]
+            ended = here.exits[outcome]
         except (KeyError, TypeError):
-            ended = self._ended(stay, outcome)
+            ended = self._ended(here, outcome)
         if ended is not None:
-            tell(ended)
+            record(ended)
         if parent is not None and parent._is_iterator:
-            parent._looped = (stay.path, outcome)
+            parent._iteration = (here.path, outcome)
         return outcome
 
-    def _watched_request(self) -> None:
+    def _traced_request(self) -> None:
         self.recorder.emit("preempt", self._path(*self._place()))
         self._request_preempt()
 
-    def _watched_userdata(self, stay: Stay, userdata: Any) -> Any:
-        """The leaf's userdata, with every write that counts told."""
-        if userdata is stay.userdata:
-            return stay.written
-        loose = stay.parent is None or stay.parent._is_iterator
-        known: dict[str, Any] = {}
+    def _trace_writes(self, here: PathEvents, userdata: Any) -> Any:
+        """The leaf's userdata, wrapped so that every write to an output key is recorded."""
+        if userdata is here.userdata:
+            return here.traced_userdata
+        any_key = here.parent is None or here.parent._is_iterator
+        prepared: dict[str, Any] = {}
 
         def written(key: str, value: object) -> None:
-            if key in known:
-                self.recorder.tell(known[key], value)
-            elif loose or key in self.state.get_registered_output_keys():
-                event = {"event": "write", "path": stay.path, "key": key, "value": None}
-                known[key] = self.recorder.prepare(event)
-                self.recorder.tell(known[key], value)
+            if key in prepared:
+                self.recorder.record(prepared[key], value)
+            elif any_key or key in self.state.get_registered_output_keys():
+                event = {"event": "write", "path": here.path, "key": key, "value": None}
+                prepared[key] = self.recorder.prepare(event)
+                self.recorder.record(prepared[key], value)
 
         inputs = frozenset(self.state.get_registered_input_keys())
-        stay.userdata, stay.written = userdata, _writing(inputs)(userdata, written)
-        return stay.written
+        here.userdata = userdata
+        here.traced_userdata = _traced_userdata_class(inputs)(userdata, written)
+        return here.traced_userdata
 
-    def _stay(self) -> Stay:
-        """Where it starts to run now."""
+    def _events_here(self) -> PathEvents:
+        """The events at the path at which the state starts now; the root starts a new trace."""
         parent, label = self._place()
         if parent is None:
             self.recorder.start()
-            for watch in self._family.values():
-                watch._forget()
+            for other in self._others.values():
+                other._clear_cache()
         path = self.path = self._path(parent, label)
-        stay = self._stays.get(path)
-        if stay is None:
+        here = self._events.get(path)
+        if here is None:
             kind = "start" if parent is None else "enter"
-            told = self.recorder.prepare({"event": kind, "path": path})
-            stay = self._stays[path] = Stay(parent, label, path, told)
+            entered = self.recorder.prepare({"event": kind, "path": path})
+            here = self._events[path] = PathEvents(parent, label, path, entered)
         if parent is not None and len(self.places) == 1 and parent._is_fixed():
-            self._only = stay
-        return stay
+            self._only_events = here
+        return here
 
     def _is_fixed(self) -> bool:
-        """Whether its path is the same in the whole run."""
-        return self._only is not None or self.places[0][0] is None
+        """Whether the path is the same in the whole run."""
+        return self._only_events is not None or self.places[0][0] is None
 
-    def _place(self) -> tuple[Watch | None, str]:
-        """The container that runs it now; one state may stand in several places."""
+    def _place(self) -> tuple[InstrumentedState | None, str]:
+        """The container that runs the state now, and its label there; one of several places."""
         if len(self.places) > 1:
             for parent, label in self.places:
                 if parent is None or label in parent.state.get_active_states():
                     return parent, label
         return self.places[0]
 
-    def _path(self, parent: Watch | None, label: str) -> str:
-        """The path, by where the containers around it ran last."""
+    def _path(self, parent: InstrumentedState | None, label: str) -> str:
+        """The path of the state, by the paths at which the containers around it ran last."""
         labels = [label]
         while parent is not None and not parent.path:
             parent, label = parent.places[0]
@@ -159,47 +166,48 @@ class Watch:
             labels.append(parent.path)
         return "/".join(reversed(labels))
 
-    def _fail(self, parent: Watch | None, message: str) -> None:
-        """Tell of an error that goes on."""
-        self._tell_error(message)
+    def _record_failure(self, parent: InstrumentedState | None, message: str) -> None:
+        """Record an error that leaves this state."""
+        self._record_error(message)
         if parent is not None:
             parent.failed = True
 
-    def _tell_error(self, message: str) -> None:
-        """Tell of an error, unless a state inside has done so."""
+    def _record_error(self, message: str) -> None:
+        """Record an error, unless that of a state inside was recorded."""
         if not self.failed:
             self.recorder.emit("error", self.path, message=message)
 
-    def looping(self) -> None:
-        """The child of an iterator starts again: its last outcome has led to itself."""
-        assert self._looped is not None
-        path, outcome = self._looped
+    def record_next_iteration(self) -> None:
+        """Record the transition of an iterator's child to itself: it starts for the next item."""
+        assert self._iteration is not None
+        path, outcome = self._iteration
         self.recorder.emit("transition", path, outcome=outcome, to=path)
-        self._looped = None
+        self._iteration = None
 
-    def _leaving(self, outcome: str) -> None:
-        """In an iterator, its child's last outcome has led to its end."""
-        assert self._looped is not None
-        path, ended = self._looped
+    def _record_last_iteration(self, outcome: str) -> None:
+        """Record the transition of an iterator's child to the end of the iterator."""
+        assert self._iteration is not None
+        path, ended = self._iteration
         self.recorder.emit("transition", path, outcome=ended, to=f"{self.path}:{outcome}")
 
-    def _ended(self, stay: Stay, outcome: Any) -> Any:
-        """What is told when it ends with an outcome; None if that leads nowhere, which is told."""
-        parent, path = stay.parent, stay.path
+    def _ended(self, here: PathEvents, outcome: Any) -> Any:
+        """The events of an end with this outcome; None, and an error, if it is not registered."""
+        parent, path = here.parent, here.path
         kind = "finish" if parent is None else "exit"
         events: list[Event] = [{"event": kind, "path": path, "outcome": outcome}]
         if parent is not None and not (parent._is_iterator or parent._is_concurrence):
             if outcome not in self.state.get_registered_outcomes():
-                self.recorder.tell(self.recorder.prepare(*events))
-                self._fail(parent, f"ended with `{outcome}`, which is not one of its outcomes")
+                self.recorder.record(self.recorder.prepare(*events))
+                message = f"ended with `{outcome}`, which is not one of its outcomes"
+                self._record_failure(parent, message)
                 return None
-            to = parent.target(stay.label, outcome)
+            to = parent.target(here.label, outcome)
             events.append({"event": "transition", "path": path, "outcome": outcome, "to": to})
-        told = stay.ends[outcome] = self.recorder.prepare(*events)
-        return told
+        prepared = here.exits[outcome] = self.recorder.prepare(*events)
+        return prepared
 
     def target(self, label: str, outcome: str) -> str:
-        """Where an outcome of a child leads: a path, or `path:outcome` where this ends."""
+        """The target of a child's outcome: a path, or `path:outcome` if this container ends."""
         if self._exits is None:
             edges = self.state.get_internal_edges()
             self._exits = {(edge[1], edge[0]): edge[2] for edge in edges}
@@ -208,17 +216,17 @@ class Watch:
         return f"{self.path}/{target}" if inside else f"{self.path}:{target or outcome}"
 
 
-class _Written:
-    """A leaf's userdata that tells of writes; all else goes through."""
+class _TracedUserdata:
+    """A leaf's userdata that reports writes to a callback; all else is passed through."""
 
-    __iter__ = None  # as SMACH's userdata, this cannot be gone through
+    __iter__ = None  # like SMACH's userdata, it cannot be iterated
 
     def __init__(self, userdata: Any, written: Callable[[str, object], None]) -> None:
         object.__setattr__(self, "_userdata", userdata)
         object.__setattr__(self, "_written", written)
 
     def __getattr__(self, name: str) -> Any:
-        if name == "_userdata":  # of a copy that is being made
+        if name == "_userdata":  # while a copy is being made
             raise AttributeError(name)
         return getattr(self._userdata, name)
 
@@ -244,23 +252,27 @@ class _Written:
 
 
 def is_container(state: Any) -> bool:
-    """Whether a state holds states."""
+    """Whether a state is a container."""
     return hasattr(state, "get_children")
 
 
 def _is_a(state: Any, kind: str) -> bool:
-    """Whether a state is of a class of SMACH's, whichever SMACH it is."""
+    """Whether a state is of the class named `kind` of any SMACH."""
     return any(base.__name__ == kind for base in type(state).__mro__)
 
 
 def _message(error: BaseException) -> str:
-    """An exception in one line."""
+    """The type and the first line of an exception."""
     first = next((line for line in str(error).splitlines() if line.strip()), "")
     return f"{type(error).__name__}: {first}" if first else type(error).__name__
 
 
 @functools.cache
-def _writing(keys: frozenset[str]) -> type[_Written]:
-    """The class with these keys as attributes: the detour over `__getattr__` is slow."""
-    names = [key for key in keys if not key.startswith("_") and not hasattr(_Written, key)]
-    return type("Written", (_Written,), {name: property(itemgetter(name)) for name in names})
+def _traced_userdata_class(keys: frozenset[str]) -> type[_TracedUserdata]:
+    """The class with a property for each of these keys, which is faster than `__getattr__`.
+
+    Cached for the process: making a class is slow, and states of a kind have the same keys.
+    """
+    names = [key for key in keys if not key.startswith("_") and not hasattr(_TracedUserdata, key)]
+    properties = {name: property(itemgetter(name)) for name in names}
+    return type("TracedUserdata", (_TracedUserdata,), properties)

@@ -1,4 +1,4 @@
-"""What a machine does, told to people while it runs."""
+"""Progress of a running machine as lines of text for the terminal."""
 
 from __future__ import annotations
 
@@ -12,14 +12,14 @@ BAD = frozenset({"aborted", "failed", "failure", "error", "timeout"})
 _GREEN, _RED, _YELLOW, _DIM, _PLAIN = "\x1b[32m", "\x1b[31m", "\x1b[33m", "\x1b[2m", "\x1b[0m"
 
 OUTCOME_COLUMN = 40
-"""Where outcomes stand, counted from 0, unless a name reaches that far."""
+"""Column of the outcomes, counted from 0; a longer name moves its outcome to the right."""
 
 
 class Progress:
-    """Writes one line when a state ends: name, outcome, seconds; containers also when they start.
+    """Writes a line when a state ends: name, outcome, seconds; for a container also when it starts.
 
-    To be called with the events of a trace, in order. `colour` adds ANSI colours. What the stream
-    cannot encode is shown as `?`; a stream that is gone is written to no more.
+    To be called with the events of a trace, in order. `colour` adds ANSI colours. Characters that
+    the stream cannot encode become `?`. After an error of the stream nothing more is written.
     """
 
     def __init__(self, stream: TextIO, *, colour: bool = False) -> None:
@@ -44,7 +44,7 @@ class Progress:
                 self._line(path, self._paint(_YELLOW, "asked to stop"))
 
     def _show_containers(self, path: str) -> None:
-        """The start lines of the containers around a state, once for each of their visits."""
+        """Write the start lines of the containers around a state, once for each of their visits."""
         parents = path.split("/")[:-1]
         for depth in range(len(parents)):
             container = "/".join(parents[: depth + 1])

@@ -1,13 +1,14 @@
-"""What a state machine built with SMACH does, as events; leaves that follow a script.
+"""The trace of a state machine built with SMACH, and leaves that follow a script of outcomes.
 
 Only SMACH's public interface is used, so the machine may be built with the bundled runtime or with
-SMACH itself. A machine that is not watched pays nothing. An event is one JSON object:
+SMACH itself. A machine that is not traced runs as fast as before. An event is one JSON object:
 
     {"seq": 1, "event": "exit", "path": "sm/PICK/GRASP", "outcome": "succeeded", "t": 1.5,
      "src": "pick.yml:21"}
 
-`event` is one of start, enter, exit, transition, write, preempt, error, finish. `t` counts seconds
-from the start. `src` is the place of the state in the script, where known.
+`event` is one of start, enter, exit, transition, write, preempt, error, finish. `t` is the time in
+seconds since the start. `src` is the place of the state in the script, where known. The section
+"Traces" of docs/semantics.md describes every event.
 """
 
 from __future__ import annotations
@@ -19,23 +20,23 @@ from collections.abc import Callable, Iterator, Mapping, Sequence
 from itertools import count
 from typing import Any, NamedTuple
 
-from smachac.runtime.tracing.instrument import Watch, is_container
-from smachac.runtime.tracing.writer import Event, Observe, Recorder, TraceWriter, trace_value
+from smachac.runtime.tracing.instrument import InstrumentedState, is_container
+from smachac.runtime.tracing.writer import Event, Observer, Recorder, TraceWriter, trace_value
 
-__all__ = ["Event", "Strictly", "TraceWriter", "Visit", "attach", "script", "trace_value"]
+__all__ = ["Event", "StrictScript", "TraceWriter", "Visit", "attach", "script", "trace_value"]
 
 PREEMPTED = "preempted"
-"""The outcome by which a scripted leaf answers a request to stop."""
+"""The outcome of a scripted leaf with a preempt request, if the leaf has that outcome."""
 
 LONGEST_WAIT = 5.0
-"""Seconds that a leaf which is to wait for a request to stop waits for one."""
+"""Longest time (s) that a scripted leaf waits for a preempt request."""
 
 
 class Visit(NamedTuple):
-    """One visit of a scripted leaf: its outcome and the keys that it writes.
+    """One visit of a scripted leaf: its outcome and the values that it writes, by key.
 
-    `stop`: it first asks the whole machine to stop. `wait`: it waits until it is asked to stop.
-    `error`: it raises this instead of ending.
+    `stop`: the leaf first preempts the whole machine. `wait`: it waits for a preempt request.
+    `error`: it raises RuntimeError with this text instead of ending.
     """
 
     outcome: str
@@ -45,94 +46,96 @@ class Visit(NamedTuple):
     stop: bool = False
 
 
-class LeftScriptError(RuntimeError):
-    """A leaf did not get what its script foresees: another visit, or a request to stop."""
+class ScriptViolationError(RuntimeError):
+    """A run deviates from its script: a visit too many, or a missing preempt request."""
 
 
-class Strictly(NamedTuple):
-    """How leaves follow a script to the letter, for runs that are compared.
+class StrictScript(NamedTuple):
+    """Limits of a run that follows its script exactly, for runs that are compared.
 
-    `reads` are the keys that a leaf, by path, looks at when it starts; `seen` hears of those that
-    are there. `most` visits of leaves end a run that would go on for ever.
+    `reads` are the keys, by path, that a leaf reads when it starts; `on_read(path, key, value)` is
+    called for those that are present. After `max_visits` visits of leaves the run ends with an
+    error.
     """
 
     reads: Mapping[str, Sequence[str]]
-    seen: Callable[[str, str, object], None]
-    most: int
+    on_read: Callable[[str, str, object], None]
+    max_visits: int
 
 
 def attach(
     machine: Any,
     name: str,
-    observe: Observe | TraceWriter,
+    observe: Observer | TraceWriter,
     sources: Mapping[str, str] = {},
     *,
     clock: Callable[[], float] = time.monotonic,
 ) -> None:
-    """Watch a built machine: `observe` hears of everything that it does from now on.
+    """Trace a built machine: `observe` is called with every event from now on.
 
-    `name` is the path of the machine itself, `sources` the places of states by path, `clock`
-    seconds. Calls of `observe` come one at a time, from the threads of the machine; when one
-    raises, that is told on stderr, the machine goes on, and no more calls are made. For a
-    `TraceWriter` no event is made at all: its lines are prepared when they come the first time.
+    `name` is the path of the machine itself, `sources` the places of states in the script by path,
+    `clock` returns seconds. `observe` is called by the threads of the machine, one call at a time.
+    If a call raises, the error is printed to stderr, the machine continues, and no more calls are
+    made. A `TraceWriter` is not called: it writes lines that are prepared at their first use.
     """
     recorder = Recorder(observe, sources, clock)
-    watches: dict[int, Watch] = {}
+    instrumented: dict[int, InstrumentedState] = {}
     for parent, label, state in _walk(machine, name):
-        known = watches.get(id(state))
+        known = instrumented.get(id(state))
         if known is None:
-            known = watches[id(state)] = Watch(state, recorder, watches)
-        known.places.append((watches[id(parent)] if parent is not None else None, label))
+            known = InstrumentedState(state, recorder, instrumented)
+            instrumented[id(state)] = known
+        known.places.append((None if parent is None else instrumented[id(parent)], label))
 
 
 def script(
     machine: Any,
     name: str,
     steps: Mapping[str, Sequence[tuple[Any, ...]]],
-    strictly: Strictly | None = None,
+    strict: StrictScript | None = None,
 ) -> None:
-    """Let leaves, by path, follow steps (see Visit) instead of what they do.
+    """Replace what leaves do, by path, with scripted visits (`steps`, see Visit).
 
-    Visit n takes step n, the last one repeats; but `strictly` a visit that no step is for raises
-    LeftScriptError, and so ends the run. A leaf that was asked to stop ends as `preempted` where it
-    has that outcome. To be called before `attach`. Raises KeyError for a path that is no leaf, or
-    that has no steps and would need one.
+    Visit n takes step n, and the last step repeats. With `strict`, a visit without a step of its
+    own raises ScriptViolationError, which ends the run. A leaf with a preempt request ends as
+    `preempted` if it has that outcome. To be called before `attach`. Raises KeyError for a path
+    that is no leaf and, without `strict`, for a leaf without steps.
     """
     leaves = _leaves(machine, name)
     for path, row in steps.items():
-        if path not in leaves or not (row or strictly):
+        if path not in leaves or not (row or strict):
             raise KeyError(path)
         visits = [Visit(*each) for each in row]
         _replace(leaves[path], _scripted(machine, leaves[path], visits) if row else _refused)
-    if strictly is not None:
+    if strict is not None:
         total = count(1)
         for path, state in leaves.items():
-            last = len(steps[path]) if path in steps else strictly.most
+            last = len(steps[path]) if path in steps else strict.max_visits
             if last:
                 execute = getattr(state, "attempted", state.execute)
-                _replace(state, _counted(path, execute, last, total, strictly))
+                _replace(state, _counted(path, execute, last, total, strict))
 
 
 def _replace(state: Any, execute: Callable[[Any], str]) -> None:
-    """Let a state do something else; one of ours that catches its exceptions still does."""
+    """Replace what a state does; a generated state that catches its exceptions still does so."""
     setattr(state, "attempted" if hasattr(state, "attempted") else "execute", execute)
 
 
 def _refused(userdata: Any) -> str:
-    raise LeftScriptError("is not in the script")
+    raise ScriptViolationError("is not in the script")
 
 
 def _counted(
-    path: str, execute: Callable[[Any], Any], last: int, total: Iterator[int], how: Strictly
+    path: str, execute: Callable[[Any], Any], last: int, total: Iterator[int], strict: StrictScript
 ) -> Callable[[Any], Any]:
     visits = count(1)
 
     def counted(userdata: Any) -> Any:
-        if next(visits) > last or next(total) > how.most:
-            raise LeftScriptError("is once more than in the script")
-        for key in how.reads.get(path, ()):
+        if next(visits) > last or next(total) > strict.max_visits:
+            raise ScriptViolationError("is once more than in the script")
+        for key in strict.reads.get(path, ()):
             if key in userdata:
-                how.seen(path, key, userdata[key])
+                strict.on_read(path, key, userdata[key])
         return execute(userdata)
 
     return counted
@@ -151,7 +154,7 @@ def _leaves(machine: Any, name: str) -> dict[str, Any]:
 
 def _scripted(machine: Any, state: Any, steps: Sequence[Visit]) -> Callable[[Any], str]:
     visits = 0
-    asked = _requests(state) if any(step.wait for step in steps) else None
+    requested = _preempt_event(state) if any(step.wait for step in steps) else None
 
     def execute(userdata: Any) -> str:
         nonlocal visits
@@ -159,10 +162,10 @@ def _scripted(machine: Any, state: Any, steps: Sequence[Visit]) -> Callable[[Any
         step = steps[min(visits, len(steps)) - 1]
         if step.stop:
             machine.request_preempt()
-        if step.wait and asked is not None and not state.preempt_requested():
-            asked.clear()
-            if not state.preempt_requested() and not asked.wait(LONGEST_WAIT):
-                raise LeftScriptError("was not asked to stop")
+        if step.wait and requested is not None and not state.preempt_requested():
+            requested.clear()
+            if not state.preempt_requested() and not requested.wait(LONGEST_WAIT):
+                raise ScriptViolationError("was not asked to stop")
         if state.preempt_requested() and PREEMPTED in state.get_registered_outcomes():
             state.service_preempt()
             return PREEMPTED
@@ -175,20 +178,20 @@ def _scripted(machine: Any, state: Any, steps: Sequence[Visit]) -> Callable[[Any
     return execute
 
 
-def _requests(state: Any) -> threading.Event:
-    """An event that is set when a leaf is asked to stop."""
-    asked, request = threading.Event(), state.request_preempt
+def _preempt_event(state: Any) -> threading.Event:
+    """An event that is set by each preempt request of a leaf."""
+    requested, request = threading.Event(), state.request_preempt
 
     def request_preempt() -> None:
         request()
-        asked.set()
+        requested.set()
 
     state.request_preempt = request_preempt
-    return asked
+    return requested
 
 
 def _walk(machine: Any, name: str) -> Iterator[tuple[Any, str, Any]]:
-    """Every state with the container around it and its label, containers before what they hold."""
+    """(container, label, state) for every state, containers before their children."""
     stack: list[tuple[Any, str, Any]] = [(None, name, machine)]
     while stack:
         parent, label, state = stack.pop()

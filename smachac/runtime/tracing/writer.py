@@ -1,4 +1,4 @@
-"""What watches tell becomes lines of a file, or calls of an observer: in order, one at a time."""
+"""Writing a trace: numbered and timed events as lines of JSON, or as calls of an observer."""
 
 from __future__ import annotations
 
@@ -11,30 +11,31 @@ from collections.abc import Callable, Mapping, Sequence
 from typing import Any, Protocol
 
 Event = dict[str, Any]
-Observe = Callable[[Event], None]
+Observer = Callable[[Event], None]
 
 NO_VALUE: object = object()
-"""In place of the value of an event that is no write."""
+"""Stands for the value in an event that is not a write."""
 
 
 class Sink(Protocol):
-    """Takes events in two steps, so that what stays the same is made only once.
+    """The destination of events. It takes them in two steps, as the same events recur.
 
-    `put` gets what `prepare` made of events, the number of the first, the seconds, and the value
-    of a write (else `NO_VALUE`). It returns the number that comes next.
+    `prepare` makes the constant part of events that happen at one moment, once. `put` completes
+    and delivers it each time: `seq` is the number of the first event, `t` the time (s), `value` the
+    value of a write, else `NO_VALUE`. It returns the next number.
     """
 
     def prepare(self, events: Sequence[Event]) -> Any: ...
-    def put(self, told: Any, seq: int, t: float, value: object) -> int: ...
+    def put(self, prepared: Any, seq: int, t: float, value: object) -> int: ...
 
 
 class TraceWriter:
-    """Writes events as lines of JSON, each at once: what has happened is in the file.
+    """Writes each event at once as a line of JSON, without a buffer.
 
-    `write` takes bytes and returns how many it took, as `os.write` with a file does.
+    `write` takes bytes and returns how many it has written, like `os.write` of a file.
 
     Attributes:
-        errors: the events that told of an error.
+        errors: the events of the kind "error".
     """
 
     def __init__(self, write: Callable[[bytes], int]) -> None:
@@ -44,20 +45,20 @@ class TraceWriter:
         self._seq = 0
 
     def __call__(self, event: Mapping[str, Any]) -> None:
-        """Write an event that is complete, but perhaps for its number."""
+        """Write a complete event; the number is added if it is missing."""
         with self._lock:
             self._seq += 1
             line = json.dumps({"seq": self._seq, **event}, default=repr)
             self._append(line.encode() + b"\n")
 
     def prepare(self, events: Sequence[Event]) -> tuple[bytes, int]:
-        """The lines of events, with holes for what is not yet known; and their count."""
+        """The lines of the events, a template for numbers, values and times, and their count."""
         self.errors += [event for event in events if event["event"] == "error"]
         return b"".join(_line(event) for event in events), len(events)
 
-    def put(self, told: tuple[bytes, int], seq: int, t: float, value: object) -> int:
-        """Write prepared lines."""
-        lines, count = told
+    def put(self, prepared: tuple[bytes, int], seq: int, t: float, value: object) -> int:
+        """Fill in prepared lines and write them."""
+        lines, count = prepared
         seconds = b"%.6f" % t
         if value is not NO_VALUE:
             data = lines % (seq, _json(value), seconds)
@@ -71,91 +72,100 @@ class TraceWriter:
         return seq + count
 
     def _append(self, data: bytes) -> None:
-        """Write all of it: a pipe may take a part at a time."""
+        """Write all of `data`: a pipe may accept a part at a time."""
         while data:
             data = data[self._write(data) :]
 
 
-class Calls:
-    """Calls an observer with each event."""
+class ObserverSink:
+    """Calls an observer with each complete event."""
 
-    def __init__(self, observe: Observe) -> None:
+    def __init__(self, observe: Observer) -> None:
         self._observe = observe
 
     def prepare(self, events: Sequence[Event]) -> Sequence[Event]:
         """The events as they are."""
         return events
 
-    def put(self, told: Sequence[Event], seq: int, t: float, value: object) -> int:
-        """Make the calls."""
-        for number, event in enumerate(told, seq):
+    def put(self, prepared: Sequence[Event], seq: int, t: float, value: object) -> int:
+        """Call the observer with each event."""
+        for number, event in enumerate(prepared, seq):
             complete = {**event, "seq": number, "t": round(t, 6)}
             if "value" in event:
                 complete["value"] = trace_value(value)
             self._observe(complete)
-        return seq + len(told)
+        return seq + len(prepared)
 
 
 class Recorder:
-    """Numbers and times what the watches see, and passes it on."""
+    """Numbers and times the events of all instrumented states, and passes them to a sink.
+
+    Events of several threads are recorded one at a time. After an error of the sink, which is
+    printed to stderr, no more events are recorded.
+    """
 
     def __init__(
-        self, observe: Observe | TraceWriter, sources: Mapping[str, str], clock: Callable[[], float]
+        self,
+        observe: Observer | TraceWriter,
+        sources: Mapping[str, str],
+        clock: Callable[[], float],
     ) -> None:
-        self._sink: Sink | None = observe if isinstance(observe, TraceWriter) else Calls(observe)
+        self._sink: Sink | None = (
+            observe if isinstance(observe, TraceWriter) else ObserverSink(observe)
+        )
         self._sources = sources
         self._clock = clock
         self._began = clock()
         self._seq = 1
-        # A signal handler may ask for a stop, which is an event, in the middle of another one.
+        # A signal handler may request a stop, which is an event, while another one is recorded.
         self._lock = threading.RLock()
-        self._telling = False
-        self._late: deque[tuple[Any, object]] = deque()
+        self._recording = False
+        self._deferred: deque[tuple[Any, object]] = deque()
 
     def start(self) -> None:
-        """Count seconds from now."""
+        """Set the zero of the times to now."""
         self._began = self._clock()
 
     def prepare(self, *events: Event) -> Any:
-        """What `tell` wants, for events of one moment."""
+        """The argument of `record` for events that happen at one moment."""
         if self._sink is None:
             return None
-        return self._sink.prepare([self._framed(event) for event in events])
+        return self._sink.prepare([self._with_frame(event) for event in events])
 
-    def _framed(self, event: Event) -> Event:
+    def _with_frame(self, event: Event) -> Event:
         place = self._sources.get(event["path"])
         return {"seq": 0, **event, "t": 0.0, **({"src": place} if place else {})}
 
-    def tell(self, told: Any, value: object = NO_VALUE) -> None:
-        """Tell of prepared events, which happen now; `value` is that of a write."""
+    def record(self, prepared: Any, value: object = NO_VALUE) -> None:
+        """Record prepared events, which happen now; `value` is that of a write."""
         with self._lock:
-            if self._telling:
-                self._late.append((told, value))
+            if self._recording:
+                self._deferred.append((prepared, value))
                 return
-            self._telling = True
+            self._recording = True
             try:
                 if self._sink is not None:
                     t = self._clock() - self._began
-                    self._seq = self._sink.put(told, self._seq, t, value)
+                    self._seq = self._sink.put(prepared, self._seq, t, value)
             except Exception as error:
                 self._sink = None
                 print(f"the trace stops here: {type(error).__name__}: {error}", file=sys.stderr)
             finally:
-                self._telling = False
-            while self._late:
-                self.tell(*self._late.popleft())
+                self._recording = False
+            while self._deferred:
+                self.record(*self._deferred.popleft())
 
     def emit(self, event: str, path: str, **more: object) -> None:
-        """Tell of an event that is not worth preparing."""
-        self.tell(self.prepare({"event": event, "path": path, **more}))
+        """Record an event that occurs too rarely to be prepared once."""
+        self.record(self.prepare({"event": event, "path": path, **more}))
 
 
 def _line(event: Event) -> bytes:
-    """An event as a line, with holes for number, value and time."""
-    holes = {"seq": "%d", "value": "%b", "t": "%b"}
+    """An event as a line of JSON: a bytes template for its number, value and time."""
+    placeholders = {"seq": "%d", "value": "%b", "t": "%b"}
     fields = []
-    for name, told in event.items():
-        text = holes.get(name) or json.dumps(told, default=repr).replace("%", "%%")
+    for name, content in event.items():
+        text = placeholders.get(name) or json.dumps(content, default=repr).replace("%", "%%")
         fields.append(f'"{name}": {text}')
     return f"{{{', '.join(fields)}}}\n".encode()
 
@@ -164,7 +174,7 @@ _ENCODE = json.JSONEncoder(allow_nan=False).encode
 
 
 def _json(value: object) -> bytes:
-    """A value as a trace shows it, in JSON."""
+    """The JSON of `trace_value(value)`."""
     try:
         return (repr(value) if type(value) is int else _ENCODE(value)).encode()
     except (TypeError, ValueError, RecursionError):
@@ -172,7 +182,7 @@ def _json(value: object) -> bytes:
 
 
 def trace_value(value: object) -> object:
-    """A value as a trace shows it: a copy of what JSON can say, else its `repr`."""
+    """The form of a value in a trace: a copy through JSON, else its `repr` without addresses."""
     try:
         return json.loads(json.dumps(value, allow_nan=False))
     except (TypeError, ValueError, RecursionError):
@@ -180,7 +190,7 @@ def trace_value(value: object) -> object:
 
 
 def _repr(value: object) -> str:
-    """The `repr` of a value, or its type: a trace must not stop a machine."""
+    """The `repr` of a value, or its type if that raises: a trace must not stop a machine."""
     try:
         return repr(value)
     except Exception:

@@ -48,8 +48,8 @@ def _played(built: Any, name: str, scene: Scene, sources: dict[str, str]) -> lis
     events: list[Event] = []
     for key, value in scene.userdata.items():
         built.userdata[key] = value
-    strictly = trace.Strictly(scene.reads, partial(see, events), scene.most)
-    trace.script(built, name, scene.rows, strictly)
+    strict = trace.StrictScript(scene.reads, partial(see, events), scene.most)
+    trace.script(built, name, scene.rows, strict)
     trace.attach(built, name, events.append, sources)
     with suppress(Exception):
         built.execute()
