@@ -31,7 +31,7 @@ from smachac.diagnostics.source import Source
 from smachac.driver import analyse, analyse_alone, build
 from smachac.frontend.files import disk_library
 from smachac.frontend.loader import Library, memory_library
-from smachac.interpreter.builtin_states import built_in
+from smachac.interpreter.behaviours import builtin_behaviour
 from smachac.interpreter.interpreter import run
 from smachac.refactor.formatter import laid_out
 from smachac.report.explain_code import explanation
@@ -240,7 +240,7 @@ def tried(files: Mapping[str, str], index: int) -> str:
     if index % 4 == 0:
         printed(analysis.checked, library, ours=not any(".tpl." in name for name in files))
     if index % 8 == 1:
-        run(analysis.checked, built_in(), max_steps=300)
+        run(analysis.checked, builtin_behaviour(), max_steps=300)
     return "checked"
 
 

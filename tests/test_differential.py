@@ -15,7 +15,7 @@ from quiet import quiet
 from smachac.driver import build, check, load
 from smachac.frontend.files import disk_library, read_source
 from smachac.frontend.loader import Library
-from smachac.interpreter.builtin_states import built_in
+from smachac.interpreter.behaviours import builtin_behaviour
 from smachac.interpreter.interpreter import Interpreter
 from smachac.interpreter.userdata import Userdata
 from smachac.ir.nodes import Checked, Leaf, Machine
@@ -64,7 +64,7 @@ def of_generated(
 def of_interpreter(machine: Machine, asked: tuple[str, int] = NOBODY) -> list[Event] | None:
     """The trace of the interpreter; None if the machine does not end within MOST_STEPS."""
     events: list[Event] = []
-    behave = built_in()
+    behave = builtin_behaviour()
 
     def asking(path: str, leaf: Leaf, visit: int, userdata: Userdata) -> str:
         if (path, visit) == asked:

@@ -10,7 +10,7 @@ from hypothesis import HealthCheck, given, seed, settings
 
 from smachac.driver import build
 from smachac.frontend.files import disk_library
-from smachac.interpreter.builtin_states import built_in
+from smachac.interpreter.behaviours import builtin_behaviour
 from smachac.interpreter.interpreter import run
 from smachac.ir.nodes import Checked, Machine
 from smachac.targets.python import TARGET
@@ -35,6 +35,6 @@ def test_random_machines_agree(drawn: tuple[Machine, tuple[str, int]]) -> None:
     assert verdict.disagreements == []
     taken = Taken(machine)
     for number in range(5):
-        run(machine, built_in(number), taken.hear, seed=number, max_steps=300)
+        run(machine, builtin_behaviour(number), taken.hear, seed=number, max_steps=300)
     never = {way for way, _, why in verdict.missing if why.never}
     assert not never & taken.taken

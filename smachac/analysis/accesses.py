@@ -10,7 +10,7 @@ from typing import NamedTuple
 
 from smachac.analysis.context import states
 from smachac.ir import nodes
-from smachac.ir.builtin_states import CALLING, default_outcome, variable
+from smachac.ir.leaf import CALLING, default_outcome, variable
 from smachac.ir.nodes import Expression, Leaf, Machine, Node, Struct
 from smachac.ir.traversal import PREEMPTED, remapping
 

@@ -13,7 +13,7 @@ from smachac.analysis.control_flow import is_open, mended
 from smachac.analysis.definite_assignment import Flow, data_flow
 from smachac.diagnostics.spelling import guesser
 from smachac.ir import nodes
-from smachac.ir.builtin_states import CALLING
+from smachac.ir.leaf import CALLING
 from smachac.ir.nodes import Container, Key, Leaf, Machine, Node, Remap, Sequence, StateMachine
 from smachac.ir.traversal import outcome_names
 from smachac.ir.types import ANY, Type

@@ -12,7 +12,7 @@ from smachac.analysis.expression_types import keys_read, parsed
 from smachac.analysis.type_inference import Place, Types
 from smachac.analysis.type_lattice import join, record
 from smachac.ir import nodes
-from smachac.ir.builtin_states import CALLING, variable
+from smachac.ir.leaf import CALLING, variable
 from smachac.ir.nodes import Expression, Leaf, Machine, Node
 from smachac.ir.traversal import expressions, outcome_names, remapping
 from smachac.ir.types import ANY, Type

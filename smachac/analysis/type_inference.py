@@ -37,7 +37,7 @@ from smachac.analysis.type_lattice import (
 )
 from smachac.diagnostics.source import NOWHERE, Span
 from smachac.ir import nodes
-from smachac.ir.builtin_states import variable
+from smachac.ir.leaf import variable
 from smachac.ir.nodes import Container, Data, Expression, Key, Leaf, Machine, Node, Struct, Variable
 from smachac.ir.traversal import remapping
 from smachac.ir.types import ANY, Type

@@ -20,8 +20,8 @@ from smachac.diagnostics.source import Span, Word
 from smachac.diagnostics.spelling import guesser
 from smachac.diagnostics.wording import listed
 from smachac.ir import nodes
-from smachac.ir.builtin_states import variable
 from smachac.ir.graph import START
+from smachac.ir.leaf import variable
 from smachac.ir.nodes import Body, Key, Leaf, Machine, Node
 from smachac.ir.traversal import outcome_names, remapping
 

@@ -14,7 +14,7 @@ from smachac.checks.messages import calls, did_you_mean, other_place
 from smachac.checks.types import clash_findings, clashes_of
 from smachac.diagnostics.diagnostic import Finding, Related, Severity, rule
 from smachac.diagnostics.spelling import guesser
-from smachac.ir.builtin_states import variable
+from smachac.ir.leaf import variable
 from smachac.ir.nodes import Data, Leaf, Machine, Struct
 from smachac.ir.robot import BUILT_IN, DEFAULTS, Joint, Robot
 from smachac.ir.types import Type

@@ -10,7 +10,7 @@ from smachac.analysis.context import containers, types_of
 from smachac.analysis.type_inference import Flow, Types
 from smachac.checks.robot import at, robot_of
 from smachac.diagnostics.diagnostic import Finding, Report, Severity, problem
-from smachac.ir.builtin_states import variable
+from smachac.ir.leaf import variable
 from smachac.ir.nodes import Data, Leaf, Machine
 from smachac.ir.traversal import remapping
 

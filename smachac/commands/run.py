@@ -24,7 +24,7 @@ if TYPE_CHECKING:
     from smachac.diagnostics.diagnostic import Report
     from smachac.diagnostics.source import Span
     from smachac.frontend.yaml_tree import Tree
-    from smachac.interpreter.result import Result
+    from smachac.interpreter.result import RunResult
     from smachac.interpreter.scenario import Scenario
     from smachac.ir.nodes import Machine
 
@@ -117,12 +117,12 @@ def play(
     observe: Callable[[Event], None],
 ) -> str:
     """Play a scenario on the interpreter; the outcome. Raises FailedError."""
-    from smachac.interpreter.builtin_states import built_in
+    from smachac.interpreter.behaviours import builtin_behaviour
     from smachac.interpreter.interpreter import run
-    from smachac.interpreter.scenario import acted
+    from smachac.interpreter.scenario import scenario_behaviour
     from smachac.interpreter.scheduler import ScheduleError
 
-    behaviour = acted(scenario, machine, built_in(seed))
+    behaviour = scenario_behaviour(scenario, machine, builtin_behaviour(seed))
     try:
         result = run(machine, behaviour, observe, seed=seed, schedule=schedule)
     except ScheduleError as error:
@@ -143,13 +143,15 @@ def play_orders(machine: Machine, scenario: Scenario, seed: int, most: int) -> t
     """
     from itertools import islice
 
-    from smachac.interpreter.builtin_states import built_in
+    from smachac.interpreter.behaviours import builtin_behaviour
     from smachac.interpreter.explore import explore
-    from smachac.interpreter.scenario import acted
+    from smachac.interpreter.scenario import scenario_behaviour
     from smachac.interpreter.userdata import trace_value
 
-    ends: dict[str, list[Result]] = {}
-    orders = explore(machine, lambda: acted(scenario, machine, built_in(seed)))
+    ends: dict[str, list[RunResult]] = {}
+    orders = explore(
+        machine, lambda: scenario_behaviour(scenario, machine, builtin_behaviour(seed))
+    )
     for result in islice(orders, most):
         end = f"error: {result.error}" if result.error else f"outcome: {result.outcome}"
         held = (f"{key}={trace_value(result.userdata[key])!r}" for key in sorted(result.userdata))
@@ -168,7 +170,7 @@ def play_orders(machine: Machine, scenario: Scenario, seed: int, most: int) -> t
     return "\n".join(lines), len(ends) == 1
 
 
-def _short_turns(result: Result) -> Iterator[str]:
+def _short_turns(result: RunResult) -> Iterator[str]:
     """The turns of a run as `--schedule` takes them: names where these are enough."""
     for choice in result.choices:
         name = choice.taken.rpartition("/")[2]

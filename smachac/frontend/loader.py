@@ -37,8 +37,8 @@ class Library:
     policy: Policy = field(default_factory=Policy)
 
 
-def memory_library(files: Mapping[str, str], built_in: Library) -> Library:
-    """A library over texts in memory; templates not among them come from `built_in`."""
+def memory_library(files: Mapping[str, str], builtin_behaviour: Library) -> Library:
+    """A library over texts in memory; templates not among them come from `builtin_behaviour`."""
     sources = {name: Source(name, text) for name, text in files.items()}
 
     def script(name: str, caller: str) -> Source | None:
@@ -46,18 +46,18 @@ def memory_library(files: Mapping[str, str], built_in: Library) -> Library:
         return next((sources[name] for name in names if name in sources), None)
 
     def own_template(name: str) -> Source | None:
-        return sources.get(f"templates/{name}") or built_in.own_template(name)
+        return sources.get(f"templates/{name}") or builtin_behaviour.own_template(name)
 
     return Library(
         script=script,
-        template=lambda name: own_template(name) or built_in.template(name),
+        template=lambda name: own_template(name) or builtin_behaviour.template(name),
         own_template=own_template,
-        code=lambda name: sources.get(name) or built_in.code(name),
+        code=lambda name: sources.get(name) or builtin_behaviour.code(name),
         script_folders=lambda caller: ["."],
-        template_folders=lambda: ["templates", *built_in.template_folders()],
+        template_folders=lambda: ["templates", *builtin_behaviour.template_folders()],
         script_names=lambda caller: [name.removesuffix(".yml") for name in sources],
         template_names=lambda: [
             *(name.removeprefix("templates/").split(".")[0] for name in sources),
-            *built_in.template_names(),
+            *builtin_behaviour.template_names(),
         ],
     )

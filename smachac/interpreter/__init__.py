@@ -1,1 +1,1 @@
-"""The reference interpreter: what a machine does, step by step, in one thread."""
+"""The reference interpreter: it runs a machine step by step, in one thread, in virtual time."""

@@ -1,8 +1,8 @@
-"""The value of a portable expression, without Python's `eval`.
+"""Evaluation of portable expressions, without Python's `eval`.
 
-Nothing but the given names and a fixed table of functions can be called, and no attribute with a
-leading underscore, nor any of a function, class, module or frame, can be read. Work and size are
-limited, so that no text stops or fills the machine.
+Only the given names and a fixed table of functions can be called. Attributes with a leading
+underscore, and all attributes of functions, classes, modules and frames, cannot be read. Steps and
+sizes are limited, so that no expression can block the program or exhaust its memory.
 """
 
 from __future__ import annotations
@@ -34,13 +34,15 @@ from smachac.ir.expressions import (
 )
 
 MOST_STEPS = 1_000_000
-"""Nodes that one evaluation may visit; what a function goes through counts with its length."""
+"""Limit on the nodes that one evaluation visits; a function call also counts the length of its
+arguments."""
 
 LARGEST = 100_000
-"""Items and characters, those inside included, of what `+`, `*` and `range` may make."""
+"""Limit on the size of results of `+`, `*`, `range` and `sum`: items and characters, nested ones
+included."""
 
 MOST_BITS = 10_000
-"""Binary digits of the largest whole number that `**` may make."""
+"""Limit on the binary digits of a result of `**`."""
 
 CLOSED = (
     types.FunctionType,
@@ -54,27 +56,28 @@ CLOSED = (
     types.CodeType,
     type,
 )
-"""Kinds of objects whose attributes lead out of the data."""
+"""Types whose attributes cannot be read, because they lead to objects outside the data."""
 
 METHODS = (types.MethodType, types.BuiltinMethodType)
-"""What an attribute may not be: a function such as `sorted` would call it."""
+"""Types that an attribute must not have: a function such as `sorted` would call it."""
 
 
 class EvaluationError(Exception):
-    """An expression that has no value: what, and why. The cause is what Python would raise."""
+    """An expression has no value. The message has the reason; the cause is the exception of
+    Python."""
 
 
 def evaluate(expr: Expr, names: Mapping[str, object]) -> object:
-    """The value of an expression over names; a lambda's is a function that raises the same errors.
+    """The value of an expression. A lambda gives a function that raises the same errors.
 
-    A name may be dotted: `{"math.pi": 3.14}` gives `math.pi` a value without `math`.
-    Raises EvaluationError and nothing else.
+    A name may be dotted: `{"math.pi": 3.14}` gives `math.pi` a value without `math`. Raises
+    EvaluationError and no other exception.
     """
     return _run(_Evaluation(names, {}, _Budget()), expr)
 
 
 class _Budget:
-    """The steps left to an evaluation and the lambdas it calls, until it has ended."""
+    """The remaining steps of an evaluation and of the lambdas it calls; closed when it ends."""
 
     def __init__(self) -> None:
         self.left = MOST_STEPS
@@ -82,7 +85,7 @@ class _Budget:
 
 
 def _run(evaluation: _Evaluation, expr: Expr) -> object:
-    """Run a whole evaluation, after which its budget is closed."""
+    """Run a whole evaluation and close its budget."""
     try:
         return evaluation.value(expr)
     except RecursionError as error:
@@ -92,7 +95,7 @@ def _run(evaluation: _Evaluation, expr: Expr) -> object:
 
 
 class _Evaluation:
-    """The names given, the parameters bound by the lambdas around, and the budget."""
+    """The given names, the parameters of the enclosing lambdas, and the step budget."""
 
     def __init__(self, names: Mapping[str, object], bound: Mapping[str, object], budget: _Budget):
         self.names = names
@@ -227,9 +230,11 @@ class _Evaluation:
 
 
 SIZED = (str, bytes, list, tuple, dict)
+"""Types whose length is limited."""
 
 
 def _length(value: object) -> int:
+    """The number of items or characters of a value, as a number of steps."""
     return len(value) if isinstance(value, (*SIZED, range)) else 1
 
 
@@ -239,7 +244,7 @@ def _limit(size: int, most: int, what: str) -> None:
 
 
 def _size(value: Any) -> int:
-    """Items and characters in a value and in what it holds, counted up to the limit."""
+    """Items and characters in a value and in its parts, counted up to the limit."""
     total = 0
     todo = [value]
     while todo and total <= LARGEST:

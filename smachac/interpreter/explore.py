@@ -1,11 +1,11 @@
-"""Every order in which the branches of concurrences can take turns."""
+"""Schedule exploration: one run for each order in which concurrent branches can take turns."""
 
 from __future__ import annotations
 
 from collections.abc import Callable, Iterator, Mapping, Sequence
 
-from smachac.interpreter.interpreter import MOST_STEPS, run
-from smachac.interpreter.result import Behaviour, Choice, Result
+from smachac.interpreter.interpreter import MAX_STEPS, run
+from smachac.interpreter.result import Behaviour, RunResult, SchedulingChoice
 from smachac.ir.nodes import Machine
 
 
@@ -13,13 +13,13 @@ def explore(
     machine: Machine,
     behaviour: Callable[[], Behaviour],
     *,
-    max_steps: int = MOST_STEPS,
+    max_steps: int = MAX_STEPS,
     userdata: Mapping[str, object] | None = None,
-) -> Iterator[Result]:
-    """Every way in which the branches of a machine's concurrences can take turns, one run each.
+) -> Iterator[RunResult]:
+    """Every schedule of a machine's concurrent branches, one run each.
 
-    There may be very many: take as many as you want. `behaviour` makes what the leaves do, afresh
-    for each run; it must do the same each time.
+    There can be very many schedules, so the results come from an iterator. `behaviour` creates the
+    behaviour of the leaves for each run; it has to be deterministic.
     """
     turns: list[str] | None = []
     while turns is not None:
@@ -28,8 +28,8 @@ def explore(
         turns = _next_turns(result.choices)
 
 
-def _next_turns(choices: Sequence[Choice]) -> list[str] | None:
-    """The turns that begin the next order: the last choice that has another one takes it."""
+def _next_turns(choices: Sequence[SchedulingChoice]) -> list[str] | None:
+    """The prefix of the next schedule: the last choice with an untried alternative takes it."""
     for at in reversed(range(len(choices))):
         choice = choices[at]
         following = choice.ready.index(choice.taken) + 1

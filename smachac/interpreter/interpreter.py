@@ -1,16 +1,14 @@
-"""The reference interpreter: what a machine does, in one thread, step by step.
+"""The reference interpreter: container semantics as coroutines that yield wake-up times.
 
-The rules are those of SMACH where the graph can express them (M*, V*, R*, P*, N*, I*: ids of the
-rules); its hangs, stale flags and lost requests are not copied. Branches of a concurrence take
-turns, one leaf at a time, in an order that a seed or a schedule settles (schedule.py); time is
-virtual. Every state is a generator that yields the time at which it can go on.
+The semantics are those of SMACH (docs/semantics.md), except that its deadlocks, stale preemption
+flags and lost requests are not reproduced. Branches of a concurrence take turns, one leaf at a
+time, in an order given by a seed or a schedule (scheduler.py). Time is virtual.
 """
 
 from __future__ import annotations
 
 from collections.abc import Callable, Collection, Generator, Iterable, Mapping, Sequence
 from dataclasses import dataclass, replace
-from functools import lru_cache
 from pathlib import PurePath
 from typing import NoReturn, TypeAlias
 
@@ -19,18 +17,18 @@ from smachac.interpreter.preemption import Preemption
 from smachac.interpreter.result import (
     NO_OUTCOME,
     Behaviour,
+    ErrorKind,
     Event,
-    Failure,
-    Fault,
-    Result,
     RunError,
+    RunFailure,
+    RunResult,
 )
-from smachac.interpreter.scheduler import Schedule
+from smachac.interpreter.scheduler import Scheduler
 from smachac.interpreter.userdata import (
     BehaviourError,
     Userdata,
     UserdataError,
-    called,
+    call_function,
     copy_in,
     copy_out,
     python_data,
@@ -50,33 +48,39 @@ from smachac.ir.nodes import (
 from smachac.ir.recursion import deep_recursion
 from smachac.ir.traversal import PREEMPTED, containers, leads_to_child, outcome_names, walk
 
-MOST_STEPS = 1_000_000
+MAX_STEPS = 1_000_000
+"""Default limit on the states that one run enters."""
+
+Coroutine: TypeAlias = "Generator[float, None, str | None]"
+"""A running state: yields the time at which it can continue, returns its outcome (None if a leaf
+returned none)."""
 
 
 def run(
     machine: Machine,
     behaviour: Behaviour,
-    observe: Callable[[Event], None] | None = None,
+    on_event: Callable[[Event], None] | None = None,
     *,
     seed: int = 0,
     schedule: Sequence[str] | None = None,
-    max_steps: int = MOST_STEPS,
+    max_steps: int = MAX_STEPS,
     userdata: Mapping[str, object] | None = None,
     preempt_at: Collection[int] = (),
-) -> Result:
+) -> RunResult:
     """Run a machine once, from its start to an outcome or an error.
 
-    Where several branches of concurrences can go on, `schedule` names the one whose turn it is, as
-    the `choices` of a result do; what it leaves open goes to the first branch, and without a
-    schedule `seed` settles it. Raises ScheduleError for a turn of a branch that cannot go on.
-    `userdata` is put into the outermost container over its presets. `preempt_at`: a request to
-    stop reaches the machine while it is in its n-th leaf; 0 is before the start. It is an error
-    to enter more than `max_steps` states.
+    `on_event` receives each event of the trace. `schedule` names the branch that continues at each
+    choice between concurrent branches, as the `choices` of a result do; when it is used up the
+    first branch continues. Without a schedule the choice is random, seeded by `seed`. `userdata`
+    overrides the presets of the outermost container. `preempt_at` holds numbers of leaf visits: a
+    request to stop arrives during the n-th visit, 0 is before the start. A run that enters more
+    than `max_steps` states ends with an error. Raises ScheduleError if the schedule names a branch
+    that cannot continue.
     """
     interpreter = Interpreter(
         machine,
         behaviour,
-        observe,
+        on_event,
         seed=seed,
         schedule=schedule,
         max_steps=max_steps,
@@ -87,45 +91,47 @@ def run(
 
 
 class Interpreter:
-    """A machine with what it keeps between runs: userdata, counts of visits, requests to stop.
+    """A machine and its state between runs: userdata, visit counts, requests to stop.
 
-    The arguments are those of `run`. What has no underscore serves the bodies of containers.
+    The arguments are those of `run`. Attributes without an underscore are used by the coroutines of
+    containers below.
     """
 
     def __init__(
         self,
         machine: Machine,
         behaviour: Behaviour,
-        observe: Callable[[Event], None] | None = None,
+        on_event: Callable[[Event], None] | None = None,
         *,
         seed: int = 0,
         schedule: Sequence[str] | None = None,
-        max_steps: int = MOST_STEPS,
+        max_steps: int = MAX_STEPS,
         userdata: Mapping[str, object] | None = None,
         preempt_at: Collection[int] = (),
     ) -> None:
         self._root = machine.root
         self._behaviour = behaviour
-        self._observe = observe
+        self._on_event = on_event
         self._max_steps = max_steps
         self._preempt_at = frozenset(preempt_at)
-        self.schedule = Schedule(seed, schedule)
+        self.schedule = Scheduler(seed, schedule)
         self.preemption = Preemption(lambda path: self.emit("preempt", path))
         self.clock = 0.0
         self._steps = self._leaves = self._events = 0
         self._visits: dict[str, int] = {}
-        self.routes: dict[str, Routes] = {}
+        self.transition_tables: dict[str, TransitionTable] = {}
         self.items: dict[str, object] = {}
         self._scopes: dict[str, dict[str, object]] = {
             path: {preset.key: python_data(preset.value.data) for preset in node.userdata}
             for path, node in containers(self._root)
         }
         self._scopes[self._root.name].update(userdata or {})
-        places = walk(self._root) if observe else ()
-        self._places = {path: _place(node.span) for path, node in places}
+        observed = walk(self._root) if on_event else ()
+        self._sources = {path: _trace_source(node.span) for path, node in observed}
 
-    def execute(self, parent: dict[str, object] | None = None) -> Result:
-        """Run once more. `parent` is userdata around the machine, as if it were a state in it."""
+    def execute(self, parent: dict[str, object] | None = None) -> RunResult:
+        """Run the machine once more. `parent` is the userdata around it, as if it were a nested
+        state."""
         root, path = self._root, self._root.name
         own = self._scopes[path]
         self.preemption.running.clear()
@@ -139,10 +145,10 @@ class Interpreter:
             copy_in(root, parent, own)
         outcome, failure = None, None
         try:
-            going = body(self, root, path, own)
+            coroutine = container_coroutine(self, root, path, own)
             with deep_recursion():
                 while True:
-                    self.clock = max(self.clock, next(going))
+                    self.clock = max(self.clock, next(coroutine))
         except StopIteration as end:
             outcome = end.value
         except RunError as failed:
@@ -153,7 +159,7 @@ class Interpreter:
             if outcome is not None:
                 self.emit("finish", path, outcome=outcome)
         scopes = {where: dict(scope) for where, scope in self._scopes.items()}
-        return Result(
+        return RunResult(
             outcome=outcome,
             userdata=scopes[path],
             error=failure,
@@ -164,22 +170,24 @@ class Interpreter:
         )
 
     def emit(self, event: str, path: str, **more: object) -> None:
-        """Tell the observer."""
-        if self._observe is None:
+        """Send an event to `on_event`."""
+        if self._on_event is None:
             return
         self._events += 1
         line: Event = {"seq": self._events, "event": event, "path": path, **more, "t": self.clock}
-        if self._places[path]:
-            line["src"] = self._places[path]
-        self._observe(line)
+        if self._sources[path]:
+            line["src"] = self._sources[path]
+        self._on_event(line)
 
-    def fail(self, kind: Fault, path: str, message: str, span: Span) -> NoReturn:
-        """End the branch with an error; raises RunError."""
+    def fail(self, kind: ErrorKind, path: str, message: str, span: Span) -> NoReturn:
+        """Emit an error and raise RunError, which ends the branch."""
         self.emit("error", path, message=message)
-        raise RunError(Failure(kind=kind, path=path, message=message, span=span))
+        raise RunError(RunFailure(kind=kind, path=path, message=message, span=span))
 
-    def visit(self, node: Node, path: str, around: dict[str, object], loose: bool = False) -> Run:
-        """A state from its entry to its end."""
+    def visit(
+        self, node: Node, path: str, around: dict[str, object], unrestricted: bool = False
+    ) -> Coroutine:
+        """Run one state from its entry to its exit."""
         if self._steps >= self._max_steps:
             self.fail("no-end", path, f"did not end after {self._max_steps} states", node.span)
         self._steps += 1
@@ -187,10 +195,10 @@ class Interpreter:
         own = self._scopes.get(path, {})
         try:
             if isinstance(node, Leaf):
-                outcome = yield from self._leaf(node, path, around, loose or node.open)
+                outcome = yield from self._leaf(node, path, around, unrestricted or node.open)
             else:
                 copy_in(node, around, own)
-                outcome = yield from body(self, node, path, own)
+                outcome = yield from container_coroutine(self, node, path, own)
         except RunError as failed:
             if not node.catches or failed.failure.kind == "no-end":
                 raise
@@ -204,20 +212,28 @@ class Interpreter:
             copy_out(node, own, around)
         return outcome
 
-    def _leaf(self, leaf: Leaf, path: str, around: dict[str, object], loose: bool) -> Run:
+    def _leaf(
+        self, leaf: Leaf, path: str, around: dict[str, object], unrestricted: bool
+    ) -> Coroutine:
         visit = self._visits[path] = self._visits.get(path, 0) + 1
         self._leaves += 1
         if self._leaves in self._preempt_at:
             self._stop_machine()
         yield self.clock
-        asked = self.preemption.asked
+        requested = self.preemption.requested
 
-        def written(key: str, value: object) -> None:
-            if self._observe is not None:
+        def on_write(key: str, value: object) -> None:
+            if self._on_event is not None:
                 self.emit("write", path, key=key, value=trace_value(value))
 
         view = Userdata(
-            leaf, path, around, asked, written, loose=loose, stop_machine=self._stop_machine
+            leaf,
+            path,
+            around,
+            requested,
+            on_write,
+            unrestricted=unrestricted,
+            stop_machine=self._stop_machine,
         )
         try:
             outcome = self._behaviour(path, leaf, visit, view)
@@ -228,7 +244,7 @@ class Interpreter:
         except Exception as error:
             self.fail("behaviour", path, f"{type(error).__name__}: {error}", leaf.span)
         if view.slept and (yield from self._sleep(leaf, path, view.slept)):
-            asked.discard(path)
+            requested.discard(path)
             return PREEMPTED
         return outcome
 
@@ -236,34 +252,27 @@ class Interpreter:
         self.preemption.request(self._root.name)
 
     def _sleep(self, leaf: Leaf, path: str, seconds: float) -> Generator[float, None, bool]:
-        """Wait; whether a request to stop, which the leaf can answer, cut that short."""
+        """Wait. True if a request to stop, which the leaf can serve, ended the wait early."""
         until = self.clock + seconds
         answers = PREEMPTED in outcome_names(leaf)
         while self.clock < until:
-            if answers and path in self.preemption.asked:
+            if answers and path in self.preemption.requested:
                 return True
             yield until
         return False
 
 
-def _place(span: Span) -> str:
-    """A place as a trace shows it: file name without folder, and line."""
+def _trace_source(span: Span) -> str:
+    """A span as traces show it: file name without folder, and line; empty for NOWHERE."""
     if span.source is NOWHERE.source:
         return ""
-    return f"{_file_name(span.source.name)}:{span.line}"
+    return f"{PurePath(span.source.name).name}:{span.line}"
 
 
-@lru_cache(maxsize=1000)
-def _file_name(name: str) -> str:
-    return PurePath(name).name
-
-
-Run: TypeAlias = "Generator[float, None, str | None]"
-"""A state on its way to its outcome; None where a leaf gave none."""
-
-
-def body(run: Interpreter, node: Container, path: str, own: dict[str, object]) -> Run:
-    """What a container does between its entry and its end, over its own userdata."""
+def container_coroutine(
+    run: Interpreter, node: Container, path: str, own: dict[str, object]
+) -> Coroutine:
+    """The coroutine of a container between its entry and its exit, over its own userdata."""
     if isinstance(node, Iterator):
         return _iterator(run, node, path, own)
     if not node.children:
@@ -275,25 +284,28 @@ def body(run: Interpreter, node: Container, path: str, own: dict[str, object]) -
 
 def _machine(
     run: Interpreter, node: StateMachine | nodes.Sequence, path: str, own: dict[str, object]
-) -> Run:
-    routes = run.routes.get(path) or run.routes.setdefault(path, _routes(node))
+) -> Coroutine:
+    """A state machine or sequence: one state after the other along transitions."""
+    transition_tables = run.transition_tables.get(path) or run.transition_tables.setdefault(
+        path, _transition_table(node)
+    )
     name, inside, here = node.initial or node.children[0].name, True, None
-    if name not in routes.children:
+    if name not in transition_tables.children:
         run.fail("no-target", path, f"has no state `{name}` to start with", node.span)
     while inside:
-        child, previous, here = routes.children[name], here, f"{path}/{name}"
+        child, previous, here = transition_tables.children[name], here, f"{path}/{name}"
         run.preemption.before_next(path, previous, here)
         run.preemption.running[path] = [here]
         outcome = yield from run.visit(child, here, own)
         if outcome is None:
-            raise RunError(no_outcome(child, here, "undeclared-outcome"))
+            raise RunError(_no_outcome_failure(child, here, "undeclared-outcome"))
         if outcome not in outcome_names(child) and not (isinstance(child, Leaf) and child.open):
             message = f"ended with `{outcome}`, which is not one of its outcomes"
             run.fail("undeclared-outcome", here, message, child.span)
-        if outcome not in routes.targets[name]:
+        if outcome not in transition_tables.targets[name]:
             message = f"no transition for outcome `{outcome}`"
             run.fail("no-transition", here, message, child.span)
-        name, inside = routes.targets[name][outcome]
+        name, inside = transition_tables.targets[name][outcome]
         if not inside and name not in outcome_names(node):
             message = f"`{name}` is neither a state nor an outcome of `{path}`"
             run.fail("no-target", here, message, child.span)
@@ -303,23 +315,23 @@ def _machine(
     return name
 
 
-def no_outcome(node: Node, path: str, kind: Fault) -> Failure:
-    """Why the container of a state that ended without an outcome cannot go on; already told."""
-    return Failure(kind=kind, path=path, message=NO_OUTCOME, span=node.span)
+def _no_outcome_failure(node: Node, path: str, kind: ErrorKind) -> RunFailure:
+    """The failure of a state that ended without an outcome. Its error event is emitted already."""
+    return RunFailure(kind=kind, path=path, message=NO_OUTCOME, span=node.span)
 
 
 @dataclass(frozen=True, slots=True)
-class Routes:
-    """A machine's children by name, and for each child where its outcomes lead.
+class TransitionTable:
+    """The children of a machine by name, and for each child the targets of its outcomes.
 
-    The flag says whether the target is a child.
+    The flag is true if the target is a child.
     """
 
     children: dict[str, Node]
     targets: dict[str, dict[str, tuple[str, bool]]]
 
 
-def _routes(node: StateMachine | nodes.Sequence) -> Routes:
+def _transition_table(node: StateMachine | nodes.Sequence) -> TransitionTable:
     children = {child.name: child for child in node.children}
     names = frozenset(children)
     targets = {
@@ -328,20 +340,24 @@ def _routes(node: StateMachine | nodes.Sequence) -> Routes:
         }
         for name, child in children.items()
     }
-    return Routes(children, targets)
+    return TransitionTable(children, targets)
 
 
-def _concurrence(run: Interpreter, node: Concurrence, path: str, own: dict[str, object]) -> Run:
+def _concurrence(
+    run: Interpreter, node: Concurrence, path: str, own: dict[str, object]
+) -> Coroutine:
+    """A concurrence: branches take turns until all have ended or, with `join: any`, have been
+    preempted."""
     children = {f"{path}/{child.name}": child for child in node.children}
     live = {here: _Branch(_branch(run, child, here, own)) for here, child in children.items()}
     run.preemption.wake.update((here, branch.wake) for here, branch in live.items())
     running = run.preemption.running[path] = list(live)
-    if path in run.preemption.asked:
+    if path in run.preemption.requested:
         for here in children:
             run.preemption.request(here)
     starting = list(live)
-    ended: dict[str, str | Failure] = {}
-    told = False
+    ended: dict[str, str | RunFailure] = {}
+    stopping = False
     while live:
         turn = starting.pop(0) if starting else _choose(run, live)
         if turn is None:
@@ -355,15 +371,15 @@ def _concurrence(run: Interpreter, node: Concurrence, path: str, own: dict[str, 
         del live[turn], run.preemption.wake[turn]
         running.remove(turn)
         ended[children[turn].name] = end
-        if isinstance(end, Failure) and end.kind == "no-end":
+        if isinstance(end, RunFailure) and end.kind == "no-end":
             break
-        if not told and (node.join == "any" or isinstance(end, Failure)):
-            told = True
+        if not stopping and (node.join == "any" or isinstance(end, RunFailure)):
+            stopping = True
             for other in live:
                 run.preemption.request(other)
     run.preemption.after_all(path, children)
     for end in ended.values():
-        if isinstance(end, Failure):
+        if isinstance(end, RunFailure):
             raise RunError(end)
     return _outcome_of(node, ended)
 
@@ -371,28 +387,29 @@ def _concurrence(run: Interpreter, node: Concurrence, path: str, own: dict[str, 
 def _branch(
     run: Interpreter, child: Node, here: str, own: dict[str, object]
 ) -> Generator[float, None, str]:
-    """A child of a concurrence: any outcome will do, but there must be one."""
+    """A child of a concurrence. It may end with any outcome, but needs one."""
     outcome = yield from run.visit(child, here, own)
     if outcome is None:
-        raise RunError(no_outcome(child, here, "no-outcome"))
+        raise RunError(_no_outcome_failure(child, here, "no-outcome"))
     return outcome
 
 
 @dataclass(slots=True)
 class _Branch:
-    """A child of a concurrence that has not ended, and when it can go on."""
+    """A child of a concurrence that has not ended, and the time at which it can continue."""
 
-    body: Generator[float, None, str]
+    coroutine: Generator[float, None, str]
     ready_at: float = 0.0
 
     def wake(self) -> None:
+        """Continue at once: a request to stop has arrived."""
         self.ready_at = 0.0
 
 
-def _advance(branch: _Branch) -> str | Failure | None:
-    """Let a branch go on until it is in its next leaf; how it ended, if it did."""
+def _advance(branch: _Branch) -> str | RunFailure | None:
+    """Continue a branch until its next wait. Its outcome or failure, or None while it runs."""
     try:
-        branch.ready_at = next(branch.body)
+        branch.ready_at = next(branch.coroutine)
     except StopIteration as end:
         outcome: str = end.value
         return outcome
@@ -402,13 +419,14 @@ def _advance(branch: _Branch) -> str | Failure | None:
 
 
 def _choose(run: Interpreter, live: Mapping[str, _Branch]) -> str | None:
-    """Whose turn it is among the branches that can go on now."""
+    """The branch that continues among those that can continue now; None if all of them wait."""
     ready = [path for path, branch in live.items() if branch.ready_at <= run.clock]
     return run.schedule.choose(ready) if len(ready) > 1 else next(iter(ready), None)
 
 
-def _outcome_of(node: Concurrence, ended: Mapping[str, str | Failure]) -> str:
-    """The outcome of the matching rule with most conditions, the last among equals (N5, N6)."""
+def _outcome_of(node: Concurrence, ended: Mapping[str, str | RunFailure]) -> str:
+    """The outcome of the matching rule with most conditions; the last one if several have as
+    many."""
     best, most = node.default_outcome, 0
     for rule in node.rules:
         holds = all(ended.get(one.child) == one.outcome for one in rule.when)
@@ -417,11 +435,12 @@ def _outcome_of(node: Concurrence, ended: Mapping[str, str | Failure]) -> str:
     return best
 
 
-def _iterator(run: Interpreter, node: Iterator, path: str, own: dict[str, object]) -> Run:
-    """Item after item; a request to stop ends it after the item that runs then (P9)."""
+def _iterator(run: Interpreter, node: Iterator, path: str, own: dict[str, object]) -> Coroutine:
+    """An iterator: item after item. A request to stop ends it after the current item."""
     result: str | None = node.exhausted_outcome
     outcome, here = None, path
-    children = [replace(child, remaps=()) for child in node.children]  # own keys, as they are (I7)
+    # The child sees the keys of the iterator under their own names (docs/semantics.md, Iterator).
+    children = [replace(child, remaps=()) for child in node.children]
     items = _items_of(run, node, path, own)
     position = 0
     while position < len(items):
@@ -432,8 +451,8 @@ def _iterator(run: Interpreter, node: Iterator, path: str, own: dict[str, object
         child = children[0]
         here = f"{path}/{child.name}"
         run.preemption.running[path] = [here]
-        outcome = yield from run.visit(child, here, own, loose=True)
-        if path in run.preemption.asked or outcome not in node.loop_outcomes:
+        outcome = yield from run.visit(child, here, own, unrestricted=True)
+        if path in run.preemption.requested or outcome not in node.loop_outcomes:
             run.preemption.recall(path)
             result = outcome
             break
@@ -450,7 +469,7 @@ def _iterator(run: Interpreter, node: Iterator, path: str, own: dict[str, object
 def _items_of(
     run: Interpreter, node: Iterator, path: str, own: Mapping[str, object]
 ) -> list[object]:
-    """What an iterator goes through, found as it starts."""
+    """The items of an iterator, computed when it starts."""
     span = node.items.span if node.items else node.span
     items: object
     if node.items_key:
@@ -460,7 +479,7 @@ def _items_of(
         items = own[node.items_key]
     elif node.items and isinstance(node.items.data, Expression):
         try:
-            items = called(node.items.data, own)
+            items = call_function(node.items.data, own)
         except BehaviourError as error:
             run.fail("no-items", path, str(error), span)
     else:

@@ -1,4 +1,5 @@
-"""Requests to stop, and which states they have reached (P*)."""
+"""Preemption: requests to stop, and the states that have not served theirs (docs/semantics.md,
+Preemption)."""
 
 from __future__ import annotations
 
@@ -8,62 +9,62 @@ from dataclasses import dataclass, field
 
 @dataclass(slots=True)
 class Preemption:
-    """The states, by path, that were asked to stop and have not answered yet.
+    """The paths of the states that have received a request to stop and have not served it.
 
-    `running` names the children of each running container that have not ended; `wake` is what to
-    call when a request reaches a branch that may be waiting. `told` hears of every request that
-    reaches a state.
+    `running` holds the children of each running container that have not ended. `wake` holds
+    functions that resume waiting branches. `on_request` is called for every request that reaches a
+    state.
     """
 
-    told: Callable[[str], None]
-    asked: set[str] = field(default_factory=set)
+    on_request: Callable[[str], None]
+    requested: set[str] = field(default_factory=set)
     running: dict[str, list[str]] = field(default_factory=dict)
     wake: dict[str, Callable[[], None]] = field(default_factory=dict)
 
     def request(self, path: str) -> None:
-        """Ask a state and all that runs in it, outer before inner (P2)."""
+        """Send a request to a state and to all states that run in it, outer before inner."""
         pending = [path]
         while pending:
             here = pending.pop()
-            self.asked.add(here)
-            self.told(here)
+            self.requested.add(here)
+            self.on_request(here)
             if here in self.wake:
                 self.wake[here]()
             pending.extend(reversed(self.running.get(here, ())))
 
     def recall(self, path: str) -> None:
-        """Take requests back from a state and all below it."""
+        """Withdraw the requests of a state and of all states below it."""
         below = path + "/"
-        self.asked -= {one for one in self.asked if one == path or one.startswith(below)}
+        self.requested -= {one for one in self.requested if one == path or one.startswith(below)}
 
     def before_next(self, path: str, previous: str | None, child: str) -> None:
-        """A machine goes on to its next state (P3, P5): what was not answered is asked again.
+        """Pass an unserved request on to the next state of a machine.
 
-        The request is taken back from the state before, not from what is below it (P7).
+        The request of the previous state is withdrawn, but not those of states below it.
         """
-        if path not in self.asked:
+        if path not in self.requested:
             return
-        if previous is not None and previous not in self.asked:
-            self.asked.discard(path)
+        if previous is not None and previous not in self.requested:
+            self.requested.discard(path)
             return
         if previous is not None:
-            self.asked.discard(previous)
+            self.requested.discard(previous)
         self.request(child)
 
     def after_last(self, path: str, last: str) -> None:
-        """A machine has ended (P4): its request is served if its last state holds none."""
+        """End of a machine: its request counts as served if its last state has served it."""
         self.running.pop(path, None)
-        if last not in self.asked:
-            self.asked.discard(path)
+        if last not in self.requested:
+            self.requested.discard(path)
 
     def after_all(self, path: str, children: Collection[str]) -> None:
-        """A concurrence has ended (P10): its request is served if no child still holds one.
+        """End of a concurrence: its request counts as served if every child has served it.
 
-        What the children hold is taken back, or it would stop a later visit.
+        Unserved requests of the children are withdrawn; otherwise they would stop a later visit.
         """
         self.running.pop(path, None)
-        held = [child for child in children if child in self.asked]
+        held = [child for child in children if child in self.requested]
         for child in held:
             self.recall(child)
         if not held:
-            self.asked.discard(path)
+            self.requested.discard(path)

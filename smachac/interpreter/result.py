@@ -1,4 +1,4 @@
-"""What a run is told and tells: what leaves do, events, how it ended."""
+"""Inputs and results of a run: behaviour of leaves, trace events, failures, the final result."""
 
 from __future__ import annotations
 
@@ -7,21 +7,21 @@ from dataclasses import dataclass, field
 from typing import Any, Literal, TypeAlias
 
 from smachac.diagnostics.source import Span
-from smachac.interpreter.userdata import Userdata, UserdataFault
+from smachac.interpreter.userdata import Userdata, UserdataErrorKind
 from smachac.ir.nodes import Leaf
 
 Event: TypeAlias = dict[str, Any]
-"""One line of a trace: `seq`, `event`, `path`, then what the event has of `outcome`, `to`, `key`,
-`value`, `message`, then `t` in seconds and, where known, `src` as `file:line`."""
+"""One event of a trace: `seq`, `event`, `path`; then `outcome`, `to`, `key`, `value` or `message`,
+depending on the kind of event; then `t` in seconds and, where known, `src` as `file:line`."""
 
 Behaviour = Callable[[str, Leaf, int, Userdata], str]
-"""What a leaf does: from its path, node, number of this visit (from 1) and userdata to an outcome.
+"""The behaviour of leaves: from path, node, visit number (from 1) and userdata to an outcome.
 
-It may raise: the run then ends with an error.
+If it raises an exception the run ends with an error.
 """
 
-Fault = Literal[
-    UserdataFault,
+ErrorKind = Literal[
+    UserdataErrorKind,
     "behaviour",
     "undeclared-outcome",
     "no-outcome",
@@ -31,17 +31,17 @@ Fault = Literal[
     "no-items",
     "no-end",
 ]
-"""Why a run failed: what a leaf did wrong, a graph that leads nowhere, or no end in sight."""
+"""The kind of error that ended a run: a fault of a leaf, an incomplete graph, or too many steps."""
 
 NO_OUTCOME = "ended without an outcome"
-"""What a trace says of a state whose code returned nothing."""
+"""The message of a trace for a state whose code returned nothing."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
-class Failure:
-    """Where and why a run failed."""
+class RunFailure:
+    """The place and the reason of a failed run."""
 
-    kind: Fault
+    kind: ErrorKind
     path: str
     message: str
     span: Span = field(compare=False, repr=False)
@@ -51,34 +51,35 @@ class Failure:
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
-class Choice:
-    """A moment at which several branches of a concurrence, by path, could go on, and which did."""
+class SchedulingChoice:
+    """A choice between branches of a concurrence, by path, that could continue, and the one that
+    did."""
 
     taken: str
     ready: tuple[str, ...]
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
-class Result:
-    """How a run ended: an outcome or an error, with all userdata as it was left.
+class RunResult:
+    """The result of a run: an outcome or an error, and the userdata at the end.
 
-    `scopes` holds the userdata of every container by its path, `userdata` that of the outermost.
-    `steps` counts states entered; `time` is virtual, in seconds. `choices` are the turns that were
-    taken where several could have been.
+    `scopes` holds the userdata of every container by its path, `userdata` that of the outermost
+    one. `steps` counts the states entered; `time` is virtual, in seconds. `choices` are the
+    scheduling choices that had more than one branch.
     """
 
     outcome: str | None
     userdata: dict[str, object]
-    error: Failure | None = None
+    error: RunFailure | None = None
     scopes: Mapping[str, dict[str, object]] = field(default_factory=dict)
     steps: int = 0
     time: float = 0.0
-    choices: tuple[Choice, ...] = ()
+    choices: tuple[SchedulingChoice, ...] = ()
 
 
 class RunError(Exception):
-    """Carries a failure up to the next concurrence, or out of the run."""
+    """Carries a failure to the enclosing concurrence, or out of the run."""
 
-    def __init__(self, failure: Failure) -> None:
+    def __init__(self, failure: RunFailure) -> None:
         super().__init__(str(failure))
         self.failure = failure

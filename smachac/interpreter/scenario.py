@@ -1,4 +1,5 @@
-"""Scenarios: what chosen leaves are to do in a run, instead of what their state type does."""
+"""Scenarios: scripted outcomes, writes and errors of chosen leaves, in place of their state type's
+code."""
 
 from __future__ import annotations
 
@@ -8,10 +9,10 @@ from dataclasses import dataclass
 from typing import NamedTuple
 
 from smachac.diagnostics.diagnostic import did_you_mean
-from smachac.interpreter.builtin_states import stopping_when_asked
+from smachac.interpreter.behaviours import preemptible
 from smachac.interpreter.result import Behaviour
 from smachac.interpreter.userdata import BehaviourError, Userdata
-from smachac.ir.builtin_states import default_outcome
+from smachac.ir.leaf import default_outcome
 from smachac.ir.nodes import Iterator, Leaf, Machine, Node
 from smachac.ir.traversal import PREEMPTED, outcome_names, walk
 
@@ -20,9 +21,9 @@ from smachac.ir.traversal import PREEMPTED, outcome_names, walk
 class Step:
     """One visit of a leaf: the keys it writes, in order, and its outcome.
 
-    No outcome: the one by which such a state usually ends. `stop`: as it begins the whole machine
-    is asked to stop. `wait`: it first waits until it is asked to. `error`: it fails with these
-    words instead.
+    Without an outcome the leaf ends with its default outcome. `stop`: the visit begins with a
+    request to stop for the whole machine. `wait`: the leaf first waits for a request to stop.
+    `error`: the leaf raises an error with this message instead.
     """
 
     outcome: str | None = None
@@ -32,30 +33,31 @@ class Step:
     stop: bool = False
 
 
-LONG = 1e9
-"""Seconds of virtual time: longer than anything else in a run."""
+LONGEST_WAIT = 1e9
+"""Seconds of virtual time, longer than everything else in a run."""
 
 
-STEP_KEYS = ("outcome", "set", "wait", "error", "stop")
+STEP_FIELDS = ("outcome", "set", "wait", "error", "stop")
+"""The fields of a step in a scenario file."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Scenario:
-    """The steps of leaves by path; visit n takes step n, the last one repeats.
+    """The steps of leaves by path. Visit n performs step n; the last step repeats.
 
-    A path may be the end of a full one (`GRASP`, `PICK/GRASP`) where only one leaf has it.
+    A path may be shortened to its end (`GRASP`, `PICK/GRASP`) if only one leaf has that end.
     """
 
     steps: Mapping[str, tuple[Step, ...]]
 
 
-def acted(scenario: Scenario, machine: Machine, otherwise: Behaviour) -> Behaviour:
-    """A behaviour that follows the scenario, and `otherwise` for leaves that are not in it.
+def scenario_behaviour(scenario: Scenario, machine: Machine, otherwise: Behaviour) -> Behaviour:
+    """A behaviour that follows a scenario; leaves without steps follow `otherwise`.
 
     Raises ValueError for a path that names no leaf, or several.
     """
     by_path = _by_path(scenario, machine)
-    others = stopping_when_asked(otherwise)
+    others = preemptible(otherwise)
 
     def behave(path: str, leaf: Leaf, visit: int, userdata: Userdata) -> str:
         steps = by_path.get(path)
@@ -64,19 +66,19 @@ def acted(scenario: Scenario, machine: Machine, otherwise: Behaviour) -> Behavio
         step = steps[min(visit, len(steps)) - 1]
         if step.stop:
             userdata.stop_machine()
-        return follow(step, leaf, userdata)
+        return perform_step(step, leaf, userdata)
 
     return behave
 
 
-def follow(step: Step, leaf: Leaf, userdata: Userdata) -> str:
-    """What a leaf does at a step, once the machine was asked to stop where it is to be."""
+def perform_step(step: Step, leaf: Leaf, userdata: Userdata) -> str:
+    """Perform one step of a leaf, without its `stop`; the outcome."""
     able = PREEMPTED in outcome_names(leaf)
     if userdata.preempted and able:
         userdata.service_preempt()
         return PREEMPTED
     if step.wait and not userdata.preempted:
-        userdata.sleep(LONG)
+        userdata.sleep(LONGEST_WAIT)
         if able:
             return PREEMPTED
     if step.error:
@@ -86,8 +88,8 @@ def follow(step: Step, leaf: Leaf, userdata: Userdata) -> str:
     return step.outcome if step.outcome is not None else default_outcome(leaf)
 
 
-class Row(NamedTuple):
-    """A step as plain data, for programs that are run."""
+class PlainStep(NamedTuple):
+    """A step as plain data, for generated programs."""
 
     outcome: str
     writes: dict[str, object]
@@ -96,19 +98,19 @@ class Row(NamedTuple):
     stop: bool
 
 
-def plain_steps(scenario: Scenario, machine: Machine) -> dict[str, list[Row]]:
-    """A scenario as rows by full path.
+def plain_steps_by_path(scenario: Scenario, machine: Machine) -> dict[str, list[PlainStep]]:
+    """The steps of a scenario as plain data, by full path.
 
     Raises ValueError for a path that names no leaf, or several.
     """
     nodes = dict(walk(machine.root))
-    rows: dict[str, list[Row]] = {}
+    rows: dict[str, list[PlainStep]] = {}
     for path, steps in _by_path(scenario, machine).items():
         leaf = nodes[path]
         assert isinstance(leaf, Leaf)
         usual = default_outcome(leaf)
         rows[path] = [
-            Row(step.outcome or usual, dict(step.writes), step.wait, step.error, step.stop)
+            PlainStep(step.outcome or usual, dict(step.writes), step.wait, step.error, step.stop)
             for step in steps
         ]
     return rows
@@ -157,24 +159,24 @@ def read_scenario(data: object, machine: Machine) -> tuple[Scenario, list[str]]:
         entries = given if isinstance(given, list) else [given]
         if not entries:
             problems.append(f"`{name}` has no steps")
-        reader = _Reader(leaves[path], path, problems)
+        reader = _StepReader(leaves[path], path, problems)
         steps[path] = tuple(reader.step(entry, at) for at, entry in enumerate(entries, 1))
     return Scenario(steps=steps), problems
 
 
 @dataclass(frozen=True, slots=True)
-class _Place:
+class _LeafEntry:
     """A leaf, and whether it may write any key."""
 
     leaf: Leaf
-    loose: bool
+    unrestricted: bool
 
 
 @dataclass(frozen=True, slots=True)
-class _Reader:
-    """Reads the steps of one leaf and notes what is wrong."""
+class _StepReader:
+    """Converts the steps of one leaf, and collects the problems."""
 
-    place: _Place
+    place: _LeafEntry
     path: str
     problems: list[str]
 
@@ -185,8 +187,8 @@ class _Reader:
             self.problem(number, "a step is an outcome, or a mapping with `outcome` and `set`")
             return Step()
         for key in entry:
-            if key not in STEP_KEYS:
-                help_ = did_you_mean(str(key), STEP_KEYS)
+            if key not in STEP_FIELDS:
+                help_ = did_you_mean(str(key), STEP_FIELDS)
                 self.problem(number, f"unknown key `{key}`", help_)
         writes = entry.get("set") or {}
         if not isinstance(writes, dict):
@@ -194,7 +196,7 @@ class _Reader:
             writes = {}
         declared = [key.name for key in self.place.leaf.outputs]
         for key in writes:
-            if not self.place.loose and key not in declared:
+            if not self.place.unrestricted and key not in declared:
                 help_ = did_you_mean(str(key), declared)
                 self.problem(number, f"`{key}` is not one of its output keys", help_)
         for key in ("wait", "stop"):
@@ -210,7 +212,7 @@ class _Reader:
         )
 
     def outcome(self, given: object, number: int) -> str:
-        """YAML reads the outcomes `true` and `false` as booleans."""
+        """The outcome of a step. YAML reads the outcomes `true` and `false` as booleans."""
         name = str(given).lower() if isinstance(given, bool) else str(given)
         declared = outcome_names(self.place.leaf)
         if not self.place.leaf.open and name not in declared:
@@ -223,10 +225,10 @@ class _Reader:
         self.problems.append(f"{self.path}, step {number}: {message}{end}")
 
 
-def _leaves(machine: Machine) -> dict[str, _Place]:
+def _leaves(machine: Machine) -> dict[str, _LeafEntry]:
     nodes: dict[str, Node] = dict(walk(machine.root))
     return {
-        path: _Place(node, node.open or isinstance(nodes[path.rpartition("/")[0]], Iterator))
+        path: _LeafEntry(node, node.open or isinstance(nodes[path.rpartition("/")[0]], Iterator))
         for path, node in nodes.items()
         if isinstance(node, Leaf)
     }
@@ -237,6 +239,7 @@ def _matches(name: str, paths: Iterable[str]) -> list[str]:
 
 
 def _found(name: str, leaves: Mapping[str, object]) -> str | None:
+    """The full path of the leaf with a name; None if there is none, or several."""
     if name in leaves:
         return name
     matches = _matches(name, leaves)
@@ -244,6 +247,7 @@ def _found(name: str, leaves: Mapping[str, object]) -> str | None:
 
 
 def _not_found(name: str, machine: Machine, leaves: Mapping[str, object]) -> str:
+    """The message for a name that is no leaf, or several."""
     matches = _matches(name, leaves)
     if matches:
         return f"`{name}` may be any of {', '.join(f'`{path}`' for path in matches)}"

@@ -1,37 +1,37 @@
-"""Whose turn it is among the branches of concurrences."""
+"""Scheduling: the order in which branches of concurrences take turns."""
 
 from __future__ import annotations
 
 import random
 from collections.abc import Sequence
 
-from smachac.interpreter.result import Choice
+from smachac.interpreter.result import SchedulingChoice
 
 
 class ScheduleError(ValueError):
-    """A schedule gives the turn to a branch that cannot go on."""
+    """A schedule names a branch that cannot continue."""
 
 
-class Schedule:
-    """Settles turns by a seed or by a list of branches, and notes what it settled.
+class Scheduler:
+    """Chooses turns by a seed or by a schedule, and records the choices.
 
-    An entry of the list is the path of a branch or the end of it: `sm/BOTH/LEFT`, `LEFT`.
+    An entry of a schedule is the path of a branch or the end of it: `sm/BOTH/LEFT`, `LEFT`.
     """
 
     def __init__(self, seed: int, turns: Sequence[str] | None) -> None:
         self._random = random.Random(seed)
         self._turns = turns
-        self.choices: list[Choice] = []
+        self.choices: list[SchedulingChoice] = []
 
     def choose(self, ready: Sequence[str]) -> str:
-        """The branch that goes on, of several paths. Raises ScheduleError."""
+        """The branch that continues, among several paths. Raises ScheduleError."""
         if self._turns is None:
             taken = ready[self._random.randrange(len(ready))]
         elif len(self.choices) < len(self._turns):
             taken = self._named(self._turns[len(self.choices)], ready)
         else:
             taken = ready[0]
-        self.choices.append(Choice(taken=taken, ready=tuple(ready)))
+        self.choices.append(SchedulingChoice(taken=taken, ready=tuple(ready)))
         return taken
 
     def _named(self, turn: str, ready: Sequence[str]) -> str:

@@ -1,36 +1,35 @@
-"""Userdata while a machine is interpreted: values as Python data, and what a leaf sees of them."""
+"""Userdata of a run: values as Python data, copies at container borders, and the view of a leaf."""
 
 from __future__ import annotations
 
 import json
 import re
 from collections.abc import Callable, Mapping
-from typing import TYPE_CHECKING, Literal, Protocol
+from typing import Literal, Protocol
 
+from smachac.interpreter.evaluator import EvaluationError, evaluate
+from smachac.ir.expressions import Expr, Lambda, parse_expression
 from smachac.ir.nodes import Data, Expression, Leaf, Node, Struct
 from smachac.ir.traversal import remapping
 
-if TYPE_CHECKING:
-    from smachac.ir.expressions import Expr
-
-
-UserdataFault = Literal["missing-key", "undeclared-read"]
+UserdataErrorKind = Literal["missing-key", "undeclared-read"]
+"""The kind of a failed read of userdata."""
 
 
 class BehaviourError(Exception):
-    """What a leaf was to do cannot be done; the message says why."""
+    """A leaf cannot perform its behaviour; the message has the reason."""
 
 
 class UserdataError(BehaviourError):
-    """A leaf read a key that is absent, or that it does not declare."""
+    """A leaf read a key that is absent or that it does not declare."""
 
-    def __init__(self, kind: UserdataFault, message: str) -> None:
+    def __init__(self, kind: UserdataErrorKind, message: str) -> None:
         super().__init__(message)
-        self.kind: UserdataFault = kind
+        self.kind: UserdataErrorKind = kind
 
 
 class Readable(Protocol):
-    """Something with keys: what a leaf sees, or the userdata of a container."""
+    """Readable userdata: the view of a leaf, or the userdata of a container."""
 
     def __getitem__(self, key: str, /) -> object: ...
 
@@ -38,9 +37,9 @@ class Readable(Protocol):
 
 
 def python_data(data: Data) -> object:
-    """A fresh Python object for data of the script: lists, dicts, and expressions evaluated.
+    """A new Python object for a value of the script, with its expressions evaluated.
 
-    A lambda, and what cannot be evaluated here (code that needs the robot), stands for itself.
+    A lambda, and code that cannot be evaluated here (it needs the robot), stays an Expression.
     """
     match data:
         case tuple():
@@ -48,36 +47,33 @@ def python_data(data: Data) -> object:
         case Struct(entries=entries):
             return {key: python_data(item) for key, item in entries}
         case Expression():
-            return _evaluated(data)
+            return _evaluate(data)
     return data
 
 
-def _evaluated(expression: Expression) -> object:
+def _evaluate(expression: Expression) -> object:
     try:
-        value = _value(_parsed(expression), {}, expression.text)
+        value = _value(_parse(expression), {}, expression.text)
     except BehaviourError:
         return expression
     return expression if callable(value) else value
 
 
-def called(expression: Expression, userdata: Readable) -> object:
-    """The result of a function of the script: a lambda over userdata, or of nothing.
+def call_function(expression: Expression, userdata: Readable) -> object:
+    """The result of a function of the script, called with userdata.
 
-    An expression that is no lambda is taken for the body of one over `ud`. Raises BehaviourError.
+    The expression is a lambda with one parameter or none, or the body of a lambda over `ud`. Raises
+    BehaviourError.
     """
-    from smachac.ir.expressions import Lambda
-
-    body: Expr = _parsed(expression)
-    names = {"ud": Fields(userdata), "userdata": Fields(userdata)}
+    body: Expr = _parse(expression)
+    names = {"ud": KeyAttributes(userdata), "userdata": KeyAttributes(userdata)}
     if isinstance(body, Lambda):
-        names = {body.parameter: Fields(userdata)} if body.parameter else {}
+        names = {body.parameter: KeyAttributes(userdata)} if body.parameter else {}
         body = body.body
     return _value(body, names, expression.text)
 
 
-def _parsed(expression: Expression) -> Expr:
-    from smachac.ir.expressions import parse_expression
-
+def _parse(expression: Expression) -> Expr:
     parsed = parse_expression(expression.text)
     if parsed is None:
         raise BehaviourError(f"`{expression.text}` is Python code, which is not run here")
@@ -85,8 +81,6 @@ def _parsed(expression: Expression) -> Expr:
 
 
 def _value(expr: Expr, names: Mapping[str, object], text: str) -> object:
-    from smachac.interpreter.evaluator import EvaluationError, evaluate
-
     try:
         return evaluate(expr, names)
     except EvaluationError as error:
@@ -96,7 +90,7 @@ def _value(expr: Expr, names: Mapping[str, object], text: str) -> object:
 
 
 def trace_value(value: object) -> object:
-    """A value as a trace shows it: a copy of what JSON can say, else its `repr`."""
+    """A value for a trace: a JSON copy if there is one, else its `repr`."""
     if isinstance(value, Expression):
         return value.text
     try:
@@ -106,9 +100,9 @@ def trace_value(value: object) -> object:
 
 
 def copy_in(node: Node, around: Mapping[str, object], own: dict[str, object]) -> None:
-    """The declared inputs of a container, from the userdata around it (V1); absent ones stay (V2).
+    """Copy the declared inputs of a container from the userdata around it; absent keys stay absent.
 
-    Values are shared, not copied (V6).
+    The values are shared, not copied (docs/semantics.md, Userdata).
     """
     names = remapping(node)
     for key in node.inputs:
@@ -118,7 +112,7 @@ def copy_in(node: Node, around: Mapping[str, object], own: dict[str, object]) ->
 
 
 def copy_out(node: Node, own: Mapping[str, object], around: dict[str, object]) -> None:
-    """The declared outputs of a container, to the userdata around it (V4)."""
+    """Copy the declared outputs of a container to the userdata around it."""
     names = remapping(node)
     for key in node.outputs:
         if key.name in own:
@@ -126,16 +120,16 @@ def copy_out(node: Node, own: Mapping[str, object], around: dict[str, object]) -
 
 
 class Userdata:
-    """What a leaf sees of its container's userdata: its declared keys, under its own names (R*).
+    """The view of a leaf on its container's userdata: its declared keys, under its own names.
 
-    An undeclared or absent key cannot be read (UserdataError); writing an undeclared one does
-    nothing (R4). `loose` leaves see every key: those of an open type, and the child of an
-    iterator (I7). `asked` holds the paths of states that are asked to stop; `stop_machine` asks
-    the whole machine to.
+    Reading an undeclared or absent key raises UserdataError; writing an undeclared key has no
+    effect. `unrestricted` leaves see every key: leaves of an open type, and the child of an
+    iterator. `requested` holds the paths of states with an unserved request to stop. `on_write` is
+    called after each write, `stop_machine` sends a request to stop to the whole machine.
     """
 
     __slots__ = (
-        *("_around", "_asked", "_names", "_path", "_reads", "_writes", "_written"),
+        *("_around", "_requested", "_names", "_path", "_reads", "_writes", "_on_write"),
         *("slept", "stop_machine"),
     )
 
@@ -144,19 +138,19 @@ class Userdata:
         leaf: Leaf,
         path: str,
         around: dict[str, object],
-        asked: set[str],
-        written: Callable[[str, object], None],
+        requested: set[str],
+        on_write: Callable[[str, object], None],
         *,
-        loose: bool = False,
+        unrestricted: bool = False,
         stop_machine: Callable[[], None] = lambda: None,
     ) -> None:
         self._path = path
         self._around = around
-        self._asked = asked
+        self._requested = requested
         self._names = remapping(leaf)
-        self._reads = None if loose else {key.name for key in leaf.inputs}
-        self._writes = None if loose else {key.name for key in leaf.outputs}
-        self._written = written
+        self._reads = None if unrestricted else {key.name for key in leaf.inputs}
+        self._writes = None if unrestricted else {key.name for key in leaf.outputs}
+        self._on_write = on_write
         self.stop_machine = stop_machine
         self.slept = 0.0
 
@@ -173,7 +167,7 @@ class Userdata:
         if self._writes is not None and key not in self._writes:
             return
         self._around[self._names.get(key, key)] = value
-        self._written(key, value)
+        self._on_write(key, value)
 
     def __contains__(self, key: object) -> bool:
         declared = self._reads is None or key in self._reads
@@ -188,20 +182,20 @@ class Userdata:
 
     @property
     def preempted(self) -> bool:
-        """Whether a request to stop has reached the leaf and waits for an answer."""
-        return self._path in self._asked
+        """Whether the leaf has an unserved request to stop."""
+        return self._path in self._requested
 
     def service_preempt(self) -> None:
-        """Answer the request to stop: it counts as served."""
-        self._asked.discard(self._path)
+        """Mark the request to stop as served."""
+        self._requested.discard(self._path)
 
     def sleep(self, seconds: float) -> None:
-        """Let virtual time pass between what the leaf does and its end."""
+        """Let virtual time pass between the behaviour of the leaf and its exit."""
         self.slept += max(0.0, seconds)
 
 
-class Fields:
-    """Userdata as expressions see it: `ud.key`."""
+class KeyAttributes:
+    """Userdata in expressions: keys as attributes, `ud.key`."""
 
     __slots__ = ("_userdata",)
 

@@ -11,13 +11,13 @@ from collections.abc import Callable, Sequence
 from dataclasses import dataclass, field
 from typing import Literal, NamedTuple
 
-from smachac.interpreter.builtin_states import built_in
+from smachac.interpreter.behaviours import builtin_behaviour
 from smachac.interpreter.interpreter import run
 from smachac.interpreter.result import Event
 from smachac.interpreter.scenario import Scenario, Step, follow
 from smachac.interpreter.userdata import Userdata
-from smachac.ir.builtin_states import default_outcome
 from smachac.ir.expressions import parse_expression
+from smachac.ir.leaf import default_outcome
 from smachac.ir.nodes import Concurrence, Leaf, Machine
 from smachac.ir.traversal import PREEMPTED, containers, expressions, outcome_names, walk
 from smachac.verify.coverage import Taken
@@ -125,7 +125,7 @@ class Walks:
         branches hear of it in time is for threads to decide.
         """
         attempt = Attempt(guide, self.live if live else frozenset(), stop)
-        others = built_in()
+        others = builtin_behaviour()
 
         def behave(path: str, leaf: Leaf, visit: int, userdata: Userdata) -> str:
             attempt.visits += 1

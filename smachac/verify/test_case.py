@@ -7,9 +7,9 @@ from collections.abc import Callable, Iterable, Mapping, Sequence
 from dataclasses import dataclass
 from typing import Any
 
-from smachac.interpreter.builtin_states import built_in
+from smachac.interpreter.behaviours import builtin_behaviour
 from smachac.interpreter.interpreter import run
-from smachac.interpreter.scenario import Row, Scenario, acted, plain_steps
+from smachac.interpreter.scenario import Row, Scenario, plain_steps_by_path, scenario_behaviour
 from smachac.interpreter.userdata import Userdata
 from smachac.ir.nodes import Leaf, Machine
 from smachac.ir.traversal import walk
@@ -54,7 +54,7 @@ def scenes_of(machine: Machine, paths: Sequence[Path], live: frozenset[str]) -> 
     for path in paths:
         own = live if path.live else frozenset()
         rows: dict[str, Sequence[Row]] = {name: () for name in leaves if name not in own}
-        rows |= plain_steps(path.scenario, machine)
+        rows |= plain_steps_by_path(path.scenario, machine)
         scenes.append(
             Scene(
                 rows=rows,
@@ -70,7 +70,7 @@ def scenes_of(machine: Machine, paths: Sequence[Path], live: frozenset[str]) -> 
 def expected(machine: Machine, scenario: Scenario, scene: Scene) -> list[Event]:
     """The trace of the interpreter, with what leaves read."""
     events: list[Event] = []
-    follow = acted(scenario, machine, built_in())
+    follow = scenario_behaviour(scenario, machine, builtin_behaviour())
 
     def behave(path: str, leaf: Leaf, visit: int, userdata: Userdata) -> str:
         for key in scene.reads.get(path, ()):

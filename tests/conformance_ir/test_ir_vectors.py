@@ -21,7 +21,7 @@ from ir_vectors import Replay, machine_of, nodes_of
 
 from smachac.checks import check_machine
 from smachac.diagnostics.diagnostic import has_errors
-from smachac.interpreter.result import Event, Result
+from smachac.interpreter.result import Event, RunResult
 
 Json = Any
 
@@ -106,7 +106,7 @@ def replay(case: Json) -> list[Json]:
     return runs
 
 
-def _told(case: Json, result: Result, events: list[Event], parent: Json) -> Json:
+def _told(case: Json, result: RunResult, events: list[Event], parent: Json) -> Json:
     concurrences = {path for path, node in nodes_of(case) if node["type"] == "concurrence"}
     leaves = {path for path, node in nodes_of(case) if node["type"] == "leaf"}
     told = {
@@ -119,7 +119,7 @@ def _told(case: Json, result: Result, events: list[Event], parent: Json) -> Json
     return told if parent is None else {**told, "parent": parent}
 
 
-def _category(result: Result) -> str | None:
+def _category(result: RunResult) -> str | None:
     if result.error is not None:
         return KINDS[result.error.kind]
     return "no_outcome" if result.outcome is None else None

@@ -24,7 +24,7 @@ from smachac.diagnostics.diagnostic import Report, Severity
 from smachac.driver import build
 from smachac.frontend.files import disk_library
 from smachac.frontend.state_types import find_state_type
-from smachac.interpreter.builtin_states import built_in
+from smachac.interpreter.behaviours import builtin_behaviour
 from smachac.interpreter.interpreter import run
 from smachac.runtime import smach
 from smachac.targets import load_target
@@ -316,7 +316,7 @@ def test_functions_are_called_before_a_state_does_its_work(
     assert written == [f"word,tries\naa,{machine.userdata.tries}\n"]
     assert machine.userdata.tries > 0
     assert [*tmp_path.iterdir()] == []
-    result = run(smachac.load(path), built_in())
+    result = run(smachac.load(path), builtin_behaviour())
     assert result.outcome == "succeeded"
     keys = machine.userdata.keys()
     assert result.userdata == {key: machine.userdata[key] for key in keys}
@@ -325,7 +325,7 @@ def test_functions_are_called_before_a_state_does_its_work(
 def test_keys_are_conditions_of_outcomes_without_one() -> None:
     path = FOLDER.parent / "cases" / "smacha" / "keys_as_conditions" / "main.yml"
     machine = machine_of(smachac.build(path, "python")["sm.py"])
-    assert machine.execute() == run(smachac.load(path), built_in()).outcome == "stopped"
+    assert machine.execute() == run(smachac.load(path), builtin_behaviour()).outcome == "stopped"
 
 
 def test_functions_are_called_first_in_cpp_as_well(tmp_path: Path) -> None:

@@ -8,9 +8,9 @@ from collections.abc import Iterator
 
 from smachac.diagnostics.diagnostic import Report, Severity
 from smachac.interpreter.interpreter import run
-from smachac.interpreter.result import Behaviour, Event, Result
+from smachac.interpreter.result import Behaviour, Event, RunResult
 from smachac.interpreter.userdata import Userdata
-from smachac.ir.builtin_states import default_outcome, variable
+from smachac.ir.leaf import default_outcome, variable
 from smachac.ir.nodes import Leaf, Machine, Struct
 from smachac.ir.traversal import PREEMPTED, containers, outcome_names, walk
 
@@ -83,7 +83,7 @@ def _steps(leaf: Leaf) -> Iterator[tuple[object, set[str]]]:
         yield told.get("outcome", default_outcome(leaf)), keys
 
 
-def runs(machine: Machine, count: int) -> Iterator[tuple[Result, list[Event]]]:
+def runs(machine: Machine, count: int) -> Iterator[tuple[RunResult, list[Event]]]:
     """So many runs with their events; in every third one somebody asks the machine to stop."""
     for seed in range(count):
         events: list[Event] = []

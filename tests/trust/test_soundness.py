@@ -26,9 +26,9 @@ from smachac.analysis.accesses import scripted_steps
 from smachac.checks import check_machine
 from smachac.diagnostics.diagnostic import Report, Severity
 from smachac.diagnostics.source import NOWHERE
-from smachac.interpreter.builtin_states import built_in
+from smachac.interpreter.behaviours import builtin_behaviour
 from smachac.interpreter.interpreter import run
-from smachac.interpreter.result import Event, Result
+from smachac.interpreter.result import Event, RunResult
 from smachac.ir.nodes import Key, Leaf, Machine, Node, StateMachine
 
 PROJECTS = 24
@@ -36,7 +36,7 @@ DAMAGED = 6
 RUNS = 9
 
 
-def fault(machine: Machine, report: Report, result: Result, asked: bool) -> str | None:
+def fault(machine: Machine, report: Report, result: RunResult, asked: bool) -> str | None:
     """How a run failed that must not fail; None where all is well.
 
     A key that is perhaps missing has been told, as such or as a race; one that goes round is cut
@@ -143,7 +143,7 @@ def test_what_is_said_holds_where_states_fail_and_catch(drawn: tuple[Machine, ob
     machine, _ = drawn
     report = check_machine(machine)
     events: list[Event] = []
-    run(machine, built_in(), events.append, max_steps=300)
+    run(machine, builtin_behaviour(), events.append, max_steps=300)
     assert list(contradictions(machine, report, events)) == []
     missing = [each for each in events if "holds nothing" in each.get("message", "")]
     told = {item.code.code for item in report} & {"SM301", "SM303", "SM307"}

@@ -7,8 +7,8 @@ from typing import Any
 
 from ir_machines import ran
 
-from smachac.interpreter.builtin_states import built_in
-from smachac.interpreter.scenario import Scenario, Step, acted
+from smachac.interpreter.behaviours import builtin_behaviour
+from smachac.interpreter.scenario import Scenario, Step, scenario_behaviour
 from smachac.interpreter.userdata import python_data
 from smachac.ir import nodes
 from smachac.ir.nodes import Concurrence, Iterator, Leaf, Machine, Node, StateMachine
@@ -127,4 +127,6 @@ def interpreted(root: StateMachine, steps: Steps) -> list[Event]:
         for path, row in steps.items()
     }
     given_machine = Machine(root=root)
-    return ran(root, acted(Scenario(steps=rows), given_machine, built_in()))[1]
+    return ran(root, scenario_behaviour(Scenario(steps=rows), given_machine, builtin_behaviour()))[
+        1
+    ]

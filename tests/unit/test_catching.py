@@ -9,7 +9,7 @@ import pytest
 
 import smachac
 from smachac.diagnostics.diagnostic import Severity
-from smachac.interpreter.builtin_states import built_in
+from smachac.interpreter.behaviours import builtin_behaviour
 from smachac.interpreter.interpreter import run
 from smachac.interpreter.result import Event
 from smachac.ir.nodes import Machine
@@ -38,7 +38,7 @@ def fails(transitions: str) -> str:
 def ended(machine: Machine) -> tuple[str | None, list[str]]:
     """The outcome of a run, and what each state ended with."""
     events: list[Event] = []
-    result = run(machine, built_in(), events.append)
+    result = run(machine, builtin_behaviour(), events.append)
     return result.outcome, [f"{e['path']} {e['outcome']}" for e in events if e["event"] == "exit"]
 
 
@@ -54,7 +54,7 @@ def test_a_transition_for_error_catches(tmp_path: Path) -> None:
 
 def test_without_one_the_run_fails(tmp_path: Path) -> None:
     machine = machine_of(tmp_path, f"- A: {fails('transitions: {succeeded: succeeded}')}")
-    result = run(machine, built_in())
+    result = run(machine, builtin_behaviour())
     assert result.outcome is None
     assert result.error is not None
     assert "ZeroDivisionError" in result.error.message
@@ -78,7 +78,7 @@ def test_the_state_of_on_error_does_not_lead_to_itself(tmp_path: Path) -> None:
     states = f"- A: {fails('transitions: {succeeded: succeeded}')}\n- RECOVER: {recover}"
     machine = machine_of(tmp_path, states, "on_error: RECOVER")
     assert [child.catches for child in machine.root.children] == ["error", ""]
-    result = run(machine, built_in())
+    result = run(machine, builtin_behaviour())
     assert result.error is not None
     assert result.error.path == "sm/RECOVER"
 
@@ -102,7 +102,7 @@ def test_a_container_ends_with_what_fails_in_it(tmp_path: Path, kind: str) -> No
     machine = machine_of(tmp_path, states, "on_error: failed" if kind == "on_error" else "")
     outcome, exits = ended(machine)
     assert (outcome, exits) == ("failed", ["sm/BOX/FIRST succeeded", "sm/BOX error"])
-    assert "out" not in run(machine, built_in()).userdata, "nothing is handed out"
+    assert "out" not in run(machine, builtin_behaviour()).userdata, "nothing is handed out"
 
 
 def test_a_branch_that_fails_is_told_from_one_that_does_not(tmp_path: Path) -> None:
@@ -137,7 +137,7 @@ def test_a_run_without_an_end_is_not_caught(tmp_path: Path) -> None:
     transitions: {succeeded: succeeded, error: failed}
     states:
       - A: {template: SleepState, time: 1, transitions: {succeeded: A, preempted: succeeded}}"""
-    result = run(machine_of(tmp_path, states), built_in(), max_steps=50)
+    result = run(machine_of(tmp_path, states), builtin_behaviour(), max_steps=50)
     assert result.error is not None
     assert result.error.kind == "no-end"
 

@@ -8,7 +8,7 @@ from hypothesis import strategies as st
 
 from smachac.analysis.def_use import key_status, path_without
 from smachac.analysis.definite_assignment import data_flow
-from smachac.interpreter.builtin_states import built_in
+from smachac.interpreter.behaviours import builtin_behaviour
 from smachac.interpreter.interpreter import Interpreter
 from smachac.interpreter.result import Event
 from smachac.ir.nodes import Machine
@@ -51,7 +51,7 @@ def test_runs_find_what_is_called_always_set_and_miss_what_is_called_never(
                 assert status == "sometimes" or is_set == (status == "always"), (path, key, status)
 
     interpreter = Interpreter(
-        machine, built_in(seed), observe, seed=seed, max_steps=60, preempt_at={asked} - {0}
+        machine, builtin_behaviour(seed), observe, seed=seed, max_steps=60, preempt_at={asked} - {0}
     )
     interpreter.execute()
     assert entered <= flow.entered

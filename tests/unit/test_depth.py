@@ -13,7 +13,7 @@ from smachac.driver import analyse, build
 from smachac.frontend import yaml_tree
 from smachac.frontend.files import disk_library
 from smachac.frontend.loader import Library, memory_library
-from smachac.interpreter.builtin_states import built_in
+from smachac.interpreter.behaviours import builtin_behaviour
 from smachac.interpreter.interpreter import run
 from smachac.targets import load_target, target_names
 
@@ -85,7 +85,7 @@ def test_too_deep_a_chain_of_sub_scripts() -> None:
 def test_deep_machines_are_interpreted() -> None:
     analysis = analyse(Source("main.yml", HEAD + nested(998)), library({}), [])
     assert analysis.checked is not None
-    assert run(analysis.checked, built_in()).outcome == "done"
+    assert run(analysis.checked, builtin_behaviour()).outcome == "done"
 
 
 def test_too_deep_an_expression() -> None:

@@ -13,10 +13,10 @@ import pytest
 
 import smachac
 from smachac.commands.cli import main
-from smachac.interpreter.builtin_states import built_in
+from smachac.interpreter.behaviours import builtin_behaviour
 from smachac.interpreter.interpreter import run
-from smachac.interpreter.result import Result
-from smachac.interpreter.scenario import acted, read_scenario
+from smachac.interpreter.result import RunResult
+from smachac.interpreter.scenario import read_scenario, scenario_behaviour
 from smachac.runtime import smach
 
 PAGE = Path(__file__).parents[2] / "docs" / "checks.md"
@@ -118,12 +118,12 @@ def test_smach_does_not_look_at_states_that_nothing_leads_to() -> None:
     assert machine(PICK=there, LET_GO=there).execute() == "delivered"
 
 
-def played(name: str, states: dict[str, object]) -> Result:
+def played(name: str, states: dict[str, object]) -> RunResult:
     """How a script of the page ends when its states do as a scenario says."""
     whole = smachac.load(name)
     scenario, wrong = read_scenario({"states": states}, whole)
     assert not wrong
-    return run(whole, acted(scenario, whole, built_in()))
+    return run(whole, scenario_behaviour(scenario, whole, builtin_behaviour()))
 
 
 def test_one_arm_fails_and_all_is_well(folder: Path) -> None:

@@ -12,7 +12,7 @@ import pytest
 
 import smachac
 from smachac.commands.cli import main
-from smachac.interpreter.builtin_states import built_in
+from smachac.interpreter.behaviours import builtin_behaviour
 from smachac.interpreter.interpreter import run
 from smachac.runtime.tracing.compare import compare
 
@@ -82,7 +82,7 @@ def test_the_interpreter_and_the_program_agree(name: str, folder: Path) -> None:
     program: list[dict[str, Any]] = []
     interpreter: list[dict[str, Any]] = []
     outcome = smachac.run(name, observe=program.append)
-    assert run(smachac.load(name), built_in(), interpreter.append).outcome == outcome
+    assert run(smachac.load(name), builtin_behaviour(), interpreter.append).outcome == outcome
     assert compare(program, interpreter) is None
 
 

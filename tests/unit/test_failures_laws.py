@@ -9,9 +9,9 @@ from strategies import valid_machines
 
 from smachac.analysis.failure_paths import Failure, failures
 from smachac.analysis.successors import Routes, path_to
-from smachac.interpreter.builtin_states import built_in
+from smachac.interpreter.behaviours import builtin_behaviour
 from smachac.interpreter.interpreter import run
-from smachac.interpreter.result import Event, Result
+from smachac.interpreter.result import Event, RunResult
 from smachac.ir.nodes import Concurrence, Leaf, Machine
 from smachac.ir.outcome_names import is_failure
 from smachac.ir.traversal import walk
@@ -36,9 +36,9 @@ def failed(machine: Machine, trace: list[Event]) -> list[tuple[int, tuple[str, s
     ]
 
 
-def ran(machine: Machine, seed: int) -> tuple[Result, list[Event]]:
+def ran(machine: Machine, seed: int) -> tuple[RunResult, list[Event]]:
     trace: list[Event] = []
-    return run(machine, built_in(seed), trace.append, seed=seed, max_steps=200), trace
+    return run(machine, builtin_behaviour(seed), trace.append, seed=seed, max_steps=200), trace
 
 
 @settings(max_examples=150)

@@ -14,7 +14,7 @@ from smachac.analysis.type_inference import infer
 from smachac.analysis.type_lattice import fits, misfit, widened
 from smachac.checks import check_machine
 from smachac.diagnostics.source import NOWHERE
-from smachac.interpreter.builtin_states import built_in
+from smachac.interpreter.behaviours import builtin_behaviour
 from smachac.interpreter.evaluator import EvaluationError, evaluate
 from smachac.interpreter.interpreter import run
 from smachac.interpreter.result import Event
@@ -414,7 +414,7 @@ def test_what_an_expression_gives_is_of_its_type(expr: Expr, values: dict[str, o
 def test_what_a_run_writes_is_of_the_type_of_its_key(machine: Machine) -> None:
     types = infer(machine)
     seen: list[Event] = []
-    run(machine, built_in(), seen.append)
+    run(machine, builtin_behaviour(), seen.append)
     for event in seen:
         if event["event"] == "write":
             key = event["path"], event["key"]

@@ -8,20 +8,20 @@ from typing import Any
 import pytest
 from ir_machines import leaf, machine, ran, short
 
-from smachac.interpreter.builtin_states import built_in
-from smachac.interpreter.result import Result
+from smachac.interpreter.behaviours import builtin_behaviour
+from smachac.interpreter.result import RunResult
 
 
 def single(
     type: str, outcomes: str, *, held: Mapping[str, Any] = {}, seed: int = 0, **more: Any
-) -> Result:
+) -> RunResult:
     """The run of a machine of one leaf, whose outcomes are those of the machine."""
     to = {name: name for name in outcomes.split()}
     root = machine("sm", outcomes, leaf("A", to, type=type, **more), held=held)
-    return ran(root, built_in(seed), seed=seed)[0]
+    return ran(root, builtin_behaviour(seed), seed=seed)[0]
 
 
-def message(result: Result) -> str:
+def message(result: RunResult) -> str:
     assert result.error is not None
     assert result.error.kind == "behaviour"
     return result.error.message
@@ -38,13 +38,13 @@ def test_an_unknown_type_ends_well_if_it_can(outcomes: str, outcome: str) -> Non
 def test_an_open_leaf_without_outcomes_ends_along_a_transition() -> None:
     node = leaf("A", {"found": "end"}, open=True)
     root = machine("sm", "end", node)
-    assert ran(root, built_in())[0].outcome == "end"
+    assert ran(root, builtin_behaviour())[0].outcome == "end"
 
 
 def test_a_scripted_state_takes_a_step_at_each_visit() -> None:
     steps = [{"outcome": "again", "set": {"k": [1]}}, {"outcome": "done", "set": {"k": 2, "j": 3}}]
     node = leaf("A", {"again": "A", "done": "end"}, type="ScriptedState", outs="j k", steps=steps)
-    result, events = ran(machine("sm", "end", node), built_in())
+    result, events = ran(machine("sm", "end", node), builtin_behaviour())
     assert result.outcome == "end"
     assert [line for line in short(events) if line.startswith("write")] == [
         "write sm/A k [1]",
@@ -57,7 +57,7 @@ def test_a_scripted_state_takes_a_step_at_each_visit() -> None:
 def test_callbacks_are_called_first_in_the_order_of_their_keys(type: str) -> None:
     code = {"b": "`lambda ud: ud.a + 1`", "a": "`lambda ud: 1`"}
     node = leaf("A", {"x": "end"}, type=type, ins="a", outs="a b", callbacks=code)
-    result, events = ran(machine("sm", "end", node, held={"a": 0}), built_in())
+    result, events = ran(machine("sm", "end", node, held={"a": 0}), builtin_behaviour())
     assert result.outcome == "end"
     lines = [line for line in short(events) if line.startswith("write")]
     assert lines == ["write sm/A a 1", "write sm/A b 2"]
@@ -66,7 +66,7 @@ def test_callbacks_are_called_first_in_the_order_of_their_keys(type: str) -> Non
 def test_the_last_step_repeats_and_no_steps_are_the_first_outcome() -> None:
     assert single("ScriptedState", "b succeeded").outcome == "b"
     node = leaf("A", {"x": "A"}, type="ScriptedState", steps=[{"outcome": "x"}])
-    result, _ = ran(machine("sm", "end", node), built_in(), max_steps=3)
+    result, _ = ran(machine("sm", "end", node), builtin_behaviour(), max_steps=3)
     assert result.steps == 3
 
 
@@ -136,7 +136,9 @@ def drawn(runs_seed: int = 0, names: str = "A", **variables: Any) -> list[str]:
         )
         for name, following in zip(names, names[1:] + names[:1], strict=True)
     ]
-    events = ran(machine("sm", "end", *nodes), built_in(runs_seed), max_steps=20 * len(names))[1]
+    events = ran(
+        machine("sm", "end", *nodes), builtin_behaviour(runs_seed), max_steps=20 * len(names)
+    )[1]
     return [event["outcome"] for event in events if event["event"] == "exit"]
 
 
@@ -157,8 +159,8 @@ def test_sleep_takes_virtual_time() -> None:
 def test_a_leaf_that_was_asked_to_stop_says_preempted() -> None:
     node = leaf("A", {"succeeded": "end", "preempted": "stopped"})
     root = machine("sm", "end stopped", node)
-    assert ran(root, built_in(), preempt_at=[1])[0].outcome == "stopped"
-    assert ran(root, built_in())[0].outcome == "end"
+    assert ran(root, builtin_behaviour(), preempt_at=[1])[0].outcome == "stopped"
+    assert ran(root, builtin_behaviour())[0].outcome == "end"
 
 
 def test_expressions_that_need_the_robot_stand_for_themselves() -> None:
@@ -170,6 +172,6 @@ def test_expressions_that_need_the_robot_stand_for_themselves() -> None:
         steps=[{"outcome": "x", "set": {"k": "`rospy.Time.now()`"}}],
     )
     root = machine("sm", "x", node, held={"sum": "`1 + 1`", "f": "`lambda: 1`"})
-    result, events = ran(root, built_in())
+    result, events = ran(root, builtin_behaviour())
     assert result.userdata["sum"] == 2
     assert "write sm/A k 'rospy.Time.now()'" in short(events)

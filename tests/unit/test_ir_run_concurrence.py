@@ -7,7 +7,7 @@ from typing import Any
 import pytest
 from ir_machines import concurrence, iterator, leaf, machine, ran, short
 
-from smachac.interpreter.builtin_states import built_in
+from smachac.interpreter.behaviours import builtin_behaviour
 from smachac.interpreter.interpreter import Interpreter
 from smachac.interpreter.result import Event
 from smachac.interpreter.userdata import Userdata
@@ -95,7 +95,7 @@ def test_p2_join_any_preempts_what_still_runs(seed: int) -> None:
     slow = leaf("B", outcomes="succeeded preempted", type="SleepState", time=5.0)
     quick = leaf("A", outcomes="succeeded", type="SleepState", time=1)
     root = both(("one", {"A": "succeeded", "B": "preempted"}), join="any", children=(slow, quick))
-    result, events = ran(root, built_in(), seed=seed)
+    result, events = ran(root, builtin_behaviour(), seed=seed)
     assert (result.outcome, result.time) == ("one", 1.0)
     assert short(events)[4:7] == [
         "exit sm/C/A succeeded",
@@ -110,7 +110,7 @@ def test_n13_the_rest_is_preempted_once() -> None:
         leaf(name, outcomes="succeeded", type="SleepState", time=seconds)
         for seconds, name in enumerate("ABC", 1)
     ]
-    result, events = ran(both(join="any", children=sleeps), built_in())
+    result, events = ran(both(join="any", children=sleeps), builtin_behaviour())
     assert preempted(events) == ["sm/C/B", "sm/C/C"]
     assert result.time == 3.0
 
@@ -118,13 +118,13 @@ def test_n13_the_rest_is_preempted_once() -> None:
 def test_a_sleep_that_cannot_be_preempted_lasts() -> None:
     slow = leaf("B", outcomes="succeeded", type="SleepState", time=5.0)
     quick = leaf("A", outcomes="succeeded", type="SleepState", time=1)
-    result, _ = ran(both(join="any", children=(slow, quick)), built_in())
+    result, _ = ran(both(join="any", children=(slow, quick)), builtin_behaviour())
     assert result.time == 5.0
 
 
 def test_sleeps_of_branches_go_on_at_once() -> None:
     children = [leaf(name, outcomes="succeeded", type="SleepState", time=2) for name in "AB"]
-    assert ran(both(children=children), built_in())[0].time == 2.0
+    assert ran(both(children=children), builtin_behaviour())[0].time == 2.0
 
 
 def test_n10_a_failing_child_preempts_its_siblings_and_fails_the_concurrence() -> None:
@@ -133,7 +133,7 @@ def test_n10_a_failing_child_preempts_its_siblings_and_fails_the_concurrence() -
 
     slow = leaf("B", outcomes="succeeded preempted", type="SleepState", time=5.0)
     bad = machine("A", "x", leaf("BAD", {"x": "x"}))
-    sleep = built_in()
+    sleep = builtin_behaviour()
 
     def behave(path: str, node: Leaf, visit: int, userdata: Userdata) -> str:
         return fail(userdata) if node.name == "BAD" else sleep(path, node, visit, userdata)

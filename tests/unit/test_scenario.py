@@ -1,4 +1,4 @@
-"""Scenarios: read from plain data, and acted out."""
+"""Scenarios: read from plain data, and scenario_behaviour out."""
 
 from __future__ import annotations
 
@@ -7,8 +7,15 @@ from typing import Any
 import pytest
 from ir_machines import concurrence, iterator, leaf, machine, ran, short
 
-from smachac.interpreter.builtin_states import built_in
-from smachac.interpreter.scenario import Row, Scenario, Step, acted, plain_steps, read_scenario
+from smachac.interpreter.behaviours import builtin_behaviour
+from smachac.interpreter.scenario import (
+    PlainStep,
+    Scenario,
+    Step,
+    plain_steps_by_path,
+    read_scenario,
+    scenario_behaviour,
+)
 from smachac.ir.nodes import Machine
 
 
@@ -120,7 +127,7 @@ def test_a_scenario_is_acted_out_and_the_rest_acts_itself() -> None:
         }
     )
     given = picking()
-    result, events = ran(given.root, acted(scenario, given, built_in()))
+    result, events = ran(given.root, scenario_behaviour(scenario, given, builtin_behaviour()))
     assert [line for line in short(events) if "exit" in line and line.count("/") > 1] == [
         "exit sm/PICK/GRASP aborted",
         "exit sm/PICK/GRASP succeeded",
@@ -161,7 +168,7 @@ def test_steps_that_wait_stop_the_machine_or_fail(states: Any, outcome: str | No
     given = stoppable()
     scenario, problems = read_scenario({"states": states}, given)
     assert problems == []
-    result, _ = ran(given.root, acted(scenario, given, built_in()))
+    result, _ = ran(given.root, scenario_behaviour(scenario, given, builtin_behaviour()))
     assert result.outcome == outcome
     told = result.error.message if result.error is not None else None
     assert told == (None if outcome else "no power")
@@ -170,7 +177,9 @@ def test_steps_that_wait_stop_the_machine_or_fail(states: Any, outcome: str | No
 def test_a_step_without_outcome_ends_as_usual() -> None:
     given = picking()
     scenario = Scenario(steps={"sm/PICK/GRASP": (Step(writes=(("width", 1),)),)})
-    result, _ = ran(given.root, acted(scenario, given, built_in()), max_steps=4)
+    result, _ = ran(
+        given.root, scenario_behaviour(scenario, given, builtin_behaviour()), max_steps=4
+    )
     assert result.scopes["sm/PICK"] == {"width": 1}
 
 
@@ -178,10 +187,10 @@ def test_a_scenario_as_plain_rows() -> None:
     scenario = Scenario(
         steps={"PICK/GRASP": (Step(writes=(("width", 5),)), Step(outcome="aborted")), "CHECK": ()}
     )
-    assert plain_steps(scenario, picking()) == {
+    assert plain_steps_by_path(scenario, picking()) == {
         "sm/PICK/GRASP": [
-            Row("succeeded", {"width": 5}, False, "", False),
-            Row("aborted", {}, False, "", False),
+            PlainStep("succeeded", {"width": 5}, False, "", False),
+            PlainStep("aborted", {}, False, "", False),
         ],
         "sm/CHECK": [],
     }
@@ -190,4 +199,4 @@ def test_a_scenario_as_plain_rows() -> None:
 def test_a_scenario_for_no_leaf_is_refused() -> None:
     scenario = Scenario(steps={"GRASP": (Step(outcome="x"),)})
     with pytest.raises(ValueError, match="may be any of"):
-        acted(scenario, picking(), built_in())
+        scenario_behaviour(scenario, picking(), builtin_behaviour())

@@ -8,7 +8,7 @@ from strategies import valid_machines
 
 from smachac.checks import check_machine
 from smachac.diagnostics.diagnostic import Severity
-from smachac.interpreter.builtin_states import built_in
+from smachac.interpreter.behaviours import builtin_behaviour
 from smachac.interpreter.interpreter import run
 from smachac.ir.graph import can_end, reachable
 from smachac.ir.nodes import Concurrence, Iterator, Leaf, Machine, Node, Sequence, StateMachine
@@ -33,7 +33,7 @@ def test_every_state_of_a_valid_machine_is_reachable_and_can_end(machine: Machin
 @given(valid_machines())
 @settings(max_examples=60)
 def test_every_run_of_a_valid_machine_ends(machine: Machine) -> None:
-    assert run(machine, built_in()).outcome in outcome_names(machine.root)
+    assert run(machine, builtin_behaviour()).outcome in outcome_names(machine.root)
 
 
 def test_valid_machines_have_all_there_is() -> None:
@@ -61,7 +61,7 @@ def test_busy_machines_have_all_there_is() -> None:
     def collect(drawn: tuple[Machine, tuple[str, int]]) -> None:
         machine, asked = drawn
         found.add("asked" if asked[0] else "not asked")
-        result = run(machine, built_in(), max_steps=300)
+        result = run(machine, builtin_behaviour(), max_steps=300)
         found.add(result.error.kind if result.error else "ended")
         for _, node in walk(machine.root):
             found.add(node.type)

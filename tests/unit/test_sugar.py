@@ -12,10 +12,10 @@ from smachac.diagnostics.diagnostic import Report
 from smachac.diagnostics.source import Source
 from smachac.frontend.sugar import duration
 from smachac.frontend.yaml_tree import parse
-from smachac.interpreter.builtin_states import built_in
+from smachac.interpreter.behaviours import builtin_behaviour
 from smachac.interpreter.interpreter import run
-from smachac.interpreter.result import Event, Result
-from smachac.interpreter.scenario import acted, read_scenario
+from smachac.interpreter.result import Event, RunResult
+from smachac.interpreter.scenario import read_scenario, scenario_behaviour
 
 SCRIPT = """
 name: sm
@@ -30,7 +30,7 @@ states:
 
 def played(
     folder: Path, sugar: str, script: str, steps: Any, **options: Any
-) -> tuple[Result, list[str]]:
+) -> tuple[RunResult, list[str]]:
     """A run of one state with sugar: the result, and what each state ended with, in order."""
     path = folder / "main.yml"
     path.write_text(script.replace("SUGAR", sugar), encoding="utf-8")
@@ -38,7 +38,12 @@ def played(
     scenario, problems = read_scenario({"states": steps}, machine)
     assert problems == []
     events: list[Event] = []
-    result = run(machine, acted(scenario, machine, built_in()), events.append, **options)
+    result = run(
+        machine,
+        scenario_behaviour(scenario, machine, builtin_behaviour()),
+        events.append,
+        **options,
+    )
     return result, [f"{e['path']} {e['outcome']}" for e in events if e["event"] == "exit"]
 
 

@@ -8,7 +8,7 @@ from typing import Any
 
 from ir_machines import leaf, machine, ran
 
-from smachac.interpreter.builtin_states import built_in
+from smachac.interpreter.behaviours import builtin_behaviour
 from smachac.runtime.tracing.progress import Progress
 
 
@@ -27,7 +27,7 @@ def root() -> Any:
 def shown(stream: Any = None, **options: Any) -> Any:
     stream = stream or io.StringIO()
     progress = Progress(stream, **options)
-    for event in ran(root(), built_in())[1]:
+    for event in ran(root(), builtin_behaviour())[1]:
         progress(event)
     return stream
 

@@ -7,7 +7,7 @@ from dataclasses import dataclass
 
 from smachac.analysis.accesses import callbacks
 from smachac.diagnostics.source import Span
-from smachac.ir.builtin_states import default_outcome, variable
+from smachac.ir.leaf import default_outcome, variable
 from smachac.ir.nodes import Data, Expression, Iterator, Leaf, Struct
 from smachac.ir.traversal import PREEMPTED, own_outcomes
 from smachac.ir.types import Type
@@ -57,7 +57,7 @@ def is_built_in(type_: str) -> bool:
     return type_ in _BODIES
 
 
-def built_in(leaf: Leaf, scope: Scope, refuse: Refuse) -> LeafCode | None:
+def builtin_behaviour(leaf: Leaf, scope: Scope, refuse: Refuse) -> LeafCode | None:
     """The struct of a leaf of a built-in type; None for other types. What is wrong in one of its
     expressions is refused there, and the struct lacks it. Raises UnportableError."""
     make = _BODIES.get(leaf.type)

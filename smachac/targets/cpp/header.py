@@ -12,7 +12,7 @@ from smachac.frontend.state_types import find_state_type
 from smachac.ir.nodes import Iterator, Leaf, Machine
 from smachac.ir.traversal import walk
 from smachac.targets import made_by
-from smachac.targets.cpp.builtin_states import LeafCode, built_in, enumeration
+from smachac.targets.cpp.builtin_states import LeafCode, builtin_behaviour, enumeration
 from smachac.targets.cpp.containers import Inside, execute, results
 from smachac.targets.cpp.containers import parts as parts_of
 from smachac.targets.cpp.identifiers import identifier
@@ -85,7 +85,7 @@ class _Printing:
         code = self.classes[leaf.type]
         if code is not None:
             return class_leaf(code, leaf, scope)
-        return built_in(leaf, scope, self.plan.refuse)
+        return builtin_behaviour(leaf, scope, self.plan.refuse)
 
 
 def _refuse_missing(plan: Plan, types: AbstractSet[str]) -> None:

@@ -9,7 +9,7 @@ from textwrap import indent
 from smachac.frontend import schema
 from smachac.frontend.errors.references import template_error
 from smachac.frontend.state_types import StateType, find_state_type
-from smachac.ir.builtin_states import CALLING, variable
+from smachac.ir.leaf import CALLING, variable
 from smachac.ir.nodes import Container, Data, Iterator, Leaf, Node
 from smachac.ir.traversal import own_outcomes
 from smachac.targets.python import structure

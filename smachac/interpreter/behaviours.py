@@ -1,4 +1,4 @@
-"""What leaves of the built-in state types do in the interpreter; a stand-in for all others."""
+"""Behaviours of leaves: those of the built-in state types, and a default for all others."""
 
 from __future__ import annotations
 
@@ -6,34 +6,34 @@ import random
 from collections.abc import Callable
 
 from smachac.interpreter.result import Behaviour
-from smachac.interpreter.userdata import BehaviourError, Userdata, called, python_data
-from smachac.ir.builtin_states import CALLING, default_outcome, variable
+from smachac.interpreter.userdata import BehaviourError, Userdata, call_function, python_data
+from smachac.ir.leaf import CALLING, default_outcome, variable
 from smachac.ir.nodes import Expression, Leaf, Struct
 from smachac.ir.traversal import PREEMPTED, outcome_names, own_outcomes
 
 
-def built_in(seed: int = 0) -> Behaviour:
-    """The behaviour of every leaf by its state type.
+def builtin_behaviour(seed: int = 0) -> Behaviour:
+    """The behaviour of every leaf, selected by its state type.
 
-    A leaf that a request to stop has reached ends as `preempted` where it declares that, unless it
-    is of a built-in type that does not look for requests. `seed` settles what leaves draw that have
-    no seed of their own; 0 is what generated programs take.
+    A preempted leaf ends as `preempted` if it declares that outcome, unless its built-in type
+    ignores requests. `seed` is the random seed of leaves without a seed of their own; generated
+    programs use 0.
     """
-    behaviours = {**_BEHAVIOURS, "RandomOutcomeState": _draws(seed)}
+    behaviours = {**_BEHAVIOURS, "RandomOutcomeState": _random_outcome(seed)}
 
     def behave(path: str, leaf: Leaf, visit: int, userdata: Userdata) -> str:
-        behaviour = behaviours.get(leaf.type, stopping_when_asked(_default))
+        behaviour = behaviours.get(leaf.type, preemptible(_default))
         if leaf.type in CALLING:
             callbacks = _callbacks(leaf)
             for key in sorted(callbacks):
-                userdata[key] = called(callbacks[key], userdata)
+                userdata[key] = call_function(callbacks[key], userdata)
         return behaviour(path, leaf, visit, userdata)
 
     return behave
 
 
-def stopping_when_asked(behaviour: Behaviour) -> Behaviour:
-    """A behaviour that answers a request to stop with `preempted` where the leaf declares it."""
+def preemptible(behaviour: Behaviour) -> Behaviour:
+    """Wrap a behaviour: a preempted leaf that declares `preempted` ends with it."""
 
     def behave(path: str, leaf: Leaf, visit: int, userdata: Userdata) -> str:
         if userdata.preempted and PREEMPTED in outcome_names(leaf):
@@ -45,10 +45,12 @@ def stopping_when_asked(behaviour: Behaviour) -> Behaviour:
 
 
 def _default(path: str, leaf: Leaf, visit: int, userdata: Userdata) -> str:
+    """End with the default outcome."""
     return default_outcome(leaf)
 
 
 def _scripted(path: str, leaf: Leaf, visit: int, userdata: Userdata) -> str:
+    """ScriptedState: visit n performs step n; the last step repeats."""
     steps = python_data(variable(leaf, "steps"))
     if not isinstance(steps, list) or not steps:
         return next(iter(own_outcomes(leaf)), default_outcome(leaf))
@@ -74,25 +76,27 @@ def _callbacks(leaf: Leaf) -> dict[str, Expression]:
     return found
 
 
-def _first_true(path: str, leaf: Leaf, visit: int, userdata: Userdata) -> str:
+def _conditional(path: str, leaf: Leaf, visit: int, userdata: Userdata) -> str:
+    """ConditionalOutcomeState: the first outcome whose condition holds, else `default_outcome`."""
     callbacks = _callbacks(leaf)
     for outcome in own_outcomes(leaf):
-        if outcome in callbacks and called(callbacks[outcome], userdata):
-            return _told(leaf, outcome, userdata)
+        if outcome in callbacks and call_function(callbacks[outcome], userdata):
+            return _publish_outcome(leaf, outcome, userdata)
     otherwise = variable(leaf, "default_outcome")
     if not isinstance(otherwise, str):
         raise BehaviourError("no condition holds, and there is no `default_outcome`")
-    return _told(leaf, otherwise, userdata)
+    return _publish_outcome(leaf, otherwise, userdata)
 
 
-def _told(leaf: Leaf, outcome: str, userdata: Userdata) -> str:
-    """An outcome, also under the key `outcome` where the leaf has that."""
+def _publish_outcome(leaf: Leaf, outcome: str, userdata: Userdata) -> str:
+    """Return an outcome; if the leaf has the output key `outcome`, write it there too."""
     if any(key.name == "outcome" for key in leaf.outputs):
         userdata["outcome"] = outcome
     return outcome
 
 
-def _draws(seed: int) -> Behaviour:
+def _random_outcome(seed: int) -> Behaviour:
+    """RandomOutcomeState: a random outcome, from one random generator for each leaf."""
     sources: dict[str, random.Random] = {}
 
     def draw(path: str, leaf: Leaf, visit: int, userdata: Userdata) -> str:
@@ -100,14 +104,15 @@ def _draws(seed: int) -> Behaviour:
             own = variable(leaf, "seed")
             sources[path] = random.Random(own if isinstance(own, int) else seed)
         outcome = sources[path].choice(own_outcomes(leaf) or (default_outcome(leaf),))
-        return _told(leaf, outcome, userdata)
+        return _publish_outcome(leaf, outcome, userdata)
 
     return draw
 
 
 def _sleep(path: str, leaf: Leaf, visit: int, userdata: Userdata) -> str:
+    """SleepState: let `time` seconds of virtual time pass."""
     time = variable(leaf, "time")
-    seconds = called(time, userdata) if isinstance(time, Expression) else python_data(time)
+    seconds = call_function(time, userdata) if isinstance(time, Expression) else python_data(time)
     if not isinstance(seconds, int | float):
         raise BehaviourError("`time` is no number of seconds")
     userdata.sleep(seconds)
@@ -115,9 +120,9 @@ def _sleep(path: str, leaf: Leaf, visit: int, userdata: Userdata) -> str:
 
 
 _BEHAVIOURS: dict[str, Callable[[str, Leaf, int, Userdata], str]] = {
-    "ScriptedState": stopping_when_asked(_scripted),
+    "ScriptedState": preemptible(_scripted),
     "CallbacksState": _default,
-    "ConditionalOutcomeState": _first_true,
-    "SleepState": stopping_when_asked(_sleep),
+    "ConditionalOutcomeState": _conditional,
+    "SleepState": preemptible(_sleep),
 }
-"""By state type. PrintUserdataState prints nothing here, so the stand-in does."""
+"""By state type. PrintUserdataState uses the default: the interpreter prints nothing."""
