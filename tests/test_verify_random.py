@@ -15,7 +15,7 @@ from smachac.interpreter.interpreter import run
 from smachac.ir.nodes import Checked, Machine
 from smachac.targets.python import TARGET
 from smachac.verify import verify
-from smachac.verify.coverage import Taken
+from smachac.verify.coverage import Coverage
 from smachac.verify.players.python import player
 
 ROOT = Path(__file__).parents[1]
@@ -33,8 +33,8 @@ def test_random_machines_agree(drawn: tuple[Machine, tuple[str, int]]) -> None:
     played = player(name, text, machine, folder=ROOT)
     verdict = verify(machine, {"python": played}, script="main.yml", most=40)
     assert verdict.disagreements == []
-    taken = Taken(machine)
+    taken = Coverage(machine)
     for number in range(5):
-        run(machine, builtin_behaviour(number), taken.hear, seed=number, max_steps=300)
+        run(machine, builtin_behaviour(number), taken.record, seed=number, max_steps=300)
     never = {way for way, _, why in verdict.missing if why.never}
-    assert not never & taken.taken
+    assert not never & taken.covered

@@ -126,8 +126,7 @@ class Interpreter:
             for path, node in containers(self._root)
         }
         self._scopes[self._root.name].update(userdata or {})
-        observed = walk(self._root) if on_event else ()
-        self._sources = {path: _trace_source(node.span) for path, node in observed}
+        self._sources = _trace_sources(self._root) if on_event else {}
 
     def execute(self, parent: dict[str, object] | None = None) -> RunResult:
         """Run the machine once more. `parent` is the userdata around it, as if it were a nested
@@ -262,11 +261,17 @@ class Interpreter:
         return False
 
 
-def _trace_source(span: Span) -> str:
-    """A span as traces show it: file name without folder, and line; empty for NOWHERE."""
-    if span.source is NOWHERE.source:
-        return ""
-    return f"{PurePath(span.source.name).name}:{span.line}"
+def _trace_sources(root: Node) -> dict[str, str]:
+    """The place of each state as traces show it: file name without folder, and line. Empty for
+    machines that no script describes."""
+    files: dict[str, str] = {NOWHERE.source.name: ""}
+    found: dict[str, str] = {}
+    for path, node in walk(root):
+        name = node.span.source.name
+        if name not in files:
+            files[name] = PurePath(name).name
+        found[path] = f"{files[name]}:{node.span.line}" if files[name] else ""
+    return found
 
 
 def container_coroutine(

@@ -1,9 +1,9 @@
-"""Whether targets do what the interpreter does: the same scenarios played on both, traces compared.
+"""Differential testing of targets: each test case runs on the interpreter and on the targets.
 
-A target is a player (scenes.py): it gets scenes and gives a trace of each. States do not run their
-own code in it, but follow the scene: user code is not executed, and nothing waits. Beside the
-events of a trace each leaf tells what it finds in its inputs (`read`), so that a value gone astray
-is seen.
+A target is represented by a player (test_case.py), which runs test cases and returns their traces.
+Leaves perform the steps of the test case instead of their own code, so no user code runs and
+nothing waits. Each leaf also records the values of its inputs (`read` events), so that a wrong
+value is found where it is first read.
 """
 
 from __future__ import annotations
@@ -13,10 +13,10 @@ from collections.abc import Mapping, Sequence
 
 from smachac.ir.nodes import Machine
 from smachac.verify.coverage import reasons
-from smachac.verify.generate import Scenarios
+from smachac.verify.generate import PathGenerator
 from smachac.verify.paths import Path
 from smachac.verify.result import Disagreement, Verdict
-from smachac.verify.test_case import Player, Scene, differ, expected, scenes_of
+from smachac.verify.test_case import Player, TestCase, compare_traces, expected_trace, test_cases
 
 
 def verify(
@@ -27,28 +27,28 @@ def verify(
     most: int | None = None,
     seed: int = 0,
 ) -> Verdict:
-    """Play the paths of a machine on every target, up to the first difference of each.
+    """Run the paths of a machine on every target, up to the first difference of each.
 
-    `most` and `seed` are those of `Scenarios`. What a player raises passes through.
+    `most` and `seed` are those of `PathGenerator`. Exceptions of players are not caught.
     """
-    scenarios = Scenarios(machine, most=most, seed=seed)
-    walks = scenarios.walks
-    paths = list(scenarios.paths())
-    scenes = scenes_of(machine, paths, walks.live)
+    generator = PathGenerator(machine, most=most, seed=seed)
+    runner = generator.runner
+    paths = list(generator.paths())
+    cases = test_cases(machine, paths, runner.live)
     found = [
-        _first_difference(machine, target, player, paths, scenes)
+        _first_difference(machine, target, player, paths, cases)
         for target, player in players.items()
     ]
-    known, missing = walks.taken.known, walks.taken.missing()
-    why = reasons(machine, missing, walks.steering)
+    items, missing = runner.coverage.items, runner.coverage.missing()
+    why = reasons(machine, missing, runner.planner)
     return Verdict(
         script=script,
         targets=tuple(players),
         paths=Counter(path.kind for path in paths),
-        taken=len(known) - len(missing),
-        total=len(known),
-        missing=[(way, known[way], why[way]) for way in missing],
-        left_out=scenarios.left_out,
+        taken=len(items) - len(missing),
+        total=len(items),
+        missing=[(item, items[item], why[item]) for item in missing],
+        left_out=generator.left_out,
         disagreements=[each for each in found if each is not None],
     )
 
@@ -58,11 +58,12 @@ def _first_difference(
     target: str,
     player: Player,
     paths: Sequence[Path],
-    scenes: Sequence[Scene],
+    cases: Sequence[TestCase],
 ) -> Disagreement | None:
-    traces = zip(paths, scenes, player(scenes), strict=True)
-    for number, (path, scene, theirs) in enumerate(traces, 1):
-        difference = differ(expected(machine, path.scenario, scene), theirs)
+    """The first path on which a target differs from the interpreter."""
+    traces = zip(paths, cases, player(cases), strict=True)
+    for number, (path, case, theirs) in enumerate(traces, 1):
+        difference = compare_traces(expected_trace(machine, path.scenario, case), theirs)
         if difference is not None:
             return Disagreement(
                 target=target,
@@ -70,7 +71,7 @@ def _first_difference(
                 expected=difference.first,
                 found=difference.second,
                 at=difference.at,
-                rows={path: row for path, row in scene.rows.items() if row},
+                rows={path: row for path, row in case.rows.items() if row},
                 live=path.live,
             )
     return None

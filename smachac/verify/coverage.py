@@ -1,4 +1,5 @@
-"""Which ways through a machine runs have taken, and which they have not."""
+"""Transition coverage: the transitions, rules and loops of a machine, and those that runs have
+covered."""
 
 from __future__ import annotations
 
@@ -10,15 +11,15 @@ from smachac.interpreter.result import Event
 from smachac.ir import nodes
 from smachac.ir.nodes import Concurrence, Container, Leaf, Machine
 from smachac.ir.traversal import containers, leads_to_child, outcome_names
-from smachac.verify.guidance import Steering, count_of_items, leaf_outcomes, winner
+from smachac.verify.guidance import Planner, item_count, matching_rule, possible_leaf_outcomes
 
 
-class Way(NamedTuple):
-    """One way on: an outcome of the state at `path` leads to `target`.
+class CoverageItem(NamedTuple):
+    """One item to cover: an outcome of the state at `path` leads to `target`.
 
-    For a concurrence it is one of its rules, by number, or -1 for its default, `path` is its own.
-    An outcome of an iterator's child goes on (`loop`), ends it (`break`), or was the last
-    (`exhausted`).
+    For a concurrence the item is a rule, by number, or its default (-1), and `path` is the
+    concurrence. An outcome of an iterator's child continues (`loop`), ends it (`break`), or follows
+    the last item (`exhausted`).
     """
 
     kind: Literal["transition", "rule", "loop", "break", "exhausted"]
@@ -28,66 +29,71 @@ class Way(NamedTuple):
     rule: int = 0
 
 
-def ways(machine: Machine) -> dict[Way, Span]:
-    """Every way of a machine, in the order of the script, with its place."""
-    return {way: span for path, node in containers(machine.root) for way, span in _ways(path, node)}
+def coverage_items(machine: Machine) -> dict[CoverageItem, Span]:
+    """Every coverage item of a machine, in the order of the script, with its span."""
+    return {
+        item: span
+        for path, node in containers(machine.root)
+        for item, span in _container_items(path, node)
+    }
 
 
-def _ways(path: str, node: Container) -> Iterator[tuple[Way, Span]]:
+def _container_items(path: str, node: Container) -> Iterator[tuple[CoverageItem, Span]]:
     if isinstance(node, Concurrence):
         for number, rule in enumerate(node.rules):
-            yield Way("rule", path, rule.outcome, _out(path, rule.outcome), number), rule.span
+            yield (
+                CoverageItem("rule", path, rule.outcome, _exit(path, rule.outcome), number),
+                rule.span,
+            )
         if node.default_outcome:
-            target = _out(path, node.default_outcome)
-            yield Way("rule", path, node.default_outcome, target, -1), node.default_span
+            target = _exit(path, node.default_outcome)
+            yield CoverageItem("rule", path, node.default_outcome, target, -1), node.default_span
         return
     names = frozenset(child.name for child in node.children)
     for child in node.children:
         here = f"{path}/{child.name}"
-        own = leaf_outcomes(child) if isinstance(child, Leaf) else outcome_names(child)
+        own = possible_leaf_outcomes(child) if isinstance(child, Leaf) else outcome_names(child)
         if isinstance(node, nodes.Iterator):
             for outcome in own:
                 for kind in ("loop", "exhausted") if outcome in node.loop_outcomes else ("break",):
-                    yield _iterator_way(path, node, here, outcome, kind), child.span
+                    yield _iterator_item(path, node, here, outcome, kind), child.span
             continue
         for edge in child.transitions:
             if edge.outcome in own:
                 inside = leads_to_child(edge, names)
-                target = f"{path}/{edge.target}" if inside else _out(path, edge.target)
-                yield Way("transition", here, edge.outcome, target), edge.span
+                target = f"{path}/{edge.target}" if inside else _exit(path, edge.target)
+                yield CoverageItem("transition", here, edge.outcome, target), edge.span
 
 
-def _iterator_way(
+def _iterator_item(
     path: str,
     node: nodes.Iterator,
     here: str,
     outcome: str,
     kind: Literal["loop", "break", "exhausted"],
-) -> Way:
+) -> CoverageItem:
     if kind == "loop":
-        return Way(kind, here, outcome, here)
+        return CoverageItem(kind, here, outcome, here)
     ending = node.exhausted_outcome if kind == "exhausted" else outcome
-    return Way(kind, here, outcome, _out(path, dict(node.final_map).get(ending, ending)))
+    return CoverageItem(kind, here, outcome, _exit(path, dict(node.final_map).get(ending, ending)))
 
 
-def _out(path: str, outcome: str) -> str:
-    """How traces write that a container is left."""
+def _exit(path: str, outcome: str) -> str:
+    """The target of a transition out of a container, as traces write it."""
     return f"{path}:{outcome}"
 
 
-class Taken:
-    """Hears the events of runs and knows the ways that they take."""
+class Coverage:
+    """The coverage items of a machine, and those that recorded runs have covered."""
 
     def __init__(self, machine: Machine) -> None:
-        self.known = ways(machine)
-        self.taken: set[Way] = set()
-        self.new = False
+        self.items = coverage_items(machine)
+        self.covered: set[CoverageItem] = set()
         self._containers = dict(containers(machine.root))
         self._ended: dict[str, dict[str, str]] = {}
 
-    def hear(self, event: Event) -> None:
-        """Note what an event of a run of the interpreter says. `new` becomes true when a way is
-        taken for the first time."""
+    def record(self, event: Event) -> None:
+        """Update the coverage with one event of a run of the interpreter."""
         what, path = event["event"], event["path"]
         if what not in ("enter", "exit", "transition"):
             return
@@ -95,9 +101,9 @@ class Taken:
         if what == "transition":
             node = self._containers[around]
             if isinstance(node, nodes.Iterator):
-                self._take(self._of_iterator(node, path, event["outcome"], event["to"]))
+                self._cover(self._of_iterator(node, path, event["outcome"], event["to"]))
             else:
-                self._take(Way("transition", path, event["outcome"], event["to"]))
+                self._cover(CoverageItem("transition", path, event["outcome"], event["to"]))
         elif what == "enter":
             if isinstance(self._containers.get(path), Concurrence):
                 self._ended[path] = {}
@@ -107,54 +113,60 @@ class Taken:
                 self._ended[around][path.rpartition("/")[2]] = event["outcome"]
             own = self._containers.get(path)
             if isinstance(own, Concurrence):
-                number = winner(own, self._ended[path])
-                self._take(
-                    Way("rule", path, event["outcome"], _out(path, event["outcome"]), number)
+                number = matching_rule(own, self._ended[path])
+                self._cover(
+                    CoverageItem(
+                        "rule", path, event["outcome"], _exit(path, event["outcome"]), number
+                    )
                 )
 
-    def _of_iterator(self, node: nodes.Iterator, path: str, outcome: str, to: str) -> Way:
+    def _of_iterator(self, node: nodes.Iterator, path: str, outcome: str, to: str) -> CoverageItem:
         if to == path:
-            return Way("loop", path, outcome, to)
-        return Way("exhausted" if outcome in node.loop_outcomes else "break", path, outcome, to)
+            return CoverageItem("loop", path, outcome, to)
+        return CoverageItem(
+            "exhausted" if outcome in node.loop_outcomes else "break", path, outcome, to
+        )
 
-    def _take(self, way: Way) -> None:
-        if way in self.known and way not in self.taken:
-            self.taken.add(way)
-            self.new = True
+    def _cover(self, item: CoverageItem) -> None:
+        if item in self.items:
+            self.covered.add(item)
 
-    def missing(self) -> list[Way]:
-        """The ways that no run has taken, in the order of the script."""
-        return [way for way in self.known if way not in self.taken]
+    def missing(self) -> list[CoverageItem]:
+        """The items that no run has covered, in the order of the script."""
+        return [item for item in self.items if item not in self.covered]
 
 
 class Reason(NamedTuple):
-    """Why a way was not taken; `never`: because no run can take it."""
+    """Why an item is not covered. `never`: no run can cover it."""
 
-    words: str
+    text: str
     never: bool = True
 
 
 UNKNOWN = Reason("no path has come to it", never=False)
+"""The reason of an item that may be coverable."""
 
 
-def reasons(machine: Machine, missing: Iterable[Way], steering: Steering) -> dict[Way, Reason]:
-    """Why ways were not taken, as far as the graph tells."""
+def reasons(
+    machine: Machine, missing: Iterable[CoverageItem], planner: Planner
+) -> dict[CoverageItem, Reason]:
+    """Why items are not covered, as far as the graph shows it."""
     tree = dict(containers(machine.root))
-    return {way: _reason(way, tree, steering) for way in missing}
+    return {item: _reason(item, tree, planner) for item in missing}
 
 
-def _reason(way: Way, tree: Mapping[str, Container], steering: Steering) -> Reason:
-    node, around = tree.get(way.path), tree.get(way.path.rpartition("/")[0])
-    if way.path not in steering.entered:
+def _reason(item: CoverageItem, tree: Mapping[str, Container], planner: Planner) -> Reason:
+    node, around = tree.get(item.path), tree.get(item.path.rpartition("/")[0])
+    if item.path not in planner.entered:
         return Reason("the state is never entered")
-    if way.kind == "rule":
-        never = steering.never(way.path, way.rule)
+    if item.kind == "rule":
+        never = planner.cannot_end(item.path, item.rule)
         return Reason("no outcomes of the branches lead to it") if never else UNKNOWN
-    if way.outcome not in steering.possible[way.path]:
+    if item.outcome not in planner.possible[item.path]:
         return Reason("the state never ends so")
-    if way.kind == "loop" and isinstance(around, nodes.Iterator) and count_of_items(around) == 1:
+    if item.kind == "loop" and isinstance(around, nodes.Iterator) and item_count(around) == 1:
         return Reason("there is but one item")
-    if node is not None and way.outcome == node.catches:
+    if node is not None and item.outcome == node.catches:
         return Reason(
             "exceptions deep in a concurrence or of an iterator itself are not played", False
         )

@@ -1,5 +1,4 @@
-"""Scenarios that lead a machine along its paths: to every transition, then on all simple paths,
-each loop once, then anywhere."""
+"""Path generation: paths that cover every transition, then simple paths, then random ones."""
 
 from __future__ import annotations
 
@@ -9,233 +8,251 @@ from collections.abc import Iterator, Sequence
 from typing import NamedTuple
 
 from smachac.ir.nodes import Machine
-from smachac.verify.coverage import Way
-from smachac.verify.guidance import Wanted
-from smachac.verify.paths import Attempt, Choice, Guide, Path, Walks
+from smachac.verify.coverage import CoverageItem
+from smachac.verify.guidance import Goals
+from smachac.verify.paths import Choice, Path, PathRun, PathRunner, Strategy
 
 USUAL = 200
-"""Paths that are made where nobody says how many, if fewer cover every transition."""
+"""Default number of paths; more are generated if transition coverage needs them."""
 
 BUDGET = 500_000
-"""States to enter on all paths together, where nobody says how many paths; a path costs a tenth of
-the machine's states besides."""
+"""Default limit on the states entered on all paths together. Each path also costs a tenth of the
+number of states of the machine."""
 
 LONGEST_RANDOM = 1_000
-"""Choices of a random path before it heads for the end."""
+"""Choices of a random path before it goes to the end."""
 
 MOST_USUAL = 3
-"""Times that a leaf ends as usual on one path while there may be something new further on."""
+"""Visits on one path in which a leaf ends with its default outcome while untried outcomes
+remain."""
 
 MOST_VAIN = 50
-"""Random paths in a row that were known already, before the search for others ends."""
+"""Random paths in a row that are duplicates, after which the generation ends."""
 
 MOST_ENDLESS = 3
-"""Runs without an end, after which states no longer do what they do by themselves."""
+"""Endless runs, after which no more live paths are generated."""
 
 
-class _Turning(NamedTuple):
-    """Where a path may turn off another one: at that choice, with another option."""
+class _BranchPoint(NamedTuple):
+    """A choice of an earlier path, and an option that was not taken there."""
 
     choices: list[Choice]
     at: int
     option: str
 
     def prefix(self) -> list[str | None]:
+        """The choices that lead to the branch point and take its option."""
         return [*(choice.taken for choice in self.choices[: self.at]), self.option]
 
 
-class Scenarios:
-    """The paths of one machine, made one after the other; what is known when they are through.
+class PathGenerator:
+    """Generates the paths of one machine, one after the other.
 
-    `most` bounds their number: without it there are as many as cover every transition, within
-    BUDGET, and USUAL at least. `left_out` says, when all
-    is done, what was not gone through. `walks` has what is known of all of them.
+    `most` limits their number. Without it there are at least USUAL paths, and as many as transition
+    coverage needs within BUDGET. `left_out` describes, after the generation, what was not explored.
+    `runner` holds the results of all paths.
     """
 
     def __init__(self, machine: Machine, *, most: int | None = None, seed: int = 0) -> None:
-        self.walks = Walks(machine)
+        self.runner = PathRunner(machine)
         self.left_out: list[str] = []
         self._most = most
         self._random = random.Random(seed)
-        self._noted: set[tuple[str, str]] = set()
-        self._turnings: deque[_Turning] = deque()
-        self._leaves = frozenset(self.walks.leaves)
-        possible = self.walks.steering.possible
+        self._recorded: set[tuple[str, str]] = set()
+        self._branch_points: deque[_BranchPoint] = deque()
+        self._leaves = frozenset(self.runner.leaves)
+        possible = self.runner.planner.possible
         self._outcomes = sum(len(possible[path]) for path in self._leaves)
 
     def paths(self) -> Iterator[Path]:
-        """All of them. To be gone through once."""
-        yield from self._covering()
-        most = self._most if self._most is not None else max(USUAL, self.walks.made)
-        yield from self._simple(most - max((most - self.walks.made) // 4, 0))
-        yield from self._anywhere(most)
-        if self.walks.endless:
-            self.left_out.append(f"{self.walks.endless} paths that found no end")
+        """All paths; may be called once."""
+        yield from self._covering_paths()
+        most = self._most if self._most is not None else max(USUAL, self.runner.made)
+        yield from self._simple_paths(most - max((most - self.runner.made) // 4, 0))
+        yield from self._random_paths(most)
+        if self.runner.endless:
+            self.left_out.append(f"{self.runner.endless} paths that found no end")
 
     # Every transition
 
     def _within(self) -> bool:
-        return self.walks.spent < BUDGET if self._most is None else self.walks.made < self._most
+        """Whether the budget allows another path."""
+        return self.runner.spent < BUDGET if self._most is None else self.runner.made < self._most
 
-    def _covering(self) -> Iterator[Path]:
-        """Paths until every way is taken that can be found, each with something new."""
-        aimed: set[Way] = set()
+    def _covering_paths(self) -> Iterator[Path]:
+        """Paths until every item is covered that can be found; each tries something new."""
+        attempted: set[CoverageItem] = set()
         start = True
         while self._within():
-            turning = self._next_turning()
-            if start or turning is not None:
-                prefix = turning.prefix() if turning is not None else []
-                guide: Guide | None = self._following(prefix, self._exploring())
+            branch_point = self._next_branch_point()
+            if start or branch_point is not None:
+                prefix = branch_point.prefix() if branch_point is not None else []
+                strategy: Strategy | None = self._prefix_strategy(
+                    prefix, self._exploring_strategy()
+                )
                 start = False
             else:
-                guide = self._next_goal(aimed)
-            if guide is None:
+                strategy = self._next_goal(attempted)
+            if strategy is None:
                 return
-            attempt, path = self.walks.make("covering", guide)
-            self._note_turnings(attempt)
+            path_run, path = self.runner.make("covering", strategy)
+            self._record_branch_points(path_run)
             if path is not None:
                 yield path
-        if self._turnings:
+        if self._branch_points:
             self.left_out.append("outcomes of states that no path has come to")
 
-    def _next_turning(self) -> _Turning | None:
-        """One to an outcome that its leaf has not had yet."""
-        while self._turnings:
-            turning = self._turnings.popleft()
-            if (turning.choices[turning.at].place, turning.option) not in self.walks.tried:
-                return turning
+    def _next_branch_point(self) -> _BranchPoint | None:
+        """The next branch point whose option is untried."""
+        while self._branch_points:
+            branch_point = self._branch_points.popleft()
+            if (
+                branch_point.choices[branch_point.at].place,
+                branch_point.option,
+            ) not in self.runner.tried:
+                return branch_point
         return None
 
-    def _note_turnings(self, attempt: Attempt) -> None:
-        """Keep where a path has passed something new by."""
-        for at, choice in enumerate(attempt.choices):
+    def _record_branch_points(self, path_run: PathRun) -> None:
+        """Add a branch point for each untried option along a path."""
+        for at, choice in enumerate(path_run.choices):
             for option in choice.options:
                 new = (choice.place, option)
-                if new not in self.walks.tried and new not in self._noted:
-                    self._turnings.append(_Turning(attempt.choices, at, option))
-                    self._noted.add(new)
+                if new not in self.runner.tried and new not in self._recorded:
+                    self._branch_points.append(_BranchPoint(path_run.choices, at, option))
+                    self._recorded.add(new)
 
-    def _following(self, prefix: Sequence[str | None], then: Guide) -> Guide:
-        def guide(place: str, options: tuple[str, ...], at: int) -> str | None:
+    def _prefix_strategy(self, prefix: Sequence[str | None], then: Strategy) -> Strategy:
+        """Follow a prefix of choices, then another strategy."""
+
+        def strategy(place: str, options: tuple[str, ...], at: int) -> str | None:
             if at < len(prefix) and (prefix[at] is None or prefix[at] in options):
                 return prefix[at]
             return then(place, options, at)
 
-        return guide
+        return strategy
 
-    def _exploring(self) -> Guide:
-        """Outcomes that leaves have not had yet; then the usual ones, which lead on to others, some
-        times; then home."""
+    def _exploring_strategy(self) -> Strategy:
+        """Prefer untried outcomes; then, a few times, the default outcomes; then go to the end."""
         usual: Counter[str] = Counter()
 
-        def guide(place: str, options: tuple[str, ...], at: int) -> str | None:
-            for option in self.walks.steering.scenic(place) if place in self._leaves else options:
-                if (place, option) not in self.walks.tried:
+        def strategy(place: str, options: tuple[str, ...], at: int) -> str | None:
+            for option in (
+                self.runner.planner.longest_first(place) if place in self._leaves else options
+            ):
+                if (place, option) not in self.runner.tried:
                     return option
             usual[place] += 1
-            if usual[place] <= MOST_USUAL and len(self.walks.tried) < self._outcomes:
+            if usual[place] <= MOST_USUAL and len(self.runner.tried) < self._outcomes:
                 return options[0]
-            return self.walks.home(place, options)
+            return self.runner.towards_end(place, options)
 
-        return guide
+        return strategy
 
-    def _next_goal(self, aimed: set[Way]) -> Guide | None:
-        for way in self.walks.taken.missing():
-            entry = self.walks.entries.get(way.path)
-            wanted = self._wanted(way) if entry is not None and way not in aimed else None
-            if entry is not None and wanted is not None:
-                aimed.add(way)
+    def _next_goal(self, attempted: set[CoverageItem]) -> Strategy | None:
+        """A strategy for the next item that is not covered and was not attempted."""
+        for item in self.runner.coverage.missing():
+            entry = self.runner.entries.get(item.path)
+            goals = self._goals(item) if entry is not None and item not in attempted else None
+            if entry is not None and goals is not None:
+                attempted.add(item)
                 choices, count = entry
                 prefix = [choice.taken for choice in choices[:count]]
-                return self._following(prefix, self._towards(way, wanted))
+                return self._prefix_strategy(prefix, self._goal_strategy(item, goals))
         return None
 
-    def _wanted(self, way: Way) -> Wanted | None:
-        """What containers have to do for a way to be taken."""
-        if way.kind == "rule":
-            found = self.walks.steering.combination(way.path, way.rule)
-            return None if found is None else {way.path: found}
-        if way.outcome not in self.walks.steering.possible[way.path]:
+    def _goals(self, item: CoverageItem) -> Goals | None:
+        """The outcomes that containers need for an item to be covered."""
+        if item.kind == "rule":
+            found = self.runner.planner.combination(item.path, item.rule)
+            return None if found is None else {item.path: found}
+        if item.outcome not in self.runner.planner.possible[item.path]:
             return None
-        if way.kind == "transition":
-            return {way.path: way.outcome}
-        around, _, name = way.path.rpartition("/")
-        return {around: {name: way.outcome}}
+        if item.kind == "transition":
+            return {item.path: item.outcome}
+        around, _, name = item.path.rpartition("/")
+        return {around: {name: item.outcome}}
 
-    def _towards(self, way: Way, wanted: Wanted) -> Guide:
-        aim = self.walks.steering.aim(wanted)
+    def _goal_strategy(self, item: CoverageItem, goals: Goals) -> Strategy:
+        """Go to an item; after that, go to the end."""
+        target = self.runner.planner.outcomes_towards(goals)
 
-        def guide(place: str, options: tuple[str, ...], at: int) -> str | None:
-            if way in self.walks.taken.taken:
-                return self.walks.home(place, options)
-            return self.walks.aimed(aim, wanted, place, options)
+        def strategy(place: str, options: tuple[str, ...], at: int) -> str | None:
+            if item in self.runner.coverage.covered:
+                return self.runner.towards_end(place, options)
+            return self.runner.towards(target, goals, place, options)
 
-        return guide
+        return strategy
 
     # Simple paths, and any
 
-    def _simple(self, most: int) -> Iterator[Path]:
-        """Paths on which no leaf has an outcome twice, but where the way to the end wants it."""
+    def _simple_paths(self, most: int) -> Iterator[Path]:
+        """Simple paths: no leaf repeats an outcome, unless it is needed to reach the end."""
         prefix: list[str | None] | None = []
         while prefix is not None:
-            if self.walks.made >= most or not self._within():
+            if self.runner.made >= most or not self._within():
                 self.left_out.append("more simple paths: there are too many to go through all")
                 return
-            open_: list[list[str | None]] = []
-            attempt, path = self.walks.make("simple", self._once(prefix, open_))
+            untried: list[list[str | None]] = []
+            path_run, path = self.runner.make("simple", self._without_repeats(prefix, untried))
             if path is not None:
                 yield path
-            taken = [choice.taken for choice in attempt.choices[: len(open_)]]
+            taken = [choice.taken for choice in path_run.choices[: len(untried)]]
             prefix = None
-            for at in reversed(range(len(open_))):
-                if open_[at]:
-                    prefix = [*taken[:at], open_[at][0]]
+            for at in reversed(range(len(untried))):
+                if untried[at]:
+                    prefix = [*taken[:at], untried[at][0]]
                     break
 
-    def _once(self, prefix: Sequence[str | None], open_: list[list[str | None]]) -> Guide:
-        """Notes in `open_` what could be chosen after what is."""
+    def _without_repeats(
+        self, prefix: Sequence[str | None], untried: list[list[str | None]]
+    ) -> Strategy:
+        """The strategy of simple paths. It stores the remaining options of each choice in
+        `untried`."""
         used: dict[str, set[str | None]] = {}
 
-        def guide(place: str, options: tuple[str, ...], at: int) -> str | None:
-            home = self.walks.home(place, options)
+        def strategy(place: str, options: tuple[str, ...], at: int) -> str | None:
+            to_end = self.runner.towards_end(place, options)
             had = used.setdefault(place, set())
-            fresh = [each for each in options if each not in had and each != home]
-            ways: list[str | None] = [home, *fresh] if home is not None or not fresh else [*fresh]
-            taken = prefix[at] if at < len(prefix) and prefix[at] in ways else ways[0]
-            open_.append(ways[ways.index(taken) + 1 :])
+            fresh = [each for each in options if each not in had and each != to_end]
+            ordered: list[str | None] = (
+                [to_end, *fresh] if to_end is not None or not fresh else [*fresh]
+            )
+            taken = prefix[at] if at < len(prefix) and prefix[at] in ordered else ordered[0]
+            untried.append(ordered[ordered.index(taken) + 1 :])
             had.add(taken)
             return taken
 
-        return guide
+        return strategy
 
-    def _anywhere(self, most: int) -> Iterator[Path]:
-        """Random paths. On some a leaf fails, on some the machine is asked to stop, on some live
-        states do what they do."""
+    def _random_paths(self, most: int) -> Iterator[Path]:
+        """Random paths. On some a leaf fails, on some the machine is preempted, on some live states
+        run their own code."""
         vain = tries = 0
         size = 1
-        while self.walks.made < most and vain < MOST_VAIN and self._within():
+        while self.runner.made < most and vain < MOST_VAIN and self._within():
             tries, vain = tries + 1, vain + 1
             length = self._random.randrange(1, min(2 * len(self._leaves) + 10, LONGEST_RANDOM))
             surprise = self._random.randrange(size)
-            guide = self._drawing(length, surprise if tries % 4 == 2 else -1)
-            live = bool(self.walks.live) and tries % 2 == 1 and self.walks.endless < MOST_ENDLESS
+            strategy = self._random_strategy(length, surprise if tries % 4 == 2 else -1)
+            live = bool(self.runner.live) and tries % 2 == 1 and self.runner.endless < MOST_ENDLESS
             stop = surprise if tries % 4 == 0 else -1
-            attempt, path = self.walks.make("random", guide, live=live, stop=stop)
+            path_run, path = self.runner.make("random", strategy, live=live, stop=stop)
             if tries % 2 == 1:
-                size = max(len(attempt.choices), 1)
+                size = max(len(path_run.choices), 1)
             if path is not None:
                 vain = 0
                 yield path
 
-    def _drawing(self, length: int, fails: int) -> Guide:
-        """So many outcomes that are the usual one or any, more or less often; then home."""
+    def _random_strategy(self, length: int, fails: int) -> Strategy:
+        """`length` outcomes, each the default or a random one; then go to the end."""
         often = self._random.random()
 
-        def guide(place: str, options: tuple[str, ...], at: int) -> str | None:
+        def strategy(place: str, options: tuple[str, ...], at: int) -> str | None:
             if 0 <= fails <= at:
                 return None
             if at >= length:
-                return self.walks.home(place, options)
+                return self.runner.towards_end(place, options)
             return self._random.choice(options) if self._random.random() < often else options[0]
 
-        return guide
+        return strategy

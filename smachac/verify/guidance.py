@@ -1,4 +1,4 @@
-"""Which way a machine is likely to reach an end, or a chosen outcome of one of its containers."""
+"""Path planning: outcomes that lead a machine to its end, or a container to a given outcome."""
 
 from __future__ import annotations
 
@@ -12,19 +12,20 @@ from smachac.ir.graph import START, Edge, Place, edges, exit_place
 from smachac.ir.nodes import Concurrence, Container, Leaf, Machine, Node
 from smachac.ir.traversal import PREEMPTED, containers, outcome_names, walk
 
-Wanted = Mapping[str, "str | Mapping[str, str]"]
-"""By path of a container: the outcome it is to have, or outcomes of its children by name."""
+Goals = Mapping[str, "str | Mapping[str, str]"]
+"""By path of a container: its required outcome, or the required outcomes of its children by
+name."""
 
 
-def leaf_outcomes(leaf: Leaf) -> tuple[str, ...]:
-    """The outcomes that a leaf can have, as far as known: of an open one those that lead on."""
+def possible_leaf_outcomes(leaf: Leaf) -> tuple[str, ...]:
+    """The possible outcomes of a leaf; for an open leaf also those that have a transition."""
     declared = outcome_names(leaf)
     led = tuple(edge.outcome for edge in leaf.transitions) if leaf.open else ()
     return tuple(dict.fromkeys((*declared, *led)))
 
 
-def winner(node: Concurrence, ended: Mapping[str, str]) -> int:
-    """Which rule decides how a concurrence ends: its number, or -1 for the default."""
+def matching_rule(node: Concurrence, ended: Mapping[str, str]) -> int:
+    """The number of the rule that determines the outcome of a concurrence; -1 for the default."""
     best, most = -1, 0
     for number, rule in enumerate(node.rules):
         holds = all(ended.get(one.child) == one.outcome for one in rule.when)
@@ -33,17 +34,18 @@ def winner(node: Concurrence, ended: Mapping[str, str]) -> int:
     return best
 
 
-def count_of_items(node: nodes.Iterator) -> int | None:
-    """How many items an iterator has, where the script says so."""
+def item_count(node: nodes.Iterator) -> int | None:
+    """The number of items of an iterator, if the script lists them."""
     data = node.items.data if node.items is not None else None
     return len(data) if isinstance(data, tuple) else None
 
 
-class Steering:
-    """A machine with what can be entered and how it can end, judged by its graph alone.
+class Planner:
+    """Reachability and shortest paths of a machine, computed from its graph alone.
 
-    `possible` are the outcomes that each state can have, `entered` the states that can be entered.
-    Linear in the size of the machine, but for concurrences with many rules.
+    `possible` holds the outcomes that each state can have, `entered` the states that can be
+    entered. The computation is linear in the size of the machine, except for concurrences with many
+    rules.
     """
 
     def __init__(self, machine: Machine) -> None:
@@ -58,29 +60,30 @@ class Steering:
         self._combined: dict[tuple[str, str | int | None], Combination | None] = {}
         self._undecided: set[str] = set()
         self._scenic: dict[str, tuple[str, ...]] = {}
-        self._judge()
+        self._compute_outcomes()
 
-    def _judge(self) -> None:
+    def _compute_outcomes(self) -> None:
+        """Compute `possible`, from inner containers to outer ones, then `entered`."""
         inside: dict[str, frozenset[str]] = {}
         for path, node in reversed(list(containers(self.root))):
             for child in node.children:
                 if isinstance(child, Leaf):
-                    self.possible[f"{path}/{child.name}"] = frozenset(leaf_outcomes(child))
+                    self.possible[f"{path}/{child.name}"] = frozenset(possible_leaf_outcomes(child))
             found = self._edges[path] = [
                 edge
                 for edge in edges(node)
                 if not isinstance(edge.source, str)
                 or edge.outcome in self.possible[f"{path}/{edge.source}"]
             ]
-            if isinstance(node, nodes.Iterator) and count_of_items(node) == 0:
+            if isinstance(node, nodes.Iterator) and item_count(node) == 0:
                 found[:] = [
                     edge for edge in found if edge.kind == "exhausted" and edge.source == START
                 ]
-            places = _places(found)
+            places = _reachable_places(found)
             inside[path] = frozenset(each for each in places if isinstance(each, str))
             ends = (place[1] for place in places if isinstance(place, tuple) and len(place) == 2)
             if isinstance(node, Concurrence):
-                ends = (end for end in ends if not self.never(path, end))
+                ends = (end for end in ends if not self.cannot_end(path, end))
             caught = frozenset([node.catches] if node.catches and self._raises(node) else [])
             self.possible[path] = frozenset(ends) | caught
         for path, _ in containers(self.root):
@@ -91,39 +94,42 @@ class Steering:
         """Whether the machine can end at all."""
         return bool(self.possible[self.root.name])
 
-    def aim(self, wanted: Wanted = MappingProxyType({})) -> Callable[[str], str | None]:
-        """A function from a leaf's path to the outcome that brings the machine to its end soonest,
-        if any does; containers in `wanted` are to end so on the way. Whether that comes true may
-        hang on what happens beside the leaf."""
+    def outcomes_towards(self, goals: Goals = MappingProxyType({})) -> Callable[[str], str | None]:
+        """A function from the path of a leaf to the outcome on the shortest way to the end of the
+        machine, None if there is none.
+
+        Containers in `goals` end with the given outcomes on the way. The plan may fail if it
+        depends on concurrent branches.
+        """
         choices: dict[str, str | None] = {}
 
-        def aimed(path: str) -> str | None:
-            if path in choices and path not in wanted:
+        def outcome(path: str) -> str | None:
+            if path in choices and path not in goals:
                 return choices[path]
             here = self.root.name
-            goal = wanted.get(here)
+            goal = goals.get(here)
             for name in path[len(here) + 1 :].split("/"):
                 child = f"{here}/{name}"
                 if child not in choices:
                     choices[child] = self._best(here, goal, name)
-                here, goal = child, wanted.get(child, choices[child])
+                here, goal = child, goals.get(child, choices[child])
             return choices[path]
 
-        return aimed
+        return outcome
 
-    def scenic(self, path: str) -> tuple[str, ...]:
-        """The outcomes of a leaf, those that lead farthest from the end of its container first.
+    def longest_first(self, path: str) -> tuple[str, ...]:
+        """The outcomes of a leaf, those farthest from the end of its container first.
 
-        Those that end the machine at once are left out.
+        Outcomes that end the machine at once are left out.
         """
         if path not in self._scenic:
             around, _, name = path.rpartition("/")
             ordered = self._ordered(path)
             if isinstance(self.nodes[around], nodes.StateMachine | nodes.Sequence):
-                distances = self._distance(around, None)
+                distances = self._distances_to_end(around, None)
                 far = {
                     edge.outcome: distances[edge.target]
-                    for edge in self._outward(around, name)
+                    for edge in self._outgoing(around, name)
                     if edge.target in distances
                 }
                 ordered.sort(key=lambda outcome: -far.get(outcome, -1))
@@ -133,7 +139,7 @@ class Steering:
         return self._scenic[path]
 
     def _best(self, path: str, goal: str | Mapping[str, str] | None, name: str) -> str | None:
-        """The outcome that a child of a container had best have."""
+        """The best outcome of a child of a container for a goal of the container."""
         node, here = self.nodes[path], f"{path}/{name}"
         if goal is not None and not isinstance(goal, str):
             return goal.get(name, next(iter(self._ordered(here)), None))
@@ -141,31 +147,32 @@ class Steering:
             found = self.combination(path, goal) or {}
             return found.get(name, next(iter(self._ordered(here)), None))
         if isinstance(node, nodes.Iterator):
-            return self._looping(node, goal, here)
-        distances = self._distance(path, goal)
+            return self._iterator_outcome(node, goal, here)
+        distances = self._distances_to_end(path, goal)
         known = {
             edge.outcome: distances[edge.target]
-            for edge in self._outward(path, name)
+            for edge in self._outgoing(path, name)
             if edge.target in distances
         }
         ordered = [outcome for outcome in self._ordered(here) if outcome in known]
         return min(ordered, key=known.__getitem__, default=None)
 
     def _ordered(self, path: str) -> list[str]:
-        """The possible outcomes of a state as its script lists them."""
+        """The possible outcomes of a state, in the order of the script."""
         node = self.nodes[path]
-        names = leaf_outcomes(node) if isinstance(node, Leaf) else outcome_names(node)
+        names = possible_leaf_outcomes(node) if isinstance(node, Leaf) else outcome_names(node)
         return [name for name in names if name in self.possible[path]]
 
-    def _outward(self, path: str, name: str) -> list[Edge]:
+    def _outgoing(self, path: str, name: str) -> list[Edge]:
+        """The edges that leave a child of a container."""
         if path not in self._sources:
             found = self._sources[path] = {}
             for edge in self._edges[path]:
                 found.setdefault(edge.source, []).append(edge)
         return self._sources[path].get(name, [])
 
-    def _looping(self, node: nodes.Iterator, goal: str | None, here: str) -> str | None:
-        """Go on to the last item, unless the child has to end the iteration itself."""
+    def _iterator_outcome(self, node: nodes.Iterator, goal: str | None, here: str) -> str | None:
+        """Loop to the last item, unless the goal requires that the child ends the iteration."""
         renamed = dict(node.final_map)
         ordered = self._ordered(here)
         loops = [outcome for outcome in ordered if outcome in node.loop_outcomes]
@@ -175,8 +182,8 @@ class Steering:
         return next(iter([*breaks, *ordered]), None)
 
     def combination(self, path: str, goal: str | int | None) -> Combination | None:
-        """Outcomes of the children with which a concurrence ends so: by an outcome, or by the rule
-        of that number (-1: by its default). None where there are none, as far as can be told."""
+        """Outcomes of the children with which a concurrence reaches a goal: an outcome, or the rule
+        of that number (-1: its default). None if there are none, or if the search was given up."""
         if (path, goal) not in self._combined:
             node = self.nodes[path]
             assert isinstance(node, Concurrence)
@@ -187,8 +194,8 @@ class Steering:
                 self._undecided.add(path)
         return self._combined[path, goal]
 
-    def never(self, path: str, goal: str | int) -> bool:
-        """Whether a concurrence surely never ends so (see `combination`)."""
+    def cannot_end(self, path: str, goal: str | int) -> bool:
+        """Whether a concurrence can certainly not reach a goal (see `combination`)."""
         return self.combination(path, goal) is None and path not in self._undecided
 
     def _combination(
@@ -211,8 +218,8 @@ class Steering:
         return None
 
     def _domains(self, path: str, node: Concurrence) -> Iterator[Domains]:
-        """What the children can end with. Where the first to end stops the others, leaves that can
-        say so end as preempted."""
+        """The possible outcomes of the children. With `join: any` one child ends first, and leaves
+        that can be preempted end as `preempted`."""
         able = {child.name: self._ordered(f"{path}/{child.name}") for child in node.children}
         if node.join == "all":
             yield able
@@ -225,29 +232,29 @@ class Steering:
         for first in able:
             yield {**able, **stopped, first: able[first]}
 
-    def _distance(self, path: str, goal: str | None) -> dict[Place, int]:
-        """How many states lie between each place of a container and its end."""
+    def _distances_to_end(self, path: str, goal: str | None) -> dict[Place, int]:
+        """For each place of a container, the number of states on the shortest way to its end."""
         if (path, goal) not in self._distances:
             node = self.nodes[path]
             assert not isinstance(node, Leaf)
             ends = (goal,) if goal is not None else outcome_names(node)
             planned = [edge for edge in self._edges[path] if not self._caught(path, edge)]
-            self._distances[path, goal] = _back(planned, [exit_place(end) for end in ends])
+            self._distances[path, goal] = _distances_to(planned, [exit_place(end) for end in ends])
         return self._distances[path, goal]
 
     def _raises(self, node: Container) -> bool:
         """Whether an exception can come from inside a container."""
         if any(not child.catches for child in node.children):
             return True
-        return isinstance(node, nodes.Iterator) and count_of_items(node) is None
+        return isinstance(node, nodes.Iterator) and item_count(node) is None
 
     def _caught(self, path: str, edge: Edge) -> bool:
-        """Whether it takes an exception somewhere inside a container to get on so."""
+        """Whether an edge needs an exception inside a container."""
         node = self.nodes.get(f"{path}/{edge.source}")
         return node is not None and not isinstance(node, Leaf) and edge.outcome == node.catches
 
 
-def _places(found: list[Edge]) -> dict[Place, None]:
+def _reachable_places(found: list[Edge]) -> dict[Place, None]:
     """The places that can be reached from the start."""
     following: dict[Place, list[Place]] = {}
     for edge in found:
@@ -262,7 +269,8 @@ def _places(found: list[Edge]) -> dict[Place, None]:
     return seen
 
 
-def _back(found: list[Edge], ends: list[Place]) -> dict[Place, int]:
+def _distances_to(found: list[Edge], ends: list[Place]) -> dict[Place, int]:
+    """For each place, the number of edges to the nearest of some ends."""
     before: dict[Place, list[Place]] = {}
     for edge in found:
         before.setdefault(edge.target, []).append(edge.source)

@@ -1,4 +1,4 @@
-"""What `smachac verify` found, for people and for programs."""
+"""The result of `smachac verify`, as text and as JSON."""
 
 from __future__ import annotations
 
@@ -8,52 +8,52 @@ from dataclasses import dataclass
 from typing import Any
 
 from smachac.diagnostics.source import Span
-from smachac.interpreter.scenario import Row
-from smachac.verify.coverage import Reason, Way
+from smachac.interpreter.scenario import PlainStep
+from smachac.verify.coverage import CoverageItem, Reason
 
 Event = Mapping[str, Any]
 
 SHOWN_BEFORE, SHOWN_AFTER = 4, 3
-"""Events shown around the first one that differs."""
+"""Number of events shown before and after the first difference."""
 
 WIDEST = 60
-"""Characters of one side of two traces side by side."""
+"""Width of one trace in characters, two traces side by side."""
 
 MOST_MISSING = 20
-"""Transitions not taken that are listed for people; programs get them all."""
+"""Limit on the uncovered transitions in the text; JSON contains all of them."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Disagreement:
-    """The first path on which a target does something else than the interpreter: both traces in
-    comparable order, the number of the event at which they part, and the scenario."""
+    """The first path on which a target differs from the interpreter: both traces in comparable
+    order, the number of the first different event, and the scenario."""
 
     target: str
     path: int
     expected: Sequence[Event]
     found: Sequence[Event]
     at: int
-    rows: Mapping[str, Sequence[Row]]
+    rows: Mapping[str, Sequence[PlainStep]]
     live: bool
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Verdict:
-    """How targets compare with the interpreter: the paths gone through by kind, the ways taken of
-    all there are, those that were not with the reason, and what was left out."""
+    """The result of the comparison: paths by kind, covered and total transitions, uncovered ones
+    with their reasons, what was not explored, and the differences."""
 
     script: str
     targets: tuple[str, ...]
     paths: Mapping[str, int]
     taken: int
     total: int
-    missing: Sequence[tuple[Way, Span, Reason]]
+    missing: Sequence[tuple[CoverageItem, Span, Reason]]
     left_out: Sequence[str]
     disagreements: Sequence[Disagreement]
 
 
-def scenario_text(rows: Mapping[str, Sequence[Row]]) -> str:
-    """A scenario as the file that `smachac run --mock` reads."""
+def scenario_text(rows: Mapping[str, Sequence[PlainStep]]) -> str:
+    """A scenario as a file for `smachac run --mock`."""
     lines = ["states:"]
     for path, row in rows.items():
         lines.append(f"  {_quoted(path)}:")
@@ -61,7 +61,7 @@ def scenario_text(rows: Mapping[str, Sequence[Row]]) -> str:
     return "\n".join(lines) + "\n"
 
 
-def _step(row: Row) -> dict[str, object]:
+def _step(row: PlainStep) -> dict[str, object]:
     step: dict[str, object] = {"stop": True} if row.stop else {}
     if row.error:
         return step | {"error": row.error}
@@ -74,8 +74,8 @@ def _quoted(value: object) -> str:
 
 
 def render_json(verdict: Verdict) -> str:
-    """One JSON object; differences with both traces and the scenario."""
-    told = {
+    """One JSON object; differences contain both traces and the scenario."""
+    data = {
         "script": verdict.script,
         "targets": list(verdict.targets),
         "agree": not verdict.disagreements,
@@ -84,9 +84,9 @@ def render_json(verdict: Verdict) -> str:
             "taken": verdict.taken,
             "total": verdict.total,
             "missing": [
-                {"path": way.path, "outcome": way.outcome, "to": way.target, "kind": way.kind,
-                 "src": _place(span), "reason": why.words, "never": why.never}
-                for way, span, why in verdict.missing
+                {"path": item.path, "outcome": item.outcome, "to": item.target, "kind": item.kind,
+                 "src": _place(span), "reason": why.text, "never": why.never}
+                for item, span, why in verdict.missing
             ],
         },
         "left_out": list(verdict.left_out),
@@ -97,11 +97,11 @@ def render_json(verdict: Verdict) -> str:
             for each in verdict.disagreements
         ],
     }  # fmt: skip
-    return json.dumps(told, indent=2, ensure_ascii=False) + "\n"
+    return json.dumps(data, indent=2, ensure_ascii=False) + "\n"
 
 
 def render_text(verdict: Verdict) -> str:
-    """Differences first, then what was gone through."""
+    """Differences first, then paths and coverage."""
     lines: list[str] = []
     for each in verdict.disagreements:
         lines += [*_difference(each), ""]
@@ -113,23 +113,23 @@ def render_text(verdict: Verdict) -> str:
     percent = f" ({100 * verdict.taken // can} %)" if can else ""
     lines.append(f"{verdict.taken} of {can} transitions taken{percent}")
     lines += [f"{never} more cannot be taken"] if never else []
-    for way, span, why in verdict.missing[:MOST_MISSING]:
-        lines.append(f"  not taken: {_way(way)}  ({_place(span)}): {why.words}")
+    for item, span, why in verdict.missing[:MOST_MISSING]:
+        lines.append(f"  not taken: {_item_text(item)}  ({_place(span)}): {why.text}")
     if (more := len(verdict.missing) - MOST_MISSING) > 0:
         lines.append(f"  and {more} more; --format json has them all")
     lines += [f"left out: {each}" for each in verdict.left_out]
-    differ = {each.target for each in verdict.disagreements}
+    compare_traces = {each.target for each in verdict.disagreements}
     for target in verdict.targets:
-        lines.append(f"{target}: {'differs' if target in differ else 'does the same'}")
+        lines.append(f"{target}: {'differs' if target in compare_traces else 'does the same'}")
     return "\n".join(lines) + "\n"
 
 
-def _way(way: Way) -> str:
-    if way.kind == "rule":
-        which = "default" if way.rule < 0 else f"rule {way.rule + 1}"
-        return f"{way.path}: {which} -> {way.outcome}"
-    to = f"{way.target} ({way.kind})" if way.kind != "transition" else way.target
-    return f"{way.path}: {way.outcome} -> {to}"
+def _item_text(item: CoverageItem) -> str:
+    if item.kind == "rule":
+        which = "default" if item.rule < 0 else f"rule {item.rule + 1}"
+        return f"{item.path}: {which} -> {item.outcome}"
+    to = f"{item.target} ({item.kind})" if item.kind != "transition" else item.target
+    return f"{item.path}: {item.outcome} -> {to}"
 
 
 def _place(span: Span) -> str:
@@ -138,6 +138,7 @@ def _place(span: Span) -> str:
 
 
 def _difference(each: Disagreement) -> Iterator[str]:
+    """Both traces around the first difference, and the scenario."""
     begin, end = max(each.at - SHOWN_BEFORE, 0), each.at + SHOWN_AFTER + 1
     ours = [_event(event) for event in each.expected[begin:end]]
     theirs = [_event(event) for event in each.found[begin:end]]

@@ -1,4 +1,4 @@
-"""Plausible constants: values that states could have written, by type."""
+"""Sample values by type: what leaves write in test cases."""
 
 from __future__ import annotations
 
@@ -6,18 +6,18 @@ from smachac.analysis.type_inference import infer
 from smachac.ir.nodes import Iterator, Leaf, Machine
 from smachac.ir.traversal import PREEMPTED, containers, remapping, walk
 from smachac.ir.types import ANY, Type
-from smachac.verify.shared_keys import contended
+from smachac.verify.shared_keys import contended_keys
 
 FLAT = (0.0, 0.0, 0.0, 1.0)
-"""The quaternion x, y, z, w of no rotation."""
+"""The identity rotation as a quaternion x, y, z, w."""
 
 
-def constant(type_: Type, number: int) -> object:
-    """A value of a type as a script would write it; other numbers give other values, if there are
-    any.
+def sample_value(type_: Type, number: int) -> object:
+    """A value of a type, as a script would write it; different numbers give different values if the
+    type has several.
 
-    Of nothing known it is a list, which an iterator can go through; of a type that is known by name
-    alone, nothing.
+    For an unknown type the value is a list, so that an iterator can use it; for a type known by
+    name only, it is None.
     """
     match type_.name, type_.args:
         case "bool", _:
@@ -29,7 +29,7 @@ def constant(type_: Type, number: int) -> object:
         case "str", _:
             return f"text {number}"
         case "optional", (Type() as inner,):
-            return constant(inner, number)
+            return sample_value(inner, number)
         case "one_of" | "literal", choices if choices:
             return choices[number % len(choices)]
         case "any", _:
@@ -39,10 +39,10 @@ def constant(type_: Type, number: int) -> object:
         case "array", (_, int() as size):
             return _collection("list", type_.args, size, number)
         case "tuple", parts:
-            return [constant(part, number) for part in parts if isinstance(part, Type)]
+            return [sample_value(part, number) for part in parts if isinstance(part, Type)]
         case "record", pairs:
             return {
-                str(name): constant(part, number)
+                str(name): sample_value(part, number)
                 for name, part in zip(pairs[::2], pairs[1::2], strict=True)
                 if isinstance(part, Type)
             }
@@ -52,12 +52,12 @@ def constant(type_: Type, number: int) -> object:
 
 def _collection(name: str, items: tuple[Type | int | str, ...], size: int, number: int) -> object:
     inside = next((each for each in items if isinstance(each, Type)), Type("int"))
-    values = [constant(inside, number + at) for at in range(size)]
+    values = [sample_value(inside, number + at) for at in range(size)]
     return {f"k{at}": value for at, value in enumerate(values)} if name == "dict" else values
 
 
 def _struct(name: str, number: int) -> object:
-    """As scripts write them: the first four as lists, the others as mappings."""
+    """A struct as scripts write it: the first four as lists, the others as mappings."""
     point = [number + 0.5, 0.25, 0.75]
     match name:
         case "Point":
@@ -74,21 +74,21 @@ def _struct(name: str, number: int) -> object:
     return None if name == "none" or "/" in name or "." in name else number
 
 
-def given(machine: Machine) -> dict[str, object]:
-    """What a machine that declares inputs finds there, where its script does not preset them."""
+def sample_inputs(machine: Machine) -> dict[str, object]:
+    """Values for the declared inputs of a machine that its script does not preset."""
     preset = {each.key for each in machine.root.userdata}
     return {
-        key.name: constant(key.type, number)
+        key.name: sample_value(key.type, number)
         for number, key in enumerate(machine.root.inputs)
         if key.name not in preset
     }
 
 
-class Constants:
-    """What the leaves of a machine write when a scenario speaks for them.
+class SampleValues:
+    """The values that the leaves of a machine write in test cases.
 
-    Every visit writes something else, so that a value tells where it comes from; but where two
-    branches of a concurrence share keys, all that is of one type is the same.
+    Every visit writes different values, so that a value identifies its origin. Exception: where
+    branches of a concurrence share keys, all values of one type are equal.
     """
 
     def __init__(self, machine: Machine) -> None:
@@ -97,24 +97,27 @@ class Constants:
             path for path, node in containers(machine.root) if isinstance(node, Iterator)
         }
         self._numbers = {path: number for number, (path, _) in enumerate(walk(machine.root))}
-        self._alike = tuple(f"{path}/" for path in contended(machine))
+        self._contended = tuple(f"{path}/" for path in contended_keys(machine))
 
-    def written(
+    def outputs(
         self, path: str, leaf: Leaf, outcome: str, visit: int
     ) -> tuple[tuple[str, object], ...]:
-        """The outputs that a leaf writes on an outcome, at that visit."""
+        """The outputs that a leaf writes at a visit with an outcome."""
         bound = {key for _, keys in leaf.writes for key in keys}
         here = {key for name, keys in leaf.writes if name == outcome for key in keys}
-        number = 1 if path.startswith(self._alike) else self._numbers[path] + visit
+        number = 1 if path.startswith(self._contended) else self._numbers[path] + visit
         return tuple(
-            (key.name, constant(self._type(path, leaf, key.name), number))
+            (key.name, sample_value(self._type(path, leaf, key.name), number))
             for key in leaf.outputs
             if (key.name in here if key.name in bound else outcome != PREEMPTED)
         )
 
     def _type(self, path: str, leaf: Leaf, key: str) -> Type:
-        """The type of the key of the container, which the child of an iterator sees as it is
-        (smach-semantics I7); else what is known of the output."""
+        """The inferred type of the key in the container; if it is unknown, the type of the output.
+
+        The child of an iterator sees the keys of the iterator under their own names
+        (docs/semantics.md, Iterator).
+        """
         around = path.rpartition("/")[0]
         outer = key if around in self._iterators else remapping(leaf).get(key, key)
         type_ = self._types.keys.get((around, outer), ANY)

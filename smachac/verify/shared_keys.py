@@ -1,4 +1,4 @@
-"""What two branches of a concurrence share: there a run hangs on who comes first."""
+"""Keys shared by branches of a concurrence: their values depend on which branch is first."""
 
 from __future__ import annotations
 
@@ -8,10 +8,10 @@ from smachac.ir.nodes import Concurrence, Leaf, Machine, Node
 from smachac.ir.traversal import containers, remapping, walk
 
 
-def contended(machine: Machine) -> dict[str, tuple[str, ...]]:
-    """The concurrences, by path, in which a branch writes keys that another reads or writes.
+def contended_keys(machine: Machine) -> dict[str, tuple[str, ...]]:
+    """The concurrences, by path, with the keys that one branch writes and another reads or writes.
 
-    A branch that may write anything, because its state type has no interface, counts for no key.
+    A branch of an open state type may write any key; it is not counted.
     """
     found = {}
     for path, node in containers(machine.root):
@@ -35,9 +35,9 @@ def _keys(child: Node) -> tuple[set[str], set[str]]:
     return reads, writes
 
 
-def sure_reads(machine: Machine) -> dict[str, tuple[str, ...]]:
-    """The inputs of each leaf that hold the same whichever branch comes first, by path."""
-    loose = tuple(f"{path}/" for path in contended(machine))
+def deterministic_reads(machine: Machine) -> dict[str, tuple[str, ...]]:
+    """The inputs of each leaf, by path, whose values do not depend on the order of branches."""
+    loose = tuple(f"{path}/" for path in contended_keys(machine))
     return {
         path: tuple(key.name for key in node.inputs)
         for path, node in walk(machine.root)

@@ -17,10 +17,10 @@ from smachac.ir.nodes import Machine
 from smachac.runtime import smach
 from smachac.runtime.tracing import trace
 from smachac.verify import verify
-from smachac.verify.generate import Scenarios
+from smachac.verify.generate import PathGenerator
 from smachac.verify.players.python import player
 from smachac.verify.result import Verdict, render_json, render_text, scenario_text
-from smachac.verify.sample_values import Constants
+from smachac.verify.sample_values import SampleValues
 
 ROOT = Path(__file__).parents[2]
 EXAMPLES = sorted((ROOT / "examples").glob("[0-9]*/main.yml"))
@@ -155,7 +155,7 @@ def test_examples_agree_and_are_covered(script: Path, capsys: pytest.CaptureFixt
 def test_what_cannot_be_taken_has_its_reason() -> None:
     verdict = judged(ROOT / "tests" / "cases" / "sugar" / "main.yml")
     assert verdict.disagreements == []
-    assert {(way.path, way.outcome, why.words) for way, _, why in verdict.missing} == {
+    assert {(way.path, way.outcome, why.text) for way, _, why in verdict.missing} == {
         ("tour/TRIES", "good", "the state never ends so"),
         ("tour/TRIES/TRIES", "good", "the state never ends so"),
         ("tour/WITHOUT", "preempted", "the state never ends so"),
@@ -235,18 +235,18 @@ def test_a_value_has_the_type_of_the_key_that_holds_it() -> None:
     child = leaf("LOOK", outcomes="seen", outs="n", remaps={"n": "other"})
     each = iterator("EACH", "exhausted", child, held={"n": 1}, items=[0], loop="seen")
     machine = Machine(root=state_machine("sm", "seen", each))
-    ((key, value),) = Constants(machine).written("sm/EACH/LOOK", child, "seen", 0)
+    ((key, value),) = SampleValues(machine).outputs("sm/EACH/LOOK", child, "seen", 0)
     assert (key, type(value)) == ("n", int)
 
 
 def test_the_same_seed_makes_the_same_paths() -> None:
     machine = smachac.load(EXAMPLES[7])
-    paths = [list(Scenarios(machine, most=80, seed=seed).paths()) for seed in (1, 1, 2)]
+    paths = [list(PathGenerator(machine, most=80, seed=seed).paths()) for seed in (1, 1, 2)]
     assert paths[0] == paths[1] != paths[2]
 
 
 def test_paths_are_no_more_than_asked_for(rounds: Path) -> None:
-    scenarios = Scenarios(smachac.load(rounds), most=3)
+    scenarios = PathGenerator(smachac.load(rounds), most=3)
     assert len(list(scenarios.paths())) == 3
     assert scenarios.left_out != []
 
@@ -261,10 +261,10 @@ def test_a_long_machine_is_gone_through_within_bounds(tmp_path: Path) -> None:
         )
     script = tmp_path / "main.yml"
     script.write_text("\n".join(rows), "utf-8")
-    scenarios = Scenarios(smachac.load(script), most=5)
+    scenarios = PathGenerator(smachac.load(script), most=5)
     assert len(list(scenarios.paths())) == 5
     assert scenarios.left_out != []
-    assert scenarios.walks.spent < 100_000
+    assert scenarios.runner.spent < 100_000
 
 
 def test_a_machine_without_an_end_is_cut_off(tmp_path: Path) -> None:
@@ -373,7 +373,7 @@ def test_ctrl_c_ends_it(rounds: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     def interrupted(*_: object) -> None:
         raise KeyboardInterrupt
 
-    monkeypatch.setattr("smachac.verify.expected", interrupted)
+    monkeypatch.setattr("smachac.verify.expected_trace", interrupted)
     before = smach.loginfo
     assert main(["verify", str(rounds)]) == 130
     assert smach.loginfo is before

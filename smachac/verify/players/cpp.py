@@ -1,4 +1,4 @@
-"""Plays scenes on a generated C++ program: compiled once, then all of them in one run."""
+"""Player of the C++ target: one generated program, compiled once, runs all test cases."""
 
 from __future__ import annotations
 
@@ -20,36 +20,36 @@ from smachac.ir.nodes import Machine
 from smachac.targets.cpp.plan import plan
 from smachac.targets.cpp.types import UnportableError
 from smachac.verify.players.cpp_program import Program
-from smachac.verify.test_case import Event, Player, Scene, UnplayableError
+from smachac.verify.test_case import Event, Player, TestCase, UnplayableError
 
 HEADERS = Path(smachac.__file__).parent / "runtime" / "cpp"
-"""The folder that holds smachac/*.hpp."""
+"""The folder of smachac/*.hpp."""
 
 FLAGS = ("-std=c++17", "-O0", "-ffp-contract=off", "-pthread", f"-I{HEADERS}")
-"""Floats as Python computes them, also where the machine could fuse two operations."""
+"""`-ffp-contract=off`: floats as in Python, also where the processor could fuse two operations."""
 
 DONE = "--"
 """The line after each trace."""
 
 MOST_ERRORS = 5
-"""Lines of a compiler that are shown."""
+"""Limit on the lines of compiler output that are shown."""
 
 
 def player(machine: Machine, library: Library, report: Report) -> Player:
-    """A player of what the target prints; what C++ cannot say of the machine is reported.
+    """A player of the generated C++ code. Adds to `report` what C++ cannot express of the machine.
 
-    It compiles when it gets its scenes. Raises UnplayableError where there is no compiler, or where
-    it does not compile.
+    The program is compiled when the player receives test cases. Raises UnplayableError if there is
+    no compiler, or if the compilation fails.
     """
     planned = plan(machine)
     report.extend(Program(planned, library, ()).refused())
 
-    def play(scenes: Sequence[Scene]) -> Iterator[list[Event]]:
+    def play(cases: Sequence[TestCase]) -> Iterator[list[Event]]:
         found = compilers()
         if not found:
             words = "no C++ compiler is here: install g++ or clang++, or the Python package ziglang"
             raise UnplayableError(words)
-        program = Program(planned, library, scenes)
+        program = Program(planned, library, cases)
         try:
             text = program.text()
         except UnportableError as error:
@@ -59,12 +59,14 @@ def player(machine: Machine, library: Library, report: Report) -> Player:
     return play
 
 
-def traces(text: str, scenes: str, compiler: Compiler) -> Iterator[list[Event]]:
-    """What a program prints for scenes, one trace after the other, as it runs. One that breaks off
-    ends the last trace with an event that nobody expects."""
+def traces(text: str, cases: str, compiler: Compiler) -> Iterator[list[Event]]:
+    """The traces that a program prints, one after the other, while it runs.
+
+    If the program fails, the last trace ends with an error event.
+    """
     with tempfile.TemporaryDirectory() as folder, tempfile.TemporaryFile("w+") as given:
         made = compiled(text, compiler, Path(folder))
-        given.write(scenes)
+        given.write(cases)
         given.seek(0)
         run = subprocess.Popen([made], stdin=given, stdout=subprocess.PIPE, text=True)
         assert run.stdout is not None
@@ -86,7 +88,8 @@ def traces(text: str, scenes: str, compiler: Compiler) -> Iterator[list[Event]]:
 
 
 def compiled(text: str, compiler: Compiler, folder: Path) -> str:
-    """The program of a text. Raises UnplayableError with the first errors of the compiler."""
+    """Compile a program; the path of the executable. Raises UnplayableError with the first errors
+    of the compiler."""
     made = str(folder / "verify")
     call = [*compiler.command, *FLAGS, "-x", "c++", "-", "-o", made]
     run = subprocess.run(call, input=text, capture_output=True, text=True, check=False)
@@ -100,7 +103,7 @@ def compiled(text: str, compiler: Compiler, folder: Path) -> str:
 
 
 class Compiler(NamedTuple):
-    """A compiler by its kind, `g++` or `clang++`, and how it is called."""
+    """A compiler: its kind, `g++` or `clang++`, and its command."""
 
     name: str
     command: tuple[str, ...]
@@ -108,7 +111,7 @@ class Compiler(NamedTuple):
 
 @functools.cache
 def compilers() -> tuple[Compiler, ...]:
-    """`g++` and `clang++`, one of each, where they are; else the one in the package `ziglang`."""
+    """The installed compilers, at most one of each kind; the package `ziglang` if there is none."""
     versions = [f"clang++-{number}" for number in range(22, 11, -1)]
     found = [*_first("g++", ["g++"]), *_first("clang++", ["clang++", *versions])]
     if not found and importlib.util.find_spec("ziglang"):

@@ -1,4 +1,5 @@
-"""Plays scenes on a generated Python program: loaded once, built anew for each."""
+"""Player of the Python target: the generated module is loaded once and built anew for each test
+case."""
 
 from __future__ import annotations
 
@@ -12,29 +13,33 @@ from typing import Any
 from smachac.ir.nodes import Machine
 from smachac.runtime.tracing import trace
 from smachac.targets.python.runner import hidden, loaded, places, quiet
-from smachac.verify.test_case import Event, Player, Scene, UnplayableError, see
+from smachac.verify.test_case import Event, Player, TestCase, UnplayableError, record_read
 
 
 def player(name: str, text: str, machine: Machine, *, folder: Path) -> Player:
     """A player of the module `text`, which may import modules of the user from `folder`.
 
-    The first trace loads it, which imports what it imports; each one makes the objects of its
-    states. Raises UnplayableError where that fails.
+    The first trace loads the module; each trace creates the objects of its states. Raises
+    UnplayableError if that fails.
     """
     sources = places(machine)
 
-    def play(scenes: Sequence[Scene]) -> Iterator[list[Event]]:
-        with _told(), loaded(name, text, folder) as module, quiet(module["smach"], hidden):
-            for scene in scenes:
-                yield _played(module["build"](), machine.root.name, scene, sources)
+    def play(cases: Sequence[TestCase]) -> Iterator[list[Event]]:
+        with (
+            _unplayable_errors(),
+            loaded(name, text, folder) as module,
+            quiet(module["smach"], hidden),
+        ):
+            for case in cases:
+                yield _trace(module["build"](), machine.root.name, case, sources)
 
     return play
 
 
 @contextmanager
-def _told() -> Iterator[None]:
-    """What goes wrong around the machine is why it cannot be played; what the program prints is
-    not part of the report."""
+def _unplayable_errors() -> Iterator[None]:
+    """Convert errors outside the machine to UnplayableError, and send output of the program to
+    stderr."""
     try:
         with redirect_stdout(sys.stderr):
             yield
@@ -43,13 +48,13 @@ def _told() -> Iterator[None]:
         raise UnplayableError(words) from error
 
 
-def _played(built: Any, name: str, scene: Scene, sources: dict[str, str]) -> list[Event]:
-    """The trace of one run; an error that ends it is an event."""
+def _trace(built: Any, name: str, case: TestCase, sources: dict[str, str]) -> list[Event]:
+    """The trace of one run; an error that ends the run is an event of it."""
     events: list[Event] = []
-    for key, value in scene.userdata.items():
+    for key, value in case.userdata.items():
         built.userdata[key] = value
-    strict = trace.StrictScript(scene.reads, partial(see, events), scene.most)
-    trace.script(built, name, scene.rows, strict)
+    strict = trace.StrictScript(case.reads, partial(record_read, events), case.most)
+    trace.script(built, name, case.rows, strict)
     trace.attach(built, name, events.append, sources)
     with suppress(Exception):
         built.execute()
