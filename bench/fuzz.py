@@ -33,7 +33,7 @@ from smachac.frontend.files import disk_library
 from smachac.frontend.loader import Library, memory_library
 from smachac.interpreter.behaviours import builtin_behaviour
 from smachac.interpreter.interpreter import run
-from smachac.refactor.formatter import laid_out
+from smachac.refactor.formatter import format_script
 from smachac.report.explain_code import explanation
 from smachac.report.github import render_github
 from smachac.report.json import render_json
@@ -246,9 +246,13 @@ def tried(files: Mapping[str, str], index: int) -> str:
 
 def arranged(source: Source) -> None:
     """Laid out: that is a text with nothing left to be laid out."""
-    new = laid_out(source) if memory_library({}, BUILT_IN).parse(source, []) is not None else None
+    new = (
+        format_script(source)
+        if memory_library({}, BUILT_IN).parse(source, []) is not None
+        else None
+    )
     if new is not None:
-        assert laid_out(Source(source.name, new)) == new, "laid out twice is something else"
+        assert format_script(Source(source.name, new)) == new, "laid out twice is something else"
 
 
 def printed(machine: Any, library: Library, ours: bool) -> None:

@@ -21,7 +21,7 @@ from smachac.frontend.files import disk_library
 from smachac.frontend.loader import memory_library
 from smachac.frontend.yaml_tree import parse
 from smachac.ir.printer import print_machine
-from smachac.refactor.formatter import WIDTH, laid_out
+from smachac.refactor.formatter import WIDTH, format_script
 
 ROOT = Path(__file__).parent
 LAYOUTS = sorted((ROOT / "layouts").glob("*/before.yml"))
@@ -34,7 +34,7 @@ SCRIPTS = [
 
 
 def lay_out(text: str, spelling: str = "kept") -> str | None:
-    return laid_out(Source("x.yml", text), spelling)  # type: ignore[arg-type]
+    return format_script(Source("x.yml", text), spelling)  # type: ignore[arg-type]
 
 
 @pytest.mark.parametrize("before", LAYOUTS, ids=lambda path: path.parent.name)

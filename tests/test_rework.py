@@ -30,8 +30,8 @@ from smachac.interpreter.userdata import Userdata, UserdataError
 from smachac.ir.nodes import Leaf, Machine, StateMachine
 from smachac.ir.printer import print_machine
 from smachac.ir.traversal import outcome_names, walk
-from smachac.refactor.equivalence import normal
-from smachac.refactor.formatter import laid_out
+from smachac.refactor.equivalence import normalized
+from smachac.refactor.formatter import format_script
 from smachac.runtime import smach
 
 CASES = sorted(path.parent for path in (Path(__file__).parent / "reworked").glob("*/command"))
@@ -91,7 +91,7 @@ def project(
         path.parent.mkdir(parents=True, exist_ok=True)
         text = written(data).text
         if name.endswith(".yml") and "/" not in name:
-            text = remarked(laid_out(Source(name, text)) or text, name)
+            text = remarked(format_script(Source(name, text)) or text, name)
         path.write_text(text, "utf-8")
     return random.Random(seed)
 
@@ -152,7 +152,7 @@ def test_what_is_extracted_can_be_inlined_again(project: random.Random) -> None:
         assert comments() == remarks
         done += 1
         again = texts()
-        assert {name: laid_out(Source(name, text)) for name, text in again.items()} == again
+        assert {name: format_script(Source(name, text)) for name, text in again.items()} == again
     assert texts().keys() == files.keys()
     assert done or not mine
 
@@ -169,7 +169,7 @@ def test_calls_can_be_inlined(project: random.Random) -> None:
 
 @pytest.mark.parametrize("project", SEEDS, indirect=True)
 def test_a_name_that_is_changed_twice_is_the_old_one(project: random.Random) -> None:
-    files, before = texts(), normal(machine().root)
+    files, before = texts(), normalized(machine().root)
     names: list[tuple[str, str, str]] = []
     for path, node in walk(machine().root):
         names.append(("state", path, node.name))
@@ -187,7 +187,7 @@ def test_a_name_that_is_changed_twice_is_the_old_one(project: random.Random) -> 
         assert "brand_new" in machine_text()
         there = f"{path.rpartition('/')[0]}/brand_new" if "/" in path else "brand_new"
         assert command("rename", "main.yml", there, name, "--kind", kind) == 0
-        assert normal(machine().root) == before
+        assert normalized(machine().root) == before
         files = texts()
     assert done["state"] or done["outcome"]
 
@@ -282,7 +282,7 @@ def test_keys_are_seen_in_a_container_as_without_it(seed: int) -> None:
         at = draw.randrange(len(names))
         code = main(["contain", "main.yml", "NEW", "StateMachine", *names[at : at + 3]])
         after = machine()
-    assert (normal(after.root) == normal(before.root)) == (code != 0)
+    assert (normalized(after.root) == normalized(before.root)) == (code != 0)
     for each in range(20 if code == 0 else 0):
         assert transcript(after, each) == transcript(before, each)
 

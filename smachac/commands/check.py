@@ -29,7 +29,7 @@ from smachac.frontend.discovery import (
 from smachac.frontend.files import Disk, read_source, stamps
 
 if TYPE_CHECKING:
-    from smachac.refactor.autofix import Mended
+    from smachac.refactor.autofix import FixResult
 
 assert checks is not None  # imported for the codes it files
 
@@ -73,7 +73,7 @@ def _once(arguments: Namespace, used: set[str]) -> int:
         return _write_baseline(arguments.baseline, found.report)
     mends = 0
     if arguments.fix or arguments.diff:
-        from smachac.refactor.autofix import Texts, mended
+        from smachac.refactor.autofix import Texts, apply_fixes
 
         def again(texts: Texts) -> Survey:
             return survey(paths, Disk(texts), arguments.scripts, arguments.templates, more)
@@ -81,7 +81,7 @@ def _once(arguments: Namespace, used: set[str]) -> int:
         def counted(survey: Survey) -> Report:
             return _counted(survey, changed, arguments)[0].report
 
-        cured = mended(whole, counted, again)
+        cured = apply_fixes(whole, counted, again)
         mends = cured.count
         if arguments.diff:
             _put_diff(cured)
@@ -118,14 +118,14 @@ def _counted(
     return found.only(report), notes
 
 
-def _put_diff(cured: Mended) -> None:
+def _put_diff(cured: FixResult) -> None:
     from smachac.refactor.autofix import differences
 
     sys.stdout.writelines(differences(cured.texts, cured.sources))
     print(f"--fix would mend {cured.count} findings in {len(cured.texts)} files", file=sys.stderr)
 
 
-def _rewritten(cured: Mended) -> bool:
+def _rewritten(cured: FixResult) -> bool:
     """Write what was mended; whether that went well."""
     try:
         rewrite_files(cured.texts, cured.sources)

@@ -15,7 +15,7 @@ from smachac.diagnostics.source import Source
 from smachac.frontend.discovery import NothingFoundError, scripts_of
 from smachac.frontend.files import Disk
 from smachac.refactor.autofix import Texts, differences
-from smachac.refactor.formatter import laid_out
+from smachac.refactor.formatter import format_script
 
 
 def fmt(arguments: Namespace) -> int:
@@ -36,7 +36,7 @@ def fmt(arguments: Namespace) -> int:
             report += found
             left += bool(found)
             continue
-        new = laid_out(source, arguments.spelling)
+        new = format_script(source, arguments.spelling)
         if new is None:
             print(f"{path} is left as it is: its YAML is too unusual", file=sys.stderr)
             left += 1

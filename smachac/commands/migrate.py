@@ -17,9 +17,9 @@ from smachac.frontend.discovery import NothingFoundError, scripts_of
 from smachac.frontend.files import Disk, disk_library
 from smachac.frontend.schema import LONG
 from smachac.frontend.yaml_tree import Map, Seq, Tree
-from smachac.refactor.smacha.report import File, Item, render_migration
-from smachac.refactor.smacha.script_differences import Quirk, quirks
-from smachac.refactor.smacha.template_differences import template_quirks, top_level_sets
+from smachac.refactor.smacha.report import File, MigrationItem, render_migration
+from smachac.refactor.smacha.script_differences import SmachaDifference, script_differences
+from smachac.refactor.smacha.template_differences import template_differences, top_level_sets
 from smachac.targets import load_target
 from smachac.targets.templates.engine import BlockError, Blocks
 
@@ -98,7 +98,9 @@ def _files(
         fault = _syntax_fault(source)
         if fault is not None and not any(item.code.code == "SM605" for item in known):
             known.append(fault)
-        told = [] if fault is not None else template_quirks(source, library.template, given, sets)
+        told = (
+            [] if fault is not None else template_differences(source, library.template, given, sets)
+        )
         items = [*map(_item, known), *_untold(told, known)]
         yield File(
             name=str(path),
@@ -159,7 +161,7 @@ def _keys(tree: Tree) -> Iterator[str]:
             todo += each.items
 
 
-def _untold(told: Iterable[Quirk], known: Report) -> Iterator[Item]:
+def _untold(told: Iterable[SmachaDifference], known: Report) -> Iterator[MigrationItem]:
     """The quirks of a template of which building a program has not spoken."""
     lines = {item.span.line for item in known if item.code.code == "SM606"}
     missing = " ".join(item.finding.message for item in known if item.code.code == "SM605")
@@ -171,8 +173,8 @@ def _untold(told: Iterable[Quirk], known: Report) -> Iterator[Item]:
         yield _quirk(quirk)
 
 
-def _quirk(quirk: Quirk) -> Item:
-    return Item(
+def _quirk(quirk: SmachaDifference) -> MigrationItem:
+    return MigrationItem(
         line=quirk.span.line,
         column=quirk.span.column,
         what=quirk.what,
@@ -199,16 +201,16 @@ def _has_errors(found: Report, path: Path) -> bool:
     return any(item.severity is Severity.ERROR and _is_at(item.span, path) for item in found)
 
 
-def _items(found: Report, path: Path, source: Source | None, disk: Disk) -> Iterator[Item]:
+def _items(found: Report, path: Path, source: Source | None, disk: Disk) -> Iterator[MigrationItem]:
     """Of one script: what must be edited, and the quirks of SMACHA that it has."""
     items = [_item(item) for item in found if _is_at(item.span, path)]
-    for quirk in quirks(disk.parse(source, [])) if source is not None else ():
+    for quirk in script_differences(disk.parse(source, [])) if source is not None else ():
         items.append(_quirk(quirk))
     yield from sorted(items, key=lambda item: (item.line, item.column, item.name))
 
 
-def _item(item: Diagnostic) -> Item:
-    return Item(
+def _item(item: Diagnostic) -> MigrationItem:
+    return MigrationItem(
         line=item.span.line,
         column=item.span.column,
         what="edit" if item.severity is Severity.ERROR else "told",

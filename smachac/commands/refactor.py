@@ -25,13 +25,13 @@ from smachac.frontend.yaml_tree import Map
 from smachac.ir.nodes import Leaf, Machine, Node, StateMachine
 from smachac.ir.recursion import deep_recursion
 from smachac.ir.traversal import walk
-from smachac.refactor.contain import contain, contained_alike, plan, presets_of
-from smachac.refactor.cst import Atom, UnusualError
-from smachac.refactor.editor import RefusedError, Sheet
-from smachac.refactor.equivalence import renamed_alike, same_machine
+from smachac.refactor.contain import contain, equal_after_contain, plan_container, preset_keys
+from smachac.refactor.cst import Atom, UnsupportedYamlError
+from smachac.refactor.editor import RefusedError, ScriptEditor
+from smachac.refactor.equivalence import equal_after_rename, same_machine
 from smachac.refactor.extract_inline import extract, inline
-from smachac.refactor.locate import NotFoundError, find_named, find_state, not_beside
-from smachac.refactor.open_states import Told, completed
+from smachac.refactor.locate import NotFoundError, different_container_error, find_named, find_state
+from smachac.refactor.open_states import TemplateFacts, with_inferred_interfaces
 from smachac.refactor.rename import Renaming, rename_key, rename_outcome, rename_state
 
 Texts = Mapping[str, str]
@@ -47,7 +47,7 @@ class Desk:
         self.path: Path = arguments.script
         self.disk = Disk(plain=True)
         self.analysis = self.read(self.disk)
-        self.sheets: dict[str, Sheet] = {}
+        self.sheets: dict[str, ScriptEditor] = {}
         self.made: dict[str, str] = {}
 
     def read(self, disk: Disk, path: Path | None = None) -> Analysis:
@@ -74,13 +74,13 @@ class Desk:
             raise RefusedError(place, NO_ERRORS)
         return self.analysis.checked
 
-    def sheet(self, source: Source) -> Sheet:
+    def sheet(self, source: Source) -> ScriptEditor:
         """The text that a source holds, to be changed."""
         name = os.path.realpath(source.name)
         if name not in self.sheets:
             try:
-                self.sheets[name] = Sheet(source)
-            except UnusualError as error:
+                self.sheets[name] = ScriptEditor(source)
+            except UnsupportedYamlError as error:
                 words = f"{source.name} cannot be rewritten: {error}"
                 raise RefusedError(Span(source, 0, 0), words) from error
         return self.sheets[name]
@@ -202,7 +202,7 @@ def run_inline(arguments: Namespace) -> int:
         _, node = find_state(desk.machine, arguments.state)
         sheet = desk.sheet(node.span.source)
         sub = _called(desk, node)
-        inline(sheet, node.span, Sheet(sub))
+        inline(sheet, node.span, ScriptEditor(sub))
         desk.proven(node.span, same_machine)
         return desk.written()
 
@@ -225,7 +225,7 @@ def run_rename(arguments: Namespace) -> int:
         shared = desk.sheets.keys() - {os.path.realpath(desk.path)}
         for _, machine in desk.others(shared) if shared else ():
             rename(work, machine, declared)
-        desk.proven(declared, lambda one, other: renamed_alike(one, other, old, arguments.new))
+        desk.proven(declared, lambda one, other: equal_after_rename(one, other, old, arguments.new))
         return desk.written()
 
     return perform(arguments, "rename", change)
@@ -260,32 +260,32 @@ def run_contain(arguments: Namespace) -> int:
         _, parent = find_state(before, above)
         assert not isinstance(parent, Leaf)
         if isinstance(parent, StateMachine):
-            parent = completed(parent, partial(_told, desk.library()))
+            parent = with_inferred_interfaces(parent, partial(_told, desk.library()))
         known = {child.name: child for child in parent.children}
         names = [each.rpartition("/")[2] for each in arguments.states]
         for name in names:
             if name not in known:
-                raise not_beside(before, above, name, known)
+                raise different_container_error(before, above, name, known)
         inside = [child for child in parent.children if child.name in names]
-        presets = presets_of(desk.sheet(inside[0].span.source), inside)
-        made = plan(parent, inside, presets, arguments.name, arguments.type)
+        presets = preset_keys(desk.sheet(inside[0].span.source), inside)
+        made = plan_container(parent, inside, presets, arguments.name, arguments.type)
         contain(desk.sheet, made)
-        after = desk.proven(inside[0].span, lambda one, two: contained_alike(one, two, made))
+        after = desk.proven(inside[0].span, lambda one, two: equal_after_contain(one, two, made))
         _no_worse(desk.analysis, after, inside[0].span)
         return desk.written()
 
     return perform(arguments, "contain", change)
 
 
-def _told(library: Library, leaf: Leaf) -> Told:
+def _told(library: Library, leaf: Leaf) -> TemplateFacts:
     """What the template of a state without an interface tells."""
     type_ = find_state_type(leaf.type, library, [])
     template = library.template(type_.code.get("python", "")) if type_ is not None else None
     if type_ is None or template is None:
-        return Told()
+        return TemplateFacts()
     reads, writes = keys_in_code(template)
     listed = any(variable.name == "outcomes" for variable in leaf.written)
-    return Told(reads=reads, writes=writes, outcomes=listed or bool(type_.outcomes))
+    return TemplateFacts(reads=reads, writes=writes, outcomes=listed or bool(type_.outcomes))
 
 
 def _no_worse(before: Analysis, after: Analysis, span: Span) -> None:

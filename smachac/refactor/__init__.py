@@ -1,1 +1,1 @@
-"""Scripts rewritten: laid out anew, or with their states elsewhere. Text in, text out."""
+"""Refactoring: scripts are formatted, fixed, renamed and restructured. Text in, text out."""

@@ -1,4 +1,5 @@
-"""Edits of findings, tried out in memory: what mends its finding and breaks nothing is kept."""
+"""Automatic fixes: the edits of findings, applied in memory and kept if they fix their finding and
+add no error."""
 
 from __future__ import annotations
 
@@ -13,20 +14,20 @@ from smachac.batch import Survey
 from smachac.diagnostics.diagnostic import Diagnostic, Edit, Report, Severity, fingerprint
 from smachac.diagnostics.source import Source
 from smachac.frontend.files import BUILT_IN
-from smachac.refactor.formatter import laid_out
+from smachac.refactor.formatter import format_script
 
 Texts = Mapping[str, str]
 """Changed texts by the real path of their file."""
 
 
-MOST_ROUNDS = 10
-"""What is mended may show what else can be mended; so often it is looked at."""
+MAX_ROUNDS = 10
+"""Rounds of analysis and edits: a fix can uncover findings with further edits."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
-class Mended:
-    """What edits make of scripts: how many findings they mend, the new texts, the sources as they
-    were, by real path, and what there is to say afterwards."""
+class FixResult:
+    """The result of fixes: the number of fixed findings, the new texts, the original sources by
+    real path, and the findings that remain."""
 
     count: int
     texts: Texts
@@ -34,58 +35,62 @@ class Mended:
     survey: Survey
 
 
-def mended(
-    before: Survey, counted: Callable[[Survey], Report], again: Callable[[Texts], Survey]
-) -> Mended:
-    """Apply the edits of the findings that count, as far as they prove right.
+def apply_fixes(
+    before: Survey, selected: Callable[[Survey], Report], reanalyse: Callable[[Texts], Survey]
+) -> FixResult:
+    """Apply the edits of the selected findings, and keep those that pass a new analysis.
 
-    `again` looks at the same scripts with other texts. Edits that overlap are left out unless they
-    are the same, so are those of files that come with smachac. If all together do not do, halves
-    are tried: each finding kept is gone afterwards, and no error is new. The files that this
-    changes come out in the layout of `smachac fmt`.
+    `reanalyse` analyses the same scripts with changed texts. Overlapping edits are left out unless
+    they are equal; so are edits of files that come with smachac. If a batch fails it is bisected:
+    afterwards each fixed finding is gone, and there is no new error. Changed files are formatted as
+    by `smachac fmt`.
     """
     count = 0
     survey = before
     texts: dict[str, str] = {}
     sources: dict[str, Source] = {}
-    for _ in range(MOST_ROUNDS):
-        kept, after = _round(survey, counted(survey), lambda new: again({**texts, **new}))
+    for _ in range(MAX_ROUNDS):
+        kept, after = _fix_round(survey, selected(survey), lambda new: reanalyse({**texts, **new}))
         if not kept:
             break
-        for path, (source, text) in _edited(kept).items():
+        for path, (source, text) in _apply_edits(kept).items():
             texts[path] = text
             sources.setdefault(path, source)
         count += len(kept)
         survey = after
-    laid = {path: laid_out(Source(sources[path].name, text)) for path, text in texts.items()}
-    new = {path: text for path, text in laid.items() if text is not None and text != texts[path]}
-    if new and _better(survey, after := again({**texts, **new}), ()):
+    formatted = {
+        path: format_script(Source(sources[path].name, text)) for path, text in texts.items()
+    }
+    new = {
+        path: text for path, text in formatted.items() if text is not None and text != texts[path]
+    }
+    if new and _is_improvement(survey, after := reanalyse({**texts, **new}), ()):
         texts.update(new)
         survey = after
-    return Mended(count=count, texts=texts, sources=sources, survey=survey)
+    return FixResult(count=count, texts=texts, sources=sources, survey=survey)
 
 
-def _round(
-    before: Survey, report: Report, again: Callable[[Texts], Survey]
+def _fix_round(
+    before: Survey, report: Report, reanalyse: Callable[[Texts], Survey]
 ) -> tuple[list[Diagnostic], Survey]:
-    """The findings of a report that their edits mend, and what is left then."""
+    """The findings of a report that their edits fix, and the analysis after the edits."""
     kept: list[Diagnostic] = []
     survey = before
 
-    def settle(batch: Sequence[Diagnostic]) -> None:
+    def bisect(batch: Sequence[Diagnostic]) -> None:
         nonlocal survey
         if not batch:
             return
         tried = [*kept, *batch]
-        after = again({path: text for path, (_, text) in _edited(tried).items()})
-        if _better(before, after, tried):
+        after = reanalyse({path: text for path, (_, text) in _apply_edits(tried).items()})
+        if _is_improvement(before, after, tried):
             kept.extend(batch)
             survey = after
         elif len(batch) > 1:
-            settle(batch[: len(batch) // 2])
-            settle(batch[len(batch) // 2 :])
+            bisect(batch[: len(batch) // 2])
+            bisect(batch[len(batch) // 2 :])
 
-    settle(_compatible([item for item in report if item.finding.edits]))
+    bisect(_compatible([item for item in report if item.finding.edits]))
     return kept, survey
 
 
@@ -94,9 +99,9 @@ def _path(edit: Edit) -> str:
 
 
 def _compatible(report: Report) -> Report:
-    """The findings whose edits touch none of another finding, unless both say the same.
+    """The findings whose edits do not overlap edits of another finding, unless both are equal.
 
-    Of insertions at one place the first stays; the next round finds the others.
+    Of several insertions at one place the first is kept; the next round handles the others.
     """
     ours = tuple(os.path.realpath(folder) + os.sep for folder in BUILT_IN)
     taken: dict[str, list[tuple[int, int, int, str]]] = {}
@@ -122,8 +127,8 @@ def _compatible(report: Report) -> Report:
     return [item for number, item in enumerate(report) if number not in out]
 
 
-def _edited(report: Sequence[Diagnostic]) -> dict[str, tuple[Source, str]]:
-    """The texts that edits give, beside their sources, by real path."""
+def _apply_edits(report: Sequence[Diagnostic]) -> dict[str, tuple[Source, str]]:
+    """The texts after the edits of some findings, with their sources, by real path."""
     edits: dict[str, dict[tuple[int, int], Edit]] = {}
     for item in report:
         for edit in item.finding.edits:
@@ -139,8 +144,8 @@ def _edited(report: Sequence[Diagnostic]) -> dict[str, tuple[Source, str]]:
     return found
 
 
-def _better(before: Survey, after: Survey, kept: Sequence[Diagnostic]) -> bool:
-    """Whether the findings are gone, and no error has come."""
+def _is_improvement(before: Survey, after: Survey, kept: Sequence[Diagnostic]) -> bool:
+    """Whether the fixed findings are gone, and no error is new."""
     old = Counter(map(fingerprint, before.report))
     new = Counter(map(fingerprint, after.report))
     gone = Counter(map(fingerprint, kept))
@@ -151,7 +156,7 @@ def _better(before: Survey, after: Survey, kept: Sequence[Diagnostic]) -> bool:
 
 
 def differences(texts: Texts, sources: Mapping[str, Source]) -> Iterator[str]:
-    """New texts as a unified diff, by file in the order of their names, a line at a time."""
+    """New texts as a unified diff, line by line, sorted by file name."""
     for path in sorted(texts, key=lambda path: sources[path].name):
         source = sources[path]
         name = Path(source.name).as_posix()

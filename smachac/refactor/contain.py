@@ -1,4 +1,8 @@
-"""States that are put into a container of their own: how that is written."""
+"""Contain: states of a container are moved into a new nested container.
+
+`plan_container` determines the container, `contain` writes it, `equal_after_contain` checks the
+result.
+"""
 
 from __future__ import annotations
 
@@ -10,129 +14,143 @@ from smachac.diagnostics.source import Source
 from smachac.ir.nodes import Container, Key, Leaf, Machine, Node, StateMachine, Transition
 from smachac.ir.outcome_names import GOOD_OUTCOMES
 from smachac.ir.traversal import leads_to_child, outcome_names, remapping
-from smachac.refactor.cst import Atom, Group, Item
-from smachac.refactor.editor import Place, RefusedError, Sheet, pairs, put, variable, word
-from smachac.refactor.equivalence import normal, rebuilt
+from smachac.refactor.cst import Atom, Collection, Item
+from smachac.refactor.editor import (
+    RefusedError,
+    ScriptEditor,
+    StateItem,
+    add_entry,
+    flow_mapping,
+    new_atom,
+    variable,
+)
+from smachac.refactor.equivalence import map_nodes, normalized
 from smachac.refactor.field_order import variables_of
 
 
-def presets_of(sheet: Sheet, inside: Sequence[Node]) -> set[str]:
-    """The keys of the userdata that comes with states that are no containers."""
+def preset_keys(editor: ScriptEditor, inside: Sequence[Node]) -> set[str]:
+    """The userdata keys that some states preset, except containers."""
     found: set[str] = set()
     for child in inside:
-        body = variables_of(sheet.state(child.span).item)
+        body = variables_of(editor.state(child.span).item)
         item = variable(body, "userdata") if body is not None else None
         if body is None or item is None or variable(body, "states") is not None:
             continue
-        if isinstance(item.value, Group):
+        if isinstance(item.value, Collection):
             found |= {each.key.text.strip("'\"") for each in item.value.items if each.key}
     return found
 
 
-def contain(sheets: Callable[[Source], Sheet], made: Plan) -> None:
-    """Write a plan into the text that holds the states. Raises RefusedError."""
-    sheet = sheets(made.inside[0].span.source)
-    places = [sheet.state(child.span) for child in made.inside]
-    names = frozenset(child.name for child in made.parent.children)
-    for child, place in zip(made.inside, places, strict=True):
-        if made.kind == "Concurrence":
-            _without_transitions(place.item)
+def contain(editors: Callable[[Source], ScriptEditor], plan: ContainPlan) -> None:
+    """Apply a plan to the text of the states. Raises RefusedError."""
+    editor = editors(plan.inside[0].span.source)
+    places = [editor.state(child.span) for child in plan.inside]
+    names = frozenset(child.name for child in plan.parent.children)
+    for child, place in zip(plan.inside, places, strict=True):
+        if plan.kind == "Concurrence":
+            _remove_transitions(place.item)
         else:
-            _lead_out(sheet, child, place, names, made)
-    mine = {child.name for child in made.inside}
-    for child in made.parent.children:
+            _retarget_transitions(editor, child, place, names, plan)
+    mine = {child.name for child in plan.inside}
+    for child in plan.parent.children:
         for step in child.transitions if child.name not in mine else ():
             if leads_to_child(step, names) and step.target in mine:
-                sheets(step.target_span.source).spell(step.target_span, made.name)
-    initial = made.parent.initial_span
-    written = made.parent.initial in mine and initial.start != made.parent.span.start
-    if written and initial.text.strip("'\"") == made.parent.initial:
-        sheets(initial.source).spell(initial, made.name)
-    sheet.write_anew(places[0], [_written(made, [place.item for place in places])])
+                editors(step.target_span.source).replace_word(step.target_span, plan.name)
+    initial = plan.parent.initial_span
+    written = plan.parent.initial in mine and initial.start != plan.parent.span.start
+    if written and initial.text.strip("'\"") == plan.parent.initial:
+        editors(initial.source).replace_word(initial, plan.name)
+    editor.rewrite_state(places[0], [_written(plan, [place.item for place in places])])
     for place in places[1:]:
-        sheet.write_anew(place, [])
+        editor.rewrite_state(place, [])
 
 
-def _lead_out(sheet: Sheet, child: Node, place: Place, names: frozenset[str], made: Plan) -> None:
-    """Let a state's edges lead to outcomes of the container, where they led out."""
+def _retarget_transitions(
+    editor: ScriptEditor, child: Node, place: StateItem, names: frozenset[str], plan: ContainPlan
+) -> None:
+    """Let the transitions of a state out of the container lead to its outcomes."""
     body = variables_of(place.item)
     assert body is not None
     item = variable(body, "transitions")
-    group = item.value if item is not None and isinstance(item.value, Group) else None
+    group = item.value if item is not None and isinstance(item.value, Collection) else None
     own = {each.key.text.strip("'\""): each for each in group.items if each.key} if group else {}
     for step in child.transitions:
-        target = made.ends.get((child.name, step.outcome), step.target)
+        target = plan.ends.get((child.name, step.outcome), step.target)
         here = own.get(step.outcome)
         if here is None:
             by_name = target == step.outcome and not leads_to_child(step, names)
             if not (by_name and step.origin == "implicit"):
-                put(body, "transitions", step.outcome, target)
+                add_entry(body, "transitions", step.outcome, target)
         elif isinstance(here.value, Atom) and here.value.text.strip("'\"") != target:
             here.value = Atom(target, -1, -1)
             if group is not None:
                 group.flat = ""
 
 
-def _without_transitions(item: Item) -> None:
-    """Take the transitions of a state away: in a concurrence they mean nothing. Comments stay."""
+def _remove_transitions(item: Item) -> None:
+    """Remove the transitions of a state, which have no effect in a concurrence. Comments stay."""
     body = variables_of(item)
     found = variable(body, "transitions") if body is not None else None
     if body is None or found is None:
         return
     body.items = [each for each in body.items if each is not found]
-    item.lead += [*found.lead, found.aside.strip()] if found.aside else found.lead
-    if isinstance(found.value, Group):
+    item.leading += [*found.leading, found.trailing.strip()] if found.trailing else found.leading
+    if isinstance(found.value, Collection):
         for each in found.value.items:
-            item.lead += [line for line in (*each.lead, each.aside.strip()) if line]
-        item.lead += found.value.tail
+            item.leading += [line for line in (*each.leading, each.trailing.strip()) if line]
+        item.leading += found.value.tail
 
 
-def _written(made: Plan, items: list[Item]) -> Item:
-    """The container with its states."""
+def _written(plan: ContainPlan, items: list[Item]) -> Item:
+    """The syntax tree of the container with its states."""
 
-    def listed(names: Sequence[str]) -> Group:
-        return Group(False, True, -1, items=[Item(None, word(name)) for name in names])
+    def listed(names: Sequence[str]) -> Collection:
+        return Collection(False, True, -1, items=[Item(None, new_atom(name)) for name in names])
 
-    rows: list[tuple[str, Group | Atom]] = [
-        ("template", word(made.kind)),
-        ("outcomes", listed(list(made.exits))),
+    rows: list[tuple[str, Collection | Atom]] = [
+        ("template", new_atom(plan.kind)),
+        ("outcomes", listed(list(plan.exits))),
     ]
-    rows += [("input_keys", listed(made.inputs))] if made.inputs else []
-    rows += [("output_keys", listed(made.outputs))] if made.outputs else []
-    if made.kind == "Concurrence":
-        rows.append(("default_outcome", word(made.default)))
-        rules = [Item(word(end), pairs(rule.items())) for end, rule in made.rules.items()]
-        rows += [("outcome_map", Group(True, False, -1, items=rules))] if rules else []
-    rows.append(("transitions", pairs((end, place) for end, (place, _) in made.exits.items())))
-    if made.kind != "Concurrence" and made.entry != made.inside[0].name:
-        rows.append(("initial", word(made.entry)))
-    lead = items[0].lead
+    rows += [("input_keys", listed(plan.inputs))] if plan.inputs else []
+    rows += [("output_keys", listed(plan.outputs))] if plan.outputs else []
+    if plan.kind == "Concurrence":
+        rows.append(("default_outcome", new_atom(plan.default)))
+        rules = [
+            Item(new_atom(end), flow_mapping(rule.items())) for end, rule in plan.rules.items()
+        ]
+        rows += [("outcome_map", Collection(True, False, -1, items=rules))] if rules else []
+    rows.append(
+        ("transitions", flow_mapping((end, place) for end, (place, _) in plan.exits.items()))
+    )
+    if plan.kind != "Concurrence" and plan.entry != plan.inside[0].name:
+        rows.append(("initial", new_atom(plan.entry)))
+    lead = items[0].leading
     blank = bool(lead) and not lead[0]
     for item in items[:1]:
-        item.lead = lead[1:] if blank else lead
-    rows.append(("states", Group(False, False, -1, items=items)))
-    body = Group(True, False, -1, items=[Item(word(name), value) for name, value in rows])
-    named = Group(True, False, -1, items=[Item(word(made.name), body)])
-    return Item(None, named, lead=[""] if blank else [])
+        item.leading = lead[1:] if blank else lead
+    rows.append(("states", Collection(False, False, -1, items=items)))
+    body = Collection(True, False, -1, items=[Item(new_atom(name), value) for name, value in rows])
+    named = Collection(True, False, -1, items=[Item(new_atom(plan.name), body)])
+    return Item(None, named, leading=[""] if blank else [])
 
 
 MOST_RULES = 64
-"""The most combinations that the outcome map of a new concurrence may tell apart."""
+"""Limit on the rules in the outcome map of a new concurrence."""
 
-Exit = tuple[str, bool]
-"""Where an edge leads: a name, and whether it is that of a state."""
+TargetName = tuple[str, bool]
+"""The target of a transition: a name, and whether it is the name of a state."""
 
-Leads = Mapping[tuple[str, str], Exit]
-"""Where states lead with their outcomes."""
+TransitionTargets = Mapping[tuple[str, str], TargetName]
+"""The targets of transitions, by state and outcome."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
-class Plan:
-    """A container to be: around which states of `parent`, where it begins, its outcomes with what
-    each leads to, the keys that it takes in and hands out.
+class ContainPlan:
+    """A new container: the states of `parent` that it contains, its first state, its outcomes with
+    the target of each, its input and output keys.
 
-    `ends`: the outcome that a state's outcome becomes, where it leads out. `rules` are those of a
-    concurrence by its outcomes, all but that of `default`.
+    `ends` gives the outcome of the container for each outcome of a state that leads out. `rules`
+    are the rules of a concurrence by outcome, except for `default`.
     """
 
     name: str
@@ -140,7 +158,7 @@ class Plan:
     parent: StateMachine
     inside: Sequence[Node]
     entry: str
-    exits: Mapping[str, Exit]
+    exits: Mapping[str, TargetName]
     ends: Mapping[tuple[str, str], str]
     inputs: Sequence[str]
     outputs: Sequence[str]
@@ -148,10 +166,13 @@ class Plan:
     default: str = ""
 
 
-def plan(parent: Node, inside: Sequence[Node], presets: set[str], name: str, kind: str) -> Plan:
-    """How some states of a container are put into one of their own; `presets` are the keys of the
-    userdata that comes with them. All of the container's states are completed, where they have no
-    interface. Raises RefusedError."""
+def plan_container(
+    parent: Node, inside: Sequence[Node], presets: set[str], name: str, kind: str
+) -> ContainPlan:
+    """The container for some states of `parent`. `presets` are the userdata keys that they preset.
+
+    States without an interface must have an inferred one (open_states.py). Raises RefusedError.
+    """
     if not isinstance(parent, StateMachine) or parent.sugar:
         message = f"`{parent.name}` is no state machine: transitions do not lead what is in it"
         raise RefusedError(parent.span, message)
@@ -160,18 +181,18 @@ def plan(parent: Node, inside: Sequence[Node], presets: set[str], name: str, kin
             message = f"`{parent.name}` has a state or outcome `{name}` already"
             raise RefusedError(node.span, message, "choose another name")
     entry = _entry(parent, inside)
-    leads = _leads(parent, inside)
+    targets = _targets(parent, inside)
     inputs, outputs = _keys(parent, inside, presets)
     rules: dict[str, dict[str, str]] = {}
     ends: dict[tuple[str, str], str] = {}
     default = ""
     if kind == "Concurrence":
         _check_independence(inside)
-        paths = list(_paths(inside, entry, leads))
+        paths = list(_paths(inside, entry, targets))
         exits, rules, default = _rules(paths, {name, *(child.name for child in inside)})
     else:
-        exits, ends = _exits(inside, leads, {name, *(child.name for child in inside)})
-    return Plan(
+        exits, ends = _exits(inside, targets, {name, *(child.name for child in inside)})
+    return ContainPlan(
         name=name,
         kind=kind,
         parent=parent,
@@ -187,7 +208,8 @@ def plan(parent: Node, inside: Sequence[Node], presets: set[str], name: str, kin
 
 
 def _entry(parent: StateMachine, inside: Sequence[Node]) -> str:
-    """The state by which the others are entered. Raises RefusedError where there are several."""
+    """The only state through which the others are entered. Raises RefusedError if there are
+    several."""
     names = frozenset(child.name for child in parent.children)
     mine = {child.name: child for child in inside}
     entered: dict[str, str] = {}
@@ -205,9 +227,10 @@ def _entry(parent: StateMachine, inside: Sequence[Node]) -> str:
     return next(iter(entered), inside[0].name)
 
 
-def _leads(parent: StateMachine, inside: Iterable[Node]) -> Leads:
+def _targets(parent: StateMachine, inside: Iterable[Node]) -> TransitionTargets:
+    """The targets of the transitions of some states."""
     names = frozenset(child.name for child in parent.children)
-    found: dict[tuple[str, str], Exit] = {}
+    found: dict[tuple[str, str], TargetName] = {}
     for child in inside:
         for step in child.transitions:
             place = (step.target, leads_to_child(step, names))
@@ -216,27 +239,31 @@ def _leads(parent: StateMachine, inside: Iterable[Node]) -> Leads:
 
 
 def _exits(
-    inside: Sequence[Node], leads: Leads, taken: set[str]
-) -> tuple[dict[str, Exit], dict[tuple[str, str], str]]:
-    """The outcomes of a state machine around some states, one for each place they lead to.
+    inside: Sequence[Node], targets: TransitionTargets, taken: set[str]
+) -> tuple[dict[str, TargetName], dict[tuple[str, str], str]]:
+    """The outcomes of a state machine around some states, one for each target.
 
-    Outcomes of the parent keep their names, so that edges nobody wrote stay as they are.
+    A target that is an outcome of the parent keeps its name, so that implicit transitions stay
+    implicit.
     """
     mine = {child.name for child in inside}
-    by_exit: dict[Exit, list[tuple[str, str]]] = {}
-    for step, place in leads.items():
+    by_exit: dict[TargetName, list[tuple[str, str]]] = {}
+    for step, place in targets.items():
         if not (place[1] and place[0] in mine):
             by_exit.setdefault(place, []).append(step)
-    ends: dict[Exit, str] = {}
+    ends: dict[TargetName, str] = {}
     for place in sorted(by_exit, key=lambda each: each[1]):
         usual = Counter(outcome for _, outcome in by_exit[place]).most_common()
-        ends[place] = _fresh([place[0]] if not place[1] else [word for word, _ in usual], taken)
+        ends[place] = _unique_name(
+            [place[0]] if not place[1] else [word for word, _ in usual], taken
+        )
     by_step = {step: ends[place] for place, steps in by_exit.items() for step in steps}
     return {ends[place]: place for place in by_exit}, by_step
 
 
-def _fresh(words: Sequence[str], taken: set[str]) -> str:
-    """The first word that is not taken yet, or one made of the first; it is taken then."""
+def _unique_name(words: Sequence[str], taken: set[str]) -> str:
+    """The first unused word, or a new name derived from the first word; it is then added to
+    `taken`."""
     found = next((word for word in words if word not in taken), None)
     number = 2
     while found is None:
@@ -257,8 +284,11 @@ def _outer(node: Node, keys: Iterable[Key]) -> list[str]:
 def _keys(
     parent: StateMachine, inside: Sequence[Node], presets: set[str]
 ) -> tuple[list[str], list[str]]:
-    """What a container around some states takes in and hands out, so that they see of each key
-    what they saw: what comes from outside is brought in each time, and brought back."""
+    """The input and output keys of a container around some states.
+
+    The states must see the same values as before: each key from outside is copied in and, if it is
+    written, copied out.
+    """
     mine = {child.name for child in inside}
     others = [child for child in parent.children if child.name not in mine]
     reads = dict.fromkeys(key for child in inside for key in _outer(child, child.inputs))
@@ -278,7 +308,8 @@ def _keys(
 
 
 def _check_independence(inside: Sequence[Node]) -> None:
-    """Raises RefusedError where a state needs what another one writes: they cannot run at once."""
+    """Raises RefusedError if a state reads or writes a key that another one writes: they cannot run
+    concurrently."""
     writers: dict[str, Node] = {}
     for child in inside:
         for key in _outer(child, child.outputs):
@@ -292,13 +323,15 @@ def _check_independence(inside: Sequence[Node]) -> None:
                 raise RefusedError(child.span, f"{message} they cannot run at once", help)
 
 
-Path = tuple[tuple[tuple[str, str], ...], Exit]
-"""The outcomes that lead along some states, and where to in the end."""
+Path = tuple[tuple[tuple[str, str], ...], TargetName]
+"""The outcomes along a path through some states, and the target of the last one."""
 
 
-def _paths(inside: Sequence[Node], entry: str, leads: Leads) -> Iterator[Path]:
-    """Every way through some states that follow one another. Raises RefusedError where a state can
-    come again, or there are too many ways."""
+def _paths(inside: Sequence[Node], entry: str, targets: TransitionTargets) -> Iterator[Path]:
+    """Every path through some states.
+
+    Raises RefusedError if a state can be entered twice, or if there are too many paths.
+    """
     by_name = {child.name: child for child in inside}
     todo: list[tuple[str, tuple[tuple[str, str], ...]]] = [(entry, ())]
     count = 0
@@ -306,9 +339,9 @@ def _paths(inside: Sequence[Node], entry: str, leads: Leads) -> Iterator[Path]:
         name, before = todo.pop()
         child = by_name[name]
         for outcome in reversed(outcome_names(child)):
-            if (name, outcome) not in leads:
+            if (name, outcome) not in targets:
                 continue
-            place = leads[name, outcome]
+            place = targets[name, outcome]
             steps = (*before, (name, outcome))
             if not (place[1] and place[0] in by_name):
                 count += 1
@@ -325,22 +358,24 @@ def _paths(inside: Sequence[Node], entry: str, leads: Leads) -> Iterator[Path]:
 
 def _rules(
     paths: Sequence[Path], taken: set[str]
-) -> tuple[dict[str, Exit], dict[str, dict[str, str]], str]:
-    """The outcomes of a concurrence, and a rule for each way that states had when they followed one
-    another; the default is the place that most ways lead to, but for the one through all states."""
+) -> tuple[dict[str, TargetName], dict[str, dict[str, str]], str]:
+    """The outcomes of a concurrence, with a rule for each former path through its states.
+
+    The default is the target of most paths, the path through all states not counted.
+    """
     whole = max(paths, key=lambda each: (len(each[0]), _goodness(each)))
     others = Counter(place for _, place in paths if place != whole[1])
     default = others.most_common(1)[0][0] if others else whole[1]
-    exits: dict[str, Exit] = {}
+    exits: dict[str, TargetName] = {}
     rules: dict[str, dict[str, str]] = {}
     for steps, place in sorted(paths, key=lambda each: each is not whole):
         if place == default:
             continue
-        end = _fresh([place[0]] if not place[1] else [steps[-1][1]], taken)
+        end = _unique_name([place[0]] if not place[1] else [steps[-1][1]], taken)
         exits[end] = place
         rules[end] = dict(steps)
     last = next(steps[-1][1] for steps, place in paths if place == default)
-    name = _fresh([default[0]] if not default[1] else [last], taken)
+    name = _unique_name([default[0]] if not default[1] else [last], taken)
     exits[name] = default
     return exits, rules, name
 
@@ -352,14 +387,17 @@ def _goodness(path: Path) -> int:
 # --- proof
 
 
-def contained_alike(before: Machine, after: Machine, made: Plan) -> bool:
-    """Whether a machine is another one but for the container; around a concurrence, whose states
-    run in another order now, it is what is outside that has to be the same."""
-    names = [child.name for child in made.inside]
+def equal_after_contain(before: Machine, after: Machine, plan: ContainPlan) -> bool:
+    """Whether two machines are equal except for the new container.
+
+    A concurrence changes the order in which its states run, so for it only the states outside are
+    compared.
+    """
+    names = [child.name for child in plan.inside]
 
     def is_new(node: Node) -> bool:
         return (
-            node.name == made.name
+            node.name == plan.name
             and not isinstance(node, Leaf)
             and ({child.name for child in node.children} == set(names))
         )
@@ -370,20 +408,22 @@ def contained_alike(before: Machine, after: Machine, made: Plan) -> bool:
         mine = next((child for child in node.children if is_new(child)), None)
         if mine is None or isinstance(mine, Leaf):
             return _sorted(node)
-        return _sorted(_opened(node, mine, made.kind == "Concurrence"))
+        return _sorted(_flattened(node, mine, plan.kind == "Concurrence"))
 
     def as_before(node: Node) -> Node:
-        if made.kind != "Concurrence" or not isinstance(node, StateMachine):
+        if plan.kind != "Concurrence" or not isinstance(node, StateMachine):
             return _sorted(node)
-        if set(names) <= {child.name for child in node.children} and node.name == made.parent.name:
-            return _sorted(_without(node, set(names)))
+        if set(names) <= {child.name for child in node.children} and node.name == plan.parent.name:
+            return _sorted(_collapsed(node, set(names)))
         return _sorted(node)
 
-    return normal(rebuilt(before.root, as_before)) == normal(rebuilt(after.root, opened))
+    return normalized(map_nodes(before.root, as_before)) == normalized(
+        map_nodes(after.root, opened)
+    )
 
 
 def _sorted(node: Node) -> Node:
-    """A node with its children and its userdata in the order of their names."""
+    """A node with its children and its userdata sorted by name."""
     if isinstance(node, Leaf):
         return node
     children = tuple(sorted(node.children, key=lambda child: child.name))
@@ -391,46 +431,48 @@ def _sorted(node: Node) -> Node:
     return replace(node, children=children, userdata=userdata)
 
 
-def _opened(parent: StateMachine, mine: Container, forget: bool) -> StateMachine:
-    """A container whose states stand in the one around it again."""
+def _flattened(parent: StateMachine, mine: Container, forget: bool) -> StateMachine:
+    """A machine with the states of a nested container moved back into it."""
     inside = frozenset(child.name for child in mine.children)
     names = frozenset(child.name for child in parent.children)
     out = {step.outcome: step for step in mine.transitions}
     first = mine.initial if isinstance(mine, StateMachine) else mine.children[0].name
 
-    def led(step: Transition, here: bool) -> Transition:
+    def retargeted(step: Transition, here: bool) -> Transition:
         if here and not leads_to_child(step, inside):
             further = out.get(step.target)
             if further is None:
                 return step
-            leads = leads_to_child(further, names)
-            target = first if leads and further.target == mine.name else further.target
-            return replace(step, target=target, origin="written" if leads else "implicit")
+            targets = leads_to_child(further, names)
+            target = first if targets and further.target == mine.name else further.target
+            return replace(step, target=target, origin="written" if targets else "implicit")
         if not here and leads_to_child(step, names) and step.target == mine.name:
             return replace(step, target=first)
         return step
 
     def moved(child: Node, here: bool) -> Node:
-        return replace(child, transitions=tuple(led(step, here) for step in child.transitions))
+        return replace(
+            child, transitions=tuple(retargeted(step, here) for step in child.transitions)
+        )
 
     children = [moved(child, False) for child in parent.children if child is not mine]
     children += [moved(child, True) for child in mine.children]
     initial = first if parent.initial == mine.name else parent.initial
     userdata = (*parent.userdata, *mine.userdata)
     whole = replace(parent, children=tuple(children), initial=initial, userdata=userdata)
-    return _without(whole, set(inside)) if forget else whole
+    return _collapsed(whole, set(inside)) if forget else whole
 
 
-def _without(parent: StateMachine, inside: set[str]) -> StateMachine:
-    """A container whose states of these names are all one, which nothing is known of."""
+def _collapsed(parent: StateMachine, inside: set[str]) -> StateMachine:
+    """A container in which all states with the given names are replaced by one unknown state."""
     names = frozenset(child.name for child in parent.children)
 
-    def led(step: Transition) -> Transition:
+    def retargeted(step: Transition) -> Transition:
         mine = leads_to_child(step, names) and step.target in inside
         return replace(step, target="?") if mine else step
 
     children = [
-        replace(child, transitions=tuple(map(led, child.transitions)))
+        replace(child, transitions=tuple(map(retargeted, child.transitions)))
         for child in parent.children
         if child.name not in inside
     ]

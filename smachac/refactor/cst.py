@@ -1,7 +1,7 @@
-"""A YAML text with everything in it: values as they are written, comments, blank lines, anchors.
+"""Concrete syntax tree of a YAML text: values as written, comments, blank lines, anchors.
 
-The tree of syntax.py says what a text means and forgets the rest. Here the rest is kept, each
-comment with what it speaks of: `lead` above it, `aside` behind it, `tail` below the last item.
+The tree of frontend/yaml_tree.py has the meaning of a text only. Here everything is kept, and each
+comment belongs to an item: `leading` above it, `trailing` behind it, `tail` below the last item.
 """
 
 from __future__ import annotations
@@ -21,14 +21,17 @@ _PROPERTIES = re.compile(r"(?:[&!][^\s\[\]{},]*\s*)+")
 _DASH = re.compile(r"-(?=\s)")
 
 
-class UnusualError(Exception):
-    """A text that is not taken apart: YAML directives, or no collection at all."""
+class UnsupportedYamlError(Exception):
+    """A text without a syntax tree here: it has YAML directives, or is no collection."""
 
 
 @dataclass(slots=True)
 class Atom:
-    """A scalar or an alias with its anchor and tag, as written. `column`: where its line of the
-    collection begins, which the lines of a block scalar are counted from."""
+    """A scalar or an alias with its anchor and tag, as written.
+
+    `column` is the indentation of the collection around it; the indentation of a block scalar is
+    relative to it.
+    """
 
     text: str
     start: int
@@ -44,22 +47,25 @@ class Atom:
 class Item:
     """An entry of a mapping, or an item of a list, which has no key.
 
-    `lead` are the lines above, comments or empty; `aside` the comment behind, with its spaces.
-    `start` is where its first line begins, or the first one above it, if it begins a line.
+    `leading` holds the lines above, comments or empty; `trailing` the comment behind, with its
+    spaces. `start` is the offset of its first line or of the first line above it, -1 if it does not
+    begin a line.
     """
 
     key: Atom | None
     value: Node
-    lead: list[str] = field(default_factory=list)
-    aside: str = ""
+    leading: list[str] = field(default_factory=list)
+    trailing: str = ""
     start: int = -1
 
 
 @dataclass(slots=True)
-class Group:
-    """A mapping or a list. `raw`: a flow collection that has to stay as it is written, for there
-    are comments in it. `properties`: anchor and tag. `tail`: the comments below the last item, with
-    which it ends."""
+class Collection:
+    """A mapping or a list.
+
+    `raw`: a flow collection with comments in it, kept as written. `properties`: anchor and tag.
+    `tail`: the comments below the last item.
+    """
 
     mapping: bool
     flow: bool
@@ -72,45 +78,46 @@ class Group:
     raw: str | None = None
     is_state: bool = False
     flat: str = ""
-    """The collection on one line, filled in by layout.py, as `is_state` is by order.py."""
+    """The collection on one line, computed by formatter.py; `is_state` is computed by
+    field_order.py."""
 
 
-Node: TypeAlias = Atom | Group
+Node: TypeAlias = Atom | Collection
 
 
 @dataclass(slots=True)
-class Text:
+class Document:
     """A whole text: the comments above everything, and the collection."""
 
     head: list[str]
-    root: Group
+    root: Collection
     comments: tuple[str, ...]
 
 
-def take_apart(source: Source) -> Text:
-    """The parts of a text that `syntax.parse` has read. Raises UnusualError."""
+def parse_cst(source: Source) -> Document:
+    """The syntax tree of a text without YAML errors. Raises UnsupportedYamlError."""
     if source.text.startswith("%"):
-        raise UnusualError("it begins with a directive of YAML")
-    return _Reader(source).read()
+        raise UnsupportedYamlError("it begins with a directive of YAML")
+    return _CstBuilder(source).read()
 
 
-class _Reader:
-    """Goes along the events, and looks at the text between them."""
+class _CstBuilder:
+    """Builds the tree from the YAML events and the text between them."""
 
     def __init__(self, source: Source) -> None:
         self.source = source
         self.text = source.text
-        self.stack: list[Group] = []
-        self.root: Group | None = None
+        self.stack: list[Collection] = []
+        self.root: Collection | None = None
         self.end = 0
         self.here: Item | None = None
         self.opening: Item | None = None
-        self.closed: list[Group] = []
+        self.closed: list[Collection] = []
         self.key: Atom | None = None
         self.head: list[str] = []
         self.comments: list[str] = []
 
-    def read(self) -> Text:
+    def read(self) -> Document:
         for event in events(self.text):
             match type(event).__name__:
                 case "ScalarEvent" | "AliasEvent":
@@ -120,15 +127,15 @@ class _Reader:
                 case "MappingEndEvent" | "SequenceEndEvent":
                     self.finish(event)
         if self.root is None:
-            raise UnusualError("it holds a single value")
+            raise UnsupportedYamlError("it holds a single value")
         self.opening = None
         self.closed = self.closed or [self.root]
         self.gap(len(self.text), last=True)
         first = self.root.items[0] if self.root.items and self.root.mapping else None
-        head = first.lead if first is not None else self.head
+        head = first.leading if first is not None else self.head
         if first is not None:
-            first.lead = []
-        return Text(head=head, root=self.root, comments=tuple(self.comments))
+            first.leading = []
+        return Document(head=head, root=self.root, comments=tuple(self.comments))
 
     def column(self, at: int) -> int:
         return self.source.position(at)[1] - 1
@@ -137,7 +144,7 @@ class _Reader:
         start, end = event.start_mark.index, event.end_mark.index
         around = self.stack[-1] if self.stack else None
         if around is None:
-            raise UnusualError("it holds a single value")
+            raise UnsupportedYamlError("it holds a single value")
         if start == end:
             start = end = self.end
         atom = Atom(self.text[start:end], start, end)
@@ -164,7 +171,7 @@ class _Reader:
             atom.text = " ".join(atom.text.split())
 
     def end_of_block(self, atom: Atom) -> None:
-        """Find where a block scalar ends: parsers differ on the lines behind it."""
+        """Find the end of a block scalar: YAML parsers differ on the lines behind it."""
         at = self.text.find("\n", atom.start)
         at = len(self.text) if at < 0 else at
         marks = _MARKS.search(self.text, atom.start, at)
@@ -189,15 +196,15 @@ class _Reader:
         atom.text = self.text[atom.start : end]
 
     def put(self, node: Node) -> None:
-        """Give a value to the key that waits for one, or to a new item of the list."""
+        """Add a value to the current key, or as a new item to the current list."""
         if not self.stack:
-            assert isinstance(node, Group)
+            assert isinstance(node, Collection)
             self.root = node
             return
         around = self.stack[-1]
         if around.mapping:
             if self.key is None:
-                raise UnusualError("a key of it is a collection")
+                raise UnsupportedYamlError("a key of it is a collection")
             around.items[-1].value = node
             self.key = None
             return
@@ -207,7 +214,9 @@ class _Reader:
 
     def begin(self, event: Any) -> None:
         start = event.start_mark.index
-        group = Group(type(event).__name__.startswith("Mapping"), bool(event.flow_style), start)
+        group = Collection(
+            type(event).__name__.startswith("Mapping"), bool(event.flow_style), start
+        )
         group.column = self.column(start)
         inside = start
         if event.anchor is not None or event.tag is not None:
@@ -244,10 +253,12 @@ class _Reader:
         self.key = None
 
     def keep_as_written(self) -> None:
+        """Mark the outermost open flow collection as raw."""
         next(group for group in self.stack if group.flow).raw = ""
 
     def gap(self, to: int, *, last: bool = False) -> None:
-        """Give what stands between the last value and this place to those it belongs to."""
+        """Attach the comments and blank lines between the last value and an offset to their
+        items."""
         text = self.text[self.end : to]
         opening, closed = self.opening, self.closed
         self.opening, self.closed = None, []
@@ -267,7 +278,7 @@ class _Reader:
             line, comment = found.pop(0)
             if comment is not None:
                 self.put_aside(line, comment, opening)
-        target = opening.lead if opening else self.here.lead if self.here else self.head
+        target = opening.leading if opening else self.here.leading if self.here else self.head
         blanks = target if opening or self.here is None else []
         own = -1 if last else self.margin_of(opening, to)
         floating = True
@@ -293,7 +304,7 @@ class _Reader:
             opening.start = begin
 
     def margin_of(self, opening: Item | None, to: int) -> int:
-        """The column of what begins at a place."""
+        """The column of the item that begins at an offset."""
         if opening is None or opening.key is not None:
             return self.column(to)
         start = self.source.line_starts[self.source.position(to)[0] - 1]
@@ -301,23 +312,24 @@ class _Reader:
         return dash.start() - start if dash else self.column(to)
 
     def put_aside(self, line: str, comment: re.Match[str], opening: Item | None) -> None:
+        """Attach a comment at the end of a line."""
         assert self.here is not None
         spaces = max(2, comment.start() - len(line[: comment.start()].rstrip()))
-        if self.here.aside:
-            (opening or self.here).lead.append(comment[0].rstrip())
+        if self.here.trailing:
+            (opening or self.here).leading.append(comment[0].rstrip())
         else:
-            self.here.aside = " " * spaces + comment[0].rstrip()
+            self.here.trailing = " " * spaces + comment[0].rstrip()
 
 
-def _holder(closed: list[Group], column: int) -> Group | None:
-    """Of the collections that ended before a comment, the innermost that it can belong to."""
+def _holder(closed: list[Collection], column: int) -> Collection | None:
+    """The innermost of the collections ended before a comment that can contain it."""
     fits = (group for group in closed if group.column <= column)
     return next(fits, closed[-1] if closed else None)
 
 
-def _blanks(lead: list[str]) -> list[str]:
-    """The empty lines at the end of what was to stand above the next item, taken from it."""
+def _blanks(leading: list[str]) -> list[str]:
+    """Remove the empty lines at the end of `lines`; at most one of them."""
     taken = []
-    while lead and not lead[-1]:
-        taken.append(lead.pop())
+    while lines and not lines[-1]:
+        taken.append(lines.pop())
     return taken[:1]

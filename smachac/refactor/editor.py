@@ -1,4 +1,4 @@
-"""A script to be changed: words here and there, and states that are written anew or elsewhere."""
+"""Script editor: words are replaced in place, states are rewritten, moved or removed."""
 
 from __future__ import annotations
 
@@ -7,13 +7,13 @@ from collections.abc import Iterable
 from dataclasses import dataclass
 
 from smachac.diagnostics.source import Source, Span
-from smachac.refactor.cst import Atom, Group, Item, take_apart
+from smachac.refactor.cst import Atom, Collection, Item, parse_cst
 from smachac.refactor.field_order import long_name, variables_of
 from smachac.refactor.formatter import item_lines
 
 
 class RefusedError(Exception):
-    """Something cannot be done; the words say what is in the way, and what helps."""
+    """A refactoring is refused; message and help have the reason and what to do."""
 
     def __init__(self, span: Span, message: str, help: str | None = None) -> None:
         super().__init__(message)
@@ -23,29 +23,30 @@ class RefusedError(Exception):
 
 
 @dataclass(slots=True)
-class Place:
-    """A state of a script: its item, and the list that it is an item of."""
+class StateItem:
+    """A state of a script: its item in the syntax tree, and the list that contains it."""
 
     item: Item
-    states: Group
+    states: Collection
 
 
-class Sheet:
-    """One text, and what is to become of it. States are known by where their name begins."""
+class ScriptEditor:
+    """One text and its pending changes. States are identified by the offset of their name."""
 
     def __init__(self, source: Source) -> None:
         self.source = source
-        self.text = take_apart(source)
-        self.places: dict[int, Place] = {}
+        self.text = parse_cst(source)
+        self.places: dict[int, StateItem] = {}
         self._words: dict[tuple[int, int], str] = {}
-        self._anew: dict[int, tuple[Place, list[Item]]] = {}
+        self._rewritten: dict[int, tuple[StateItem, list[Item]]] = {}
         self._values: dict[int, Atom] = {}
-        self._owners: dict[int, Group] = {}
+        self._owners: dict[int, Collection] = {}
         self._numbers: dict[int, int] = {}
         self._sorted: list[tuple[int, int]] = []
         self._find()
 
     def _find(self) -> None:
+        """Find all states of the script."""
         root = self.text.root
         todo = [root] if not root.mapping else _lists(root)
         while todo:
@@ -54,38 +55,40 @@ class Sheet:
                 name = _name(item)
                 body = variables_of(item)
                 if name is not None and body is not None:
-                    self.places[name.start] = Place(item, states)
+                    self.places[name.start] = StateItem(item, states)
                     todo += _lists(body)
 
-    def state(self, span: Span) -> Place:
-        """The state whose name stands there. Raises RefusedError where it is in brackets."""
+    def state(self, span: Span) -> StateItem:
+        """The state whose name is at a span. Raises RefusedError if it is in a flow collection."""
         place = self.places.get(span.start)
         if place is None or place.states.flow or place.item.start < 0:
             help = "lay the script out first: `smachac fmt`"
             raise RefusedError(span, "this state stands in brackets, or in an unusual place", help)
         return place
 
-    def body_of(self, span: Span) -> Group | None:
-        """The variables among whose outcomes or states a name stands."""
+    def body_of(self, span: Span) -> Collection | None:
+        """The fields of the state that lists the outcome or state at a span."""
         if not self._owners:
             root = self.text.root
             bodies = [variables_of(place.item) for place in self.places.values()]
             for body in [root, *bodies] if root.mapping else bodies:
                 for name in ("outcomes", "states") if body is not None else ():
                     item = variable(body, name) if body is not None else None
-                    for inner in item.value.items if item and isinstance(item.value, Group) else ():
+                    for inner in (
+                        item.value.items if item and isinstance(item.value, Collection) else ()
+                    ):
                         atom = inner.value if isinstance(inner.value, Atom) else _name(inner)
                         if atom is not None and body is not None:
                             self._owners[atom.start] = body
         return self._owners.get(span.start)
 
     def value_of(self, span: Span) -> Atom:
-        """The scalar behind the key that stands there. Raises RefusedError."""
+        """The scalar value of the key at a span. Raises RefusedError."""
         if not self._values:
             todo = [Item(None, self.text.root)]
             while todo:
                 item = todo.pop()
-                if isinstance(item.value, Group):
+                if isinstance(item.value, Collection):
                     todo += item.value.items
                 elif item.key is not None:
                     self._values[item.key.start] = item.value
@@ -93,16 +96,16 @@ class Sheet:
             raise RefusedError(span, "what stands here comes from elsewhere", "write it out first")
         return self._values[span.start]
 
-    def spell(self, span: Span, text: str) -> None:
-        """Let another word stand there; in quotes, if the one before does."""
+    def replace_word(self, span: Span, text: str) -> None:
+        """Replace the word at a span; quotes are kept."""
         written = span.text
         if written[:1] in ("'", '"') and written[:1] == written[-1:]:
             text = f"{written[0]}{text}{written[0]}"
         self._words[span.start, span.end] = text
 
-    def write_anew(self, place: Place, items: list[Item] | None = None) -> None:
-        """Write a state as its parts have become; or other states, or none, in its stead."""
-        self._anew[place.item.start] = (place, [place.item] if items is None else items)
+    def rewrite_state(self, place: StateItem, items: list[Item] | None = None) -> None:
+        """Print a state from its changed syntax tree, or replace it with other states or none."""
+        self._rewritten[place.item.start] = (place, [place.item] if items is None else items)
 
     def result(self) -> str:
         """The new text."""
@@ -111,7 +114,9 @@ class Sheet:
         at = 0
         words = sorted(self._words.items())
         self._sorted = sorted(self._words)
-        stretches = [(*self._stretch(place), place, items) for place, items in self._anew.values()]
+        stretches = [
+            (*self._stretch(place), place, items) for place, items in self._rewritten.values()
+        ]
         todo = [(start, end, new) for (start, end), new in words]
         todo += [
             (begin, end, self._printed(place, items))
@@ -123,8 +128,8 @@ class Sheet:
                 at = end
         return "".join(parts) + text[at:]
 
-    def _stretch(self, place: Place) -> tuple[int, int]:
-        """The lines of a state, as far as the next one or the end of the list."""
+    def _stretch(self, place: StateItem) -> tuple[int, int]:
+        """The range of a state: to the next state or the end of the list."""
         items = place.states.items
         if id(place.item) not in self._numbers:
             self._numbers |= {id(item): number for number, item in enumerate(items)}
@@ -134,16 +139,16 @@ class Sheet:
         end = self.source.text.find("\n", place.states.end)
         return place.item.start, len(self.source.text) if end < 0 else end + 1
 
-    def _printed(self, place: Place, items: list[Item]) -> str:
+    def _printed(self, place: StateItem, items: list[Item]) -> str:
         first = place.states.items[0] is place.item
         lines: list[str] = []
         for item in items:
-            self.respell(item)
+            self.apply_words(item)
             lines += item_lines(item, place.states.column, first=first and not lines)
         return "".join(f"{line}\n" for line in lines)
 
-    def respell(self, top: Item) -> None:
-        """Bring the new words into the parts that are written anew."""
+    def apply_words(self, top: Item) -> None:
+        """Apply the replaced words to a part of the syntax tree that is printed anew."""
         if not self._words:
             return
         todo = [top]
@@ -153,13 +158,13 @@ class Sheet:
                 match node:
                     case Atom(start=start, end=end) if start >= 0:
                         node.text = self._changed(start, end) or node.text
-                    case Group(raw=str()):
+                    case Collection(raw=str()):
                         node.raw = self._changed(node.start, node.end) or node.raw
-                    case Group():
+                    case Collection():
                         todo += node.items
 
     def _changed(self, start: int, end: int) -> str | None:
-        """The text between two places with its new words; None if there are none."""
+        """The text of a range with its replaced words; None if it has none."""
         if len(self._sorted) != len(self._words):
             self._sorted = sorted(self._words)
         parts: list[str] = []
@@ -173,9 +178,9 @@ class Sheet:
 
 
 def _outermost(
-    stretches: list[tuple[int, int, Place, list[Item]]],
-) -> Iterable[tuple[int, int, Place, list[Item]]]:
-    """The stretches that stand in no other one."""
+    stretches: list[tuple[int, int, StateItem, list[Item]]],
+) -> Iterable[tuple[int, int, StateItem, list[Item]]]:
+    """The ranges that are not inside another one."""
     inside = 0
     for each in sorted(stretches, key=lambda each: (each[0], -each[1])):
         if each[0] >= inside:
@@ -183,43 +188,48 @@ def _outermost(
             yield each
 
 
-def _lists(body: Group) -> list[Group]:
-    """The list of states among the variables of a state."""
+def _lists(body: Collection) -> list[Collection]:
+    """The list of states among the fields of a state."""
     values = (item.value for item in body.items if long_name(item) == "states")
-    return [value for value in values if isinstance(value, Group) and not value.mapping]
+    return [value for value in values if isinstance(value, Collection) and not value.mapping]
 
 
 def _name(item: Item) -> Atom | None:
+    """The name of a state item."""
     state = item.value
     return (
-        state.items[0].key if isinstance(state, Group) and state.mapping and state.items else None
+        state.items[0].key
+        if isinstance(state, Collection) and state.mapping and state.items
+        else None
     )
 
 
-def variable(body: Group, name: str) -> Item | None:
-    """A variable of a state by its long name."""
+def variable(body: Collection, name: str) -> Item | None:
+    """A field of a state by its long name."""
     return next((item for item in body.items if long_name(item) == name), None)
 
 
-def word(text: str) -> Atom:
-    """A scalar that no text holds yet."""
+def new_atom(text: str) -> Atom:
+    """A scalar that is not in the text yet."""
     return Atom(text, -1, -1)
 
 
-def pairs(entries: Iterable[tuple[str, str]]) -> Group:
-    """A mapping in brackets."""
-    return Group(True, True, -1, items=[Item(word(key), word(value)) for key, value in entries])
+def flow_mapping(entries: Iterable[tuple[str, str]]) -> Collection:
+    """A mapping in braces."""
+    return Collection(
+        True, True, -1, items=[Item(new_atom(key), new_atom(value)) for key, value in entries]
+    )
 
 
-def put(body: Group, name: str, key: str, value: str) -> None:
-    """Add an entry to a variable that is a mapping, or the variable."""
+def add_entry(body: Collection, name: str, key: str, value: str) -> None:
+    """Add an entry to a field that is a mapping; add the field if it is missing."""
     item = variable(body, name)
-    if item is None or not isinstance(item.value, Group):
-        item = Item(word(name), pairs(()))
-        assert isinstance(item.value, Group)
+    if item is None or not isinstance(item.value, Collection):
+        item = Item(new_atom(name), flow_mapping(()))
+        assert isinstance(item.value, Collection)
         states = variable(body, "states")
         at = len(body.items) if states is None else body.items.index(states)
         body.items.insert(at, item)
-    assert isinstance(item.value, Group)
+    assert isinstance(item.value, Collection)
     item.value.flat = ""
-    item.value.items.append(Item(word(key), word(value)))
+    item.value.items.append(Item(new_atom(key), new_atom(value)))

@@ -1,9 +1,9 @@
-"""The one layout of a script: `smachac fmt`.
+"""Script formatter: the layout of `smachac fmt`.
 
-Mappings are indented by two, lists under their key by two; collections in brackets stay so, on one
-line where that has room; variables stand in the order of order.py. Scalars, comments and anchors
-stay as they are written, and what was block or flow stays so. That the new text says the same is
-proven before it is handed out: the trees are equal but for the order of variables.
+Mappings and lists are indented by two; flow collections stay on one line if there is room; the
+fields of a state are ordered (field_order.py). Scalars, comments and anchors are kept as written,
+and block or flow style is kept. The result is checked before it is returned: both syntax trees are
+equal except for the order of fields.
 """
 
 from __future__ import annotations
@@ -16,44 +16,44 @@ from smachac.frontend import schema
 from smachac.frontend.params import look_up_word
 from smachac.frontend.yaml_tree import Map, Scalar, Seq, Tree, parse
 from smachac.ir.recursion import deep_recursion
-from smachac.refactor.cst import Atom, Group, Item, Text, UnusualError, take_apart
-from smachac.refactor.field_order import Spelling, put_in_order
+from smachac.refactor.cst import Atom, Collection, Document, Item, UnsupportedYamlError, parse_cst
+from smachac.refactor.field_order import Spelling, order_fields
 
 WIDTH = 100
-"""The length of a line that collections in brackets are broken at, in characters."""
+"""The line length, in characters, at which flow collections are broken."""
 
 
-def laid_out(source: Source, spelling: Spelling = "kept") -> str | None:
-    """A script in its layout, or None where it cannot be laid out without a change of meaning.
+def format_script(source: Source, spelling: Spelling = "kept") -> str | None:
+    """A script in the standard layout; None if the layout would change its meaning.
 
-    The text has to be one that `parse` makes a tree of. Ends of lines are kept: CRLF where the
-    first line ends so. Laid out twice is laid out once.
+    The text must be one that `parse` accepts. Line ends are kept: CRLF if the first line has it.
+    Formatting is idempotent.
     """
     crlf = "\r\n" in source.text[: source.text.find("\n") + 1]
     plain = Source(source.name, source.text.replace("\r\n", "\n").replace("\r", "\n"))
     with deep_recursion():
         for ordered in (True, False):  # an alias must not come to stand before its anchor
-            found = _laid_out(plain, spelling, ordered)
+            found = _format_script(plain, spelling, ordered)
             if found is not None:
                 return found.replace("\n", "\r\n") if crlf else found
     return None
 
 
-def _laid_out(source: Source, spelling: Spelling, ordered: bool) -> str | None:
+def _format_script(source: Source, spelling: Spelling, ordered: bool) -> str | None:
     before = parse(source, [])
     if before is None:
         return None
     try:
-        text = take_apart(source)
-    except UnusualError:
+        text = parse_cst(source)
+    except UnsupportedYamlError:
         return None
     made = Source(source.name, _printed(text, spelling, ordered))
     after = parse(made, [])
     if after is None or not same_meaning(before, after):
         return None
     try:
-        again = take_apart(made)
-    except UnusualError:
+        again = parse_cst(made)
+    except UnsupportedYamlError:
         return None
     if Counter(again.comments) != Counter(text.comments):
         return None
@@ -61,8 +61,8 @@ def _laid_out(source: Source, spelling: Spelling, ordered: bool) -> str | None:
     return made.text if _printed(again, spelling, ordered) == made.text else None
 
 
-def _printed(text: Text, spelling: Spelling, ordered: bool) -> str:
-    put_in_order(text.root, spelling, ordered=ordered)
+def _printed(text: Document, spelling: Spelling, ordered: bool) -> str:
+    order_fields(text.root, spelling, ordered=ordered)
     printer = _Printer()
     printer.lines += printer.trivia(text.head, "", first=True)
     printer.root(text.root)
@@ -70,35 +70,36 @@ def _printed(text: Text, spelling: Spelling, ordered: bool) -> str:
 
 
 def item_lines(item: Item, column: int, *, first: bool) -> list[str]:
-    """The lines of one item of a list whose dashes stand in a column."""
+    """The lines of a list item whose dash is at a column."""
     printer = _Printer()
     margin = " " * column
-    printer.lines += printer.trivia(item.lead, margin, first=first)
+    printer.lines += printer.trivia(item.leading, margin, first=first)
     printer.item(item, f"{margin}- ", column)
     return printer.lines
 
 
 def list_text(item: Item, tail: list[str]) -> str:
-    """A text that is a list with one item."""
+    """A text that consists of a list with one item."""
     return "".join(f"{line}\n" for line in [*item_lines(item, 0, first=True), *tail])
 
 
 class _Printer:
-    """Prints parts as lines."""
+    """Prints syntax trees as lines."""
 
     def __init__(self) -> None:
         self.lines: list[str] = []
 
     @staticmethod
     def trivia(lines: list[str], margin: str, *, first: bool = False) -> Iterator[str]:
-        """Comments at a margin, with at most one empty line in a row, none where a block begins."""
+        """Comments with an indentation; consecutive empty lines become one, none at the start of a
+        block."""
         blank = first
         for line in lines:
             if line or not blank:
                 yield f"{margin}{line}" if line else ""
             blank = not line
 
-    def root(self, group: Group) -> None:
+    def root(self, group: Collection) -> None:
         if group.properties and not group.flow:
             self.lines.append(group.properties)
         if group.flow and group.is_state and group.raw is None:
@@ -108,13 +109,13 @@ class _Printer:
             return
         self.block(group, 0)
 
-    def block(self, group: Group, indent: int, prefix: str | None = None) -> None:
-        """A block collection; `prefix` is what its first line begins with, after a dash."""
+    def block(self, group: Collection, indent: int, prefix: str | None = None) -> None:
+        """A block collection. `prefix` begins the first line, after a dash."""
         margin = " " * indent
         for number, item in enumerate(group.items):
             begin = prefix if prefix is not None and number == 0 else margin
             above = begin[: len(begin) - len(begin.lstrip(" "))]
-            self.lines += self.trivia(item.lead, above, first=number == 0)
+            self.lines += self.trivia(item.leading, above, first=number == 0)
             if group.mapping:
                 self.entry(item, begin, indent)
             else:
@@ -126,20 +127,20 @@ class _Printer:
         colon = " :" if item.key.text.startswith("*") else ":"
         head = f"{begin}{item.key.text}{colon}"
         value = item.value
-        if isinstance(value, Group) and value.flow and _wants_block(value, head):
+        if isinstance(value, Collection) and value.flow and _wants_block(value, head):
             _to_block(value)
-        if isinstance(value, Group) and not value.flow:
+        if isinstance(value, Collection) and not value.flow:
             words = f" {value.properties}" if value.properties else ""
-            self.lines.append(f"{head}{words}{item.aside}")
+            self.lines.append(f"{head}{words}{item.trailing}")
             self.block(value, indent + 2)
             return
         self.value(item, head, indent)
 
     def item(self, item: Item, begin: str, indent: int) -> None:
         value = item.value
-        if isinstance(value, Group) and not value.flow:
-            if value.properties or item.aside:
-                self.lines.append(f"{begin}{value.properties}".rstrip() + item.aside)
+        if isinstance(value, Collection) and not value.flow:
+            if value.properties or item.trailing:
+                self.lines.append(f"{begin}{value.properties}".rstrip() + item.trailing)
                 self.block(value, indent + 2)
             else:
                 self.block(value, indent + 2, begin)
@@ -149,9 +150,9 @@ class _Printer:
     def value(self, item: Item, head: str, indent: int) -> None:
         """A scalar or flow collection behind its key or dash."""
         value = item.value
-        if isinstance(value, Group):
+        if isinstance(value, Collection):
             margin = " " * (indent + 2)
-            lines = list(self.flow_lines(value, f"{head} ", margin, item.aside))
+            lines = list(self.flow_lines(value, f"{head} ", margin, item.trailing))
         elif not value.text:
             lines = [head]
         elif value.is_block:
@@ -162,11 +163,13 @@ class _Printer:
             margin = " " * (indent + 2)
             lines = [f"{head} {first}"]
             lines += [f"{margin}{line.lstrip()}" if line.strip() else "" for line in others]
-        lines[-1] += item.aside
+        lines[-1] += item.trailing
         self.lines += lines
 
-    def flow_lines(self, group: Group, head: str, margin: str, aside: str = "") -> Iterator[str]:
-        """A collection in brackets: on one line or, where that is too long, item by item."""
+    def flow_lines(
+        self, group: Collection, head: str, margin: str, aside: str = ""
+    ) -> Iterator[str]:
+        """A flow collection: on one line or, if that is too long, broken between items."""
         if group.raw is not None:
             first, *others = group.raw.split("\n")
             yield f"{head}{first.rstrip()}" if others else f"{head}{first}"
@@ -193,7 +196,7 @@ class _Printer:
         yield line
 
 
-def _flat(group: Group) -> str:
+def _flat(group: Collection) -> str:
     """A flow collection on one line."""
     if not group.flat:
         opening, closing = ("{", "}") if group.mapping else ("[", "]")
@@ -204,15 +207,15 @@ def _flat(group: Group) -> str:
 
 
 def _flat_item(item: Item) -> str:
-    value = _flat(item.value) if isinstance(item.value, Group) else item.value.text
+    value = _flat(item.value) if isinstance(item.value, Collection) else item.value.text
     if item.key is None:
         return value
     colon = " :" if item.key.text.startswith("*") else ":"
     return f"{item.key.text}{colon} {value}"
 
 
-def _wants_block(group: Group, head: str) -> bool:
-    """Whether a flow mapping is a state that has no room on its line, or holds states."""
+def _wants_block(group: Collection, head: str) -> bool:
+    """Whether a flow mapping is a state that is too long for its line, or contains states."""
     return (
         group.is_state
         and group.raw is None
@@ -227,19 +230,19 @@ def _is_states(item: Item) -> bool:
     return item.key is not None and item.key.text in ("states", "s")
 
 
-def _to_block(group: Group) -> None:
-    """Write a state, and the states in it, in lines instead of brackets."""
+def _to_block(group: Collection) -> None:
+    """Change a state, and the states in it, from flow to block style."""
     group.flow = not group.items
     for item in group.items:
-        if _is_states(item) and isinstance(item.value, Group) and item.value.items:
+        if _is_states(item) and isinstance(item.value, Collection) and item.value.items:
             item.value.flow = False
             for state in item.value.items:
-                if isinstance(state.value, Group) and state.value.items:
+                if isinstance(state.value, Collection) and state.value.items:
                     state.value.flow = False
 
 
 def _block_lines(atom: Atom, indent: int) -> Iterator[str]:
-    """A block scalar with its lines two columns further in than its key or dash."""
+    """The lines of a block scalar, indented by two relative to its key or dash."""
     first, *lines = atom.text.split("\n")
     yield first.rstrip()
     digits = next((char for char in first.split("#")[0] if char.isdigit()), "")
@@ -251,8 +254,8 @@ def _block_lines(atom: Atom, indent: int) -> Iterator[str]:
 
 
 def same_meaning(one: Tree, other: Tree) -> bool:
-    """Whether two scripts are the same but for the order and short names of the variables of
-    states, the spelling of look-ups, and whether a state's variables stand under its name."""
+    """Whether two scripts are equal except for the order and spelling of fields, the spelling of
+    look-ups, and fields beside or under the name of a state."""
     todo = [(one, other, "root")]
     while todo:
         left, right, role = todo.pop()
@@ -288,7 +291,7 @@ def _look_ups(left: Seq, right: Seq) -> bool:
 
 
 def _paired(left: Map, right: Map, role: str) -> list[tuple[Tree, Tree, str]] | None:
-    """The values of two mappings by key; None where the keys differ."""
+    """The values of two mappings by key; None if the keys differ."""
     state = role == "state" or (role == "root" and _is_script(left))
     if role == "item":
         left, right = _nested(left), _nested(right)
@@ -313,7 +316,7 @@ def _is_script(tree: Map) -> bool:
 
 
 def _key(key: Scalar, state: bool) -> tuple[str, str, bool]:
-    """A key, in a form that can be compared and sorted."""
+    """A key in a form that can be compared and sorted."""
     text = str(key.value)
     if state and isinstance(key.value, str):
         return "str", schema.LONG.get(text, text), True
@@ -321,7 +324,7 @@ def _key(key: Scalar, state: bool) -> tuple[str, str, bool]:
 
 
 def _nested(item: Map) -> Map:
-    """A state item with its variables under its name."""
+    """A state item with its fields under its name."""
     if len(item.entries) < 2:
         return item
     first, *rest = item.entries

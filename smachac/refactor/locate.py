@@ -1,4 +1,5 @@
-"""What a user names: states by their path or its end, outcomes and keys by those of the state."""
+"""Name resolution for commands: a state by its path or the end of it, an outcome or key by that of
+its state."""
 
 from __future__ import annotations
 
@@ -12,7 +13,7 @@ from smachac.ir.traversal import remapping, walk
 
 
 class NotFoundError(Exception):
-    """A name of the user means nothing, or several things; the words say what there is."""
+    """A name has no meaning, or several; the message lists candidates."""
 
 
 def find_state(machine: Machine, name: str) -> tuple[str, Node]:
@@ -33,8 +34,10 @@ def find_state(machine: Machine, name: str) -> tuple[str, Node]:
 
 
 def find_named(machine: Machine, path: str, kind: str | None) -> tuple[str, Span, str]:
-    """What a path means: a state, or an outcome or key of the state before its last part; where
-    that is declared, and its name. Raises NotFoundError."""
+    """The meaning of a path: a state, or an outcome or key of the state before its last part.
+
+    Returns the kind, the span of the declaration and the name. Raises NotFoundError.
+    """
     around, _, name = path.rpartition("/")
     found: dict[tuple[str, int, int], tuple[str, Span, str, str]] = {}
     known: dict[str, None] = {}
@@ -74,8 +77,10 @@ def find_named(machine: Machine, path: str, kind: str | None) -> tuple[str, Span
     return meant[0][:3]
 
 
-def not_beside(machine: Machine, above: str, name: str, known: Iterable[str]) -> NotFoundError:
-    """Why a state cannot be taken together with those of the container at `above`."""
+def different_container_error(
+    machine: Machine, above: str, name: str, known: Iterable[str]
+) -> NotFoundError:
+    """The error for a state that is not in the container at `above`."""
     other = next((path for path, node in walk(machine.root) if node.name == name), None)
     if other is not None:
         words = f"`{name}` is in `{other.rpartition('/')[0]}`, the first state in `{above}`"

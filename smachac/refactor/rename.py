@@ -1,8 +1,8 @@
-"""States and outcomes under another name: which words of which texts change.
+"""Rename: the words to replace for a new name of a state, an outcome or a userdata key.
 
-A name is known by where it is declared, so that a sub-script that is called several times, or by
-several scripts, is renamed in all of them. That no other name is meant is proven afterwards, by
-skeletons (skeleton.py).
+A name is identified by the span of its declaration, so that a sub-script with several calls, or
+with several calling scripts, is renamed for all of them. The result is checked by
+`equal_after_rename` (equivalence.py).
 """
 
 from __future__ import annotations
@@ -14,76 +14,79 @@ from smachac.diagnostics.source import Source, Span
 from smachac.ir import nodes
 from smachac.ir.nodes import Container, Leaf, Machine, Node
 from smachac.ir.traversal import leads_to_child, remapping
-from smachac.refactor.cst import Atom, Group, Item
-from smachac.refactor.editor import RefusedError, Sheet, put, variable
+from smachac.refactor.cst import Atom, Collection, Item
+from smachac.refactor.editor import RefusedError, ScriptEditor, add_entry, variable
 from smachac.refactor.field_order import variables_of
 
-Sheets = Callable[[Source], Sheet]
+Editors = Callable[[Source], ScriptEditor]
 
 
 class Renaming:
-    """One renaming, worked out over one machine after the other."""
+    """One renaming, applied to one machine after the other."""
 
-    def __init__(self, old: str, new: str, sheets: Sheets) -> None:
+    def __init__(self, old: str, new: str, editors: Editors) -> None:
         self.old = old
         self.new = new
-        self.sheets = sheets
+        self.editors = editors
         self.added: set[tuple[int, str, str]] = set()
         self.scopes: list[Span] = []
-        """Where the first states of containers stand in which a key got another name."""
+        """The spans of the first states of the containers in which the key was renamed."""
 
-    def spell(self, span: Span) -> None:
-        """Let the new name stand there, if the old one does."""
+    def replace_word(self, span: Span) -> None:
+        """Replace the old name at a span."""
         if span.text.strip("'\"") == self.old:
-            self.sheets(span.source).spell(span, self.new)
+            self.editors(span.source).replace_word(span, self.new)
 
     def add(self, node: Node, name: str, key: str, value: str) -> None:
-        """Add an entry to a variable of a state, once."""
+        """Add an entry to a field of a state, once."""
         mark = (node.span.start, node.span.source.name + name, key)
         if mark in self.added:
             return
         self.added.add(mark)
-        sheet = self.sheets(node.span.source)
-        place = sheet.state(node.span)
+        editor = self.editors(node.span.source)
+        place = editor.state(node.span)
         body = variables_of(place.item)
         assert body is not None
-        put(body, name, key, value)
-        sheet.write_anew(place)
+        add_entry(body, name, key, value)
+        editor.rewrite_state(place)
 
-    def words(self, bodies: Iterable[tuple[Sheet, Group]], *names: str) -> None:
-        """Spell the values of variables anew: a word, the items of a list, the values of a map."""
-        for sheet, body in bodies:
+    def words(self, bodies: Iterable[tuple[ScriptEditor, Collection]], *names: str) -> None:
+        """Replace the old name in the values of fields: a word, list items, mapping values."""
+        for editor, body in bodies:
             for name in names:
                 item = variable(body, name)
                 for atom in _values(item) if item is not None else ():
-                    self.atom(sheet, atom)
+                    self.atom(editor, atom)
 
-    def keys(self, bodies: Iterable[tuple[Sheet, Group]], *names: str) -> None:
-        """Spell the keys of variables that are mappings anew."""
-        for sheet, body in bodies:
+    def keys(self, bodies: Iterable[tuple[ScriptEditor, Collection]], *names: str) -> None:
+        """Replace the old name in the keys of fields that are mappings."""
+        for editor, body in bodies:
             for name in names:
                 item = variable(body, name)
-                for inner in item.value.items if item and isinstance(item.value, Group) else ():
+                for inner in (
+                    item.value.items if item and isinstance(item.value, Collection) else ()
+                ):
                     if inner.key is not None:
-                        self.atom(sheet, inner.key)
+                        self.atom(editor, inner.key)
 
-    def atom(self, sheet: Sheet, atom: Atom) -> None:
+    def atom(self, editor: ScriptEditor, atom: Atom) -> None:
+        """Replace a scalar if it is the old name."""
         if atom.start >= 0 and atom.text.strip("'\"") == self.old:
-            self.spell(Span(sheet.source, atom.start, atom.end))
+            self.replace_word(Span(editor.source, atom.start, atom.end))
 
-    def bodies(self, node: Node) -> list[tuple[Sheet, Group]]:
-        """Where variables of a state stand: at its name, and in the sub-script that it calls."""
-        found: list[tuple[Sheet, Group]] = []
-        sheet = self.sheets(node.span.source)
-        place = sheet.places.get(node.span.start)
+    def bodies(self, node: Node) -> list[tuple[ScriptEditor, Collection]]:
+        """The fields of a state: at its name, and in the sub-script that it calls."""
+        found: list[tuple[ScriptEditor, Collection]] = []
+        editor = self.editors(node.span.source)
+        place = editor.places.get(node.span.start)
         body = variables_of(place.item) if place is not None else None
         if body is not None:
-            found.append((sheet, body))
+            found.append((editor, body))
         spans = [outcome.span for outcome in node.outcomes]
         if not isinstance(node, Leaf):
             spans += [child.span for child in node.children[:1]]
         for span in spans[-1:]:
-            other = self.sheets(span.source)
+            other = self.editors(span.source)
             inner = other.body_of(span)
             if inner is not None and inner is not body:
                 found.append((other, inner))
@@ -91,7 +94,8 @@ class Renaming:
 
 
 def _values(item: Item) -> Iterator[Atom]:
-    todo: list[Atom | Group] = [item.value]
+    """All scalars in the value of an item."""
+    todo: list[Atom | Collection] = [item.value]
     while todo:
         node = todo.pop()
         if isinstance(node, Atom):
@@ -101,10 +105,12 @@ def _values(item: Item) -> Iterator[Atom]:
 
 
 def same_place(one: Span, other: Span) -> bool:
+    """Whether two spans begin at the same offset of the same source."""
     return one.source is other.source and one.start == other.start
 
 
 def containers_of(machine: Machine) -> Iterator[Container]:
+    """All containers of a machine."""
     todo: list[Node] = [machine.root]
     while todo:
         node = todo.pop()
@@ -116,150 +122,157 @@ def containers_of(machine: Machine) -> Iterator[Container]:
 # --- states
 
 
-def rename_state(work: Renaming, machine: Machine, declared: Span) -> None:
-    """Rename the state whose name stands at a place, and what leads to it."""
-    if same_place(machine.root.span, declared) and machine.root.name == work.old:
-        work.spell(declared)
+def rename_state(renaming: Renaming, machine: Machine, declared: Span) -> None:
+    """Rename the state whose name is at a span, and the references to it."""
+    if same_place(machine.root.span, declared) and machine.root.name == renaming.old:
+        renaming.replace_word(declared)
         return
     for container in containers_of(machine):
         inside = frozenset(child.name for child in container.children)
         mine = [child for child in container.children
-                if child.name == work.old and same_place(child.span, declared)]  # fmt: skip
+                if child.name == renaming.old and same_place(child.span, declared)]  # fmt: skip
         if not mine:
             continue
         for other in container.children:
-            if other.name == work.new and other not in mine:
-                message = f"`{container.name}` has a state `{work.new}` already"
+            if other.name == renaming.new and other not in mine:
+                message = f"`{container.name}` has a state `{renaming.new}` already"
                 raise RefusedError(other.span, message, "choose another name")
-        if any(outcome.name == work.new for outcome in container.outcomes):
-            message = f"`{work.new}` is an outcome of `{container.name}`: who leads there?"
+        if any(outcome.name == renaming.new for outcome in container.outcomes):
+            message = f"`{renaming.new}` is an outcome of `{container.name}`: who leads there?"
             raise RefusedError(container.span, message, "choose another name")
-        work.spell(declared)
+        renaming.replace_word(declared)
         for child in container.children:
             for step in child.transitions:
-                if step.target == work.old and leads_to_child(step, inside):
-                    work.spell(step.target_span)
+                if step.target == renaming.old and leads_to_child(step, inside):
+                    renaming.replace_word(step.target_span)
         match container:
             case nodes.Concurrence():
                 for rule in container.rules:
                     for each in rule.when:
-                        if each.child == work.old:
-                            work.spell(each.span)
+                        if each.child == renaming.old:
+                            renaming.replace_word(each.span)
             case nodes.StateMachine() | nodes.Sequence():
                 if not same_place(container.initial_span, container.span):
-                    work.spell(container.initial_span)
+                    renaming.replace_word(container.initial_span)
 
 
 # --- outcomes
 
 
-def rename_outcome(work: Renaming, machine: Machine, declared: Span) -> None:
-    """Rename the outcome that is declared at a place, and what becomes of it."""
+def rename_outcome(renaming: Renaming, machine: Machine, declared: Span) -> None:
+    """Rename the outcome that is declared at a span, and the references to it."""
 
     def is_mine(node: Node) -> bool:
-        return any(each.name == work.old and same_place(each.span, declared)
+        return any(each.name == renaming.old and same_place(each.span, declared)
                    for each in node.outcomes)  # fmt: skip
 
     if is_mine(machine.root):
-        _inside(work, machine.root)
+        _rename_in_state(renaming, machine.root)
     for container in containers_of(machine):
         for child in container.children:
             if not is_mine(child):
                 continue
-            if any(each.name == work.new for each in child.outcomes):
-                message = f"`{child.name}` has an outcome `{work.new}` already"
+            if any(each.name == renaming.new for each in child.outcomes):
+                message = f"`{child.name}` has an outcome `{renaming.new}` already"
                 raise RefusedError(child.span, message, "choose another name")
-            _inside(work, child)
+            _rename_in_state(renaming, child)
             if not container.sugar:
-                _around(work, container, child)
+                _rename_in_container(renaming, container, child)
 
 
-def _inside(work: Renaming, node: Node) -> None:
-    """What a state says of its own outcome."""
-    bodies = work.bodies(node)
-    work.words(bodies, "outcomes", "default_outcome", "exhausted_outcome", "final_outcome_map")
-    for sheet, body in bodies:
+def _rename_in_state(renaming: Renaming, node: Node) -> None:
+    """Rename an outcome in the fields and the children of its state."""
+    bodies = renaming.bodies(node)
+    renaming.words(bodies, "outcomes", "default_outcome", "exhausted_outcome", "final_outcome_map")
+    for editor, body in bodies:
         for name in ("retry", "for_each"):
             item = variable(body, name)
-            if item is not None and isinstance(item.value, Group):
+            if item is not None and isinstance(item.value, Collection):
                 inner = [each for each in item.value.items if each.key and each.key.text == "on"]
                 for atom in (atom for each in inner for atom in _values(each)):
-                    work.atom(sheet, atom)
+                    renaming.atom(editor, atom)
     if isinstance(node, Leaf):
         if node.type == "ConditionalOutcomeState":
-            work.keys(bodies, "callbacks")
-        for atom, sheet in step_words(bodies, "outcome"):
-            work.atom(sheet, atom)
+            renaming.keys(bodies, "callbacks")
+        for atom, editor in step_words(bodies, "outcome"):
+            renaming.atom(editor, atom)
         return
     if node.sugar:
         return
     inside = frozenset(child.name for child in node.children)
-    if work.new in inside:
-        message = f"`{node.name}` has a state `{work.new}`: who leads there?"
+    if renaming.new in inside:
+        message = f"`{node.name}` has a state `{renaming.new}`: who leads there?"
         raise RefusedError(node.span, message, "choose another name")
     for child in node.children:
         for step in child.transitions:
-            if step.target != work.old or leads_to_child(step, inside):
+            if step.target != renaming.old or leads_to_child(step, inside):
                 continue
             if step.origin == "implicit":
-                work.add(child, "transitions", step.outcome, work.new)
+                renaming.add(child, "transitions", step.outcome, renaming.new)
             else:
-                work.spell(step.target_span)
+                renaming.replace_word(step.target_span)
     if isinstance(node, nodes.Concurrence):
         for rule in node.rules:
-            if rule.outcome == work.old:
-                work.spell(rule.span)
-        work.spell(node.default_span)
+            if rule.outcome == renaming.old:
+                renaming.replace_word(rule.span)
+        renaming.replace_word(node.default_span)
 
 
-def _around(work: Renaming, container: Container, child: Node) -> None:
-    """What the container makes of the outcome of a state in it."""
+def _rename_in_container(renaming: Renaming, container: Container, child: Node) -> None:
+    """Rename an outcome of a child in the transitions and rules of its container."""
     for step in child.transitions:
-        if step.outcome != work.old:
+        if step.outcome != renaming.old:
             continue
         if step.origin == "implicit":
-            work.add(child, "transitions", work.new, work.old)
+            renaming.add(child, "transitions", renaming.new, renaming.old)
         elif step.origin == "connector":
             help = f"give `{child.name}` a container, or rename the connector by hand"
-            message = f"`{work.old}` is the connector of `{container.name}`"
+            message = f"`{renaming.old}` is the connector of `{container.name}`"
             raise RefusedError(child.span, message, help)
         else:
-            work.spell(step.span)
+            renaming.replace_word(step.span)
     match container:
         case nodes.Concurrence():
             for rule in container.rules:
                 for each in rule.when:
-                    if each.child == child.name and each.outcome == work.old:
-                        sheet = work.sheets(each.span.source)
-                        work.atom(sheet, sheet.value_of(each.span))
+                    if each.child == child.name and each.outcome == renaming.old:
+                        editor = renaming.editors(each.span.source)
+                        renaming.atom(editor, editor.value_of(each.span))
         case nodes.Iterator():
-            bodies = work.bodies(container)
-            work.words(bodies, "loop_outcomes", "break_outcomes")
-            work.keys(bodies, "final_outcome_map")
+            bodies = renaming.bodies(container)
+            renaming.words(bodies, "loop_outcomes", "break_outcomes")
+            renaming.keys(bodies, "final_outcome_map")
 
 
-def step_words(bodies: Iterable[tuple[Sheet, Group]], what: str) -> Iterator[tuple[Atom, Sheet]]:
-    """In the steps of a scripted state: its outcomes, or the keys that it sets."""
-    for sheet, body in bodies:
+def step_words(
+    bodies: Iterable[tuple[ScriptEditor, Collection]], what: str
+) -> Iterator[tuple[Atom, ScriptEditor]]:
+    """The outcomes, or the keys set, in the steps of a scripted state."""
+    for editor, body in bodies:
         item = variable(body, "steps")
-        for step in item.value.items if item and isinstance(item.value, Group) else ():
-            for each in step.value.items if isinstance(step.value, Group) else ():
+        for step in item.value.items if item and isinstance(item.value, Collection) else ():
+            for each in step.value.items if isinstance(step.value, Collection) else ():
                 if each.key is None or each.key.text != what:
                     continue
                 if isinstance(each.value, Atom):
-                    yield each.value, sheet
+                    yield each.value, editor
                 else:
-                    yield from ((inner.key, sheet) for inner in each.value.items if inner.key)
+                    yield from ((inner.key, editor) for inner in each.value.items if inner.key)
 
 
-OPENLY = ("PrintUserdataState", "ScriptedState", "CallbacksState", "ConditionalOutcomeState")
-"""The state types of which all is known that they do with their keys: it stands in the script."""
+PORTABLE_TYPES = (
+    "PrintUserdataState",
+    "ScriptedState",
+    "CallbacksState",
+    "ConditionalOutcomeState",
+)
+"""State types whose use of keys is completely visible in the script."""
 
 
-def rename_key(work: Renaming, machine: Machine, declared: Span) -> None:
-    """Rename a key of the container whose first state stands at a place, in it and in all that is
-    inside under the same name."""
-    starts = work.scopes or [declared]
+def rename_key(renaming: Renaming, machine: Machine, declared: Span) -> None:
+    """Rename a key of the container whose first state is at a span, there and in the containers
+    inside that use the same name for it."""
+    starts = renaming.scopes or [declared]
     scopes = {
         id(each): each
         for each in containers_of(machine)
@@ -272,7 +285,11 @@ def rename_key(work: Renaming, machine: Machine, declared: Span) -> None:
         for child in todo.pop().children:
             if isinstance(child, Leaf) or child.sugar or id(child) in scopes:
                 continue
-            if work.old in _names(child) and work.old not in remapping(child) and child.children:
+            if (
+                renaming.old in _names(child)
+                and renaming.old not in remapping(child)
+                and child.children
+            ):
                 place = child.children[0].span
                 same = [
                     each
@@ -282,85 +299,91 @@ def rename_key(work: Renaming, machine: Machine, declared: Span) -> None:
                 todo += [each for each in same if id(each) not in scopes]
                 scopes |= {id(each): each for each in same}
     for scope in scopes.values():
-        work.scopes.append(scope.children[0].span)
-        _in_scope(work, scope, scopes)
+        renaming.scopes.append(scope.children[0].span)
+        _rename_in_scope(renaming, scope, scopes)
     for container in containers_of(machine):
         for child in container.children:
-            if id(child) in scopes and work.old in _names(child):
-                _at_border(work, child, id(container) in scopes)
+            if id(child) in scopes and renaming.old in _names(child):
+                _rename_at_border(renaming, child, id(container) in scopes)
 
 
 def _names(node: Node) -> list[str]:
+    """The names of the inputs and outputs of a node."""
     return [key.name for key in (*node.inputs, *node.outputs)]
 
 
-def _at_border(work: Renaming, node: Node, around: bool) -> None:
-    """What a container calls a key outside, when the key inside has another name; `around`: it
-    has that outside as well."""
+def _rename_at_border(renaming: Renaming, node: Node, around: bool) -> None:
+    """Rename a key in the remapping of a container. `around`: the key is renamed outside too."""
     for remap in node.remaps:
-        if remap.key == work.old:
-            work.spell(remap.span)
+        if remap.key == renaming.old:
+            renaming.replace_word(remap.span)
             return
     if not around:
-        work.add(node, "remapping", work.new, work.old)
+        renaming.add(node, "remapping", renaming.new, renaming.old)
 
 
-def _in_scope(work: Renaming, scope: Container, scopes: dict[int, Container]) -> None:
+def _rename_in_scope(renaming: Renaming, scope: Container, scopes: dict[int, Container]) -> None:
+    """Rename a key in one container and the interfaces of its children."""
     for preset in scope.userdata:
-        if preset.key == work.new:
-            message = f"`{scope.name}` has a key `{work.new}` already"
+        if preset.key == renaming.new:
+            message = f"`{scope.name}` has a key `{renaming.new}` already"
             raise RefusedError(preset.span, message, "choose another name")
-        if preset.key == work.old:
-            work.spell(preset.span)
+        if preset.key == renaming.old:
+            renaming.replace_word(preset.span)
     for key in (*scope.inputs, *scope.outputs):
-        if key.name == work.old:
-            work.spell(key.span)
-    bodies = work.bodies(scope)
+        if key.name == renaming.old:
+            renaming.replace_word(key.span)
+    bodies = renaming.bodies(scope)
     if isinstance(scope, nodes.Iterator):
-        if scope.item_key == work.old:
-            work.words(bodies, "it_label")
-        if scope.items_key == work.old:
-            work.words(bodies, "it")
+        if scope.item_key == renaming.old:
+            renaming.words(bodies, "it_label")
+        if scope.items_key == renaming.old:
+            renaming.words(bodies, "it")
     for child in scope.children:
         for remap in child.remaps:
-            if remap.to == work.old:
-                sheet = work.sheets(remap.span.source)
-                work.atom(sheet, sheet.value_of(remap.span))
-        if id(child) in scopes or work.old in remapping(child):
+            if remap.to == renaming.old:
+                editor = renaming.editors(remap.span.source)
+                renaming.atom(editor, editor.value_of(remap.span))
+        if id(child) in scopes or renaming.old in remapping(child):
             continue
-        if work.old not in _names(child):
+        if renaming.old not in _names(child):
             continue
-        if isinstance(child, Leaf) and child.type in OPENLY and _rewrite(work, child):
+        if (
+            isinstance(child, Leaf)
+            and child.type in PORTABLE_TYPES
+            and _rename_in_leaf(renaming, child)
+        ):
             continue
-        work.add(child, "remapping", work.old, work.new)
+        renaming.add(child, "remapping", renaming.old, renaming.new)
 
 
-def _rewrite(work: Renaming, leaf: Leaf) -> bool:
-    """Rename a key of a state that declares it in the script, in its code as well; whether that
-    can be done."""
-    own = [key for key in (*leaf.inputs, *leaf.outputs) if key.name == work.old]
-    if any(key.span.text.strip("'\"") != work.old for key in own):
+def _rename_in_leaf(renaming: Renaming, leaf: Leaf) -> bool:
+    """Rename a key of a state that declares it in the script, in its code too; False if that is not
+    possible."""
+    own = [key for key in (*leaf.inputs, *leaf.outputs) if key.name == renaming.old]
+    if any(key.span.text.strip("'\"") != renaming.old for key in own):
         return False
     places = []
     for held in leaf.variables:
         for code in _expressions(held.value.data):
-            found = _attributes(code, work.old)
+            found = _attributes(code, renaming.old)
             if found is None:
                 return False
             places += found
     for key in own:
-        work.spell(key.span)
+        renaming.replace_word(key.span)
     for place in places:
-        work.spell(place)
-    bodies = work.bodies(leaf)
+        renaming.replace_word(place)
+    bodies = renaming.bodies(leaf)
     if leaf.type == "CallbacksState":
-        work.keys(bodies, "callbacks")
-    for atom, sheet in step_words(bodies, "set"):
-        work.atom(sheet, atom)
+        renaming.keys(bodies, "callbacks")
+    for atom, editor in step_words(bodies, "set"):
+        renaming.atom(editor, atom)
     return True
 
 
 def _expressions(data: nodes.Data) -> Iterator[nodes.Expression]:
+    """The expressions in a value."""
     match data:
         case nodes.Expression():
             yield data
@@ -373,7 +396,7 @@ def _expressions(data: nodes.Data) -> Iterator[nodes.Expression]:
 
 
 def _attributes(code: nodes.Expression, key: str) -> list[Span] | None:
-    """Where a function reads a key of its userdata; None where that cannot be told."""
+    """The spans where a function reads a key of its userdata; None if they cannot be determined."""
     written = code.span.text
     at = written.find(code.text)
     if at < 0 or not code.text.isascii() or "\n" in code.text:

@@ -1,7 +1,8 @@
-// What a program that plays scenes stands on: scenes are read from the input, traces printed.
+// The part of a verify program that does not depend on the machine: it reads test cases from the
+// input, runs them and prints their traces.
 //
-// A scene is the most visits of leaves that it may take, and for each leaf its number, how often it
-// is visited and which of its cases each visit is.
+// A test case is the limit on visits of leaves and, for each leaf, its number, the number of its
+// visits and the number of the case for each visit.
 #include "smachac/smachac.hpp"
 
 #include <atomic>
@@ -23,7 +24,7 @@ inline std::atomic<long> left{0};
 inline smachac::Stop *machine = nullptr;
 inline smachac::Observer *observer = nullptr;
 
-/// What the leaf of that number does at this visit.
+/// The case of a leaf for its next visit.
 inline std::size_t next(std::size_t leaf) {
   const auto found = rows.find(leaf);
   if (found == rows.end() || found->second.visits == found->second.steps.size() || --left < 0) {
@@ -31,9 +32,9 @@ inline std::size_t next(std::size_t leaf) {
   }
   return found->second.steps[found->second.visits++];
 }
-/// Whether a leaf is asked to stop, now or, if it waits, before long.
-inline bool asked(smachac::Stop &stop, bool waits, bool asks) {
-  if (asks) {
+/// Whether a leaf has a request to stop; a leaf that waits gets one within five seconds.
+inline bool preempted(smachac::Stop &stop, bool waits, bool requests) {
+  if (requests) {
     machine->request();
   }
   if (waits && !stop.wait(5.0)) {
@@ -45,7 +46,7 @@ inline void read(const smachac::Place &place, const char *key, const std::string
   observer->tell({"read", place, nullptr, nullptr, key, value.c_str()});
 }
 
-/// Play the scene that comes next on the input.
+/// Run the next test case of the input.
 template <class States, class Userdata, class Given, class Run>
 void play(Given given, Run run) {
   smachac::Stop stop;

@@ -25,8 +25,8 @@ from smachac.diagnostics.diagnostic import (
 from smachac.diagnostics.source import Source, Span, Word
 from smachac.diagnostics.spelling import Guesser, respelt
 from smachac.frontend.files import Disk
-from smachac.refactor.autofix import Mended, mended
-from smachac.refactor.formatter import laid_out
+from smachac.refactor.autofix import FixResult, apply_fixes
+from smachac.refactor.formatter import format_script
 
 NAMES = ["PICK_BLOCK", "PLACE_BLOCK", "PICK_1", "GRASP", "LEFT", "done", "aborted", "Left_Arm"]
 
@@ -196,13 +196,13 @@ def look(texts: Mapping[str, str]) -> Survey:
     return survey([Path("main.yml")], Disk({os.path.realpath("main.yml"): texts["main.yml"]}))
 
 
-def tried(text: str) -> Mended:
+def tried(text: str) -> FixResult:
     before = look({"main.yml": text})
 
     def again(texts: Mapping[str, str]) -> Survey:
         return look({"main.yml": next(iter(texts.values()))})
 
-    return mended(before, lambda survey: survey.report, again)
+    return apply_fixes(before, lambda survey: survey.report, again)
 
 
 KEYS = """\
@@ -252,7 +252,7 @@ def test_keys_are_taken_in_by_every_container_between(end: str, tmp_path: Path) 
 
 
 def lay_out(text: str) -> str | None:
-    return laid_out(Source("x.yml", text))
+    return format_script(Source("x.yml", text))
 
 
 COMMENTS = """\
@@ -402,5 +402,5 @@ def test_edits_that_overlap_are_left_out(edits: list[tuple[int, int, str]], expe
     report = [edit(number, *each, source) for number, each in enumerate(edits)]
     nothing = Survey(reports={}, uses={})
     before = Survey(reports={"main.yml": report}, uses={})
-    result = mended(before, lambda survey: survey.report, lambda texts: nothing)
+    result = apply_fixes(before, lambda survey: survey.report, lambda texts: nothing)
     assert list(result.texts.values()) == ([expected] if expected != "abcdef" else [])

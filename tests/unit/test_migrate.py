@@ -12,8 +12,8 @@ from smachac.commands.cli import main
 from smachac.diagnostics.source import Source
 from smachac.frontend.yaml_tree import parse
 from smachac.refactor.smacha.report import render_migration
-from smachac.refactor.smacha.script_differences import quirks
-from smachac.refactor.smacha.template_differences import template_quirks
+from smachac.refactor.smacha.script_differences import script_differences
+from smachac.refactor.smacha.template_differences import template_differences
 
 SMACHA = Path(__file__).parents[1] / "smacha"
 
@@ -52,7 +52,10 @@ NONE = [
 
 
 def found(text: str) -> list[tuple[str, str]]:
-    return [(quirk.name, quirk.span.text) for quirk in quirks(parse(Source("main.yml", text), []))]
+    return [
+        (quirk.name, quirk.span.text)
+        for quirk in script_differences(parse(Source("main.yml", text), []))
+    ]
 
 
 @pytest.mark.parametrize("name", QUIRKS)
@@ -151,7 +154,7 @@ OTHERS = {
 def told_of(text: str) -> list[tuple[str, str, str]]:
     sources = {name: Source(name, each) for name, each in OTHERS.items()}
     source, sets = Source("T.tpl.py", text), {"sm_name": "Base.tpl.py", "shared": "Shared.tpl.py"}
-    told = template_quirks(source, sources.get, frozenset(["speed", "slots"]), sets)
+    told = template_differences(source, sources.get, frozenset(["speed", "slots"]), sets)
     return [(quirk.name, quirk.what, quirk.span.text) for quirk in told]
 
 

@@ -1,1 +1,1 @@
-"""Migration: where SMACHA's scripts and templates mean something else in smachac."""
+"""Migration: differences between SMACHA and smachac in scripts and templates."""

@@ -1,4 +1,4 @@
-"""What becomes of SMACHA's scripts and templates: a table, JSON, or Markdown."""
+"""The migration report: a table, JSON, or Markdown."""
 
 from __future__ import annotations
 
@@ -12,8 +12,8 @@ FORMATS = ("text", "json", "md")
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
-class Item:
-    """One thing to know of a file. `name` is a code of smachac or the name of a quirk."""
+class MigrationItem:
+    """One note about a file. `name` is a code of smachac or the name of a difference."""
 
     line: int
     column: int
@@ -25,12 +25,12 @@ class Item:
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class File:
-    """A script, sub-script or template. `fails`: it is no part of a program as it is."""
+    """A script, sub-script or template. `fails`: it does not work without edits."""
 
     name: str
     kind: str
     fails: bool
-    items: tuple[Item, ...]
+    items: tuple[MigrationItem, ...]
 
     def count(self, what: What) -> int:
         return sum(item.what == what for item in self.items)
@@ -72,7 +72,7 @@ def _text(files: Sequence[File]) -> str:
     for file in files:
         counts = _counts(file)
         lines.append(f"{file.name:<{width}}  {file.kind:<10}  {_state(file):<5}  {counts}".rstrip())
-    for file, item in _told(files):
+    for file, item in _reported(files):
         lines.append("")
         lines.append(
             f"{file.name}:{item.line}:{item.column}: {item.what}: {item.message} [{item.name}]"
@@ -82,8 +82,8 @@ def _text(files: Sequence[File]) -> str:
     return "\n".join([*lines, "", _summary(files), ""])
 
 
-def _told(files: Sequence[File]) -> Iterator[tuple[File, Item]]:
-    """What has to be edited in all files, then what has changed; what is told is counted alone."""
+def _reported(files: Sequence[File]) -> Iterator[tuple[File, MigrationItem]]:
+    """The notes that are printed: first all edits, then all changes. Others are only counted."""
     for what in ("edit", "changed"):
         for file in files:
             yield from ((file, item) for item in file.items if item.what == what)
@@ -99,7 +99,7 @@ def _markdown(files: Sequence[File]) -> str:
         lines.append(
             f"| {_cell(file.name)} | {file.kind} | {'no' if file.fails else 'yes'} | {counts} |"
         )
-    told = list(_told(files))
+    told = list(_reported(files))
     if told:
         lines += ["", "| place | what | name | message |", "| --- | --- | --- | --- |"]
     for file, item in told:

@@ -1,7 +1,7 @@
-"""Where a script of SMACHA's relies on what SMACHA did, and smachac does something else.
+"""Differences between SMACHA and smachac in a script.
 
-SMACHA's parser replaced words wherever it found them, and wrote values into the program as they
-looked (reference: its sources). None of this is a fault here; who moves over should know of it.
+SMACHA's parser replaced words wherever they occurred, and printed values by their look (reference:
+its sources). These places are valid in smachac, but have another meaning.
 """
 
 from __future__ import annotations
@@ -16,24 +16,24 @@ from smachac.frontend.schema import LONG
 from smachac.frontend.yaml_tree import Entry, Map, Scalar, Seq, Tree
 
 What = Literal["edit", "changed", "told"]
-"""It has to be edited; it means something else here; it is told and works as before."""
+"""Required action: an edit; none, but the meaning is different; none (information)."""
 
 SMACHA_SHORT = frozenset(LONG) - {"k"}
-"""The words that SMACHA replaced by others."""
+"""The words that SMACHA replaced by their long form."""
 
 _MERGED = ("script", "params", "userdata", "remapping", "transitions", "template")
-"""What SMACHA took over from a call, whatever the sub-script had."""
+"""The fields that SMACHA took from a call, over those of the sub-script."""
 
 _RAW = re.compile(r"\D+[.]\D+|.*\(.*\)")
-"""What SMACHA printed as code."""
+"""Texts that SMACHA printed as code."""
 
 _NUMBER = re.compile(r"[-+]?(\d+(\.\d*)?|\.\d+)([eE][-+]?\d+)?|[-+]?(inf|nan|infinity)", re.I)
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
-class Quirk:
-    """A place, the name of the quirk, what SMACHA did there and what happens here; `what` it is to
-    the reader."""
+class SmachaDifference:
+    """A difference at a span: its name, what SMACHA did and what smachac does, and the required
+    action."""
 
     span: Span
     name: str
@@ -41,25 +41,25 @@ class Quirk:
     what: What = "changed"
 
 
-def quirks(tree: Tree | None) -> Iterator[Quirk]:
-    """The quirks in a script or sub-script, in the order of the text."""
-    found: list[Quirk] = []
+def script_differences(tree: Tree | None) -> Iterator[SmachaDifference]:
+    """The differences in a script or sub-script, in the order of the text."""
+    found: list[SmachaDifference] = []
     if isinstance(tree, Map):
         found += _state(tree.entries, base=True)
         _states(tree.entries, found, split=False)
     elif isinstance(tree, Seq):
         _items(tree, found, split=False)
-    yield from sorted(found, key=lambda quirk: quirk.span.start)
+    yield from sorted(found, key=lambda each: each.span.start)
 
 
-def _states(entries: tuple[Entry, ...], found: list[Quirk], *, split: bool) -> None:
+def _states(entries: tuple[Entry, ...], found: list[SmachaDifference], *, split: bool) -> None:
     value = _value(entries, "states")
     if isinstance(value, Seq):
         _items(value, found, split=split)
 
 
-def _items(tree: Seq, found: list[Quirk], *, split: bool) -> None:
-    """The states of a list; `split`: they are those of a concurrence."""
+def _items(tree: Seq, found: list[SmachaDifference], *, split: bool) -> None:
+    """The states of a list. `split`: they are branches of a concurrence."""
     for item in tree.items:
         if not isinstance(item, Map) or not item.entries:
             continue
@@ -68,29 +68,35 @@ def _items(tree: Seq, found: list[Quirk], *, split: bool) -> None:
         name = str(first.key.value)
         if name in SMACHA_SHORT:
             message = f"SMACHA renamed this state to `{LONG[name]}`; here it is `{name}`"
-            found.append(Quirk(span=first.key.span, name="state-renamed", message=message))
+            found.append(
+                SmachaDifference(span=first.key.span, name="state-renamed", message=message)
+            )
         found += _state(entries, base=False)
         userdata = _value(entries, "userdata")
         if split and isinstance(userdata, Map) and userdata.entries:
             message = (
                 "SMACHA's program was no Python with userdata here; now the concurrence has it"
             )
-            found.append(Quirk(span=userdata.span, name="userdata-in-concurrence", message=message))
+            found.append(
+                SmachaDifference(
+                    span=userdata.span, name="userdata-in-concurrence", message=message
+                )
+            )
         template = _value(entries, "template")
         inner = isinstance(template, Scalar) and template.value == "Concurrence"
         _states(entries, found, split=inner)
 
 
 def _value(entries: tuple[Entry, ...], name: str) -> Tree | None:
-    """The value of a variable by its long name."""
+    """The value of a field by its long name."""
     for entry in entries:
         if LONG.get(str(entry.key.value), str(entry.key.value)) == name:
             return entry.value
     return None
 
 
-def _state(entries: tuple[Entry, ...], *, base: bool) -> list[Quirk]:
-    found: list[Quirk] = []
+def _state(entries: tuple[Entry, ...], *, base: bool) -> list[SmachaDifference]:
+    found: list[SmachaDifference] = []
     names = {LONG.get(str(entry.key.value), str(entry.key.value)) for entry in entries}
     calls = "script" in names
     for entry in entries:
@@ -102,12 +108,16 @@ def _state(entries: tuple[Entry, ...], *, base: bool) -> list[Quirk]:
                 "SMACHA called `roslib.load_manifest` with this, which does nothing for packages of"
                 " catkin; here it has no effect"
             )
-            found.append(Quirk(span=entry.key.span, name="manifest", message=message, what="told"))
+            found.append(
+                SmachaDifference(span=entry.key.span, name="manifest", message=message, what="told")
+            )
         if calls and name not in _MERGED:
             message = (
                 f"SMACHA passed `{name}` of a call over, or lost the state for it; here it counts"
             )
-            found.append(Quirk(span=entry.key.span, name="call-variable", message=message))
+            found.append(
+                SmachaDifference(span=entry.key.span, name="call-variable", message=message)
+            )
         found += _renamed(entry.value)
         found += _look_ups(entry, names)
         if name == "userdata":
@@ -115,22 +125,22 @@ def _state(entries: tuple[Entry, ...], *, base: bool) -> list[Quirk]:
     return found
 
 
-def _renamed(tree: Tree) -> Iterator[Quirk]:
-    """Keys of data that SMACHA took for its short names."""
+def _renamed(tree: Tree) -> Iterator[SmachaDifference]:
+    """Keys of data that SMACHA replaced by long names."""
     if isinstance(tree, Map):
         for entry in tree.entries:
             key = str(entry.key.value)
             if key in SMACHA_SHORT:
                 message = f"SMACHA renamed this key to `{LONG[key]}`; here it is `{key}`"
-                yield Quirk(span=entry.key.span, name="key-renamed", message=message)
+                yield SmachaDifference(span=entry.key.span, name="key-renamed", message=message)
             yield from _renamed(entry.value)
     elif isinstance(tree, Seq):
         for item in tree.items:
             yield from _renamed(item)
 
 
-def _look_ups(entry: Entry, names: set[str]) -> Iterator[Quirk]:
-    """Lists that SMACHA took for look-ups of other variables, and look-ups it did not see."""
+def _look_ups(entry: Entry, names: set[str]) -> Iterator[SmachaDifference]:
+    """Lists that SMACHA took for look-ups of fields, and look-ups that it ignored."""
     todo: list[tuple[Tree, int, bool]] = [(entry.value, 0, False)]
     while todo:
         tree, depth, listed = todo.pop()
@@ -143,31 +153,31 @@ def _look_ups(entry: Entry, names: set[str]) -> Iterator[Quirk]:
         first = words[0] if words and len(words) == len(tree.items) else None
         if first == "params" and len(words) == 2 and depth > 1:
             message = "SMACHA left this look-up a list: it stands too deep; here it is filled in"
-            yield Quirk(span=tree.span, name="deep-look-up", message=message)
+            yield SmachaDifference(span=tree.span, name="deep-look-up", message=message)
         elif first != "params" and first in names and len(words) <= 2 and depth <= 1:
             message = (
                 f"SMACHA put the variable `{first}` of this state here; here the list stays a list"
             )
-            yield Quirk(span=tree.span, name="variable-look-up", message=message)
+            yield SmachaDifference(span=tree.span, name="variable-look-up", message=message)
         # The parts of a string construct stand as deep as the construct itself.
         todo += [(item, depth + listed, True) for item in tree.items]
 
 
-def _userdata(tree: Tree) -> Iterator[Quirk]:
+def _userdata(tree: Tree) -> Iterator[SmachaDifference]:
     for entry in tree.entries if isinstance(tree, Map) else ():
         key = str(entry.key.value)
         if key != key.lower():
             message = f"SMACHA made this `{key.lower()}`, but no other keys; here it is `{key}`"
-            yield Quirk(span=entry.key.span, name="key-case", message=message)
+            yield SmachaDifference(span=entry.key.span, name="key-case", message=message)
         if isinstance(entry.value, Scalar):
             yield from _literal(entry.value)
 
 
-def _literal(value: Scalar) -> Iterator[Quirk]:
-    """Values that SMACHA printed otherwise than they were meant."""
+def _literal(value: Scalar) -> Iterator[SmachaDifference]:
+    """Values that SMACHA printed with another meaning."""
     text = value.value
     if text is None:
-        yield Quirk(
+        yield SmachaDifference(
             span=value.span,
             name="null-as-text",
             message="SMACHA made this the text 'None'; here it is None",
@@ -176,14 +186,14 @@ def _literal(value: Scalar) -> Iterator[Quirk]:
         return
     if len(text) > 2 and text[0] == text[-1] == "`":
         message = "SMACHA left the backticks in userdata; here this is code"
-        yield Quirk(span=value.span, name="code-in-userdata", message=message)
+        yield SmachaDifference(span=value.span, name="code-in-userdata", message=message)
     elif not text.startswith("'") and (_RAW.match(text) or _NUMBER.fullmatch(text)):
         from smachac.ir.expressions import looks_like_expression, parse_expression
 
         code = value.plain and looks_like_expression(text) and parse_expression(text) is not None
         if not code:
             message = "SMACHA printed this as code, for it looks like it; here it is text"
-            yield Quirk(span=value.span, name="text-as-code", message=message)
+            yield SmachaDifference(span=value.span, name="text-as-code", message=message)
     elif "'" in text and not text.startswith("'"):
         message = "SMACHA's program was no Python with this text; here it is escaped"
-        yield Quirk(span=value.span, name="text-with-quote", message=message)
+        yield SmachaDifference(span=value.span, name="text-with-quote", message=message)

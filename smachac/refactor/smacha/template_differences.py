@@ -1,6 +1,6 @@
-"""What a template of SMACHA's relies on that is otherwise here, and what of it is Python 2.
+"""Differences between SMACHA and smachac in a template, and its Python 2 code.
 
-It is read, not rendered: so much can be said of templates that no script uses.
+The template is parsed, not rendered, so that templates without a script can be checked.
 """
 
 from __future__ import annotations
@@ -13,7 +13,7 @@ from typing import TYPE_CHECKING
 from smachac.diagnostics.diagnostic import did_you_mean
 from smachac.diagnostics.source import Source, Span
 from smachac.frontend import schema, smacha_meta
-from smachac.refactor.smacha.script_differences import Quirk
+from smachac.refactor.smacha.script_differences import SmachaDifference
 from smachac.targets.python.buffers import APPENDED, KEYED, PREPENDED
 from smachac.targets.python.python2 import translated
 from smachac.targets.templates.engine import SKIPPED
@@ -24,18 +24,18 @@ if TYPE_CHECKING:
 Find = Callable[[str], Source | None]
 
 BLOCKS = (*APPENDED, *KEYED, "body", *PREPENDED, *SKIPPED)
-"""The blocks of states and containers that are printed somewhere."""
+"""The blocks of states and containers that are printed."""
 
 GIVEN = (
     *("name", "class_name", "uuid", "params", "parent_name", "parent_sm_name", "parent_type"),
     *("parent_template", "defined_headers", "local_vars", "add"),
 )
-"""What every template of a state or container gets."""
+"""The variables of every template of a state or container."""
 
 GONE = re.compile(
     r"(?:\.(?:iteritems|itervalues|iterkeys|has_key)\(|\b(?:xrange|unicode|basestring|raw_input)\b)"
 )
-"""What Python 3 does not have, though it can be compiled."""
+"""Names that Python 3 does not have, although their use compiles."""
 
 _TAG = re.compile(r"\{%.*?%\}|\{\{.*?\}\}|\{#.*?#\}", re.DOTALL)
 _META = re.compile(r"\{%-?\s*block\s+meta\b.*?\{%-?\s*endblock.*?%\}", re.DOTALL)
@@ -46,42 +46,43 @@ _BASES = ("Base", "ROSBase", "Program", "ROSProgram")
 
 @dataclass(slots=True)
 class Names:
-    """What a template, and those that it extends, do with names.
+    """The use of names in a template and the templates it extends.
 
-    `sets` are set at the top level, `asked` are used without being made, `tested` may be missing.
+    `sets` are set at the top level, `used` are used without a definition, `tested` may be
+    undefined.
     """
 
     sets: dict[str, int] = field(default_factory=dict)
-    asked: dict[str, int] = field(default_factory=dict)
+    used: dict[str, int] = field(default_factory=dict)
     tested: set[str] = field(default_factory=set)
     blocks: dict[str, int] = field(default_factory=dict)
     inner_blocks: set[str] = field(default_factory=set)
     loose: int = 0
 
 
-def template_quirks(
+def template_differences(
     source: Source, find: Find, given: frozenset[str], sets: Mapping[str, str]
-) -> Iterator[Quirk]:
-    """The quirks of a template, in the order of its text.
+) -> Iterator[SmachaDifference]:
+    """The differences in a template, in the order of its text.
 
     `find` finds templates by name, `given` are the variables that scripts give to states, `sets`
-    are the names that templates set at their top level, each with one that does.
+    are the names that templates set at their top level, each with one such template.
     """
     chain = _chain(source, find)
     if not chain:
         return
     found = [*_of_names(source, chain, given, sets), *_of_text(source, chain), *_of_blocks(chain)]
-    yield from sorted(found, key=lambda quirk: quirk.span.start)
+    yield from sorted(found, key=lambda each: each.span.start)
 
 
 def top_level_sets(source: Source) -> tuple[str, ...]:
-    """The names that a template sets outside of its blocks, which SMACHA let the others see."""
+    """The names that a template sets outside of its blocks; in SMACHA other templates saw them."""
     names = _names(source)
     return tuple(names.sets) if names is not None else ()
 
 
 def _chain(source: Source, find: Find) -> list[tuple[Source, Names]]:
-    """A template with what it extends and includes, as far as they can be read; itself first."""
+    """A template, and all readable templates that it extends or includes; itself first."""
     found: dict[str, tuple[Source, Names]] = {}
     todo: list[Source | None] = [source]
     while todo:
@@ -98,7 +99,7 @@ _OTHERS = re.compile(r"\{%[-+]?\s*(?:extends|include)\s+[\"']([^\"']+)[\"']")
 
 
 def _names(source: Source) -> Names | None:
-    """What a template does with names; None where it cannot be read."""
+    """The use of names in a template; None if it cannot be parsed."""
     from jinja2 import Environment, TemplateError, nodes
     from jinja2.meta import find_undeclared_variables
 
@@ -110,7 +111,7 @@ def _names(source: Source) -> Names | None:
     names = Names()
     for node in _outside(tree):
         if isinstance(node, nodes.Assign | nodes.Macro | nodes.Import | nodes.FromImport):
-            names.sets |= dict.fromkeys(_made(node), node.lineno)
+            names.sets |= dict.fromkeys(_assigned_names(node), node.lineno)
         elif isinstance(node, nodes.Block):
             names.blocks.setdefault(node.name, node.lineno)
             names.inner_blocks |= {block.name for block in node.find_all(nodes.Block)}
@@ -121,7 +122,7 @@ def _names(source: Source) -> Names | None:
         names.tested |= _tested(node)
     for name in tree.find_all(nodes.Name):
         if name.ctx == "load" and name.name in unmade:
-            names.asked.setdefault(name.name, name.lineno)
+            names.used.setdefault(name.name, name.lineno)
     return names
 
 
@@ -135,8 +136,8 @@ def _outside(tree: nodes.Node) -> Iterator[nodes.Node]:
             yield from _outside(node)
 
 
-def _made(node: nodes.Node) -> list[str]:
-    """The names that a statement makes."""
+def _assigned_names(node: nodes.Node) -> list[str]:
+    """The names that a statement defines."""
     from jinja2 import nodes
 
     match node:
@@ -150,7 +151,7 @@ def _made(node: nodes.Node) -> list[str]:
 
 
 def _tested(node: nodes.Node) -> set[str]:
-    """The names that may be missing where a node asks for them."""
+    """The names that a node allows to be undefined."""
     from jinja2 import nodes
 
     match node:
@@ -168,17 +169,17 @@ def _of_names(
     chain: list[tuple[Source, Names]],
     given: frozenset[str],
     sets: Mapping[str, str],
-) -> Iterator[Quirk]:
-    """Names that nobody gives, or that SMACHA took from templates that came before."""
+) -> Iterator[SmachaDifference]:
+    """Undefined names, and names that SMACHA took from other templates."""
     own = chain[0][1]
     known = {*GIVEN, *BLOCKS, *schema.VARIABLES, "range", "dict", "loop", "super"}
     known |= {"self", "cycler", "joiner", "namespace", "caller", "varargs", "kwargs"}
     known |= {name for _, names in chain for name in (*names.sets, *names.tested)}
     for each, _ in chain:
-        told = smacha_meta.read_meta(each)
-        if told is not None:
-            known |= {*told.variables, *(word.text for word in (*told.input_keys,))}
-    for name, line in own.asked.items():
+        meta = smacha_meta.read_meta(each)
+        if meta is not None:
+            known |= {*meta.variables, *(word.text for word in (*meta.input_keys,))}
+    for name, line in own.used.items():
         if name in known or (name in given and name not in sets):
             continue
         span = _word(source, line, name)
@@ -187,47 +188,51 @@ def _of_names(
                 f"SMACHA took `{name}` from `{sets[name]}`, which sets it, if that came before"
             )
             message += "; here it is that template's own, and scripts have to give it"
-            yield Quirk(span=span, name="leaked-set", message=message)
+            yield SmachaDifference(span=span, name="leaked-set", message=message)
         else:
             hint = did_you_mean(name, sorted({*known, *given}))
             message = f"no script gives `{name}`: SMACHA printed nothing, here it is an error"
             message += f"; {hint}" if hint else ""
-            yield Quirk(span=span, name="unknown-name", message=message)
-    if "params" in own.asked and "params" not in own.tested:
-        span = _word(source, own.asked["params"], "params")
+            yield SmachaDifference(span=span, name="unknown-name", message=message)
+    if "params" in own.used and "params" not in own.tested:
+        span = _word(source, own.used["params"], "params")
         message = "SMACHA gave the params of the container; here the state's own are in as well"
-        yield Quirk(span=span, name="own-params", message=message)
+        yield SmachaDifference(span=span, name="own-params", message=message)
 
 
-def _of_text(source: Source, chain: list[tuple[Source, Names]]) -> Iterator[Quirk]:
-    """What a template says that does not hang on names: its Python, its style, its uuids."""
+def _of_text(source: Source, chain: list[tuple[Source, Names]]) -> Iterator[SmachaDifference]:
+    """Differences in the text: Python 2 code, old style, uuids."""
     text = _META.sub(lambda found: "\n" * found[0].count("\n"), source.text)
     if found := _UUID.search(text):
         line = text.count("\n", 0, found.end()) + 1
         message = "SMACHA made a `uuid` anew in each run; here it is the same in each build"
-        yield Quirk(
+        yield SmachaDifference(
             span=_word(source, line, "uuid"), name="stable-uuid", what="told", message=message
         )
     if found := _OLD.search(source.text):
         message = "it includes `State.tpl` and adds its state itself, as older templates do"
         span = Span(source, found.start(), found.end())
-        yield Quirk(span=span, name="old-style", what="told", message=message)
+        yield SmachaDifference(span=span, name="old-style", what="told", message=message)
     if chain[0][1].loose and not _is_base(chain):
         line = chain[0][1].loose
         message = "SMACHA printed what is outside of blocks once for each block; here it is not"
-        yield Quirk(span=_line(source, line), name="text-outside", message=message)
+        yield SmachaDifference(span=_line(source, line), name="text-outside", message=message)
     python = _TAG.sub(lambda found: "x" + "\n" * found[0].count("\n"), text)
     for number, code in enumerate(python.splitlines(), start=1):
         if gone := GONE.search(code.partition("#")[0]):
             message = f"`{gone[0].strip('.(')}` is Python 2: the program fails where it comes to it"
-            yield Quirk(span=_line(source, number), name="python-2", what="edit", message=message)
+            yield SmachaDifference(
+                span=_line(source, number), name="python-2", what="edit", message=message
+            )
         elif translated(code) not in (None, code):
             message = f"`{_line(source, number).text}` is Python 2; it is printed as Python 3"
-            yield Quirk(span=_line(source, number), name="python-2", what="told", message=message)
+            yield SmachaDifference(
+                span=_line(source, number), name="python-2", what="told", message=message
+            )
 
 
-def _of_blocks(chain: list[tuple[Source, Names]]) -> Iterator[Quirk]:
-    """Blocks that come to stand nowhere."""
+def _of_blocks(chain: list[tuple[Source, Names]]) -> Iterator[SmachaDifference]:
+    """Blocks that are not printed."""
     source, own = chain[0]
     if _is_base(chain):
         return
@@ -236,29 +241,32 @@ def _of_blocks(chain: list[tuple[Source, Names]]) -> Iterator[Quirk]:
         if name not in BLOCKS and name not in inner:
             hint = did_you_mean(name, BLOCKS)
             message = f"no block `{name}` is printed anywhere" + (f"; {hint}" if hint else "")
-            yield Quirk(span=_word(source, line, name), name="lost-block", message=message)
+            yield SmachaDifference(
+                span=_word(source, line, name), name="lost-block", message=message
+            )
 
 
 def _is_base(chain: list[tuple[Source, Names]]) -> bool:
-    """Whether a template is a base, or extends one: it is printed whole."""
+    """Whether a template is a base template, or extends one: it is printed as a whole."""
     for source, names in chain:
-        told = smacha_meta.read_meta(source)
+        meta = smacha_meta.read_meta(source)
         stem = re.split(r"[\\/]", source.name)[-1].partition(".")[0]
-        if stem in _BASES or (told is not None and told.kind == "base"):
+        if stem in _BASES or (meta is not None and meta.kind == "base"):
             return True
-        if told is None and {"main", "body"} <= {*names.blocks} and "body" in names.asked:
+        if meta is None and {"main", "body"} <= {*names.blocks} and "body" in names.used:
             return True
     return False
 
 
 def _line(source: Source, number: int) -> Span:
-    """A line of a template, without the space around it."""
+    """A line of a template, without surrounding space."""
     text, start = source.line(number), source.line_starts[number - 1]
     return Span(source, start + len(text) - len(text.lstrip()), start + len(text.rstrip()))
 
 
 def _word(source: Source, number: int, word: str) -> Span:
-    """A word at a line of a template or, where a tag takes several, below it; else the line."""
+    """A word at a line of a template or, in a tag of several lines, below it; otherwise the
+    line."""
     start = source.line_starts[number - 1]
     found = re.compile(rf"\b{re.escape(word)}\b").search(source.text, start)
     return Span(source, *found.span()) if found is not None else _line(source, number)

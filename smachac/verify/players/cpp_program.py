@@ -244,7 +244,7 @@ class CppLeaf:
         for number, row in enumerate(self.rows):
             yield f"  case {number}:"
             waits, asks = (str(each).lower() for each in (row.wait, row.stop))
-            yield f"    if (requested(stop, {waits}, {asks}) && {str(able).lower()}) {{"
+            yield f"    if (preempted(stop, {waits}, {asks}) && {str(able).lower()}) {{"
             yield "      stop.service();"
             outcome = PREEMPTED if able else row.outcome
             yield f"      return Outcome::{identifier(outcome)};"
