@@ -178,7 +178,7 @@ def phases(path: str) -> dict[str, float]:
     """CPU seconds of each phase and rule, and of `check` as a whole, without its start-up."""
     from smachac.checks import check_machine
     from smachac.diagnostics.diagnostic import RULES, Report, in_order
-    from smachac.diagnostics.severities import settled
+    from smachac.diagnostics.severities import apply_severities
     from smachac.frontend.files import disk_library, read_source
     from smachac.frontend.lower import lower
     from smachac.frontend.resolve import resolve
@@ -205,7 +205,7 @@ def phases(path: str) -> dict[str, float]:
         report += check_machine(machine)
         parse, texts = library.parse, resolved.sources
         given = [fit for text in texts for fit in allowances(text, report, parse)]
-        report = settled(in_order(heeded(report, given)[0]), library.policy)
+        report = apply_severities(in_order(heeded(report, given)[0]), library.policy)
         laps("report")
     return {
         **laps.found,

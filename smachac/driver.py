@@ -10,7 +10,7 @@ from typing import TypeAlias
 
 from smachac.checks import check_machine
 from smachac.diagnostics.diagnostic import Diagnostic, Finding, Report, has_errors, in_order
-from smachac.diagnostics.severities import settled
+from smachac.diagnostics.severities import apply_severities
 from smachac.diagnostics.source import Source, Span, Word
 from smachac.frontend.errors.suppressions import unused_allowances
 from smachac.frontend.loader import Library
@@ -100,7 +100,7 @@ def analyse(
         found += unused_allowances(
             Word(fit.code, fit.span) for fit in unused if fit.span.source is source
         )
-        found = settled(in_order(found), library.policy)
+        found = apply_severities(in_order(found), library.policy)
         if machine is not None:
             found = with_places(found, machine)
     return Analysis(

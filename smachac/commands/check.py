@@ -18,7 +18,7 @@ from smachac.commands.files import ChangedError, rewrite_files, write_files
 from smachac.commands.output import FINDINGS, OK, print_report, shown, usage
 from smachac.diagnostics import baseline
 from smachac.diagnostics.diagnostic import CODES, Report, Severity
-from smachac.diagnostics.severities import chosen
+from smachac.diagnostics.severities import select_findings
 from smachac.frontend.discovery import (
     GitError,
     NothingFoundError,
@@ -109,10 +109,10 @@ def _counted(
     """What of a survey counts by the arguments, and notes on what does not."""
     if changed is not None:
         found = found.touched_by(changed)
-    report = chosen(found.report, _codes(arguments.select), _codes(arguments.ignore))
+    report = select_findings(found.report, _codes(arguments.select), _codes(arguments.ignore))
     notes = []
     if arguments.baseline is not None and not arguments.write_baseline:
-        report, known, gone = baseline.compared(report, _read_baseline(arguments.baseline))
+        report, known, gone = baseline.compare(report, _read_baseline(arguments.baseline))
         notes += [f"{known} known"] if known else []
         notes += [f"{gone} of the baseline gone"] if gone else []
     return found.only(report), notes
@@ -174,7 +174,7 @@ def _summary(report: Report, scripts: int, notes: list[str]) -> str:
 
 def _write_baseline(path: Path, report: Report) -> int:
     try:
-        write_files(path.parent, {path.name: baseline.written(report)})
+        write_files(path.parent, {path.name: baseline.render(report)})
     except OSError as error:
         return usage(f"cannot write {path}: {error.strerror or error}")
     print(f"wrote {path}: {len(report)} findings are known from now on")

@@ -1,1 +1,1 @@
-"""Sources, spans, diagnostics, severities, spelling and baselines: what all other rooms import."""
+"""Diagnostics: sources and spans, findings, severities, spelling suggestions, baselines."""

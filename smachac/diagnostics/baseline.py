@@ -1,4 +1,4 @@
-"""A baseline: the findings that an old code base is known to have, so that only new ones count."""
+"""Baseline: a file with the known findings of a project; only new findings count."""
 
 from __future__ import annotations
 
@@ -12,11 +12,11 @@ VERSION = 1
 
 
 class BaselineError(Exception):
-    """A text is no baseline; the words say why."""
+    """A text is no baseline; the message has the reason."""
 
 
-def written(report: Report) -> str:
-    """A report as a baseline: sorted, a finding a line, so that it merges well."""
+def render(report: Report) -> str:
+    """A report as a baseline: sorted, one finding a line, so that it merges well."""
     counts = Counter(fingerprint(item) for item in report)
     lines = {}
     for item in report:
@@ -35,20 +35,21 @@ def written(report: Report) -> str:
 
 
 def read(text: str) -> Counter[str]:
-    """How many findings of each fingerprint a baseline knows. Raises BaselineError."""
+    """The number of findings by fingerprint in a baseline. Raises BaselineError."""
     try:
         data = json.loads(text)
         if data["version"] != VERSION:
             raise BaselineError(f"its version is {data['version']!r}, not {VERSION}")
         return Counter({str(each["fingerprint"]): int(each["count"]) for each in data["findings"]})
     except (ValueError, TypeError, KeyError, RecursionError) as error:
-        raise BaselineError("it was not written by --write-baseline") from error
+        raise BaselineError("it was not render by --write-baseline") from error
 
 
-def compared(report: Report, known: Counter[str]) -> tuple[Report, int, int]:
-    """The findings that a baseline does not know, how many it knows, and how many of it are gone.
+def compare(report: Report, known: Counter[str]) -> tuple[Report, int, int]:
+    """The findings that are not in a baseline, the number that are, and the number of its entries
+    that no longer occur.
 
-    Of several alike the first are taken for those that are known.
+    Of several equal findings the first ones count as known.
     """
     left = Counter(known)
     new = []

@@ -1,4 +1,4 @@
-"""What is made of findings: what comments allow, and how much each code counts in a project."""
+"""Severities of a project, and the selection of findings by code."""
 
 from __future__ import annotations
 
@@ -10,18 +10,19 @@ from smachac.diagnostics.diagnostic import Diagnostic, Report, Severity
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Policy:
-    """Severities by code or by the beginning of codes; None turns them off."""
+    """Severities by code or prefix of codes; None disables them."""
 
     severities: Mapping[str, Severity | None] = field(default_factory=dict)
 
 
 def is_firm(item: Diagnostic) -> bool:
-    """Whether a finding counts whatever anybody says: no target could print such a machine."""
+    """Whether a finding is an error that cannot be disabled: no target could print such a
+    machine."""
     return item.code.firm and item.severity is Severity.ERROR
 
 
-def settled(report: Report, policy: Policy) -> Report:
-    """A report with the severities of a project. Of several that fit a code the longest counts."""
+def apply_severities(report: Report, policy: Policy) -> Report:
+    """A report with the severities of a project. The longest matching prefix applies."""
     if not policy.severities:
         return report
     found = []
@@ -35,10 +36,11 @@ def settled(report: Report, policy: Policy) -> Report:
     return found
 
 
-def chosen(report: Report, select: Sequence[str], ignore: Sequence[str]) -> Report:
-    """The findings whose code begins with one of `select` (none: all) and none of `ignore`.
+def select_findings(report: Report, select: Sequence[str], ignore: Sequence[str]) -> Report:
+    """The findings whose code begins with one of `select` (empty: all) and none of `ignore`.
 
-    The longer beginning wins. Firm ones stay: what else is found may follow from them.
+    The longer prefix wins. Firm errors are always kept, because other findings may follow from
+    them.
     """
 
     def wanted(code: str) -> bool:

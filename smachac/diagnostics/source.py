@@ -1,4 +1,4 @@
-"""Text and places in it: the layer everything else stands on."""
+"""Source texts, spans and positions: the foundation of all other rooms."""
 
 from __future__ import annotations
 
@@ -10,9 +10,9 @@ from typing import NamedTuple, NoReturn
 
 @dataclass(frozen=True, eq=False)
 class Source:
-    """One text with the name it is shown under (a path as the user gave it).
+    """A text and its name (a path as the user gave it).
 
-    Two sources are the same only when they are one object.
+    Two sources are equal only if they are the same object.
     """
 
     name: str
@@ -35,7 +35,7 @@ class Source:
         return line, offset - self.line_starts[line - 1] + 1
 
     def line(self, number: int) -> str:
-        """The text of a line (counted from 1) without its end; empty past the last one."""
+        """The text of a line (counted from 1) without its end; empty after the last line."""
         starts = self.line_starts
         if not 1 <= number <= len(starts):
             return ""
@@ -44,7 +44,7 @@ class Source:
 
 
 class Span(NamedTuple):
-    """A stretch of one source, as offsets in characters: `start` included, `end` not."""
+    """A range of a source, as offsets in characters: `start` included, `end` excluded."""
 
     source: Source
     start: int
@@ -71,16 +71,16 @@ class Span(NamedTuple):
 
 
 NOWHERE = Span(Source("<none>", ""), 0, 0)
-"""The place of what no text holds: machines built by a program, such as a test."""
+"""The span of nodes without a text: machines made by a program, such as a test."""
 
 
 class Word(NamedTuple):
-    """A name and where it stands."""
+    """A name and its span."""
 
     text: str
     span: Span
 
 
 def assert_never(value: NoReturn) -> NoReturn:
-    """The end of a `match` that knows every kind; reaching it is a bug of ours."""
+    """The end of a `match` over all kinds; to reach it is a bug of smachac."""
     raise AssertionError(f"unexpected kind: {value!r}")

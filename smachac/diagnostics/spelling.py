@@ -1,4 +1,4 @@
-"""Misspelt names: which one was meant, when that is certain, and the edit that mends it."""
+"""Spelling suggestions: the nearest known name, and the edit that replaces a misspelt one."""
 
 from __future__ import annotations
 
@@ -11,18 +11,18 @@ from smachac.diagnostics.diagnostic import Edit
 from smachac.diagnostics.source import Word
 
 MOST_COMPARED = 40
-"""Among more names than these, only a name one slip away is found, so that ten thousand misspelt
-names take no longer than they should."""
+"""With more candidates, only names one slip away are found: comparing them all would take too
+long."""
 
 SHORTEST_SLIP = 4
-"""Shorter names are one slip away from too many others: only their case may differ."""
+"""Shorter names are one slip away from too many others: for them only the case may differ."""
 
 LONGEST_SLIP = 100
-"""In characters. Of longer names, which nobody types, only the case may differ: to compare them
-takes time and memory as their length squared."""
+"""In characters. For longer names only the case may differ: a comparison takes quadratic time and
+memory."""
 
 SHORTEST_WRONG_LETTER = 6
-"""Names as long as this may be meant for certain though a letter is another: LIFT is not LEFT."""
+"""Shorter names with one different letter are not certain: LIFT is not LEFT."""
 
 _PLAIN = re.compile(r"[A-Za-z_][\w./-]*", re.ASCII)
 _NOT_PLAIN = frozenset(["true", "false", "null", "yes", "no", "on", "off", "y", "n"])
@@ -32,7 +32,8 @@ _NO_DIGITS = re.compile(r"\D+")
 class Guesser:
     """Finds the candidate nearest to a misspelt name.
 
-    One slip is another case, or a letter too many, missing, wrong, or in the place of the next.
+    A slip is a difference in case, one letter too many, one missing, one wrong, or two swapped
+    neighbours.
     """
 
     def __init__(self, candidates: Iterable[str]) -> None:
@@ -49,8 +50,7 @@ class Guesser:
         return next(iter(difflib.get_close_matches(word, self.names, n=1)), None)
 
     def sure(self, word: str) -> str | None:
-        """The one name that can have been meant, or None: one slip away, with the same digits,
-        and no other name is as near."""
+        """The only candidate that is one slip away and has the same digits, or None."""
         index = self._slips()
         near = [slip for slip in slips(word) if slip in index]
         names = {index[slip] for slip in near}
@@ -71,13 +71,15 @@ class Guesser:
 
 @lru_cache(maxsize=8)
 def guesser_of(names: tuple[str, ...]) -> Guesser:
-    """The guesser of names that many words are held against."""
+    """The guesser for a tuple of names."""
     return Guesser(names)
 
 
 def slips(name: str) -> list[str]:
-    """A name without regard to case, and without each of its letters. Two names one slip apart
-    have one of these in common."""
+    """A name in lower case, and the same without each of its letters.
+
+    Two names one slip apart have one of these in common.
+    """
     word = name.casefold()
     if not SHORTEST_SLIP <= len(word) <= LONGEST_SLIP:
         return [word]
@@ -85,7 +87,7 @@ def slips(name: str) -> list[str]:
 
 
 def _one_slip(word: str, name: str) -> bool:
-    """Whether two names that have a slip in common are so near that nothing else was meant."""
+    """Whether two names with a common slip are near enough for a certain correction."""
     if word == name:
         return True
     if min(len(word), len(name)) < SHORTEST_SLIP:
@@ -101,12 +103,13 @@ def _one_slip(word: str, name: str) -> bool:
 
 
 def is_plain(name: str) -> bool:
-    """Whether YAML takes a name for what it is wherever it stands, without quotes."""
+    """Whether YAML reads a name as a string everywhere without quotes."""
     return _PLAIN.fullmatch(name) is not None and name.casefold() not in _NOT_PLAIN
 
 
 def respelt(word: Word, name: str | None) -> tuple[Edit, ...]:
-    """The edit that makes a word of a script another name; none where it is not written there."""
+    """The edit that replaces a word of a script with another name; empty if the word is not in the
+    text."""
     if name is None or not is_plain(name):
         return ()
     written = word.span.text
@@ -117,5 +120,5 @@ def respelt(word: Word, name: str | None) -> tuple[Edit, ...]:
 
 
 def guesser(candidates: Iterable[str]) -> Guesser:
-    """What finds the candidate nearest to a misspelt name."""
+    """The guesser for some names."""
     return Guesser(candidates)

@@ -1,4 +1,4 @@
-"""The grammars of smachac's notations, one file each, and how a parser is made from one."""
+"""Grammars (lark) and JSON schemas of smachac's notations, and the construction of parsers."""
 
 from __future__ import annotations
 
@@ -11,10 +11,11 @@ if TYPE_CHECKING:
 def load(
     name: str, *, builder: Any = None, lexer: Literal["basic", "contextual"] = "basic"
 ) -> Lark:
-    """A new LALR parser for `<name>.lark`; keep it, for making one takes some milliseconds.
+    """A new LALR parser for `<name>.lark`; callers keep it, because its construction takes some
+    milliseconds.
 
-    With a `builder` no tree is made: its methods, named like the rules, are called with what the
-    parts of the rule gave. Without one, trees carry their positions.
+    With a `builder` the parser makes no tree: it calls the methods of the builder, named like the
+    rules, with the results of the parts of each rule. Without one, trees have positions.
     """
     from lark import Lark
 

@@ -1,1 +1,1 @@
-"""The typed state graph: nodes, types, expressions, traversal, graph, printer and parser."""
+"""The typed state graph (IR): nodes, types, expressions, traversal, graph, printer and parser."""

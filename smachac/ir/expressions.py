@@ -1,6 +1,7 @@
-"""Portable expressions: the tree, reading it from Python text and printing it again.
+"""Portable expressions: syntax tree, parser and printer.
 
-The subset is grammars/expression.lark. Values are computed by evaluate.py.
+The portable subset of Python is defined by grammars/expression.lark; interpreter/evaluator.py
+evaluates it. Sections: nodes of the tree, parser, tree builder of the parser, printer.
 """
 
 from __future__ import annotations
@@ -22,10 +23,10 @@ if TYPE_CHECKING:
 
 
 LONGEST = 10_000
-"""Characters of the longest text that is read as an expression."""
+"""Limit on the length of an expression, in characters."""
 
 DEEPEST = 100
-"""Levels of the deepest tree, and of the deepest brackets, that are read."""
+"""Limit on the depth of an expression, and on the depth of its brackets."""
 
 
 # The nodes are matched by position, so they are not keyword-only.
@@ -38,23 +39,31 @@ class Constant:
 
 @dataclass(frozen=True, slots=True)
 class Name:
+    """A variable or a function."""
+
     name: str
 
 
 @dataclass(frozen=True, slots=True)
 class Attribute:
+    """`value.name`."""
+
     value: Expr
     name: str
 
 
 @dataclass(frozen=True, slots=True)
 class Index:
+    """`value[index]`."""
+
     value: Expr
     index: Expr
 
 
 @dataclass(frozen=True, slots=True)
 class Call:
+    """`function(arguments, name=keyword)`."""
+
     function: Expr
     arguments: tuple[Expr, ...] = ()
     keywords: tuple[tuple[str, Expr], ...] = ()
@@ -104,7 +113,7 @@ class Conditional:
 
 @dataclass(frozen=True, slots=True)
 class Lambda:
-    """A function of one parameter, or of none."""
+    """A function with one parameter or none."""
 
     parameter: str | None
     body: Expr
@@ -112,16 +121,22 @@ class Lambda:
 
 @dataclass(frozen=True, slots=True)
 class ListDisplay:
+    """`[items]`."""
+
     items: tuple[Expr, ...]
 
 
 @dataclass(frozen=True, slots=True)
 class TupleDisplay:
+    """`(items)`."""
+
     items: tuple[Expr, ...]
 
 
 @dataclass(frozen=True, slots=True)
 class DictDisplay:
+    """`{key: value}`."""
+
     entries: tuple[tuple[Expr, Expr], ...]
 
 
@@ -133,7 +148,7 @@ Expr: TypeAlias = (
 
 
 def parts(expr: Expr) -> tuple[Expr, ...]:
-    """The expressions directly inside one, in the order of the text."""
+    """The direct subexpressions of an expression, in the order of the text."""
     match expr:
         case Constant() | Name():
             return ()
@@ -163,7 +178,7 @@ def parts(expr: Expr) -> tuple[Expr, ...]:
 
 
 def dotted(expr: Expr) -> str | None:
-    """The text of a name with attributes, `math.pi`; None for anything else."""
+    """The text of a dotted name, `math.pi`; None for any other expression."""
     words: list[str] = []
     while isinstance(expr, Attribute):
         words.append(expr.name)
@@ -173,7 +188,9 @@ def dotted(expr: Expr) -> str | None:
     return ".".join((expr.name, *reversed(words)))
 
 
-# Last parts of dotted words that make them names of files.
+# --- parser
+
+# File extensions: a dotted word with one of them is a file name.
 _FILE = re.compile(
     r"bag|csv|dae|gif|gz|html|ini|jpe?g|json|mesh|mp4|pcd|pdf|pkl|ply|png|py|sdf|smir|srdf|stl"
     r"|svg|txt|urdf|wav|xacro|xml|ya?ml|zip",
@@ -184,9 +201,10 @@ _CALL = re.compile(r"(?<!\w)[^\W\d]\w*\(")
 
 
 def looks_like_expression(text: str) -> bool:
-    """Whether an unmarked string may be code: a dotted word that names no file, or a call last.
+    """Whether an unmarked string can be code: a dotted name that is no file name, or a call at its
+    end.
 
-    A cheap look before `parse_expression` decides.
+    A fast test before `parse_expression`.
     """
     text = text.strip()
     if text.endswith(")"):
@@ -197,7 +215,7 @@ def looks_like_expression(text: str) -> bool:
 
 
 def parse_expression(text: str) -> Expr | None:
-    """The tree of a portable expression; None when the text is not one, too long or too deep."""
+    """The tree of a portable expression; None if the text is not one, is too long or too deep."""
     text = text.strip()
     if len(text) > LONGEST or not _brackets_fit(text):
         return None
@@ -216,7 +234,8 @@ _BRACKETS = re.compile(
 
 
 def _brackets_fit(text: str) -> bool:
-    """Whether brackets are not too deep, and lines end only inside them, as Python wants it."""
+    """Whether the brackets are not too deep, and line ends occur only inside brackets, as in
+    Python."""
     depth = 0
     for found in _BRACKETS.finditer(text):
         kind = found.lastgroup
@@ -227,6 +246,7 @@ def _brackets_fit(text: str) -> bool:
 
 
 def _depth_fits(expr: Expr) -> bool:
+    """Whether a tree has at most DEEPEST levels."""
     level: Iterable[Expr] = (expr,)
     for _ in range(DEEPEST):
         level = [part for each in level for part in parts(each)]
@@ -237,86 +257,17 @@ def _depth_fits(expr: Expr) -> bool:
 
 @cache
 def _parser() -> Lark:
-
-    return load("expression", builder=Builder())
-
-
-# How tightly a form binds: a part that binds less tightly than its place wants needs brackets.
-_TEST, _OR, _AND, _NOT, _COMPARE, _SUM, _PRODUCT, _SIGNED, _POWER, _ITEM = range(10)
-_BINDING = {"+": _SUM, "-": _SUM, "*": _PRODUCT, "/": _PRODUCT, "//": _PRODUCT, "%": _PRODUCT}
+    return load("expression", builder=_TreeBuilder())
 
 
-def print_expression(expr: Expr) -> str:
-    """Python text with as few brackets as keep the tree: `parse_expression` gives it back."""
-    return _print(expr)[0]
-
-
-def _at(binding: int, expr: Expr) -> str:
-    text, own = _print(expr)
-    return text if own >= binding else f"({text})"
-
-
-def _comma(items: Iterable[Expr]) -> str:
-    return ", ".join(_at(_TEST, item) for item in items)
-
-
-def _print(expr: Expr) -> tuple[str, int]:
-    match expr:
-        case Constant(value):
-            return "1e999" if value == float("inf") else repr(value), _ITEM
-        case Name(name):
-            return name, _ITEM
-        case Attribute(Constant(int() as value), name):
-            # `1.real` is no Python.
-            return f"({value!r}).{name}", _ITEM
-        case Attribute(value, name):
-            return f"{_at(_ITEM, value)}.{name}", _ITEM
-        case Index(value, index):
-            return f"{_at(_ITEM, value)}[{_at(_TEST, index)}]", _ITEM
-        case Call(function, arguments, keywords):
-            named = [f"{key}={_at(_TEST, value)}" for key, value in keywords]
-            given = ", ".join([*map(print_expression, arguments), *named])
-            return f"{_at(_ITEM, function)}({given})", _ITEM
-        case Lambda(parameter, body):
-            return f"lambda{f' {parameter}' if parameter else ''}: {_at(_TEST, body)}", _TEST
-        case Conditional(test, then, otherwise):
-            return f"{_at(_OR, then)} if {_at(_OR, test)} else {_at(_TEST, otherwise)}", _TEST
-        case ListDisplay(items):
-            return f"[{_comma(items)}]", _ITEM
-        case TupleDisplay(items):
-            return f"({_comma(items)}{',' if len(items) == 1 else ''})", _ITEM
-        case DictDisplay(entries):
-            pairs = (f"{_at(_TEST, key)}: {_at(_TEST, value)}" for key, value in entries)
-            return f"{{{', '.join(pairs)}}}", _ITEM
-    return _print_operation(expr)
-
-
-def _print_operation(expr: Operation) -> tuple[str, int]:
-    match expr:
-        case Unary("not", operand):
-            return f"not {_at(_NOT, operand)}", _NOT
-        case Unary(sign, operand):
-            return f"{sign}{_at(_SIGNED, operand)}", _SIGNED
-        case Binary("**", left, right):
-            return f"{_at(_ITEM, left)} ** {_at(_SIGNED, right)}", _POWER
-        case Binary(operator, left, right):
-            own = _BINDING[operator]
-            return f"{_at(own, left)} {operator} {_at(own + 1, right)}", own
-        case Compare(first, rest):
-            tail = "".join(f" {word} {_at(_SUM, operand)}" for word, operand in rest)
-            return _at(_SUM, first) + tail, _COMPARE
-        case Boolean(operator, operands):
-            own = _OR if operator == "or" else _AND
-            return f" {operator} ".join(_at(own + 1, each) for each in operands), own
-    return assert_never(expr)
-
+# --- tree builder of the parser
 
 LONGEST_INTEGER = 1000
-"""Characters of the longest whole number; Python itself prints no more than 4300 digits."""
+"""Limit on the length of an integer literal; Python prints at most 4300 digits."""
 
 
-def word_of(token: str) -> str:
-    """A token as a name. Raises ValueError where Python would read it otherwise."""
+def _name_of(token: str) -> str:
+    """A token as a name. Raises ValueError if Python reads the token as another name."""
     if keyword.iskeyword(token) or not token.isidentifier():
         raise ValueError(f"{token} is no name")
     if unicodedata.normalize("NFKC", token) != token:
@@ -326,18 +277,18 @@ def word_of(token: str) -> str:
 
 _ESCAPE = re.compile(r"\\([0-7]{1,3}|.)", re.DOTALL)
 _GOOD_ESCAPE = re.compile(r"[0-3]?[0-7]{1,2}|[\\'\"abfnrtvxuUN\n]")
-"""Escapes in a string literal; Python warns of others, and says it will refuse them."""
+"""Valid escapes in a string literal; Python warns of others and will reject them."""
 
 
-class Builder:
-    """What each rule of the grammar makes of its parts."""
+class _TreeBuilder:
+    """The tree of each grammar rule, made from the trees of its parts."""
 
     def conditional(self, found: list[Any]) -> Expr:
         then, test, otherwise = found
         return Conditional(test, then, otherwise)
 
     def function(self, found: list[Any]) -> Expr:
-        return Lambda(word_of(found[0]) if len(found) > 1 else None, found[-1])
+        return Lambda(_name_of(found[0]) if len(found) > 1 else None, found[-1])
 
     def or_test(self, found: list[Any]) -> Expr:
         return Boolean("or", tuple(found))
@@ -362,7 +313,7 @@ class Builder:
         return Unary(str(found[0]), found[1])
 
     def attribute(self, found: list[Any]) -> Expr:
-        return Attribute(found[0], word_of(found[1]))
+        return Attribute(found[0], _name_of(found[1]))
 
     def call(self, found: list[Any]) -> Expr:
         function, (positional, keywords) = found
@@ -381,7 +332,7 @@ class Builder:
         return positional, keywords
 
     def keyword(self, found: list[Any]) -> tuple[str, Expr]:
-        return word_of(found[0]), found[1]
+        return _name_of(found[0]), found[1]
 
     def tuple_display(self, found: list[Any]) -> Expr:
         return TupleDisplay(tuple(found))
@@ -396,7 +347,7 @@ class Builder:
         return found[0], found[1]
 
     def name(self, found: list[Any]) -> Expr:
-        return Name(word_of(found[0]))
+        return Name(_name_of(found[0]))
 
     def integer(self, found: list[Any]) -> Expr:
         if len(found[0]) > LONGEST_INTEGER:
@@ -420,3 +371,80 @@ class Builder:
 
     def false(self, found: list[Any]) -> Expr:
         return Constant(False)
+
+
+# --- printer
+
+# Precedence of the forms: a part with a lower precedence than its place requires needs brackets.
+_TEST, _OR, _AND, _NOT, _COMPARE, _SUM, _PRODUCT, _SIGNED, _POWER, _ITEM = range(10)
+_BINDING = {"+": _SUM, "-": _SUM, "*": _PRODUCT, "/": _PRODUCT, "//": _PRODUCT, "%": _PRODUCT}
+
+
+def print_expression(expr: Expr) -> str:
+    """The Python text of an expression with as few brackets as possible; `parse_expression`
+    reverses it."""
+    return _print(expr)[0]
+
+
+def _at(binding: int, expr: Expr) -> str:
+    """The text of a subexpression, in brackets if its precedence is lower than `binding`."""
+    text, own = _print(expr)
+    return text if own >= binding else f"({text})"
+
+
+def _comma(items: Iterable[Expr]) -> str:
+    """Expressions, separated by commas."""
+    return ", ".join(_at(_TEST, item) for item in items)
+
+
+def _print(expr: Expr) -> tuple[str, int]:
+    """The text of an expression and its precedence."""
+    match expr:
+        case Constant(value):
+            return "1e999" if value == float("inf") else repr(value), _ITEM
+        case Name(name):
+            return name, _ITEM
+        case Attribute(Constant(int() as value), name):
+            # `1.real` is no valid Python.
+            return f"({value!r}).{name}", _ITEM
+        case Attribute(value, name):
+            return f"{_at(_ITEM, value)}.{name}", _ITEM
+        case Index(value, index):
+            return f"{_at(_ITEM, value)}[{_at(_TEST, index)}]", _ITEM
+        case Call(function, arguments, keywords):
+            named = [f"{key}={_at(_TEST, value)}" for key, value in keywords]
+            given = ", ".join([*map(print_expression, arguments), *named])
+            return f"{_at(_ITEM, function)}({given})", _ITEM
+        case Lambda(parameter, body):
+            return f"lambda{f' {parameter}' if parameter else ''}: {_at(_TEST, body)}", _TEST
+        case Conditional(test, then, otherwise):
+            return f"{_at(_OR, then)} if {_at(_OR, test)} else {_at(_TEST, otherwise)}", _TEST
+        case ListDisplay(items):
+            return f"[{_comma(items)}]", _ITEM
+        case TupleDisplay(items):
+            return f"({_comma(items)}{',' if len(items) == 1 else ''})", _ITEM
+        case DictDisplay(entries):
+            pairs = (f"{_at(_TEST, key)}: {_at(_TEST, value)}" for key, value in entries)
+            return f"{{{', '.join(pairs)}}}", _ITEM
+    return _print_operation(expr)
+
+
+def _print_operation(expr: Operation) -> tuple[str, int]:
+    """The text of an operation and its precedence."""
+    match expr:
+        case Unary("not", operand):
+            return f"not {_at(_NOT, operand)}", _NOT
+        case Unary(sign, operand):
+            return f"{sign}{_at(_SIGNED, operand)}", _SIGNED
+        case Binary("**", left, right):
+            return f"{_at(_ITEM, left)} ** {_at(_SIGNED, right)}", _POWER
+        case Binary(operator, left, right):
+            own = _BINDING[operator]
+            return f"{_at(own, left)} {operator} {_at(own + 1, right)}", own
+        case Compare(first, rest):
+            tail = "".join(f" {word} {_at(_SUM, operand)}" for word, operand in rest)
+            return _at(_SUM, first) + tail, _COMPARE
+        case Boolean(operator, operands):
+            own = _OR if operator == "or" else _AND
+            return f" {operator} ".join(_at(own + 1, each) for each in operands), own
+    return assert_never(expr)

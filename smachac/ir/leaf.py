@@ -1,4 +1,5 @@
-"""Variables and default outcomes of the built-in state types."""
+"""Leaves: the values of their variables, their default outcome, and the state types with
+callbacks."""
 
 from __future__ import annotations
 
@@ -19,18 +20,19 @@ CALLING = frozenset(
         "WriteCSVFileState",
     ]
 )
-"""The state types that first call the functions of `callbacks`, each for the key of its name."""
+"""The state types that call the functions of `callbacks` first, each for the key of its name."""
 
 
 def default_outcome(leaf: Leaf) -> str:
-    """The declared outcome by which a state usually ends: a good one, else the first."""
+    """The usual outcome of a leaf: the first declared one with the name of a success, else the
+    first one."""
     declared = own_outcomes(leaf) or tuple(edge.outcome for edge in leaf.transitions)
     good = [name for name in declared if name in GOOD_OUTCOMES]
     return [*good, *declared, GOOD_OUTCOMES[0]][0]
 
 
 def variable(leaf: Leaf, name: str) -> Data:
-    """What the script sets a variable of a leaf to, or None."""
+    """The value of a leaf's variable in the script; None if it has none."""
     for candidate in leaf.variables:
         if candidate.name == name:
             return candidate.value.data

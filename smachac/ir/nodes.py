@@ -1,8 +1,8 @@
-"""The typed state graph: what a script means, whatever the text looked like.
+"""Nodes of the typed state graph: the meaning of a script, independent of its notation.
 
-Values are frozen; spans say where a thing was written and do not count in equality. A node is
-named by its path, `sm/PICK_BLOCK/OPEN_GRIPPER` (see walk.py). The graph is total: a transition to
-nowhere stays in it, for the rules to find.
+Values are frozen; spans refer to the script and do not count in equality. The path of a node,
+`sm/PICK_BLOCK/OPEN_GRIPPER`, identifies it (traversal.py). The graph is total: a transition without
+a valid target stays in it and is found by a rule.
 """
 
 from __future__ import annotations
@@ -17,7 +17,7 @@ from smachac.ir.types import ANY, Type
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Expression:
-    """Code over userdata, kept as written: a portable expression or Python (language.md)."""
+    """Code over userdata, as written: a portable expression or Python (docs/language.md)."""
 
     text: str
     span: Span = field(compare=False, repr=False)
@@ -31,12 +31,12 @@ class Struct:
 
 
 Data: TypeAlias = "bool | int | float | str | Expression | Struct | tuple[Data, ...] | None"
-"""What a value is made of; a YAML list is a tuple."""
+"""The data of a value; a YAML list is a tuple."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Value:
-    """A constant of the script, with expressions anywhere in it."""
+    """A constant of the script; it may contain expressions."""
 
     data: Data
     span: Span = field(compare=False, repr=False)
@@ -44,7 +44,7 @@ class Value:
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Variable:
-    """A variable of a state type, as the script sets it, with the type that the interface says."""
+    """A variable of a state type with its value in the script and its type in the interface."""
 
     name: str
     value: Value
@@ -63,7 +63,8 @@ class Key:
 
 
 class Given(NamedTuple):
-    """A value that a state gives a key of its container, or `own`: the container itself."""
+    """A value that a state presets for a key of its container. `own`: the container itself presets
+    it."""
 
     state: Word
     value: Value
@@ -73,9 +74,9 @@ class Given(NamedTuple):
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Preset:
-    """Userdata that a container holds before it runs: `sm.userdata.key = value`.
+    """Initial userdata of a container: `sm.userdata.key = value`.
 
-    `given` is all that was given, in order, where that was more than once; the last one counts.
+    `given` holds all values in order if the key is preset more than once; the last one counts.
     """
 
     key: str
@@ -95,19 +96,20 @@ class Outcome:
 
 
 Sugar = Literal["", "timeout", "retry", "for_each"]
-"""The variables of a state that are lowered to a container around it (language.md)."""
+"""Fields of a state that are lowered to a container around it (docs/language.md)."""
 
 Origin = Literal["written", "implicit", "connector"]
-"""Why a transition exists: the script says so; the container has an outcome of that name
-(smach-semantics M6); or a Sequence links its states (Q1)."""
+"""The origin of a transition: written in the script; implied by an outcome of the container with
+the same name; or the link between two states of a Sequence (docs/semantics.md, Steps and
+transitions)."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Transition:
     """An edge: on `outcome`, go to the sibling `target` or leave with the outcome `target`.
 
-    Where a sibling and an outcome share the name the sibling is meant, but never by an implicit
-    edge (M7). `span` is the outcome's place, `target_span` the target's.
+    If a sibling and an outcome have the name of the target, the target is the sibling, except for
+    implicit transitions. `span` is the place of the outcome, `target_span` that of the target.
     """
 
     outcome: str
@@ -119,7 +121,7 @@ class Transition:
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Remap:
-    """A state's key stands for a key of its container."""
+    """A key of a state refers to another key of its container."""
 
     key: str
     to: str
@@ -128,7 +130,7 @@ class Remap:
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Condition:
-    """Part of a rule of a concurrence: this child ended with this outcome."""
+    """A condition of a concurrence's rule: this child ended with this outcome."""
 
     child: str
     outcome: str
@@ -137,7 +139,7 @@ class Condition:
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class OutcomeRule:
-    """A concurrence ends with `outcome` when all conditions hold."""
+    """A concurrence ends with `outcome` if all conditions hold."""
 
     outcome: str
     when: tuple[Condition, ...]
@@ -146,13 +148,13 @@ class OutcomeRule:
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class _State:
-    """What every node has: its interface and its place in the container around it.
+    """Fields of every node: its interface and its connections in the container around it.
 
-    `type` is the state type (the template's name). `via` are the calls of sub-scripts that led
-    here, outermost first. `in`/`out` keys are `inputs`/`outputs`. `catches` names the outcome that
-    an exception in the state becomes; it is one of `outcomes`, never one of the state's own, and
-    empty where exceptions go on. `written` is what the script says of the
-    state, for templates that print it themselves; empty for all others.
+    `type` is the state type (the name of the template). `via` are the calls of sub-scripts that
+    lead to the node, outermost first. `inputs` and `outputs` are its userdata keys. `catches` is
+    the outcome that exceptions in the state become: it is one of `outcomes`, the state's own code
+    never returns it, and it is empty if exceptions are not caught. `written` are the fields of the
+    script, for templates that print them; empty for all others.
     """
 
     name: str
@@ -172,11 +174,11 @@ class _State:
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Body:
-    """What the Python code of a state type does, as far as it can be told from the text.
+    """Facts about the Python code of a state type, as far as the text shows them.
 
-    `returns` are the constants that it returns, as text; `silent` is the function's name where some
-    way through it returns nothing, and `always_silent` where none returns anything. `reads` and
-    `writes` are keys of the userdata. What the script declares for itself is not in it.
+    `returns` are the constants that it returns, as text. `silent` is the name of the function if
+    some path through it returns nothing, `always_silent` if no path returns anything. `reads` and
+    `writes` are userdata keys. Declarations of the script are not included.
     """
 
     returns: tuple[Word, ...] = ()
@@ -190,10 +192,10 @@ class Body:
 class Leaf(_State):
     """One skill of a state type.
 
-    `open`: the state type has no interface, so nothing is known of its keys and outcomes.
-    `blocking`: it waits for the outside world (the interface says so). `writes` are pairs of an
-    outcome and the outputs it comes with: an output named there is written on those outcomes
-    only, any other on all but `preempted`. `body` is the type's code, where it was read.
+    `open`: the state type has no interface, so its keys and outcomes are unknown. `blocking`: it
+    waits for the outside world, as its interface declares. `writes` are pairs of an outcome and
+    output keys: an output in it is written on those outcomes only, any other output on all outcomes
+    except `preempted`. `body` has facts about the code, if it was read.
     """
 
     variables: tuple[Variable, ...] = ()
@@ -205,9 +207,9 @@ class Leaf(_State):
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class _Container(_State):
-    """What every container has: states in the order of the script, and presets of userdata.
+    """Fields of every container: children in the order of the script, and presets of userdata.
 
-    `sugar`: the variable of its state that it was made for, empty where the script has it.
+    `sugar`: the field of its state that it was made for; empty if the script has the container.
     """
 
     children: tuple[Node, ...] = ()
@@ -219,7 +221,7 @@ class _Container(_State):
 class StateMachine(_Container):
     """States that follow one another along transitions.
 
-    `initial` is empty when there is no state. `forever`: meant to loop without an end.
+    `initial` is empty if there is no state. `forever`: the machine is declared to have no end.
     """
 
     initial: str = ""
@@ -238,10 +240,11 @@ class Sequence(_Container):
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Concurrence(_Container):
-    """Children that start together; rules over their outcomes give the container's.
+    """Children that start together; rules over their outcomes determine the outcome of the
+    container.
 
-    `join`: "all" waits for every child, "any" preempts the rest when the first has ended.
-    Of several matching rules the one with most conditions wins.
+    `join`: "all" waits for every child, "any" preempts the others when the first child ends. Of
+    several matching rules the one with most conditions applies.
     """
 
     default_outcome: str = ""
@@ -252,11 +255,11 @@ class Concurrence(_Container):
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Iterator(_Container):
-    """One child run once for each item, which it finds under the key `item_key`.
+    """A container that runs its child once for each item; the item is in the key `item_key`.
 
-    The items are the value `items`, or what the container's userdata holds under `items_key`.
-    Outcomes of the child in `loop_outcomes` go on; every other one ends the iteration. The ending
-    outcome, or `exhausted_outcome`, goes through `final_map` (pairs from, to).
+    The items are the value `items`, or the userdata of the container in `items_key`. Outcomes in
+    `loop_outcomes` continue with the next item; other outcomes end the iteration. The last outcome,
+    or `exhausted_outcome`, is mapped by `final_map` (pairs from, to).
     """
 
     items: Value | None = None
@@ -272,7 +275,8 @@ Node: TypeAlias = Leaf | Container
 
 
 class Unused(NamedTuple):
-    """What the script declares and nothing uses, and the calls of sub-scripts that led there."""
+    """A declaration of the script that is not used, and the calls of sub-scripts that lead to
+    it."""
 
     what: Literal["param", "type"]
     word: Word
@@ -281,13 +285,12 @@ class Unused(NamedTuple):
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Machine:
-    """A whole program: the outermost container and what the base template needs to know.
+    """A whole program: the outermost container and the data of the base template.
 
-    `base` is the base template; `variables` are the base's own variables (`node_name`,
-    `function_name`, `manifest`, those of the base's interface). `source` is the name of the script
-    without its folder and `digest` a SHA-256 over the texts of the script and its sub-scripts.
-    `robot` is what rules know of the robot, `unused` what the script declared in vain; no target
-    prints them.
+    `base` is the base template; `variables` are its variables (`node_name`, `function_name`,
+    `manifest`, and those of its interface). `source` is the name of the script without its folder,
+    `digest` a SHA-256 over the texts of the script and its sub-scripts. `robot` and `unused` are
+    used by rules only; no target prints them.
     """
 
     root: StateMachine
@@ -300,5 +303,5 @@ class Machine:
 
 
 Checked = NewType("Checked", Machine)
-"""A machine that passed every rule without an error: what targets accept. Only the driver's
+"""A machine that passed every rule without an error: the input of targets. Only the driver's
 `check` makes one."""

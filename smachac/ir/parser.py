@@ -1,4 +1,4 @@
-"""Reading a machine from its text (.smir)."""
+"""Parser of the textual IR (.smir), the inverse of printer.py. The notation is grammars/ir.lark."""
 
 from __future__ import annotations
 
@@ -43,18 +43,19 @@ KINDS: Mapping[str, type[Node]] = {
     "concurrence": Concurrence,
     "iterator": nodes.Iterator,
 }
+"""The classes of nodes by keyword."""
 
 FIELDS: Mapping[type[object], frozenset[str]] = {
     owner: frozenset(field.name for field in fields(owner)) for owner in (Machine, *KINDS.values())
 }
-"""The fields of what statements may describe."""
+"""The fields that statements can set, by the class of the node."""
 
 LONGEST_DECIMAL = 4300
-"""Characters of the longest decimal whole number, the limit that Python itself has."""
+"""Limit on the length of a decimal integer, the same as in Python."""
 
 
 class IrSyntaxError(Exception):
-    """A text that is no machine: what is wrong and where, line and column counted from 1."""
+    """A text is no machine: the message and the position, line and column from 1."""
 
     def __init__(self, message: str, span: Span):
         super().__init__(f"{span}: {message}")
@@ -64,15 +65,15 @@ class IrSyntaxError(Exception):
 
 
 def parse_machine(text: str, name: str = "<ir>") -> Machine:
-    """The machine that a text describes; its spans point into the text, shown under `name`.
+    """The machine of a text; its spans refer to the text, under the name `name`.
 
-    The span of a node is that of its name. Raises IrSyntaxError, and nothing else.
+    The span of a node is that of its name. Raises IrSyntaxError, and no other exception.
     """
     from lark.exceptions import UnexpectedInput
 
     source = Source(name, text)
     try:
-        return _Reader(source).machine(_parser().parse(text))
+        return _MachineBuilder(source).machine(_parser().parse(text))
     except UnexpectedInput as error:
         raise _unexpected(error, source) from None
     except RecursionError:
@@ -85,11 +86,11 @@ def _parser() -> Lark:
 
 
 MOST_SHOWN = 6
-"""More kinds of what would have fitted than this help nobody."""
+"""Limit on the expected tokens in an error message."""
 
 
 def _unexpected(error: UnexpectedInput, source: Source) -> IrSyntaxError:
-    """The error of the parser, in words: what it met and what would have fitted."""
+    """An error of the lark parser as IrSyntaxError: the text found and the expected tokens."""
     start = error.pos_in_stream
     token = getattr(error, "token", None)
     if start is None or (token is not None and token.type == "$END"):
@@ -103,19 +104,20 @@ def _unexpected(error: UnexpectedInput, source: Source) -> IrSyntaxError:
 
 
 def _fitting(error: UnexpectedInput) -> set[str]:
+    """The terminals that are expected at an error."""
     return set(getattr(error, "accepts", None) or getattr(error, "allowed", None) or ())
 
 
 def _shown(terminal: str) -> str:
-    """A terminal of the grammar as users know it."""
+    """A terminal of the grammar as it is written."""
     if terminal == "$END":
         return "the end"
     pattern = _parser().get_terminal(terminal).pattern
     return f"`{pattern.value}`" if pattern.type == "str" else f"a {terminal.lower()}"
 
 
-class _Reader:
-    """From the tree of one source to nodes. Tokens and trees of the parser are `Any`."""
+class _MachineBuilder:
+    """Builds nodes from the parse tree of a source. Tokens and parse trees have the type `Any`."""
 
     def __init__(self, source: Source):
         self.source = source
@@ -123,7 +125,7 @@ class _Reader:
     def machine(self, tree: Any) -> Machine:
         *statements, root = tree.children
         built: dict[int, Node] = {}
-        # Parents come before their children here, so that the way back builds children first.
+        # Parents come before their children here; the reverse order builds children first.
         order = [root]
         for each in order:
             order.extend(child for child in each.children if _is_node(child))
@@ -145,7 +147,7 @@ class _Reader:
         return KINDS[kind](name=_text(name), type=_text(type_), span=self.span(name), **fields)
 
     def fields(self, statements: list[Any], owner: type[object], kind: str) -> dict[str, Any]:
-        """The fields that statements fill. Statements of one kind that add up are joined."""
+        """The fields that statements set. Repeatable statements are concatenated."""
         several: dict[str, list[Any]] = {}
         single: dict[str, Any] = {}
         known = FIELDS[owner]
@@ -165,7 +167,7 @@ class _Reader:
         return {**single, **{field: tuple(found) for field, found in several.items()}}
 
     def span(self, item: Any) -> Span:
-        """The place of a token or a tree."""
+        """The span of a token or a tree."""
         place = getattr(item, "meta", item)
         return Span(self.source, place.start_pos, place.end_pos)
 
@@ -278,7 +280,7 @@ def _is_node(tree: Any) -> bool:
 
 
 def _text(token: Any) -> str:
-    """What a name, a quoted string or a missing doc stands for."""
+    """The text of a name, a quoted string or a missing doc."""
     if token is None:
         return ""
     return str(json.loads(token)) if token.type == "STRING" else str(token)
@@ -286,42 +288,42 @@ def _text(token: Any) -> str:
 
 CONSTANTS: Mapping[str, bool | None] = {"true": True, "false": False, "null": None}
 
-SEVERAL: Mapping[str, Callable[[_Reader, Any], Iterator[Any]]] = {
-    "outcomes": _Reader.outcomes,
-    "inputs": _Reader.key,
-    "outputs": _Reader.key,
-    "claims": _Reader.names,
-    "transitions": _Reader.transition,
-    "remaps": _Reader.remap,
-    "variables": _Reader.variable,
-    "writes": _Reader.written,
-    "userdata": _Reader.preset,
-    "rules": _Reader.rule,
-    "loop_outcomes": _Reader.names,
-    "final_map": _Reader.final,
+SEVERAL: Mapping[str, Callable[[_MachineBuilder, Any], Iterator[Any]]] = {
+    "outcomes": _MachineBuilder.outcomes,
+    "inputs": _MachineBuilder.key,
+    "outputs": _MachineBuilder.key,
+    "claims": _MachineBuilder.names,
+    "transitions": _MachineBuilder.transition,
+    "remaps": _MachineBuilder.remap,
+    "variables": _MachineBuilder.variable,
+    "writes": _MachineBuilder.written,
+    "userdata": _MachineBuilder.preset,
+    "rules": _MachineBuilder.rule,
+    "loop_outcomes": _MachineBuilder.names,
+    "final_map": _MachineBuilder.final,
 }
-"""The fields that are tuples: what one statement adds to them."""
+"""Fields that are tuples: the items that one statement adds."""
 
-SINGLE: Mapping[str, Callable[[_Reader, Any], Any]] = {
-    "source": _Reader.name,
-    "digest": _Reader.name,
-    "base": _Reader.name,
-    "doc": _Reader.name,
-    "open": _Reader.flag,
-    "blocking": _Reader.flag,
-    "forever": _Reader.flag,
-    "initial": _Reader.name,
-    "connector_outcome": _Reader.name,
-    "default_outcome": _Reader.name,
-    "join": _Reader.name,
-    "catches": _Reader.name,
-    "sugar": _Reader.name,
-    "items": _Reader.items,
-    "items_key": _Reader.name,
-    "item_key": _Reader.name,
-    "exhausted_outcome": _Reader.name,
+SINGLE: Mapping[str, Callable[[_MachineBuilder, Any], Any]] = {
+    "source": _MachineBuilder.name,
+    "digest": _MachineBuilder.name,
+    "base": _MachineBuilder.name,
+    "doc": _MachineBuilder.name,
+    "open": _MachineBuilder.flag,
+    "blocking": _MachineBuilder.flag,
+    "forever": _MachineBuilder.flag,
+    "initial": _MachineBuilder.name,
+    "connector_outcome": _MachineBuilder.name,
+    "default_outcome": _MachineBuilder.name,
+    "join": _MachineBuilder.name,
+    "catches": _MachineBuilder.name,
+    "sugar": _MachineBuilder.name,
+    "items": _MachineBuilder.items,
+    "items_key": _MachineBuilder.name,
+    "item_key": _MachineBuilder.name,
+    "exhausted_outcome": _MachineBuilder.name,
 }
-"""The other fields: what the one statement says."""
+"""All other fields: the value of the statement."""
 
 PLACES: Mapping[str, str] = {"initial": "initial_span", "default_outcome": "default_span"}
-"""Fields that have their place beside them."""
+"""Fields whose span is in another field."""

@@ -1,6 +1,7 @@
-"""A machine as text (.smir): stable, complete and readable; grammars/ir.lark is the notation.
+"""Printer of the textual IR (.smir): stable, complete and readable. The notation is
+grammars/ir.lark.
 
-Every field is carried but the spans and `via`; what a default says is left out.
+All fields are printed except spans and `via`; fields with their default value are left out.
 """
 
 from __future__ import annotations
@@ -41,11 +42,11 @@ _SURROGATE = re.compile(r"[\ud800-\udfff]")
 _encode = json.JSONEncoder(ensure_ascii=False).encode
 
 MOST_BITS = 10_000
-"""Whole numbers of more binary digits are printed in hexadecimal; Python limits decimal ones."""
+"""Integers with more bits are printed in hexadecimal; Python limits the length of decimal ones."""
 
 
 class KeyTypes(Protocol):
-    """The types of keys by node path and key name (made by analysis.type_inference)."""
+    """The inferred types of keys by node path and key name (analysis/type_inference.py)."""
 
     @property
     def keys(self) -> Mapping[tuple[str, str], Type]: ...
@@ -58,8 +59,8 @@ class KeyTypes(Protocol):
 def print_machine(machine: Machine, types: KeyTypes | None = None) -> str:
     """The text of a machine, for people and for `parse_machine`, ending in a line feed.
 
-    Of `types` those that no statement says follow as comments. Iterative over the nodes, so that
-    deep nesting costs nothing.
+    Inferred types in `types` that no statement contains are printed as comments. Iterative, so that
+    deep nesting needs no recursion.
     """
     inferred = _inferred(types) if types is not None else {}
     lines = [HEADER, *_preamble(machine)]
@@ -85,7 +86,7 @@ def print_machine(machine: Machine, types: KeyTypes | None = None) -> str:
 
 
 def _inferred(types: KeyTypes) -> dict[str, list[tuple[str, str, Type]]]:
-    """What is known of keys, by path: the word of the statement, the key, its type."""
+    """Inferred types by path: the keyword of the statement, the key, its type."""
     found: dict[str, list[tuple[str, str, Type]]] = {}
     maps = (("userdata", types.keys), ("input", types.inputs), ("output", types.outputs))
     for word, known in maps:
@@ -95,7 +96,7 @@ def _inferred(types: KeyTypes) -> dict[str, list[tuple[str, str, Type]]]:
 
 
 def _comments(node: Node, inferred: Iterable[tuple[str, str, Type]]) -> Iterator[str]:
-    """The types of keys that the statements of a node do not say."""
+    """Comments with the inferred types of keys that have no type in the statements of a node."""
     held = () if isinstance(node, Leaf) else node.userdata
     own = {*node.inputs, *node.outputs}
     said = {key.name for key in own if key.type != ANY} | {p.key for p in held if p.type != ANY}
@@ -130,7 +131,7 @@ def _kind(node: Node) -> str:
 
 
 def _statements(node: Node) -> Iterator[str]:
-    """The statements of one node, without its children, in the order they are printed in."""
+    """The statements of one node, without its children, in the order of the notation."""
     if node.doc:
         yield f"doc {_quote(node.doc)}"
     yield from _outcomes(node.outcomes)
@@ -168,7 +169,7 @@ def _statements(node: Node) -> Iterator[str]:
 
 
 def _outcomes(outcomes: tuple[nodes.Outcome, ...]) -> Iterator[str]:
-    """All in one line, or a line each where one has a doc."""
+    """One line for all outcomes, or a line for each if one has a doc."""
     if not any(outcome.doc for outcome in outcomes):
         names = _names(outcome.name for outcome in outcomes)
         yield from _line("outcomes", names)
@@ -265,7 +266,7 @@ def _quote(text: str) -> str:
 
 
 def print_data(data: Data) -> str:
-    """A value in one line; code stands in backticks."""
+    """A value on one line; expressions are in backticks."""
     match data:
         case float():
             return repr(data)

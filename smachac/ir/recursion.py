@@ -1,4 +1,4 @@
-"""Room for recursion over what is nested deep: containers, and the values of a script."""
+"""Recursion limit for deeply nested containers and values."""
 
 from __future__ import annotations
 
@@ -7,12 +7,12 @@ from collections.abc import Iterator
 from contextlib import contextmanager
 
 FRAMES = 10_000
-"""Python's limit of recursion while we work: twice what the deepest script needs."""
+"""Python's recursion limit during our work: twice the need of the deepest accepted script."""
 
 
 @contextmanager
 def deep_recursion() -> Iterator[None]:
-    """Raise Python's limit of recursion for as long as this lasts."""
+    """Raise Python's recursion limit inside a `with` block."""
     before = sys.getrecursionlimit()
     sys.setrecursionlimit(max(before, FRAMES))
     try:

@@ -1,4 +1,4 @@
-"""Robots: what rules need to know of them, whichever file or list it comes from."""
+"""Robot models for rules: joints, limbs and frames; two robots are built in."""
 
 from __future__ import annotations
 
@@ -11,9 +11,9 @@ from smachac.diagnostics.source import NOWHERE, Span
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Joint:
-    """A joint that turns, and its limits (rad); one that turns without an end has infinite ones.
+    """A revolute joint and its limits (rad); the limits of a continuous joint are infinite.
 
-    `span` is its place in the robot's file, where there is one.
+    `span` is its place in the robot's file, if there is one.
     """
 
     name: str
@@ -24,10 +24,11 @@ class Joint:
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Robot:
-    """A robot: its joints, the limbs that lists of angles are of, the names of its frames.
+    """A robot: its joints, its limbs, the names of its frames.
 
-    A limb is joints from the base to the hand. `frames` are its links, none where they are not
-    known; `added` are those that the script lists beside them.
+    A limb is a chain of joints from the base to the hand, to which lists of joint positions refer.
+    `frames` are the names of its links, empty if unknown; `added` are frames that the script
+    declares.
     """
 
     name: str
@@ -51,7 +52,7 @@ _BAXTER = (
     (-1.5708, 2.094),
     (-3.059, 3.059),
 )
-"""Of either arm: baxter_common (Rethink Robotics), baxter_base.urdf.xacro."""
+"""Limits of either arm, from baxter_common (Rethink Robotics), baxter_base.urdf.xacro."""
 
 _PANDA = (
     (-2.9671, 2.9671),
@@ -62,7 +63,7 @@ _PANDA = (
     (-0.0873, 3.8223),
     (-2.9671, 2.9671),
 )
-"""franka_panda/panda.urdf of PyBullet's data, the limits of the joints."""
+"""Limits of the joints, from franka_panda/panda.urdf of PyBullet's data."""
 
 _PANDA_LINKS = (*(f"link{k}" for k in range(9)), "hand", "leftfinger", "rightfinger", "grasptarget")
 
@@ -81,7 +82,7 @@ BUILT_IN: Mapping[str, Robot] = {
         frames=frozenset(f"panda_{link}" for link in _PANDA_LINKS),
     ),
 }
-"""The robots known by name. Baxter has no frames here: its files give it more than one set."""
+"""The built-in robots by name. Baxter has no frames here: its files define different sets."""
 
 DEFAULTS = {"PyBulletBase": "panda"}
-"""The robot of a base template where the script names none."""
+"""The robot of a base template if the script names none."""

@@ -1,25 +1,21 @@
-"""Nodes with their paths, in the order of the script."""
+"""Traversal of the state graph: nodes with their paths, in the order of the script; facts about one
+node."""
 
 from __future__ import annotations
 
 from collections.abc import Iterator
-from typing import TYPE_CHECKING
 
 from smachac.ir.nodes import Container, Data, Expression, Leaf, Node, Struct, Transition
 from smachac.ir.nodes import Iterator as IteratorNode
 
-if TYPE_CHECKING:
-    pass
-
-
 PREEMPTED = "preempted"
-"""The outcome by which a state says that it stopped because it was asked to."""
+"""The outcome of a state that has served a request to stop."""
 
 
 def walk(node: Node, path: str = "") -> Iterator[tuple[str, Node]]:
-    """A node and all below it with their paths, parents before children.
+    """A node and all nodes below it with their paths, parents before children.
 
-    Iterative, so that deep nesting costs nothing.
+    Iterative, so that deep nesting needs no recursion.
     """
     stack: list[tuple[str, Node]] = [(path or node.name, node)]
     while stack:
@@ -30,7 +26,7 @@ def walk(node: Node, path: str = "") -> Iterator[tuple[str, Node]]:
 
 
 def containers(node: Node) -> Iterator[tuple[str, Container]]:
-    """The containers among `walk(node)`. Leaves, which are most of a machine, cost nothing."""
+    """The containers of `walk(node)`, without the cost of visiting leaves."""
     stack = [] if isinstance(node, Leaf) else [(node.name, node)]
     while stack:
         here, current = stack.pop()
@@ -41,21 +37,22 @@ def containers(node: Node) -> Iterator[tuple[str, Container]]:
 
 
 def outcome_names(node: Node) -> tuple[str, ...]:
+    """The names of the declared outcomes of a node."""
     return tuple([outcome.name for outcome in node.outcomes])
 
 
 def own_outcomes(node: Node) -> tuple[str, ...]:
-    """The outcomes that the state's own code may give: without the one that exceptions become."""
+    """The outcomes that the state's own code can return: all except `catches`."""
     return tuple([outcome.name for outcome in node.outcomes if outcome.name != node.catches])
 
 
 def leads_to_child(transition: Transition, children: frozenset[str]) -> bool:
-    """Whether a transition goes to a sibling, not out of the container (see Transition)."""
+    """Whether a transition leads to a sibling, not out of the container (see Transition)."""
     return transition.origin != "implicit" and transition.target in children
 
 
 def expressions(node: Node) -> Iterator[Expression]:
-    """The code in the values of one node, in the order of the script."""
+    """The expressions in the values of one node, in the order of the script."""
     for held in node.variables if isinstance(node, Leaf) else node.userdata:
         yield from _expressions(held.value.data)
     if isinstance(node, IteratorNode) and node.items is not None:
@@ -75,5 +72,5 @@ def _expressions(data: Data) -> Iterator[Expression]:
 
 
 def remapping(node: Node) -> dict[str, str]:
-    """The container's keys by those of the node, where they differ."""
+    """The remapped keys of a node: its key, and the key of the container."""
     return {remap.key: remap.to for remap in node.remaps}

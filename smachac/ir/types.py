@@ -1,6 +1,6 @@
-"""Types of userdata. `any` is what nothing is known of; it never complains.
+"""Types of userdata. `any` is the unknown type: it is compatible with every type.
 
-The notation is grammars/type.lark; `str(type)` prints it and `parse_type` reads it.
+The notation is grammars/type.lark; `str(type)` prints it and `parse_type` parses it.
 """
 
 from __future__ import annotations
@@ -17,28 +17,28 @@ if TYPE_CHECKING:
     from lark import Lark
 
 LONGEST = 1000
-"""Characters of the longest text that is read as a type."""
+"""Limit on the length of a type, in characters."""
 
 DEEPEST = 50
-"""Applications (`list[...]`, `?`, `of`) that one text may hold."""
+"""Limit on the applications (`list[...]`, `?`, `of`) in one type."""
 
 SCALARS = ("bool", "int", "float", "str", "any", "none")
 STRUCTS = ("Point", "Quaternion", "Pose", "PoseStamped", "Transform", "JointState")
 WORDS = (*SCALARS, *STRUCTS, "list", "dict")
-"""The types that one word names. A word with a `/` or `.` in it names a type of ROS or of some
-program: nothing but its name is known."""
+"""The types with one-word names. A word with `/` or `.` is a type of ROS or of a program: only its
+name is known."""
 
 _WORD = re.compile(r"[^\W\d]\w*(?:[./-]\w+)*")
 
 
 @dataclass(frozen=True, slots=True)
 class Type:
-    """A type: its name and what it is applied to.
+    """A type: a name and its arguments.
 
     `float<rad>` is `Type("float", ("rad",))`, `list[T]` is `Type("list", (T,))`, `T[7]` is
-    `Type("array", (T, 7))`, `dict[str, T]` is `Type("dict", (T,))`, `T?` is
-    `Type("optional", (T,))`, `one_of[a, b]` is `Type("one_of", ("a", "b"))`; anything else is a
-    name alone (`bool`, `Pose`, `geometry_msgs/Pose`).
+    `Type("array", (T, 7))`, `dict[str, T]` is `Type("dict", (T,))`, `T?` is `Type("optional",
+    (T,))`, `one_of[a, b]` is `Type("one_of", ("a", "b"))`; any other type is a name alone (`bool`,
+    `Pose`, `geometry_msgs/Pose`).
     """
 
     name: str
@@ -73,10 +73,10 @@ def _choice(choice: Type | int | str) -> str:
 # Cached, because scripts and interfaces repeat few types: parsing `list[Pose]` costs 60 us.
 @lru_cache(maxsize=1000)
 def parse_type(text: str) -> Type | None:
-    """The type a text names; None when it is not one, too long or too deep.
+    """The type of a text; None if the text is no type, is too long or too deep.
 
-    The spellings of old meta blocks are read too: `list of str`, `dict of str`, and
-    `[function, str]`, which is `any`.
+    The notation of old meta blocks is accepted too: `list of str`, `dict of str`, and `[function,
+    str]`, which is `any`.
     """
     text = text.strip()
     if _WORD.fullmatch(text):
@@ -94,18 +94,19 @@ def parse_type(text: str) -> Type | None:
 
 
 def _complete(type_: Type) -> Type:
+    """A type that needs no further arguments. Raises ValueError."""
     if type_ == Type("one_of"):
         raise ValueError("one of what?")
     return type_
 
 
 def optional(type_: Type) -> Type:
-    """The type or nothing."""
+    """The type extended by None."""
     return type_ if type_.name in ("optional", "any", "none") else Type("optional", (type_,))
 
 
 def unknown_words(type_: Type) -> tuple[str, ...]:
-    """The words in a type that name no type; they are `any` to whoever asks what fits."""
+    """The words in a type that are no types; for compatibility they count as `any`."""
     inner = [arg for arg in type_.args if isinstance(arg, Type)]
     found = tuple(word for arg in inner for word in unknown_words(arg))
     if type_.args or type_.name in WORDS or re.search("[./]", type_.name):
@@ -115,11 +116,11 @@ def unknown_words(type_: Type) -> tuple[str, ...]:
 
 @cache
 def _parser() -> Lark:
-    return load("type", builder=_Builder(), lexer="contextual")
+    return load("type", builder=_TypeBuilder(), lexer="contextual")
 
 
-class _Builder:
-    """What each rule of the grammar makes of its parts. Raises ValueError where they do not fit."""
+class _TypeBuilder:
+    """The type of each grammar rule, made from its parts. Raises ValueError if they do not fit."""
 
     def word(self, found: list[Any]) -> Type:
         return Type(str(found[0]))

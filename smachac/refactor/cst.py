@@ -327,7 +327,7 @@ def _holder(closed: list[Collection], column: int) -> Collection | None:
     return next(fits, closed[-1] if closed else None)
 
 
-def _blanks(leading: list[str]) -> list[str]:
+def _blanks(lines: list[str]) -> list[str]:
     """Remove the empty lines at the end of `lines`; at most one of them."""
     taken = []
     while lines and not lines[-1]:

@@ -1,1 +1,1 @@
-"""What the compiler found, for people and for machines: each module is one form of a report."""
+"""Reports of findings and explanations: one module for each form of output."""

@@ -1,4 +1,4 @@
-"""What a code means: the docstring of its problem or rule, as a text and as docs/rules.md."""
+"""Explanation of a code: the docstring of its problem or rule, as text and as docs/rules.md."""
 
 from __future__ import annotations
 
@@ -8,7 +8,7 @@ from collections.abc import Iterator, Mapping
 from dataclasses import dataclass, field
 from textwrap import dedent, fill, indent
 
-# Filing all codes is what these imports do.
+# These imports register all codes.
 from smachac import checks
 from smachac.diagnostics.diagnostic import CODES, Code
 from smachac.frontend.errors import references, script, suppressions
@@ -20,7 +20,7 @@ __all__ += ["render_code", "render_rules", "render_section", "script", "suppress
 MAIN = "main.yml"
 
 WIDTH = 88
-"""Columns of prose on a terminal."""
+"""Width of prose on a terminal, in columns."""
 
 GROUPS: Mapping[str, str] = {
     "SM0": "Text and shape",
@@ -32,7 +32,7 @@ GROUPS: Mapping[str, str] = {
     "SM6": "Targets",
     "SM7": "Properties",
 }
-"""What the codes of each hundred are about."""
+"""The subject of the codes of each hundred."""
 
 _HEADINGS = re.compile(r"^(Wrong|Right):$", re.MULTILINE)
 _FILE = re.compile(r"^== (\S+) ==\n", re.MULTILINE)
@@ -40,7 +40,7 @@ _FILE = re.compile(r"^== (\S+) ==\n", re.MULTILINE)
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Explanation:
-    """A docstring of a code in its parts; examples are texts by file name, the script first."""
+    """The parts of a code's docstring; examples are texts by file name, the script first."""
 
     summary: str
     reason: str
@@ -49,7 +49,7 @@ class Explanation:
 
 
 def explanation(code: Code) -> Explanation:
-    """The parts of what a code says of itself."""
+    """The parts of the docstring of a code."""
     text = inspect.cleandoc(code.explanation)
     prose, *sections = _HEADINGS.split(text)
     examples = dict(zip(sections[::2], map(_files, sections[1::2]), strict=True))
@@ -69,7 +69,7 @@ def _files(block: str) -> dict[str, str]:
 
 
 def render_code(code: Code) -> str:
-    """What `smachac explain` prints of a code, without a line feed at the end."""
+    """The output of `smachac explain` for a code, without a line feed at the end."""
     parts = explanation(code)
     prose = [parts.summary, *parts.reason.split("\n\n")]
     firm = ", firm" if code.firm else ""
@@ -127,7 +127,7 @@ def _sections() -> Iterator[str]:
 
 
 def render_section(code: Code) -> str:
-    """What a code says of itself as Markdown, without its heading."""
+    """The explanation of a code as Markdown, without its heading."""
     parts = explanation(code)
     firm = ", firm" if code.firm else ""
     lines = [f"*{code.severity.value}{firm}*: {parts.summary}", parts.reason]

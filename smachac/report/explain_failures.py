@@ -1,4 +1,5 @@
-"""The failures of a machine as a text, a table in Markdown or CSV, or JSON."""
+"""Explanation of failures: the failures of a machine as text, as a table in Markdown or CSV, or as
+JSON."""
 
 from __future__ import annotations
 
@@ -17,7 +18,7 @@ from smachac.report.text import steps
 HEADINGS = ("state", "failure", "place", "way", "caught by", "the machine ends with")
 
 _MARKUP = re.compile(r"[\\`*<\[\]|]|\b_|_\b")
-"""What Markdown would take for more than a character."""
+"""Characters that are markup in Markdown."""
 
 _COUNTED: dict[Answer, str] = {
     "caught": "caught",
@@ -29,7 +30,7 @@ _COUNTED: dict[Answer, str] = {
 
 
 def render_failures(name: str, found: Sequence[Failure], form: str) -> str:
-    """The failures of the machine called `name`; `form` is `text`, `json`, `md` or `csv`."""
+    """The failures of the machine `name`; `form` is `text`, `json`, `md` or `csv`."""
     match form:
         case "json":
             return _json(found)
@@ -60,7 +61,7 @@ def _summary(found: Sequence[Failure]) -> str:
 
 
 def told(failure: Failure) -> str:
-    """What becomes of a failure, in words."""
+    """The consequence of a failure, in words."""
     next = failure.next.rpartition("/")[2]
     match failure.answer:
         case "caught":
@@ -133,5 +134,5 @@ def _markdown(name: str, found: Sequence[Failure]) -> str:
 
 
 def _cell(text: str) -> str:
-    """A text that Markdown shows as it is."""
+    """A text with its Markdown characters escaped."""
     return _MARKUP.sub(r"\\\g<0>", visible(text).replace("\n", " "))

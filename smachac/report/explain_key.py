@@ -1,4 +1,4 @@
-"""What there is to say about a userdata key: who sets, reads and passes it on, where it is set."""
+"""Explanation of a userdata key: its writers, readers and copies, and where it is set."""
 
 from __future__ import annotations
 
@@ -17,13 +17,12 @@ from smachac.ir.types import ANY, Type
 from smachac.report.outline import STATUS, Paragraph, at, place, way
 
 MOST_READERS = 100
-"""For so many readers of one key its paths are followed; the others are only named."""
+"""Limit on the readers of a key whose paths are computed; the others are only named."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Met:
-    """A use of a key; for one that reads, whether the key is set there, and a path on which it is
-    not."""
+    """A use of a key. For a read: whether the key is set there, and a path on which it is not."""
 
     use: Use
     status: Status | None = None
@@ -32,10 +31,10 @@ class Met:
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class KeyPart:
-    """A key as one container holds it.
+    """A key in one container.
 
-    `inside` is the container around, with its name for the key, where it is the same there.
-    `given`: whoever runs the machine hands it in.
+    `inside` is the container around it that shares the key, with its name there. `given`: the
+    caller of the machine sets the key.
     """
 
     container: str
@@ -49,12 +48,12 @@ class KeyPart:
 
 
 KeyStory = tuple[KeyPart, ...]
-"""One key in all the containers that it is copied to and from, outer ones first."""
+"""One key in all the containers that share it, outer ones first."""
 
 
 def key_names(flow: Flow) -> dict[str, list[tuple[str, str]]]:
-    """The keys of containers, as path and key, by each name that they have there or with a state
-    in there; in the order of the script."""
+    """The keys of containers, as path and key, by each name that they have in the container or with
+    one of its states; in the order of the script."""
     found: dict[str, dict[tuple[str, str], None]] = {}
     for path, scope in flow.scopes.items():
         for name, key in _names_in(scope):
@@ -63,7 +62,7 @@ def key_names(flow: Flow) -> dict[str, list[tuple[str, str]]]:
 
 
 def _names_in(scope: Scope) -> Iterator[tuple[str, str]]:
-    """Names of keys in a container, with its own name for each."""
+    """The names of keys in a container, with the name that the container uses."""
     container = scope.container
     own = [*scope.held, *scope.inputs, *scope.outputs]
     if isinstance(container, nodes.Iterator):
@@ -78,7 +77,7 @@ def _names_in(scope: Scope) -> Iterator[tuple[str, str]]:
 
 
 def key_stories(flow: Flow, types: Types, pairs: Iterable[tuple[str, str]]) -> Iterator[KeyStory]:
-    """The stories of some keys; one for those that are copies of each other."""
+    """The explanations of some keys; keys that are copies of each other share one."""
     told: set[tuple[str, str]] = set()
     for pair in pairs:
         if pair not in told:
@@ -118,7 +117,7 @@ def _met(flow: Flow, use: Use, key: str, followed: frozenset[str]) -> Met:
 
 
 def key_text(part: KeyPart) -> tuple[str, list[Paragraph]]:
-    """A headline, and what is said below it."""
+    """A headline and its paragraphs."""
     words: dict[str, list[str]] = {"is": [], "set": [], "written": [], "read": [], "copied": []}
     if part.inside is not None:
         path, name = part.inside
@@ -166,7 +165,7 @@ def _on(use: Use) -> str:
 
 
 def key_json(story: KeyStory) -> list[dict[str, Any]]:
-    """The story as data for JSON."""
+    """The explanation as data for JSON."""
     return [
         {
             "key": part.key,

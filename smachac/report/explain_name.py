@@ -1,4 +1,4 @@
-"""What a name of a script means: a state, a key, or several of them."""
+"""Explanation of a name: the states and keys of a script that have it."""
 
 from __future__ import annotations
 
@@ -16,20 +16,18 @@ from smachac.report.explain_state import StateStory, state_json, state_story, st
 from smachac.report.outline import paragraphs
 
 MOST_NAMED = 20
-"""So many states or keys are listed of those that share a name."""
+"""Limit on the listed states or keys of one name."""
 
 
 class UnclearError(Exception):
-    """A name means nothing, or more than can be told; the message says what there is."""
+    """A name has no meaning, or too many; the message lists candidates."""
 
 
 def explain_name(machine: Machine, report: Report, name: str, form: str) -> str:
-    """All that there is to say about the state or key of a name; `form` is `text` or `json`.
+    """The explanation of the state or key `name`; `form` is `text` or `json`.
 
-    A state is named by its path or the end of it; so is a key, behind its container.
-
-    Raises:
-        UnclearError: there is no such name, or several states have it.
+    A state is named by its path or the end of it; a key by its name, optionally after the path of
+    its container. Raises UnclearError if the name has no meaning, or too many.
     """
     flow = data_flow(machine)
     types = infer(machine)
@@ -53,7 +51,7 @@ def _ends(path: str, name: str) -> bool:
 
 
 def _keys(flow: Flow, name: str) -> list[tuple[str, str]]:
-    """The keys that a name means: those that a container calls so, else those that states do."""
+    """The keys of a name: those of containers, else those of states."""
     names = key_names(flow)
     pairs = names.get(name, [])
     where, _, key = name.rpartition("/")

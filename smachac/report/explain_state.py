@@ -1,4 +1,4 @@
-"""What there is to say about one state: what it is, how it is entered and left, what was found."""
+"""Explanation of a state: its interface, its entries and exits, and its findings."""
 
 from __future__ import annotations
 
@@ -22,8 +22,8 @@ from smachac.report.outline import STATUS, Paragraph, article, at, place, way
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Taken:
-    """A key of a state, its type as far as it is known, what its container calls it, and for an
-    input whether it is set."""
+    """A key of a state: its inferred type, its name in the container, and for an input whether it
+    is set."""
 
     key: Key
     type: Type
@@ -33,7 +33,7 @@ class Taken:
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Exit:
-    """An outcome, where it leads in the end, and the transitions that say so."""
+    """An outcome, the states or outcomes that it leads to, and the transitions on the way."""
 
     outcome: str
     arrivals: tuple[Arrival, ...]
@@ -42,10 +42,10 @@ class Exit:
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class StateStory:
-    """All there is to say about the state at a path.
+    """The explanation of the state at a path.
 
-    `entered` are the states that it follows, with their outcomes; an empty name is the start of
-    its container. `way` is a shortest way to it, empty where there is none.
+    `entered` are the preceding states with their outcomes; an empty name is the start of the
+    container. `way` is a shortest path to the state, empty if there is none.
     """
 
     path: str
@@ -63,7 +63,7 @@ class StateStory:
 def state_story(
     machine: Machine, flow: Flow, types: Types, path: str, report: Report
 ) -> StateStory:
-    """The story of the state at a path, which the machine must have."""
+    """The explanation of the state at a path, which must exist."""
     routes = Routes(machine)
     ways = routes.ways()
     node = routes.nodes[path]
@@ -107,7 +107,7 @@ def state_story(
 
 
 def state_text(story: StateStory) -> tuple[str, list[Paragraph]]:
-    """A headline, and what is said below it."""
+    """A headline and its paragraphs."""
     node = story.node
     lines = [f"{article(kind(node))}{place(node.span)}"]
     lines += [f"from the sub-script called at {call}" for call in node.via]
@@ -126,7 +126,8 @@ def state_text(story: StateStory) -> tuple[str, list[Paragraph]]:
 
 
 def kind(node: Node) -> str:
-    """The state type; what a container was written as."""
+    """The state type; for a container its class and, if a field of a state created it, that
+    field."""
     if isinstance(node, Leaf):
         return node.type or "state that could not be read"
     if node.sugar:
@@ -212,7 +213,7 @@ def _found(item: Any) -> str:
 
 
 def state_json(story: StateStory) -> dict[str, Any]:
-    """The story as data for JSON."""
+    """The explanation as data for JSON."""
     node = story.node
     return {
         "state": story.path,

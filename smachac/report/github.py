@@ -1,4 +1,4 @@
-"""A report as workflow commands of GitHub Actions: each finding becomes a note at its line."""
+"""GitHub report: workflow commands of GitHub Actions, which annotate the line of each finding."""
 
 from __future__ import annotations
 
@@ -11,9 +11,9 @@ _COMMANDS = {Severity.ERROR: "error", Severity.WARNING: "warning", Severity.INFO
 
 
 def render_github(report: Report) -> str:
-    """A line for each finding, each with a line feed; empty for none.
+    """One line for each finding, each with a line feed; empty for no findings.
 
-    Nothing in the texts of the user can end a line and so begin a command of its own.
+    Line feeds in texts of the user are escaped, so that they cannot begin another command.
     """
     return "".join(f"{_command(item)}\n" for item in report)
 
@@ -50,7 +50,7 @@ def _words(item: Diagnostic) -> str:
 
 
 def _data(text: str) -> str:
-    """A message as the runner reads it back (actions/toolkit, command.ts)."""
+    """A message with the escapes of the runner (actions/toolkit, command.ts)."""
     return text.replace("%", "%25").replace("\r", "%0D").replace("\n", "%0A")
 
 

@@ -1,4 +1,4 @@
-"""A report for programs, as grammars/report.schema.json describes it."""
+"""JSON report, as described by grammars/report.schema.json."""
 
 from __future__ import annotations
 
@@ -9,11 +9,11 @@ from smachac.diagnostics.diagnostic import Diagnostic, Report, Severity
 from smachac.diagnostics.source import NOWHERE, Span
 
 VERSION = 2
-"""Of the schema; it grows with every change."""
+"""The version of the schema; it increases with every change."""
 
 
 def render_json(report: Report) -> str:
-    """The findings in the order of the report. Equal reports give equal texts, in ASCII."""
+    """The findings in the order of the report, in ASCII. Equal reports give equal texts."""
     counts = {
         severity.value: sum(item.severity is severity for item in report) for severity in Severity
     }
@@ -41,9 +41,9 @@ def _diagnostic(item: Diagnostic) -> dict[str, Any]:
 
 
 def place(span: Span) -> dict[str, Any] | None:
-    """Where a span is: lines and columns from 1, offsets from 0, in characters; the end excluded.
+    """A span as data; None for NOWHERE.
 
-    None for what no text holds.
+    Lines and columns count from 1, offsets from 0, in characters; the end is excluded.
     """
     if span.source is NOWHERE.source:
         return None

@@ -1,4 +1,4 @@
-"""A report as JUnit XML, which GitLab, Jenkins and others show as tests: one for each script."""
+"""JUnit XML report for GitLab, Jenkins and others: one test for each script."""
 
 from __future__ import annotations
 
@@ -15,9 +15,9 @@ _NO_XML = re.compile("[^\t\n\r\x20-\ud7ff\ue000-\ufffd\U00010000-\U0010ffff]")
 
 
 def render_junit(reports: Mapping[str, Report], failing: Mapping[str, Report]) -> str:
-    """A test for each script of `reports`, failed where `failing` has findings of it.
+    """One test for each script of `reports`; it fails if `failing` has findings for it.
 
-    What does not fail a script is printed under its test. There is no time in it.
+    Other findings are printed in the output of the test. The report contains no time stamps.
     """
     suite = ET.Element("testsuite", name="smachac check")
     suite.set("tests", str(len(reports)))
@@ -45,5 +45,5 @@ def render_junit(reports: Mapping[str, Report], failing: Mapping[str, Report]) -
 
 
 def _text(text: str) -> str:
-    """A text without what XML cannot hold, even by number."""
+    """A text without the characters that XML does not allow."""
     return _NO_XML.sub(lambda found: f"<U+{ord(found.group()):04X}>", text)

@@ -1,4 +1,4 @@
-"""The form of explanations: a headline, and lines behind the words that they belong to."""
+"""Layout of explanations: a headline, and labelled paragraphs."""
 
 from __future__ import annotations
 
@@ -18,14 +18,14 @@ STATUS: dict[Status, str] = {
 """Whether a key is set when a state is entered, in words."""
 
 WIDTH = 100
-"""Columns that a way may take."""
+"""Width of a printed path, in columns."""
 
 Paragraph = tuple[str, list[str]]
-"""A word, and the lines that it stands in front of."""
+"""A label and its lines."""
 
 
 def paragraphs(headline: str, parts: Iterable[Paragraph]) -> str:
-    """A text that ends in a line feed; parts without lines are left out."""
+    """A text that ends in a line feed; paragraphs without lines are left out."""
     told = [(word, lines) for word, lines in parts if lines]
     size = max((len(word) for word, _ in told), default=0)
     lines = [headline]
@@ -38,27 +38,27 @@ def paragraphs(headline: str, parts: Iterable[Paragraph]) -> str:
 
 
 def place(span: Span) -> str:
-    """A place in brackets, behind what stands there; empty where no script holds it."""
+    """A span in parentheses, printed after a text; empty for NOWHERE."""
     return "" if span.source is NOWHERE.source else f" ({span})"
 
 
 def at(span: Span) -> str | None:
-    """A place as `file:line:column`, if it is one of a script."""
+    """A span as `file:line:column`; None for NOWHERE."""
     return None if span.source is NOWHERE.source else str(span)
 
 
 def alternatives(names: Sequence[str]) -> str:
-    """Names as one says them: `a, b or c`."""
+    """A list of names in words: `a, b or c`."""
     return " or ".join(filter(None, [", ".join(names[:-1]), *names[-1:]]))
 
 
 def article(noun: str) -> str:
-    """A noun with the article that belongs to it."""
+    """A noun with its indefinite article."""
     return f"{'an' if noun[:1].lower() in 'aeiou' else 'a'} {noun}"
 
 
 def way(head: str, path: tuple[str, ...]) -> Iterator[str]:
-    """A way in lines that are not too long, its middle left out where there are too many states."""
+    """A path in lines of limited width; the middle of a long path is left out."""
     if not path:
         return
     line = head

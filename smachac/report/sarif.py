@@ -1,7 +1,7 @@
-"""A report as SARIF 2.1.0 (OASIS, 2020), which GitHub, Azure DevOps and editors show.
+"""SARIF 2.1.0 report (OASIS, 2020) for GitHub, Azure DevOps and editors.
 
-Lines and columns count from 1, columns in UTF-16 units: what the readers, mostly written in
-JavaScript, take them for. Files are named relative to the folder of the run.
+Lines and columns count from 1, columns in UTF-16 units, as most readers expect. File names are
+relative to the working directory.
 """
 
 from __future__ import annotations
@@ -20,7 +20,7 @@ from smachac.version import __version__
 SCHEMA = "https://json.schemastore.org/sarif-2.1.0.json"
 
 BASE = "%SRCROOT%"
-"""The usual name of the folder that file names are relative to; readers know where theirs is."""
+"""The conventional name of the folder that file names are relative to; readers define its path."""
 
 FINGERPRINT = "smachac/v1"
 
@@ -28,7 +28,7 @@ _LEVELS = {Severity.ERROR: "error", Severity.WARNING: "warning", Severity.INFO: 
 
 
 def render_sarif(report: Report) -> str:
-    """One run with a result for each finding, and the rules that they name. ASCII."""
+    """One run with a result for each finding, and the rules they refer to. ASCII."""
     codes = {item.code.code: item.code for item in report}
     rules = [codes[name] for name in sorted(codes)]
     numbers = {code.code: number for number, code in enumerate(rules)}
@@ -89,7 +89,7 @@ def _result(item: Diagnostic, rule: int, mark: str) -> dict[str, Any]:
 
 
 def _message(text: str) -> dict[str, str]:
-    """A plain text in which nothing is taken for a link (SARIF 2.1.0, 3.11.6)."""
+    """A text with the characters escaped that would begin a link (SARIF 2.1.0, 3.11.6)."""
     if "](" in text:
         text = text.replace("\\", "\\\\").replace("[", "\\[").replace("]", "\\]")
     return {"text": text}
@@ -104,7 +104,7 @@ def _location(span: Span) -> dict[str, Any]:
 
 
 def _artifact(source: Source) -> dict[str, str]:
-    """A file by its URI; names that lead out of the folder have no base (3.4.4)."""
+    """A file by its URI; names outside the folder have no base (3.4.4)."""
     path = PurePath(source.name)
     name = quote(path.as_posix().encode("utf-8", "surrogatepass"))
     if path.is_absolute():
@@ -130,7 +130,7 @@ def _position(source: Source, offset: int) -> tuple[int, int]:
 
 
 def _flow(item: Diagnostic) -> list[dict[str, Any]]:
-    """The states of a witness path; the outcome that leads on stands in the message."""
+    """The states of a witness path; each message has the outcome that leads on."""
     flow: list[dict[str, Any]] = []
     places = item.steps or (None,) * len(item.finding.path)
     for name, span in zip(item.finding.path, places, strict=True):

@@ -1,4 +1,4 @@
-"""State types for people and programs: what a state of a type may have, needs, and ends with."""
+"""Descriptions of state types, as text, Markdown and JSON: fields, keys, outcomes."""
 
 from __future__ import annotations
 
@@ -22,11 +22,12 @@ CONTAINERS = {
 
 
 WIDTH = 90
-"""Of descriptions, in columns."""
+"""Width of descriptions, in columns."""
 
 
 class Known(NamedTuple):
-    """A state type; whose it is: a folder of the user's, or `built-in`; and what it has code in."""
+    """A state type, its origin (a folder of the user, or `built-in`), and the languages of its
+    code."""
 
     type: StateType
     place: str
@@ -34,7 +35,7 @@ class Known(NamedTuple):
 
 
 def container_type(name: str) -> StateType:
-    """A container as a state type, its variables those of the schema."""
+    """A container as a state type; its variables are the fields of the schema."""
     names = schema.REQUIRED[name]
     own = [row for row in schema.VARIABLES.values() if name in row.owners]
     return StateType(
@@ -51,7 +52,7 @@ def container_type(name: str) -> StateType:
 
 
 def list_text(known: Sequence[Known]) -> str:
-    """All types, a line each, by whose they are and what they are."""
+    """All types, one on each line, by origin and kind."""
     width = max((len(each.type.name) for each in known), default=0)
     lines: list[str] = []
     for title, some in _grouped(known):
@@ -77,7 +78,7 @@ def _first(doc: str) -> str:
 
 
 def type_text(known: Known) -> str:
-    """One type, for people."""
+    """One type as text."""
     type_ = known.type
     lines = [f"{type_.name}: a {type_.kind} ({known.place})"]
     if type_.doc:
@@ -95,7 +96,7 @@ def type_text(known: Known) -> str:
 
 
 def type_markdown(known: Known, level: int = 2) -> str:
-    """One type, as a section of Markdown."""
+    """One type as a section of Markdown."""
     type_ = known.type
     lines = [f"{'#' * level} {type_.name}", "", type_.doc or "No description.", ""]
     for title, rows in _sections(type_):
@@ -166,7 +167,7 @@ def _facts(known: Known) -> list[str]:
 
 
 def type_json(known: Known) -> dict[str, Any]:
-    """One type, for programs."""
+    """One type as data for JSON."""
     type_ = known.type
     return {
         "name": type_.name,

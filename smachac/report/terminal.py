@@ -1,4 +1,4 @@
-"""Text as a terminal shows it: in columns, with everything visible and nothing obeyed."""
+"""Terminal output: width of text in columns; control and invisible characters are made visible."""
 
 from __future__ import annotations
 
@@ -16,10 +16,10 @@ LEAD = 8
 
 
 class Line(NamedTuple):
-    """A stretch of a line as printed: its text, and where the characters of the original are in it.
+    """A part of a source line as printed, and the columns of its characters.
 
-    `starts` are the columns of those from `first` on, before the stretch from `left` to `right` was
-    cut out; one more than there are characters: the end.
+    `starts` are the columns of the characters from `first` on, before the part from `left` to
+    `right` was cut out, and the column of the end.
     """
 
     text: str
@@ -29,7 +29,8 @@ class Line(NamedTuple):
     right: int
 
     def column(self, index: int) -> int:
-        """The column of a character of the original line; one that was cut off is at the edge."""
+        """The column of a character of the source line; for a character that was cut off, the
+        edge."""
         start = self.starts[min(max(index - self.first, 0), len(self.starts) - 1)]
         return min(max(start, self.left), self.right) - self.left
 
@@ -45,10 +46,10 @@ def _joins(character: str) -> bool:
 
 @lru_cache(maxsize=4096)
 def _glyph(character: str, *, alone: bool) -> tuple[str, int]:
-    """What is printed for a character that is no tab, and how many columns it takes.
+    """The printed form of a character that is no tab, and its width in columns.
 
-    Nothing a text holds may steer the terminal or hide: controls have pictures (Unicode block
-    2400), other invisible characters appear as `<U+202E>`.
+    No character can control the terminal or stay invisible: control characters are printed as
+    pictures (Unicode block 2400), other invisible characters as `<U+202E>`.
     """
     if " " <= character <= "~":
         return character, 1
@@ -67,7 +68,8 @@ def _glyph(character: str, *, alone: bool) -> tuple[str, int]:
 
 
 def _glyphs(text: str) -> tuple[list[str], list[int]]:
-    """What is printed for each character, and the columns where they start and the last ends."""
+    """The printed form of each character, and the columns where they start and the last one
+    ends."""
     if text.isascii() and text.isprintable():
         return list(text), list(range(len(text) + 1))
     printed: list[str] = []
@@ -84,27 +86,27 @@ def _glyphs(text: str) -> tuple[list[str], list[int]]:
 
 
 def visible(text: str) -> str:
-    """A text with every invisible character made visible; line feeds stay."""
+    """A text with all invisible characters made visible, except line feeds."""
     return "\n".join("".join(_glyphs(line)[0]) for line in text.split("\n"))
 
 
 def columns(text: str) -> int:
-    """How many columns a text takes that holds neither tabs nor line feeds."""
+    """The width of a text without tabs and line feeds, in columns."""
     return _glyphs(text)[1][-1]
 
 
 def _left_edge(start: int, end: int, total: int, room: int) -> int:
-    """The first column of the window through which a span of a long line is best seen."""
+    """The first column of the window that shows a span of a long line."""
     span = end - start
     before = (room - span) // 2 if span + 2 < room else LEAD
     return max(0, min(start - before, total - room + 1))
 
 
 def lay_out(text: str, start: int, end: int, room: int) -> Line:
-    """A line in at most `room` columns, in which the characters `start` to `end` stay in view.
+    """A line in at most `room` columns in which the characters `start` to `end` are visible.
 
-    Only the neighbourhood of the span is looked at, so a line of megabytes costs no more than
-    one that fills the screen.
+    Only the neighbourhood of the span is examined, so that the cost does not depend on the length
+    of the line.
     """
     room = max(room, 20)
     low, high = max(0, start - room), min(len(text), start + room)

@@ -1,4 +1,7 @@
-"""A report for people: every finding with the lines it speaks of."""
+"""Text report: every finding with its source lines, for terminals.
+
+Sections: findings, then snippets (source lines with marks).
+"""
 
 from __future__ import annotations
 
@@ -24,17 +27,18 @@ COLOURS = {
 """SGR parameters (ECMA-48, 8.3.117) of each style."""
 
 MOST_FINDINGS = 1000
+"""Limit on the findings in a text report; the other formats contain all."""
 
 MOST_STEPS = 16
-"""Longer witness paths lose their middle."""
+"""Limit on the states of a printed path; the middle of longer ones is left out."""
 
 
 def render_text(report: Report, *, colour: bool = False, width: int = 100) -> str:
-    """The findings one after the other, with an empty line between; empty for none. Of very many
-    only the first: nobody reads more, and other formats have them all.
+    """The findings, separated by empty lines; empty for no findings. At most MOST_FINDINGS are
+    printed.
 
-    `width` is that of the terminal in columns: it bounds lines of the source, not messages.
-    Nothing in the texts of the user can steer the terminal.
+    `width` is the width of the terminal in columns: it limits source lines, not messages. Texts of
+    the user cannot control the terminal.
     """
     texts = [_rendered(item, colour=colour, width=width) for item in report[:MOST_FINDINGS]]
     more = len(report) - len(texts)
@@ -44,7 +48,7 @@ def render_text(report: Report, *, colour: bool = False, width: int = 100) -> st
 
 
 def summary(report: Report) -> str:
-    """What a report amounts to: `2 errors, 1 warning in main.yml`."""
+    """The number of findings: `2 errors, 1 warning in main.yml`."""
     if not report:
         return "no findings"
     words = {
@@ -65,7 +69,7 @@ def summary(report: Report) -> str:
 
 
 def steps(path: tuple[str, ...]) -> list[str]:
-    """A witness path as arrows and states; an outcome in brackets stands on its arrow."""
+    """A witness path as arrows and states; an outcome in parentheses is put on its arrow."""
     parts: list[str] = []
     arrow = ""
     for name in path:
@@ -78,7 +82,7 @@ def steps(path: tuple[str, ...]) -> list[str]:
 
 
 def shortened(path: tuple[str, ...]) -> list[str]:
-    """The steps of a path as they are printed; long ones lose their middle."""
+    """The steps of a path as printed; the middle of a long path is left out."""
     parts = [visible(part).replace("\n", "␊") for part in steps(path)]
     if len(parts) <= MOST_STEPS:
         return parts
@@ -138,7 +142,7 @@ def _snippets(marks: list[Mark], width: int, paint: Paint) -> Iterator[str]:
 
 
 def _path(path: tuple[str, ...], width: int, paint: Paint) -> Iterator[str]:
-    """The line `path: A -(aborted)-> B`, broken before an arrow where it is too long."""
+    """The line `path: A -(aborted)-> B`, broken before an arrow if it is too long."""
     parts = shortened(path)
     line = ""
     indent = "      "
@@ -152,18 +156,20 @@ def _path(path: tuple[str, ...], width: int, paint: Paint) -> Iterator[str]:
     yield head + line
 
 
+# --- snippets
+
 Paint = Callable[[str, str], str]
-"""Gives a text (second) a style (first): "primary", "related" or "gutter"."""
+"""Applies a style (first argument) to a text (second): "primary", "related" or "gutter"."""
 
 NEAR = 8
-"""Marks that are at most so many lines apart share a snippet."""
+"""Marks at most so many lines apart share a snippet."""
 
 MOST_LINES = 6
-"""Longer spans are shown by their first and last lines."""
+"""Limit on the lines of a span; the middle of longer ones is left out."""
 
 
 class Mark(NamedTuple):
-    """A stretch to point at: lines counted from 1, characters in them from 0, end excluded."""
+    """A marked range of a source: lines counted from 1, characters in them from 0, end excluded."""
 
     source: Source
     line: int
@@ -179,7 +185,7 @@ class Mark(NamedTuple):
 
 
 def mark(source: Source, start: int, end: int, label: str, style: str) -> Mark:
-    """A mark for any two offsets; what hangs over is cut off, so is trailing blank space."""
+    """The mark of a range of offsets, limited to the source and without trailing blanks."""
     size = len(source.text)
     start = min(max(start, 0), size)
     end = min(max(end, start), size)
@@ -195,7 +201,7 @@ def mark(source: Source, start: int, end: int, label: str, style: str) -> Mark:
 
 
 def grouped(marks: list[Mark], width: int) -> list[list[Mark]]:
-    """Marks by the snippet they share: those of one source that are near one another."""
+    """Marks by snippet: marks of one source that are near one another share one."""
     groups: list[list[Mark]] = []
     for new in marks:
         for group in groups:
@@ -235,7 +241,7 @@ def snippet(marks: list[Mark], digits: int, width: int, paint: Paint) -> Iterato
 
 
 Row = tuple["int | None", str]
-"""A line of a snippet: its number (0: none, None: lines are left out) and what it shows."""
+"""A line of a snippet: its number (0: none, None: lines are left out) and its text."""
 
 
 def _flat(marks: list[Mark], room: int, paint: Paint) -> Iterator[Row]:
@@ -256,7 +262,7 @@ def _flat(marks: list[Mark], room: int, paint: Paint) -> Iterator[Row]:
 
 
 def _beneath(marks: list[Mark], line: Line, room: int, paint: Paint) -> Iterator[str]:
-    """The rows under a line: carets, and one row for each label that finds no place there."""
+    """The rows under a line: carets, and one row for each label that does not fit beside them."""
     row: dict[int, tuple[str, str]] = {}
     for m in sorted(marks, key=lambda m: m.style == "primary"):
         sign = "^" if m.style == "primary" else "-"
@@ -294,7 +300,7 @@ _STYLE, _SIGN = itemgetter(0), itemgetter(1)
 
 
 def _tall(m: Mark, room: int, paint: Paint) -> Iterator[Row]:
-    """A span over several lines, with a bar at its left."""
+    """A span of several lines, with a bar at its left."""
     bar = paint(m.style, "|")
     sign = "^" if m.style == "primary" else "-"
     text = m.source.line(m.line)

@@ -11,7 +11,7 @@ from hypothesis import strategies as st
 from smachac import checks
 from smachac.diagnostics.diagnostic import CODES, Code, Finding, Report, Severity
 from smachac.diagnostics.diagnostic import Diagnostic as Item
-from smachac.diagnostics.severities import Policy, chosen, settled
+from smachac.diagnostics.severities import Policy, apply_severities, select_findings
 from smachac.diagnostics.source import NOWHERE, Source
 from smachac.driver import Analysis, analyse, build
 from smachac.frontend.files import disk_library, read_source
@@ -169,14 +169,14 @@ def item(code: str, severity: Severity | None = None) -> Item:
 def test_selecting_and_ignoring(select: list[str], ignore: list[str], expected: str) -> None:
     assert checks is not None
     report = [item(code) for code in ("SM101", "SM105", "SM201", "SM204")]
-    kept = [each.code.code for each in chosen(report, select, ignore)]
+    kept = [each.code.code for each in select_findings(report, select, ignore)]
     assert kept == expected.split()
 
 
 def test_a_mild_finding_of_a_firm_code_can_be_silenced() -> None:
     mild = item("SM101", Severity.WARNING)
-    assert settled([mild], Policy(severities={"SM1": None})) == []
-    assert chosen([mild], [], ["SM101"]) == []
+    assert apply_severities([mild], Policy(severities={"SM1": None})) == []
+    assert select_findings([mild], [], ["SM101"]) == []
 
 
 SOFT = [code for code in CODES.values() if not code.firm and code.severity is Severity.ERROR]
