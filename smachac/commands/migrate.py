@@ -166,7 +166,7 @@ def _untold(told: Iterable[SmachaDifference], known: Report) -> Iterator[Migrati
     lines = {item.span.line for item in known if item.code.code == "SM606"}
     missing = " ".join(item.finding.message for item in known if item.code.code == "SM605")
     for quirk in told:
-        if quirk.name == "python-2" and quirk.what == "told" and quirk.span.line in lines:
+        if quirk.name == "python-2" and quirk.what == "note" and quirk.span.line in lines:
             continue
         if quirk.name == "unknown-name" and f"'{quirk.span.text}' is undefined" in missing:
             continue
@@ -213,7 +213,7 @@ def _item(item: Diagnostic) -> MigrationItem:
     return MigrationItem(
         line=item.span.line,
         column=item.span.column,
-        what="edit" if item.severity is Severity.ERROR else "told",
+        what="edit" if item.severity is Severity.ERROR else "note",
         name=item.code.code,
         message=item.finding.message,
         help=item.finding.help or "",

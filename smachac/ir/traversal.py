@@ -7,9 +7,7 @@ from collections.abc import Iterator
 
 from smachac.ir.nodes import Container, Data, Expression, Leaf, Node, Struct, Transition
 from smachac.ir.nodes import Iterator as IteratorNode
-
-PREEMPTED = "preempted"
-"""The outcome of a state that has served a request to stop."""
+from smachac.ir.outcome_names import PREEMPTED as PREEMPTED
 
 
 def walk(node: Node, path: str = "") -> Iterator[tuple[str, Node]]:

@@ -27,112 +27,7 @@ from smachac.refactor.editor import (
 from smachac.refactor.equivalence import map_nodes, normalized
 from smachac.refactor.field_order import variables_of
 
-
-def preset_keys(editor: ScriptEditor, inside: Sequence[Node]) -> set[str]:
-    """The userdata keys that some states preset, except containers."""
-    found: set[str] = set()
-    for child in inside:
-        body = variables_of(editor.state(child.span).item)
-        item = variable(body, "userdata") if body is not None else None
-        if body is None or item is None or variable(body, "states") is not None:
-            continue
-        if isinstance(item.value, Collection):
-            found |= {each.key.text.strip("'\"") for each in item.value.items if each.key}
-    return found
-
-
-def contain(editors: Callable[[Source], ScriptEditor], plan: ContainPlan) -> None:
-    """Apply a plan to the text of the states. Raises RefusedError."""
-    editor = editors(plan.inside[0].span.source)
-    places = [editor.state(child.span) for child in plan.inside]
-    names = frozenset(child.name for child in plan.parent.children)
-    for child, place in zip(plan.inside, places, strict=True):
-        if plan.kind == "Concurrence":
-            _remove_transitions(place.item)
-        else:
-            _retarget_transitions(editor, child, place, names, plan)
-    mine = {child.name for child in plan.inside}
-    for child in plan.parent.children:
-        for step in child.transitions if child.name not in mine else ():
-            if leads_to_child(step, names) and step.target in mine:
-                editors(step.target_span.source).replace_word(step.target_span, plan.name)
-    initial = plan.parent.initial_span
-    written = plan.parent.initial in mine and initial.start != plan.parent.span.start
-    if written and initial.text.strip("'\"") == plan.parent.initial:
-        editors(initial.source).replace_word(initial, plan.name)
-    editor.rewrite_state(places[0], [_written(plan, [place.item for place in places])])
-    for place in places[1:]:
-        editor.rewrite_state(place, [])
-
-
-def _retarget_transitions(
-    editor: ScriptEditor, child: Node, place: StateItem, names: frozenset[str], plan: ContainPlan
-) -> None:
-    """Let the transitions of a state out of the container lead to its outcomes."""
-    body = variables_of(place.item)
-    assert body is not None
-    item = variable(body, "transitions")
-    group = item.value if item is not None and isinstance(item.value, Collection) else None
-    own = {each.key.text.strip("'\""): each for each in group.items if each.key} if group else {}
-    for step in child.transitions:
-        target = plan.ends.get((child.name, step.outcome), step.target)
-        here = own.get(step.outcome)
-        if here is None:
-            by_name = target == step.outcome and not leads_to_child(step, names)
-            if not (by_name and step.origin == "implicit"):
-                add_entry(body, "transitions", step.outcome, target)
-        elif isinstance(here.value, Atom) and here.value.text.strip("'\"") != target:
-            here.value = Atom(target, -1, -1)
-            if group is not None:
-                group.flat = ""
-
-
-def _remove_transitions(item: Item) -> None:
-    """Remove the transitions of a state, which have no effect in a concurrence. Comments stay."""
-    body = variables_of(item)
-    found = variable(body, "transitions") if body is not None else None
-    if body is None or found is None:
-        return
-    body.items = [each for each in body.items if each is not found]
-    item.leading += [*found.leading, found.trailing.strip()] if found.trailing else found.leading
-    if isinstance(found.value, Collection):
-        for each in found.value.items:
-            item.leading += [line for line in (*each.leading, each.trailing.strip()) if line]
-        item.leading += found.value.tail
-
-
-def _written(plan: ContainPlan, items: list[Item]) -> Item:
-    """The syntax tree of the container with its states."""
-
-    def listed(names: Sequence[str]) -> Collection:
-        return Collection(False, True, -1, items=[Item(None, new_atom(name)) for name in names])
-
-    rows: list[tuple[str, Collection | Atom]] = [
-        ("template", new_atom(plan.kind)),
-        ("outcomes", listed(list(plan.exits))),
-    ]
-    rows += [("input_keys", listed(plan.inputs))] if plan.inputs else []
-    rows += [("output_keys", listed(plan.outputs))] if plan.outputs else []
-    if plan.kind == "Concurrence":
-        rows.append(("default_outcome", new_atom(plan.default)))
-        rules = [
-            Item(new_atom(end), flow_mapping(rule.items())) for end, rule in plan.rules.items()
-        ]
-        rows += [("outcome_map", Collection(True, False, -1, items=rules))] if rules else []
-    rows.append(
-        ("transitions", flow_mapping((end, place) for end, (place, _) in plan.exits.items()))
-    )
-    if plan.kind != "Concurrence" and plan.entry != plan.inside[0].name:
-        rows.append(("initial", new_atom(plan.entry)))
-    lead = items[0].leading
-    blank = bool(lead) and not lead[0]
-    for item in items[:1]:
-        item.leading = lead[1:] if blank else lead
-    rows.append(("states", Collection(False, False, -1, items=items)))
-    body = Collection(True, False, -1, items=[Item(new_atom(name), value) for name, value in rows])
-    named = Collection(True, False, -1, items=[Item(new_atom(plan.name), body)])
-    return Item(None, named, leading=[""] if blank else [])
-
+# --- plan
 
 MOST_RULES = 64
 """Limit on the rules in the outcome map of a new concurrence."""
@@ -166,6 +61,19 @@ class ContainPlan:
     default: str = ""
 
 
+def preset_keys(editor: ScriptEditor, inside: Sequence[Node]) -> set[str]:
+    """The userdata keys that some states preset, except containers."""
+    found: set[str] = set()
+    for child in inside:
+        body = variables_of(editor.state(child.span).item)
+        item = variable(body, "userdata") if body is not None else None
+        if body is None or item is None or variable(body, "states") is not None:
+            continue
+        if isinstance(item.value, Collection):
+            found |= {each.key.text.strip("'\"") for each in item.value.items if each.key}
+    return found
+
+
 def plan_container(
     parent: Node, inside: Sequence[Node], presets: set[str], name: str, kind: str
 ) -> ContainPlan:
@@ -174,11 +82,13 @@ def plan_container(
     States without an interface must have an inferred one (open_states.py). Raises RefusedError.
     """
     if not isinstance(parent, StateMachine) or parent.sugar:
-        message = f"`{parent.name}` is no state machine: transitions do not lead what is in it"
+        message = (
+            f"`{parent.name}` is not a state machine: its states are not connected by transitions"
+        )
         raise RefusedError(parent.span, message)
     for node in (*parent.children, *parent.outcomes):
         if node.name == name:
-            message = f"`{parent.name}` has a state or outcome `{name}` already"
+            message = f"`{parent.name}` already has a state or outcome `{name}`"
             raise RefusedError(node.span, message, "choose another name")
     entry = _entry(parent, inside)
     targets = _targets(parent, inside)
@@ -222,7 +132,7 @@ def _entry(parent: StateMachine, inside: Sequence[Node]) -> str:
     if len(entered) > 1:
         first, second = list(entered)[:2]
         message = f"a container begins with one state, but {entered[first]} and {entered[second]}"
-        help = "take in what leads there, or leave one of the two out"
+        help = "add the states that lead there, or leave one of the two out"
         raise RefusedError(mine[second].span, message, help)
     return next(iter(entered), inside[0].name)
 
@@ -320,7 +230,7 @@ def _check_independence(inside: Sequence[Node]) -> None:
             if writer is not None and writer is not child:
                 message = f"`{child.name}` uses `{key}`, which `{writer.name}` writes:"
                 help = "leave one of them out, or remap the key"
-                raise RefusedError(child.span, f"{message} they cannot run at once", help)
+                raise RefusedError(child.span, f"{message} they cannot run concurrently", help)
 
 
 Path = tuple[tuple[tuple[str, str], ...], TargetName]
@@ -347,12 +257,14 @@ def _paths(inside: Sequence[Node], entry: str, targets: TransitionTargets) -> It
                 count += 1
                 yield steps, place
             elif any(place[0] == known for known, _ in steps):
-                message = f"`{place[0]}` can come again: in a concurrence all run once"
+                message = (
+                    f"`{place[0]}` can be entered twice; in a concurrence each state runs once"
+                )
                 raise RefusedError(by_name[place[0]].span, message)
             else:
                 todo.append((place[0], steps))
         if count + len(todo) > MOST_RULES:
-            message = f"there are more than {MOST_RULES} ways through these states"
+            message = f"there are more than {MOST_RULES} paths through these states"
             raise RefusedError(by_name[entry].span, message, "take fewer states")
 
 
@@ -384,7 +296,103 @@ def _goodness(path: Path) -> int:
     return sum(outcome in GOOD_OUTCOMES for _, outcome in path[0])
 
 
-# --- proof
+# --- writing
+
+
+def contain(editors: Callable[[Source], ScriptEditor], plan: ContainPlan) -> None:
+    """Apply a plan to the text of the states. Raises RefusedError."""
+    editor = editors(plan.inside[0].span.source)
+    places = [editor.state(child.span) for child in plan.inside]
+    names = frozenset(child.name for child in plan.parent.children)
+    for child, place in zip(plan.inside, places, strict=True):
+        if plan.kind == "Concurrence":
+            _remove_transitions(place.item)
+        else:
+            _retarget_transitions(editor, child, place, names, plan)
+    mine = {child.name for child in plan.inside}
+    for child in plan.parent.children:
+        for step in child.transitions if child.name not in mine else ():
+            if leads_to_child(step, names) and step.target in mine:
+                editors(step.target_span.source).replace_word(step.target_span, plan.name)
+    initial = plan.parent.initial_span
+    written = plan.parent.initial in mine and initial.start != plan.parent.span.start
+    if written and initial.text.strip("'\"") == plan.parent.initial:
+        editors(initial.source).replace_word(initial, plan.name)
+    editor.rewrite_state(places[0], [_written(plan, [place.item for place in places])])
+    for place in places[1:]:
+        editor.rewrite_state(place, [])
+
+
+def _retarget_transitions(
+    editor: ScriptEditor, child: Node, place: StateItem, names: frozenset[str], plan: ContainPlan
+) -> None:
+    """Let the transitions of a state out of the container lead to its outcomes."""
+    body = variables_of(place.item)
+    assert body is not None
+    item = variable(body, "transitions")
+    group = item.value if item is not None and isinstance(item.value, Collection) else None
+    own = {each.key.text.strip("'\""): each for each in group.items if each.key} if group else {}
+    for step in child.transitions:
+        target = plan.ends.get((child.name, step.outcome), step.target)
+        here = own.get(step.outcome)
+        if here is None:
+            by_name = target == step.outcome and not leads_to_child(step, names)
+            if not (by_name and step.origin == "implicit"):
+                add_entry(body, "transitions", step.outcome, target)
+        elif isinstance(here.value, Atom) and here.value.text.strip("'\"") != target:
+            here.value = Atom(target, -1, -1)
+            if group is not None:
+                group.flat = ""
+
+
+def _remove_transitions(item: Item) -> None:
+    """Remove the transitions of a state, which have no effect in a concurrence. Comments stay."""
+    body = variables_of(item)
+    found = variable(body, "transitions") if body is not None else None
+    if body is None or found is None:
+        return
+    body.items = [each for each in body.items if each is not found]
+    item.leading += [*found.leading, found.trailing.strip()] if found.trailing else found.leading
+    if isinstance(found.value, Collection):
+        for each in found.value.items:
+            item.leading += [line for line in (*each.leading, each.trailing.strip()) if line]
+        item.leading += found.value.tail
+
+
+def _written(plan: ContainPlan, items: list[Item]) -> Item:
+    """The syntax tree of the container with its states."""
+
+    def listed(names: Sequence[str]) -> Collection:
+        return Collection(False, True, -1, items=[Item(None, new_atom(name)) for name in names])
+
+    rows: list[tuple[str, Collection | Atom]] = [
+        ("template", new_atom(plan.kind)),
+        ("outcomes", listed(list(plan.exits))),
+    ]
+    rows += [("input_keys", listed(plan.inputs))] if plan.inputs else []
+    rows += [("output_keys", listed(plan.outputs))] if plan.outputs else []
+    if plan.kind == "Concurrence":
+        rows.append(("default_outcome", new_atom(plan.default)))
+        rules = [
+            Item(new_atom(end), flow_mapping(rule.items())) for end, rule in plan.rules.items()
+        ]
+        rows += [("outcome_map", Collection(True, False, -1, items=rules))] if rules else []
+    rows.append(
+        ("transitions", flow_mapping((end, place) for end, (place, _) in plan.exits.items()))
+    )
+    if plan.kind != "Concurrence" and plan.entry != plan.inside[0].name:
+        rows.append(("initial", new_atom(plan.entry)))
+    lead = items[0].leading
+    blank = bool(lead) and not lead[0]
+    for item in items[:1]:
+        item.leading = lead[1:] if blank else lead
+    rows.append(("states", Collection(False, False, -1, items=items)))
+    body = Collection(True, False, -1, items=[Item(new_atom(name), value) for name, value in rows])
+    named = Collection(True, False, -1, items=[Item(new_atom(plan.name), body)])
+    return Item(None, named, leading=[""] if blank else [])
+
+
+# --- check
 
 
 def equal_after_contain(before: Machine, after: Machine, plan: ContainPlan) -> bool:

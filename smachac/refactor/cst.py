@@ -97,7 +97,7 @@ class Document:
 def parse_cst(source: Source) -> Document:
     """The syntax tree of a text without YAML errors. Raises UnsupportedYamlError."""
     if source.text.startswith("%"):
-        raise UnsupportedYamlError("it begins with a directive of YAML")
+        raise UnsupportedYamlError("it begins with a YAML directive")
     return _CstBuilder(source).read()
 
 
@@ -127,7 +127,7 @@ class _CstBuilder:
                 case "MappingEndEvent" | "SequenceEndEvent":
                     self.finish(event)
         if self.root is None:
-            raise UnsupportedYamlError("it holds a single value")
+            raise UnsupportedYamlError("it is a single value")
         self.opening = None
         self.closed = self.closed or [self.root]
         self.gap(len(self.text), last=True)
@@ -144,7 +144,7 @@ class _CstBuilder:
         start, end = event.start_mark.index, event.end_mark.index
         around = self.stack[-1] if self.stack else None
         if around is None:
-            raise UnsupportedYamlError("it holds a single value")
+            raise UnsupportedYamlError("it is a single value")
         if start == end:
             start = end = self.end
         atom = Atom(self.text[start:end], start, end)
@@ -204,7 +204,7 @@ class _CstBuilder:
         around = self.stack[-1]
         if around.mapping:
             if self.key is None:
-                raise UnsupportedYamlError("a key of it is a collection")
+                raise UnsupportedYamlError("one of its keys is a collection")
             around.items[-1].value = node
             self.key = None
             return

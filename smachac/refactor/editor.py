@@ -62,8 +62,8 @@ class ScriptEditor:
         """The state whose name is at a span. Raises RefusedError if it is in a flow collection."""
         place = self.places.get(span.start)
         if place is None or place.states.flow or place.item.start < 0:
-            help = "lay the script out first: `smachac fmt`"
-            raise RefusedError(span, "this state stands in brackets, or in an unusual place", help)
+            help = "format the script first: `smachac fmt`"
+            raise RefusedError(span, "this state is in brackets, or in an unusual position", help)
         return place
 
     def body_of(self, span: Span) -> Collection | None:
@@ -93,7 +93,7 @@ class ScriptEditor:
                 elif item.key is not None:
                     self._values[item.key.start] = item.value
         if span.start not in self._values:
-            raise RefusedError(span, "what stands here comes from elsewhere", "write it out first")
+            raise RefusedError(span, "this value is defined in another place", "write it out first")
         return self._values[span.start]
 
     def replace_word(self, span: Span, text: str) -> None:

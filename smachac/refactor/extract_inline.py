@@ -21,11 +21,11 @@ def extract(editor: ScriptEditor, span: Span, script: str) -> str:
     body = variables_of(place.item)
     assert body is not None
     if variable(body, "script") is not None:
-        help = "`smachac inline` puts it in the place of its call"
-        raise RefusedError(span, f"`{span.text}` is a sub-script already", help)
+        help = "`smachac inline` replaces the call by its content"
+        raise RefusedError(span, f"`{span.text}` is already a sub-script", help)
     if variable(body, "states") is None:
         help = "put it into a container first: `smachac contain`"
-        raise RefusedError(span, f"`{span.text}` is no container", help)
+        raise RefusedError(span, f"`{span.text}` is not a container", help)
     state = place.item.value
     assert isinstance(state, Collection)
     entry = state.items[0]
@@ -51,7 +51,7 @@ def inline(editor: ScriptEditor, span: Span, sub: ScriptEditor) -> None:
     inner = variables_of(first) if first is not None else None
     assert call is not None
     if first is None or inner is None:
-        raise RefusedError(span, "its sub-script stands in an unusual form")
+        raise RefusedError(span, "its sub-script has an unusual form")
     state, below = place.item.value, first.value
     assert isinstance(state, Collection)
     assert isinstance(below, Collection)

@@ -71,7 +71,7 @@ def find_named(machine: Machine, path: str, kind: str | None) -> tuple[str, Span
         what = kind or "state, outcome or key"
         raise NotFoundError(f"there is no {what} `{path}`\n{near}".rstrip())
     if len(meant) > 1:
-        lines = [f"`{path}` may mean {len(meant)} things; say more of the path, or --kind:"]
+        lines = [f"`{path}` is ambiguous: {len(meant)} matches; give more of the path, or --kind:"]
         lines += [f"  {where} ({what})" for what, _, _, where in meant[:20]]
         raise NotFoundError("\n".join(lines))
     return meant[0][:3]
@@ -84,6 +84,6 @@ def different_container_error(
     other = next((path for path, node in walk(machine.root) if node.name == name), None)
     if other is not None:
         words = f"`{name}` is in `{other.rpartition('/')[0]}`, the first state in `{above}`"
-        return NotFoundError(f"{words}\none container takes states of one container")
+        return NotFoundError(f"{words}\nall states must be in the same container")
     near = did_you_mean(name, known) or f"it has {listed(known)}"
     return NotFoundError(f"`{above}` has no state `{name}`\n{near}")

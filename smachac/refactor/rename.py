@@ -135,10 +135,11 @@ def rename_state(renaming: Renaming, machine: Machine, declared: Span) -> None:
             continue
         for other in container.children:
             if other.name == renaming.new and other not in mine:
-                message = f"`{container.name}` has a state `{renaming.new}` already"
+                message = f"`{container.name}` already has a state `{renaming.new}`"
                 raise RefusedError(other.span, message, "choose another name")
         if any(outcome.name == renaming.new for outcome in container.outcomes):
-            message = f"`{renaming.new}` is an outcome of `{container.name}`: who leads there?"
+            message = f"`{renaming.new}` is an outcome of `{container.name}`"
+            message += ": transitions to it would be ambiguous"
             raise RefusedError(container.span, message, "choose another name")
         renaming.replace_word(declared)
         for child in container.children:
@@ -173,7 +174,7 @@ def rename_outcome(renaming: Renaming, machine: Machine, declared: Span) -> None
             if not is_mine(child):
                 continue
             if any(each.name == renaming.new for each in child.outcomes):
-                message = f"`{child.name}` has an outcome `{renaming.new}` already"
+                message = f"`{child.name}` already has an outcome `{renaming.new}`"
                 raise RefusedError(child.span, message, "choose another name")
             _rename_in_state(renaming, child)
             if not container.sugar:
@@ -201,7 +202,9 @@ def _rename_in_state(renaming: Renaming, node: Node) -> None:
         return
     inside = frozenset(child.name for child in node.children)
     if renaming.new in inside:
-        message = f"`{node.name}` has a state `{renaming.new}`: who leads there?"
+        message = (
+            f"`{node.name}` has a state `{renaming.new}`: transitions to it would be ambiguous"
+        )
         raise RefusedError(node.span, message, "choose another name")
     for child in node.children:
         for step in child.transitions:
@@ -226,7 +229,7 @@ def _rename_in_container(renaming: Renaming, container: Container, child: Node) 
         if step.origin == "implicit":
             renaming.add(child, "transitions", renaming.new, renaming.old)
         elif step.origin == "connector":
-            help = f"give `{child.name}` a container, or rename the connector by hand"
+            help = f"put `{child.name}` into a container, or rename the connector by hand"
             message = f"`{renaming.old}` is the connector of `{container.name}`"
             raise RefusedError(child.span, message, help)
         else:
@@ -259,6 +262,8 @@ def step_words(
                 else:
                     yield from ((inner.key, editor) for inner in each.value.items if inner.key)
 
+
+# --- keys
 
 PORTABLE_TYPES = (
     "PrintUserdataState",
@@ -326,7 +331,7 @@ def _rename_in_scope(renaming: Renaming, scope: Container, scopes: dict[int, Con
     """Rename a key in one container and the interfaces of its children."""
     for preset in scope.userdata:
         if preset.key == renaming.new:
-            message = f"`{scope.name}` has a key `{renaming.new}` already"
+            message = f"`{scope.name}` already has a key `{renaming.new}`"
             raise RefusedError(preset.span, message, "choose another name")
         if preset.key == renaming.old:
             renaming.replace_word(preset.span)

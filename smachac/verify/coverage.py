@@ -143,7 +143,7 @@ class Reason(NamedTuple):
     never: bool = True
 
 
-UNKNOWN = Reason("no path has come to it", never=False)
+UNKNOWN = Reason("no path reached it", never=False)
 """The reason of an item that may be coverable."""
 
 
@@ -163,11 +163,11 @@ def _reason(item: CoverageItem, tree: Mapping[str, Container], planner: Planner)
         never = planner.cannot_end(item.path, item.rule)
         return Reason("no outcomes of the branches lead to it") if never else UNKNOWN
     if item.outcome not in planner.possible[item.path]:
-        return Reason("the state never ends so")
+        return Reason("the state never has this outcome")
     if item.kind == "loop" and isinstance(around, nodes.Iterator) and item_count(around) == 1:
-        return Reason("there is but one item")
+        return Reason("there is only one item")
     if node is not None and item.outcome == node.catches:
         return Reason(
-            "exceptions deep in a concurrence or of an iterator itself are not played", False
+            "exceptions inside a concurrence, or of an iterator itself, are not tested", False
         )
     return UNKNOWN

@@ -71,7 +71,7 @@ class PathGenerator:
         yield from self._simple_paths(most - max((most - self.runner.made) // 4, 0))
         yield from self._random_paths(most)
         if self.runner.endless:
-            self.left_out.append(f"{self.runner.endless} paths that found no end")
+            self.left_out.append(f"{self.runner.endless} paths without an end")
 
     # Every transition
 
@@ -100,7 +100,7 @@ class PathGenerator:
             if path is not None:
                 yield path
         if self._branch_points:
-            self.left_out.append("outcomes of states that no path has come to")
+            self.left_out.append("outcomes of states that no path reached")
 
     def _next_branch_point(self) -> _BranchPoint | None:
         """The next branch point whose option is untried."""
@@ -191,7 +191,7 @@ class PathGenerator:
         prefix: list[str | None] | None = []
         while prefix is not None:
             if self.runner.made >= most or not self._within():
-                self.left_out.append("more simple paths: there are too many to go through all")
+                self.left_out.append("more simple paths: there are too many of them")
                 return
             untried: list[list[str | None]] = []
             path_run, path = self.runner.make("simple", self._without_repeats(prefix, untried))

@@ -118,9 +118,9 @@ def render_text(verdict: Verdict) -> str:
     if (more := len(verdict.missing) - MOST_MISSING) > 0:
         lines.append(f"  and {more} more; --format json has them all")
     lines += [f"left out: {each}" for each in verdict.left_out]
-    compare_traces = {each.target for each in verdict.disagreements}
+    different = {each.target for each in verdict.disagreements}
     for target in verdict.targets:
-        lines.append(f"{target}: {'differs' if target in compare_traces else 'does the same'}")
+        lines.append(f"{target}: {'differs' if target in different else 'agrees'}")
     return "\n".join(lines) + "\n"
 
 
@@ -143,7 +143,7 @@ def _difference(each: Disagreement) -> Iterator[str]:
     ours = [_event(event) for event in each.expected[begin:end]]
     theirs = [_event(event) for event in each.found[begin:end]]
     width = max(map(len, ["interpreter", *ours]))
-    yield f"path {each.path}: {each.target} does something else than the interpreter"
+    yield f"path {each.path}: {each.target} differs from the interpreter"
     yield ""
     yield f"    {'interpreter':<{width}} | {each.target}"
     for at in range(max(len(ours), len(theirs))):
@@ -154,7 +154,7 @@ def _difference(each: Disagreement) -> Iterator[str]:
     yield ""
     yield "The scenario of that path, for `smachac run --mock`:"
     if each.live:
-        yield "# states that are not in it do what their expressions say"
+        yield "# states that are not in it evaluate their expressions"
     yield ""
     yield from scenario_text(each.rows).splitlines()
 

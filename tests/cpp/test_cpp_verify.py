@@ -112,7 +112,7 @@ def test_a_wrong_header_is_found(
     assert main(["verify", str(script), "--targets", "cpp", "--paths", "40"]) == 1
     assert any(changed)
     out = capsys.readouterr().out
-    assert "cpp does something else than the interpreter" in out
+    assert "cpp differs from the interpreter" in out
     assert "main.yml:" in next(line for line in out.splitlines() if line.startswith(" ->"))
 
 
@@ -123,7 +123,7 @@ def test_cpp_and_python_agree_in_one_run(
     script = tmp_path / "main.yml"
     script.write_text(ROUNDS, "utf-8")
     assert main(["verify", str(script), "--targets", "python,cpp", "--paths", "40"]) == 0
-    assert capsys.readouterr().out.endswith("python: does the same\ncpp: does the same\n")
+    assert capsys.readouterr().out.endswith("python: agrees\ncpp: agrees\n")
 
 
 def test_without_a_compiler_one_is_asked_for(

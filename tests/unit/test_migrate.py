@@ -111,12 +111,12 @@ TEMPLATES = {
     ),
     "python-2 of a statement": (
         "{% block defs %}\nraise A, b\n{% endblock %}",
-        "told",
+        "note",
         "raise A, b",
     ),
     "python-2 of an exception": (
         "{% block defs %}\n    except A, e:\n{% endblock %}",
-        "told",
+        "note",
         "except A, e:",
     ),
     "lost-block": ("{% block class_def %}x = 1{% endblock %}", "changed", "class_def"),
@@ -128,8 +128,8 @@ TEMPLATES = {
         "sm_name",
     ),
     "own-params": ("{% block defs %}{{ params }}{% endblock %}", "changed", "params"),
-    "stable-uuid": ("{% block defs %}x_{{ uuid }} = 1{% endblock %}", "told", "uuid"),
-    "old-style": ('{% include "State.tpl" %}', "told", '{% include "State.tpl" %}'),
+    "stable-uuid": ("{% block defs %}x_{{ uuid }} = 1{% endblock %}", "note", "uuid"),
+    "old-style": ('{% include "State.tpl" %}', "note", '{% include "State.tpl" %}'),
     "text-outside": ("\n# said\n{% block defs %}x = 1{% endblock %}", "changed", "# said"),
 }
 
@@ -181,7 +181,7 @@ def test_quirks_of_templates_are_in_the_report(
     assert code == 1
     assert "B.tpl.py:3:1: edit: `xrange` is Python 2: " in text
     assert "B.tpl.py:2:4: changed: SMACHA took `side` from `A.tpl.py`, which sets it, " in text
-    assert "C.tpl     template    works  1 told" in text
+    assert "C.tpl     template    works  1 noted" in text
     data = json.loads(migrated(capsys, str(tmp_path), "--format", "json")[1])
     assert [[item["name"] for item in file["items"]] for file in data["files"]] == [
         [], ["leaked-set", "python-2"], ["old-style"],

@@ -156,9 +156,9 @@ def test_what_cannot_be_taken_has_its_reason() -> None:
     verdict = judged(ROOT / "tests" / "cases" / "sugar" / "main.yml")
     assert verdict.disagreements == []
     assert {(way.path, way.outcome, why.text) for way, _, why in verdict.missing} == {
-        ("tour/TRIES", "good", "the state never ends so"),
-        ("tour/TRIES/TRIES", "good", "the state never ends so"),
-        ("tour/WITHOUT", "preempted", "the state never ends so"),
+        ("tour/TRIES", "good", "the state never has this outcome"),
+        ("tour/TRIES/TRIES", "good", "the state never has this outcome"),
+        ("tour/WITHOUT", "preempted", "the state never has this outcome"),
         ("tour/WITHOUT/WITHOUT", "succeeded", "the state is never entered"),
         ("tour/WITHOUT/WITHOUT", "preempted", "the state is never entered"),
     }
@@ -323,7 +323,7 @@ def test_a_target_asked_for_twice_is_played_once(
     rounds: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:
     assert main(["verify", str(rounds), "--targets", "python,python", "--paths", "9"]) == 0
-    assert capsys.readouterr().out.count("python: does the same") == 1
+    assert capsys.readouterr().out.count("python: agrees") == 1
 
 
 def test_a_target_that_cannot_be_played_is_wrong_usage(capsys: pytest.CaptureFixture[str]) -> None:
@@ -384,4 +384,4 @@ def test_text_report(rounds: Path, capsys: pytest.CaptureFixture[str]) -> None:
     lines = capsys.readouterr().out.splitlines()
     assert lines[0].startswith("30 paths (")
     assert "14 of 14 transitions taken (100 %)" in lines
-    assert lines[-1] == "python: does the same"
+    assert lines[-1] == "python: agrees"

@@ -51,7 +51,7 @@ def _state(file: File) -> str:
 
 
 def _counts(file: File) -> str:
-    words = (("edit", "to edit"), ("changed", "changed"), ("told", "told"))
+    words = (("edit", "to edit"), ("changed", "changed"), ("note", "noted"))
     found = [(file.count(what), word) for what, word in words]  # type: ignore[arg-type]
     return ", ".join(f"{number} {word}" for number, word in found if number)
 
@@ -91,11 +91,11 @@ def _reported(files: Sequence[File]) -> Iterator[tuple[File, MigrationItem]]:
 
 def _markdown(files: Sequence[File]) -> str:
     lines = [
-        "| file | kind | works | to edit | changed | told |",
+        "| file | kind | works | to edit | changed | noted |",
         "| --- | --- | --- | --- | --- | --- |",
     ]
     for file in files:
-        counts = " | ".join(str(file.count(what)) for what in ("edit", "changed", "told"))
+        counts = " | ".join(str(file.count(what)) for what in ("edit", "changed", "note"))
         lines.append(
             f"| {_cell(file.name)} | {file.kind} | {'no' if file.fails else 'yes'} | {counts} |"
         )

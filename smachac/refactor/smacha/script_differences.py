@@ -15,7 +15,7 @@ from smachac.diagnostics.source import Span
 from smachac.frontend.schema import LONG
 from smachac.frontend.yaml_tree import Entry, Map, Scalar, Seq, Tree
 
-What = Literal["edit", "changed", "told"]
+What = Literal["edit", "changed", "note"]
 """Required action: an edit; none, but the meaning is different; none (information)."""
 
 SMACHA_SHORT = frozenset(LONG) - {"k"}
@@ -109,7 +109,7 @@ def _state(entries: tuple[Entry, ...], *, base: bool) -> list[SmachaDifference]:
                 " catkin; here it has no effect"
             )
             found.append(
-                SmachaDifference(span=entry.key.span, name="manifest", message=message, what="told")
+                SmachaDifference(span=entry.key.span, name="manifest", message=message, what="note")
             )
         if calls and name not in _MERGED:
             message = (

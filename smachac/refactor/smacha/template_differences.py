@@ -207,12 +207,12 @@ def _of_text(source: Source, chain: list[tuple[Source, Names]]) -> Iterator[Smac
         line = text.count("\n", 0, found.end()) + 1
         message = "SMACHA made a `uuid` anew in each run; here it is the same in each build"
         yield SmachaDifference(
-            span=_word(source, line, "uuid"), name="stable-uuid", what="told", message=message
+            span=_word(source, line, "uuid"), name="stable-uuid", what="note", message=message
         )
     if found := _OLD.search(source.text):
         message = "it includes `State.tpl` and adds its state itself, as older templates do"
         span = Span(source, found.start(), found.end())
-        yield SmachaDifference(span=span, name="old-style", what="told", message=message)
+        yield SmachaDifference(span=span, name="old-style", what="note", message=message)
     if chain[0][1].loose and not _is_base(chain):
         line = chain[0][1].loose
         message = "SMACHA printed what is outside of blocks once for each block; here it is not"
@@ -227,7 +227,7 @@ def _of_text(source: Source, chain: list[tuple[Source, Names]]) -> Iterator[Smac
         elif translated(code) not in (None, code):
             message = f"`{_line(source, number).text}` is Python 2; it is printed as Python 3"
             yield SmachaDifference(
-                span=_line(source, number), name="python-2", what="told", message=message
+                span=_line(source, number), name="python-2", what="note", message=message
             )
 
 
