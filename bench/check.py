@@ -18,13 +18,16 @@ import sys
 import tempfile
 import time
 from collections.abc import Iterator
+from dataclasses import replace
 from functools import partial
 from itertools import pairwise
 from pathlib import Path
 from typing import TYPE_CHECKING
 
 if TYPE_CHECKING:
-    from smachac.diagnostics.diagnostic import Finding, RuleFunction
+    from smachac.analysis.context import Context
+    from smachac.checks.rule import RuleFunction
+    from smachac.diagnostics.diagnostic import Finding
 
 SIZES = (1_000, 10_000, 100_000)
 DEPTH = 1_000
@@ -176,9 +179,10 @@ class Laps:
 
 def phases(path: str) -> dict[str, float]:
     """CPU seconds of each phase and rule, and of `check` as a whole, without its start-up."""
-    from smachac.checks import check_machine
-    from smachac.diagnostics.diagnostic import RULES, Report, in_order
+    from smachac.checks import RULES, check_machine
+    from smachac.diagnostics.diagnostic import Report, in_order
     from smachac.diagnostics.severities import apply_severities
+    from smachac.driver import CODES
     from smachac.frontend.files import disk_library, read_source
     from smachac.frontend.lower import lower
     from smachac.frontend.resolve import resolve
@@ -200,11 +204,13 @@ def phases(path: str) -> dict[str, float]:
         laps("resolve")
         machine = lower(resolved)
         laps("lower")
-        for code, rule in RULES.items():
-            RULES[code] = partial(timed, rule, laps, code)
-        report += check_machine(machine)
+        rules = [
+            replace(rule, function=partial(timed, rule.function, laps, rule.code.code))
+            for rule in RULES
+        ]
+        report += check_machine(machine, tuple(rules))
         parse, texts = library.parse, resolved.sources
-        given = [fit for text in texts for fit in allowances(text, report, parse)]
+        given = [fit for text in texts for fit in allowances(text, report, CODES, parse)]
         report = apply_severities(in_order(heeded(report, given)[0]), library.policy)
         laps("report")
     return {
@@ -216,8 +222,8 @@ def phases(path: str) -> dict[str, float]:
     }
 
 
-def timed(rule: RuleFunction, laps: Laps, code: str, machine: object) -> Iterator[Finding]:
-    found = list(rule(machine))
+def timed(rule: RuleFunction, laps: Laps, code: str, context: Context) -> Iterator[Finding]:
+    found = list(rule(context))
     laps(code)
     return iter(found)
 

@@ -9,7 +9,7 @@ from pathlib import Path
 
 from smachac.diagnostics.diagnostic import Report, identity, in_order
 from smachac.diagnostics.source import Source, Word
-from smachac.driver import Analysis, Judge, analyse, analyse_alone
+from smachac.driver import CODES, Analysis, Judge, analyse, analyse_alone
 from smachac.frontend.errors.suppressions import unused_allowances
 from smachac.frontend.files import Disk, disk_library
 from smachac.frontend.suppressions import Allowance
@@ -67,7 +67,9 @@ def survey(
         if source is None:
             analyses[str(path)] = Analysis(report=report)
         else:
-            library = disk_library(path, report, scripts=scripts, templates=templates, disk=disk)
+            library = disk_library(
+                path, report, scripts=scripts, templates=templates, disk=disk, codes=CODES
+            )
             if called:
                 analyses[str(path)] = analyse(source, library, report, more)
             else:

@@ -8,10 +8,13 @@ from dataclasses import dataclass, replace
 from os import PathLike
 from typing import TypeAlias
 
+from smachac import checks
 from smachac.checks import check_machine
-from smachac.diagnostics.diagnostic import Diagnostic, Finding, Report, has_errors, in_order
+from smachac.diagnostics.diagnostic import Code, Diagnostic, Report, has_errors, in_order
 from smachac.diagnostics.severities import apply_severities
-from smachac.diagnostics.source import Source, Span, Word
+from smachac.diagnostics.source import Source, Word
+from smachac.frontend.errors import references, suppressions
+from smachac.frontend.errors import script as script_errors
 from smachac.frontend.errors.suppressions import unused_allowances
 from smachac.frontend.loader import Library
 from smachac.frontend.lower import lower
@@ -19,12 +22,29 @@ from smachac.frontend.resolve import resolve
 from smachac.frontend.suppressions import Allowance, allowances, heeded
 from smachac.ir.nodes import Checked, Machine
 from smachac.ir.recursion import deep_recursion
-from smachac.ir.traversal import remapping, walk
-from smachac.targets import Context, Files, Target, load_target
+from smachac.ir.traversal import remapping
+from smachac.targets import Context, Files, Target, errors, load_target
 from smachac.targets.interface_check import code_faults, target_faults
 from smachac.targets.undefined_names import undefined_names
 
 Folders: TypeAlias = "Sequence[str | PathLike[str]]"
+
+_PROBLEMS = (
+    *script_errors.PROBLEMS,
+    *references.PROBLEMS,
+    *suppressions.PROBLEMS,
+    *checks.PROBLEMS,
+    *errors.PROBLEMS,
+)
+
+CODES: Mapping[str, Code] = {
+    code.code: code
+    for code in sorted(
+        [*(each.code for each in _PROBLEMS), *(each.code for each in checks.RULES)],
+        key=lambda code: code.code,
+    )
+}
+"""All codes, those of problems and those of rules, in order."""
 
 
 def analyse_file(
@@ -40,7 +60,9 @@ def analyse_file(
     if source is None:
         return Analysis(report=report), None
     folders = [[Path(folder) for folder in each] for each in (scripts, templates)]
-    library = disk_library(Path(path), report, scripts=folders[0], templates=folders[1])
+    library = disk_library(
+        Path(path), report, scripts=folders[0], templates=folders[1], codes=CODES
+    )
     return analyse(source, library, report), library
 
 
@@ -93,7 +115,9 @@ def analyse(
         sources = {id(text): text for text in (script.sources if script is not None else (source,))}
         sources |= {id(item.span.source): item.span.source for item in report}
         given = [
-            fit for text in sources.values() for fit in allowances(text, report, library.parse)
+            fit
+            for text in sources.values()
+            for fit in allowances(text, report, CODES, library.parse)
         ]
         found, used = heeded(report, given)
         unused = [fit for fit in given if fit not in used]
@@ -101,8 +125,6 @@ def analyse(
             Word(fit.code, fit.span) for fit in unused if fit.span.source is source
         )
         found = apply_severities(in_order(found), library.policy)
-        if machine is not None:
-            found = with_places(found, machine)
     return Analysis(
         machine=machine,
         checked=Checked(machine) if machine is not None and not has_errors(found) else None,
@@ -162,29 +184,6 @@ def _inside(report: Report, outside: Source) -> Iterator[Diagnostic]:
         finding = item.finding
         related = tuple(each for each in finding.related if each.span.source is not outside)
         yield replace(item, finding=replace(finding, related=related))
-
-
-def with_places(report: Report, machine: Machine) -> Report:
-    """A report in which the steps of witness paths know where their states stand."""
-    if not any(item.finding.path for item in report):
-        return report
-    places: dict[str, Span] = {}
-    for path, node in walk(machine.root):
-        places.setdefault(path, node.span)
-
-    def steps(finding: Finding) -> tuple[Span | None, ...]:
-        """Steps are named by path, or by name beside the state or inside it."""
-        node = finding.node or machine.root.name
-        around = ("", f"{node.rpartition('/')[0]}/", f"{node}/")
-        found = []
-        for name in finding.path:
-            known = (f"{prefix}{name}" for prefix in around)
-            found.append(next((places[path] for path in known if path in places), None))
-        return tuple(found)
-
-    return [
-        replace(item, steps=steps(item.finding)) if item.finding.path else item for item in report
-    ]
 
 
 def build(

@@ -1,17 +1,19 @@
-"""What a leaf reads and writes of userdata: as its interface says, or as its built-in type does."""
+"""Userdata accesses: the keys that each state reads and writes.
+
+The accesses of a leaf follow from its interface, or from its built-in state type.
+"""
 
 from __future__ import annotations
 
 import ast
 import warnings
-from collections.abc import Iterable, Mapping
+from collections.abc import Iterable, Mapping, Sequence
 from functools import lru_cache
 from typing import NamedTuple
 
-from smachac.analysis.context import states
 from smachac.ir import nodes
 from smachac.ir.leaf import CALLING, default_outcome, variable
-from smachac.ir.nodes import Expression, Leaf, Machine, Node, Struct
+from smachac.ir.nodes import Expression, Leaf, Node, Struct
 from smachac.ir.traversal import PREEMPTED, remapping
 
 NONE: frozenset[str] = frozenset()
@@ -23,8 +25,9 @@ _ALL_CODE = ("CallbacksState", "ConditionalOutcomeState")
 class Writes(NamedTuple):
     """The keys that are set when a state ends with some outcome.
 
-    `sure`: always. `trusted`: unless a stand-in or unknown code proves otherwise, so that nobody is
-    blamed for what is not known. `perhaps`: possibly. `anything`: unknown code may set any key.
+    `sure`: always. `trusted`: always, if stand-ins and unknown code do what they declare; rules use
+    these, so that no finding rests on what is not known. `perhaps`: possibly. `anything`: unknown
+    code can set any key.
     """
 
     sure: frozenset[str] = NONE
@@ -37,16 +40,12 @@ NOTHING = Writes()
 ANYTHING = Writes(anything=True)
 
 
-def is_optional(node: Node, key: str) -> bool:
-    """Whether a declared input may be absent: its type is `T?`."""
-    return any(each.name == key and each.type.name == "optional" for each in node.inputs)
-
-
 def leaf_reads(leaf: Leaf, *, raw: bool = False) -> tuple[str, ...]:
-    """The keys, under the leaf's names, that have to be there when it is entered.
+    """The keys, under the leaf's names, that must be set when it is entered.
 
-    These are its declared inputs but for optional ones; callbacks say it exactly. `raw`: the leaf
-    sees every key of its container, as the child of an iterator does (smach-semantics I7).
+    These are its declared inputs except optional ones; where the leaf has callbacks, they are the
+    keys that the callbacks read. `raw`: the leaf sees every key of its container, as the child of
+    an iterator does (smach-semantics I7).
     """
     if leaf.open or not (leaf.inputs or raw):
         return ()
@@ -77,9 +76,9 @@ def leaf_reads(leaf: Leaf, *, raw: bool = False) -> tuple[str, ...]:
 
 
 def leaf_writes(leaf: Leaf, outcome: str, *, raw: bool = False) -> Writes:
-    """The keys, under the leaf's names, that it has set when it ends with an outcome.
+    """The keys, under the leaf's names, that are set when it ends with an outcome.
 
-    An exception may come before any of them is written, or after.
+    An exception can be raised before any of them is written, or after.
     """
     if leaf.open:
         return ANYTHING
@@ -109,7 +108,8 @@ def leaf_writes(leaf: Leaf, outcome: str, *, raw: bool = False) -> Writes:
 
 
 def _scripted(leaf: Leaf, outcome: str, outputs: frozenset[str], raw: bool) -> Writes:
-    """What the steps of a ScriptedState set. A key that no step sets is left to the real state."""
+    """What the steps of a ScriptedState set. A key that no step sets can be set by the real
+    state."""
     steps = list(scripted_steps(leaf))
     ever = frozenset(key for _, keys in steps for key in keys)
     sets = [frozenset(keys) for name, keys in steps if name == outcome]
@@ -138,7 +138,7 @@ def _names(leaf: Leaf) -> tuple[str, ...]:
 
 
 def callbacks(leaf: Leaf) -> Mapping[str, Expression] | None:
-    """The functions of a leaf by key or outcome; None where they cannot be told."""
+    """The functions of a leaf by key or outcome; None where they are not known."""
     data = variable(leaf, "callbacks")
     if data is None:
         return {}
@@ -148,13 +148,13 @@ def callbacks(leaf: Leaf) -> Mapping[str, Expression] | None:
 
 
 def callback_names(leaf: Leaf) -> frozenset[str]:
-    """The names under which a leaf has functions, or what should be some."""
+    """The names in the `callbacks` of a leaf, also those whose value is no code."""
     data = variable(leaf, "callbacks")
     return frozenset(key for key, _ in data.entries) if isinstance(data, Struct) else NONE
 
 
 class Fields(NamedTuple):
-    """The keys that code reads of userdata, in order, and those it asks for with `in`."""
+    """The keys of userdata that code reads, in order, and those that it tests with `in`."""
 
     read: tuple[str, ...]
     tested: frozenset[str]
@@ -165,9 +165,9 @@ _METHODS = frozenset(["keys", "update", "extract", "merge"])
 
 @lru_cache(maxsize=10_000)
 def userdata_fields(text: str) -> Fields | None:
-    """What a lambda over userdata, or an expression over `ud`, reads; None where it cannot be told.
+    """The keys that a lambda over userdata, or an expression over `ud`, reads; None if not known.
 
-    It cannot where the code hands userdata on, or is the name of a function.
+    They are not known where the code passes userdata on, or is the name of a function.
     """
     try:
         with warnings.catch_warnings():
@@ -212,32 +212,32 @@ def _fields(body: ast.expr, names: set[str]) -> Fields | None:
 
 
 Keys = dict[str, Node]
-"""Keys, under the names they have around the state, with the leaf or container that is behind it:
-the innermost whose access it is."""
+"""Keys, under the names they have around the state, with the innermost node that accesses each."""
 
 
 class Accesses(NamedTuple):
-    """What a state may read and may write of the userdata around it."""
+    """The keys of the userdata around a state that it can read and can write."""
 
     reads: Keys
     writes: Keys
 
 
-def accesses(machine: Machine) -> dict[int, Accesses]:
-    """The accesses of every state, by `id`.
+def accesses(states: Sequence[tuple[str, Node]]) -> dict[str, Accesses]:
+    """The accesses of every state, by path.
 
     A leaf may read and write the keys it declares, at any time. A container copies its inputs when
-    it starts, and its outputs when it ends (smach-semantics V1, V4); it counts as reading what
-    something in it reads, and as writing what it hands on or something in it has put there.
+    it starts, and its outputs when it ends (smach-semantics V1, V4); it counts as reading
+    the inputs that something in it reads, and as writing the outputs that it takes in or that
+    something in it writes.
     """
-    found: dict[int, Accesses] = {}
-    for _, node in reversed(states(machine)):
-        found[id(node)] = around(node, inside(node, found))
+    found: dict[str, Accesses] = {}
+    for path, node in reversed(states):
+        found[path] = around(node, inside(path, node, found))
     return found
 
 
-def inside(node: Node, known: dict[int, Accesses]) -> Accesses:
-    """What is read and written of a state's own userdata by what is in it."""
+def inside(path: str, node: Node, known: Mapping[str, Accesses]) -> Accesses:
+    """The accesses of the nodes inside a state to the state's own userdata."""
     if isinstance(node, Leaf):
         return Accesses(
             {key.name: node for key in node.inputs}, {key.name: node for key in node.outputs}
@@ -245,9 +245,10 @@ def inside(node: Node, known: dict[int, Accesses]) -> Accesses:
     reads: Keys = {}
     writes: Keys = {}
     for child in node.children:
-        for key, origin in known[id(child)].reads.items():
+        own = known[f"{path}/{child.name}"]
+        for key, origin in own.reads.items():
             reads.setdefault(key, origin)
-        for key, origin in known[id(child)].writes.items():
+        for key, origin in own.writes.items():
             writes.setdefault(key, origin)
     if isinstance(node, nodes.Iterator):
         writes.setdefault(node.item_key, node)
@@ -257,7 +258,7 @@ def inside(node: Node, known: dict[int, Accesses]) -> Accesses:
 
 
 def around(node: Node, own: Accesses) -> Accesses:
-    """The accesses to its own userdata as far as they go to the userdata around it."""
+    """The accesses to a state's own userdata that are also accesses to the userdata around it."""
     if isinstance(node, Leaf):
         return Accesses(_renamed(node, own.reads), _renamed(node, own.writes))
     inputs = {key.name for key in node.inputs}

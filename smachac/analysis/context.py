@@ -1,44 +1,134 @@
-"""What several rules ask about one machine is found out once."""
+"""Per-machine analysis results, each computed at its first use and kept."""
 
 from __future__ import annotations
 
-from collections.abc import Callable
-from functools import wraps
-from typing import TypeVar
+from functools import cached_property
 
-from smachac.analysis.type_inference import infer
-from smachac.ir import traversal
-from smachac.ir.nodes import Container, Machine, Node
+from smachac.analysis.accesses import Accesses, accesses
+from smachac.analysis.control_flow import Linear, endless_states
+from smachac.analysis.definite_assignment import DataFlow, data_flow
+from smachac.analysis.error_recovery import mended_machine
+from smachac.analysis.expression_errors import Fault
+from smachac.analysis.expression_sites import ExpressionSite, expression_sites
+from smachac.analysis.failure_paths import Failure, failures
+from smachac.analysis.lost_outputs import Lost, lost_outputs
+from smachac.analysis.possible_outcomes import Endings, Judged, endings, judged
+from smachac.analysis.reaching_values import reaching_clashes
+from smachac.analysis.resource_claims import Held, claims
+from smachac.analysis.successors import Routes
+from smachac.analysis.type_inference import Clash, Types, infer
+from smachac.analysis.type_lattice import MisfitKind
+from smachac.analysis.unset_reads import Cause, Missing, missing_keys
+from smachac.diagnostics.source import Span
+from smachac.ir import nodes, traversal
+from smachac.ir.nodes import Container, Machine, Node, StateMachine
 
-Answer = TypeVar("Answer")
 
+class Context:
+    """The analysis results of one machine.
 
-def once(ask: Callable[[Machine], Answer]) -> Callable[[Machine], Answer]:
-    """A question about a machine whose last answer is kept: every rule asks of the same one.
-
-    Nobody may change the answer.
+    Rules and explanations receive a context. The analyses are plain functions in the other modules
+    of this package: they take what they need, and none of them imports this module. Results are
+    shared, so nobody may change them.
     """
-    latest: list[tuple[Machine, Answer]] = []
 
-    @wraps(ask)
-    def asked(machine: Machine) -> Answer:
-        if not latest or latest[0][0] is not machine:
-            latest[:] = [(machine, ask(machine))]
-        return latest[0][1]
+    def __init__(self, machine: Machine) -> None:
+        self.machine = machine
 
-    return asked
+    @cached_property
+    def states(self) -> tuple[tuple[str, Node], ...]:
+        """All nodes with their paths, parents before children."""
+        return tuple(traversal.walk(self.machine.root))
 
+    @cached_property
+    def containers(self) -> tuple[tuple[str, Container], ...]:
+        """The containers with their paths, parents before children."""
+        return tuple(traversal.containers(self.machine.root))
 
-@once
-def states(machine: Machine) -> tuple[tuple[str, Node], ...]:
-    """All nodes of a machine with their paths, parents before children."""
-    return tuple(traversal.walk(machine.root))
+    @cached_property
+    def linear(self) -> tuple[tuple[str, Linear], ...]:
+        """The containers whose states follow one another along transitions."""
+        return tuple(
+            (path, container)
+            for path, container in self.containers
+            if isinstance(container, StateMachine | nodes.Sequence)
+        )
 
+    @cached_property
+    def spans(self) -> dict[str, Span]:
+        """The span of each state by path; of two states with one path, that of the first."""
+        return {path: node.span for path, node in reversed(self.states)}
 
-@once
-def containers(machine: Machine) -> tuple[tuple[str, Container], ...]:
-    """The containers among them."""
-    return tuple(traversal.containers(machine.root))
+    @cached_property
+    def types(self) -> Types:
+        """The types of userdata."""
+        return infer(self.machine)
 
+    @cached_property
+    def clashes(self) -> dict[MisfitKind, list[Clash]]:
+        """The type clashes whose value reaches its reader, by kind."""
+        return reaching_clashes(self.types.clashes)
 
-types_of = once(infer)
+    @cached_property
+    def expression_faults(self) -> list[tuple[ExpressionSite, Fault]]:
+        """The type errors in the code of the script."""
+        sites = expression_sites(self.states, self.types)
+        return [(site, fault) for site in sites for fault in site.faults()]
+
+    @cached_property
+    def flow(self) -> DataFlow:
+        """The data flow of the machine as written."""
+        return data_flow(self.machine)
+
+    @cached_property
+    def mended_flow(self) -> DataFlow:
+        """The data flow of the machine with misspelt names corrected."""
+        return data_flow(mended_machine(self.machine, self.containers))
+
+    @cached_property
+    def _missing_keys(self) -> tuple[Missing, ...]:
+        return missing_keys(self.mended_flow)
+
+    def missing_keys(self, *causes: Cause) -> list[Missing]:
+        """The keys that are missing for one of these causes, in the order of the script."""
+        return [each for each in self._missing_keys if each.cause in causes]
+
+    @cached_property
+    def lost_outputs(self) -> tuple[Lost, ...]:
+        """The keys that are written in a container, needed outside, and not handed out."""
+        return lost_outputs(self.mended_flow, self.missing_keys("lost"))
+
+    @cached_property
+    def accesses(self) -> dict[str, Accesses]:
+        """What each state reads and writes of the userdata around it."""
+        return accesses(self.states)
+
+    @cached_property
+    def claims(self) -> Held:
+        """The resources that each state holds while it runs."""
+        return claims(self.states, self.containers, self.accesses)
+
+    @cached_property
+    def endless(self) -> frozenset[str]:
+        """The paths of the states that never end."""
+        return endless_states(self.states)
+
+    @cached_property
+    def endings(self) -> Endings:
+        """The outcomes that states in concurrences can end with."""
+        return endings(self.states)
+
+    @cached_property
+    def judged(self) -> list[Judged]:
+        """The concurrences whose rules can be judged."""
+        return judged(self.containers, self.endings)
+
+    @cached_property
+    def routes(self) -> Routes:
+        """The control flow of the whole machine."""
+        return Routes(self.states, self.endings)
+
+    @cached_property
+    def failures(self) -> tuple[Failure, ...]:
+        """Every failure that can begin, with where it leads."""
+        return tuple(failures(self.states, self.routes))

@@ -1,17 +1,18 @@
-"""Containers as far as their flow can be judged, so that one fault is reported once.
+"""Control flow inside a container: strongly connected components and shortest witness paths.
 
-A misspelt name is read as the name it is nearest to; what is not known of an open leaf is taken to
-be fine.
+The analyses work on mended containers, so that one fault gives one finding: a misspelt name stands
+for the nearest known name, and an open leaf can have every outcome that avoids a finding.
 """
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Iterator, Mapping, Sequence
+from collections.abc import Iterable, Mapping, Sequence
 from collections.abc import Set as AbstractSet
 from dataclasses import replace
-from typing import TypeAlias
+from itertools import pairwise
+from typing import TYPE_CHECKING, TypeAlias
 
-from smachac.analysis.context import containers, once, states
+from smachac.diagnostics.diagnostic import PathStep, ended, entered
 from smachac.diagnostics.source import assert_never
 from smachac.diagnostics.spelling import Guesser, guesser
 from smachac.ir import nodes
@@ -19,7 +20,6 @@ from smachac.ir.graph import START, can_end, edges, reachable
 from smachac.ir.nodes import (
     Concurrence,
     Leaf,
-    Machine,
     Node,
     Outcome,
     StateMachine,
@@ -28,15 +28,11 @@ from smachac.ir.nodes import (
 from smachac.ir.outcome_names import PREEMPTED, is_failure
 from smachac.ir.traversal import leads_to_child, outcome_names
 
+if TYPE_CHECKING:
+    import networkx as nx
+
 Linear: TypeAlias = "StateMachine | nodes.Sequence"
-"""A container whose states follow one another along transitions."""
-
-
-def linear(machine: Machine) -> Iterator[tuple[str, Linear]]:
-    """The containers with transitions, and their paths."""
-    for path, container in containers(machine):
-        if isinstance(container, StateMachine | nodes.Sequence):
-            yield path, container
+"""A container whose states are connected by transitions."""
 
 
 def is_open(node: Node) -> bool:
@@ -44,7 +40,7 @@ def is_open(node: Node) -> bool:
 
 
 def fails(node: Node, outcome: str) -> bool:
-    """Whether a state has failed when it ends so; tries that are used up (`retry:`) have."""
+    """Whether an outcome of a state is a failure; the exhausted outcome of `retry:` is one."""
     if isinstance(node, nodes.Iterator) and node.sugar == "retry":
         return outcome == node.exhausted_outcome or is_failure(outcome)
     return is_failure(outcome)
@@ -55,7 +51,7 @@ def children_names(container: nodes.Container) -> frozenset[str]:
 
 
 def places_of(container: nodes.Container) -> Guesser:
-    """Guesses what a transition inside a container was meant to lead to."""
+    """The guesser for the targets of transitions inside a container."""
     return guesser([*(child.name for child in container.children), *outcome_names(container)])
 
 
@@ -64,7 +60,7 @@ def leads_somewhere(transition: Transition, names: frozenset[str], exits: frozen
 
 
 def unknown_outcomes(child: Node) -> list[tuple[Transition, str | None]]:
-    """The transitions from outcomes that a state does not have, with the outcome meant."""
+    """The transitions for outcomes that a state does not have, with the nearest known outcome."""
     declared = {outcome.name for outcome in child.outcomes}
     unknown = [step for step in child.transitions if step.outcome not in declared]
     if not unknown or is_open(child):
@@ -74,9 +70,9 @@ def unknown_outcomes(child: Node) -> list[tuple[Transition, str | None]]:
 
 
 def mended(container: Linear) -> Linear:
-    """A container with misspelt targets and outcomes put right, where a near name exists.
+    """A container with misspelt targets and outcomes corrected, where a near name exists.
 
-    A state that lists no outcome at all has those of its transitions.
+    A state that declares no outcome gets those of its transitions.
     """
     names = children_names(container)
     exits = frozenset(outcome_names(container))
@@ -92,9 +88,10 @@ def mended(container: Linear) -> Linear:
         lost = [step for step in node.transitions if not leads_somewhere(step, names, exits)]
         if not unknown and not lost:
             return node
-        wrong = {id(step): meant for step, meant in unknown}
+        wrong = {step.outcome: meant for step, meant in unknown}
         steps = [
-            replace(step, outcome=wrong.get(id(step)) or step.outcome) for step in node.transitions
+            replace(step, outcome=wrong.get(step.outcome) or step.outcome)
+            for step in node.transitions
         ]
         outcomes = node.outcomes or tuple(Outcome(name=s.outcome, span=s.span) for s in steps)
         return replace(node, outcomes=outcomes, transitions=tuple(map(target, steps)))
@@ -105,15 +102,15 @@ def mended(container: Linear) -> Linear:
     return replace(container, children=children)
 
 
-def outline(container: Linear, endless: AbstractSet[int]) -> Linear:
-    """A mended container in which open leaves can leave and endless states cannot.
+def outline(path: str, container: Linear, endless: AbstractSet[str]) -> Linear:
+    """A mended container in which open leaves lead out of it and endless states lead nowhere.
 
-    An open leaf may have any outcome: one that its container has and it does not handle leaves.
+    An open leaf can have any outcome, also one that its container has and no transition handles.
     """
     exits = outcome_names(container)
 
     def child(node: Node) -> Node:
-        if id(node) in endless:
+        if endless and f"{path}/{node.name}" in endless:
             return replace(node, transitions=(), outcomes=())
         if not is_open(node):
             return node
@@ -125,55 +122,53 @@ def outline(container: Linear, endless: AbstractSet[int]) -> Linear:
         more = Transition(outcome=way, target=way, origin="implicit", span=node.span)
         return replace(node, transitions=(*node.transitions, more))
 
-    # Endless states are known by identity, which mending would change.
     outlined = replace(container, children=tuple(map(child, container.children)))
     return mended(outlined)
 
 
-@once
-def endless_states(machine: Machine) -> frozenset[int]:
-    """The states, by `id`, that never end and are meant so, or have no outcome at all.
+def endless_states(states: Sequence[tuple[str, Node]]) -> frozenset[str]:
+    """The paths of the states that never end: with `forever: true`, or without any outcome.
 
-    A container with a trap of its own is not among them: the trap is reported inside it.
+    A container with a trap in it is not among them: the trap is reported inside it.
     """
-    found: set[int] = set()
-    for _, node in reversed(states(machine)):
-        if _never_ends(node, found):
-            found.add(id(node))
+    found: set[str] = set()
+    for path, node in reversed(states):
+        if _never_ends(path, node, found):
+            found.add(path)
     return frozenset(found)
 
 
-def _never_ends(node: Node, inner: set[int]) -> bool:
+def _never_ends(path: str, node: Node, inner: set[str]) -> bool:
     if node.catches:
         return False
     match node:
         case Leaf():
             return not node.open and not node.outcomes and not node.transitions
         case StateMachine(forever=True):
-            flow = outline(node, inner)
+            flow = outline(path, node, inner)
             return node.initial in reachable(flow) - can_end(flow)
         case StateMachine() | nodes.Sequence():
             return False
         case Concurrence():
-            lasting = [id(child) in inner for child in node.children]
+            lasting = [f"{path}/{child.name}" in inner for child in node.children]
             return bool(lasting) and (all(lasting) if node.join == "any" else any(lasting))
         case nodes.Iterator():
             skips = any(edge.source == START and edge.kind == "exhausted" for edge in edges(node))
-            return not skips and any(id(child) in inner for child in node.children)
+            return not skips and any(f"{path}/{c.name}" in inner for c in node.children)
     return assert_never(node)
 
 
 MOST_STEPS = 50
-"""A witness path keeps so many of its last states."""
+"""The most states of a witness path: the last ones are kept."""
 
-Steps = dict[str, list[tuple[str, str]]]
-"""The outcomes of each state that lead to a sibling, and to which."""
+SiblingSteps = dict[str, list[tuple[str, str]]]
+"""For each state the outcomes that lead to a sibling, with the sibling."""
 
 
-def steps_of(container: Linear) -> Steps:
-    """The steps inside a container."""
+def steps_of(container: Linear) -> SiblingSteps:
+    """The transitions between the states of a container."""
     names = children_names(container)
-    steps: Steps = {child.name: [] for child in container.children}
+    steps: SiblingSteps = {child.name: [] for child in container.children}
     for child in container.children:
         for step in child.transitions:
             if leads_to_child(step, names):
@@ -190,21 +185,32 @@ def stuck_states(container: Linear) -> list[str]:
     return list(dict.fromkeys(child.name for child in container.children if child.name in stuck))
 
 
-def regions(names: Iterable[str], steps: Steps) -> list[list[str]]:
-    """The strongly connected parts of a graph; they and their states in the order of `names`."""
+def step_graph(names: Iterable[str], steps: SiblingSteps) -> nx.DiGraph:
+    """Some states of a container and the steps between them, with the first outcome of each."""
     import networkx as nx
 
-    order = {name: number for number, name in enumerate(names)}
     graph = nx.DiGraph()
-    graph.add_nodes_from(order)
-    graph.add_edges_from((a, b) for a in order for _, b in steps[a] if b in order)
+    graph.add_nodes_from(names)
+    for name in list(graph):
+        for outcome, target in steps[name]:
+            if target in graph and not graph.has_edge(name, target):
+                graph.add_edge(name, target, outcome=outcome)
+    return graph
+
+
+def regions(names: Iterable[str], steps: SiblingSteps) -> list[list[str]]:
+    """The strongly connected components, in the order of `names`, as their states are."""
+    import networkx as nx
+
+    graph = step_graph(names, steps)
+    order = {name: number for number, name in enumerate(graph)}
     parts = nx.strongly_connected_components(graph)
     found = [sorted(part, key=order.__getitem__) for part in parts]
     return sorted(found, key=lambda part: order[part[0]])
 
 
-def dead_ends(names: Iterable[str], steps: Steps) -> list[list[str]]:
-    """The regions that no step leaves."""
+def dead_ends(names: Iterable[str], steps: SiblingSteps) -> list[list[str]]:
+    """The strongly connected components that no transition leaves."""
     ends = []
     for region in regions(names, steps):
         inside = frozenset(region)
@@ -213,36 +219,40 @@ def dead_ends(names: Iterable[str], steps: Steps) -> list[list[str]]:
     return ends
 
 
-def ways_from(start: str, steps: Steps) -> dict[str, tuple[str, str]]:
-    """Shortest ways: for each state that follows `start`, the state and outcome before it."""
-    before: dict[str, tuple[str, str]] = {}
-    todo = [start]
-    for name in todo:
-        for outcome, target in steps.get(name, ()):
-            if target not in before:
-                before[target] = (name, outcome)
-                if target != start:
-                    todo.append(target)
-    return before
+Before = Mapping[str, "str | None"]
+"""States with the one before each on a shortest path from a start, nearest first."""
 
 
-def way(start: str, goal: str, before: Mapping[str, tuple[str, str]]) -> list[str]:
-    """The states on the way to `goal`, and between them the outcomes, in brackets.
+def shortest_paths(graph: nx.DiGraph, start: str) -> Before:
+    """The shortest paths from a state; none where there is no such state."""
+    import networkx as nx
 
-    Where the goal is the start, the way leads round to it once more.
-    """
-    found = [goal]
-    while len(found) < 2 * MOST_STEPS and found[-1] in before:
-        name, outcome = before[found[-1]]
-        found += [f"({outcome})", name]
-        if name == start:
-            break
-    return found[::-1]
+    if start not in graph:
+        return {}
+    return {start: None, **{name: last for last, name in nx.bfs_edges(graph, start)}}
 
 
-def circle(region: Sequence[str], steps: Steps) -> list[str]:
-    """The shortest way from the first state of a region back to it; empty where there is none."""
-    inside = frozenset(region)
-    within = {name: [step for step in steps[name] if step[1] in inside] for name in region}
-    before = ways_from(region[0], within)
-    return way(region[0], region[0], before) if region[0] in before else []
+def way(path: str, graph: nx.DiGraph, before: Before, goal: str) -> list[PathStep]:
+    """A shortest path to a state of the container at a path; the state alone if there is none."""
+    names = [goal]
+    while (last := before.get(names[-1])) is not None:
+        names.append(last)
+    names = names[: MOST_STEPS + 1][::-1]
+    steps = [entered(names[0], f"{path}/{names[0]}")]
+    for name, following in pairwise(names):
+        outcome = graph.edges[name, following]["outcome"]
+        steps += [ended(outcome), entered(following, f"{path}/{following}")]
+    return steps
+
+
+def circle(path: str, region: Sequence[str], steps: SiblingSteps) -> list[PathStep]:
+    """The shortest path from the first state of a region back to it; empty where there is none."""
+    first = region[0]
+    graph = step_graph(region, steps)
+    before = shortest_paths(graph, first)
+    last = next((name for name in before if graph.has_edge(name, first)), None)
+    if last is None:
+        return []
+    outcome = graph.edges[last, first]["outcome"]
+    there = way(path, graph, before, last)[-2 * MOST_STEPS + 1 :]
+    return [*there, ended(outcome), entered(first, f"{path}/{first}")]

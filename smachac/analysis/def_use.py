@@ -1,4 +1,4 @@
-"""One userdata key along the paths of a machine: where it is set, and a path on which it is not."""
+"""Definitions and uses of one userdata key, and a witness path on which it is unset."""
 
 from __future__ import annotations
 
@@ -6,41 +6,47 @@ from collections.abc import Iterable, Iterator, Mapping
 from dataclasses import dataclass, field
 from typing import Literal, NamedTuple
 
-from smachac.analysis.definite_assignment import Flow, Scope, child_writes
-from smachac.analysis.fixpoint import Step
+from smachac.analysis.definite_assignment import DataFlow, UserdataScope, child_writes
+from smachac.analysis.fixpoint import KeyStep
+from smachac.diagnostics.diagnostic import PathStep, ended, entered
 from smachac.diagnostics.source import Span
 from smachac.ir import nodes
-from smachac.ir.graph import START, Place
+from smachac.ir.graph import START, Vertex
 from smachac.ir.nodes import Concurrence, Key, Leaf, Node
 from smachac.ir.traversal import outcome_names, remapping
 
-State = Literal["unset", "told", "set"]
-"""Whether the key is set on a path. `told`: unset, and a container needed it already."""
+KeyState = Literal["unset", "told", "set"]
+"""Whether the key is set on a path. `told`: unset, and a container on the path needed it."""
 
 Status = Literal["always", "sometimes", "never", "unreachable"]
-"""Whether a key is set when a state is entered: on every path that leads there, on some, on none;
-or no path leads there."""
+"""Whether a key is set when a state is entered: on every path to it, on some, on none; or there is
+no path to it."""
 
 
 class Reached(NamedTuple):
-    """A place of a container as a path reaches it."""
+    """A vertex of a container, and the state of the key on a path that reaches it."""
 
-    place: Place
-    state: State
+    vertex: Vertex
+    state: KeyState
 
 
 Search = Mapping[Reached, "tuple[Reached, str] | None"]
-"""For what paths reach, nearest first: what it comes from and on which outcome, None at a start."""
+"""For each reached vertex, nearest first, its predecessor and the outcome; None at a start."""
 
 
 def search(
-    flow: Flow, scope: Scope, key: str, states: Iterable[State], *, stops: bool = False
+    flow: DataFlow,
+    scope: UserdataScope,
+    key: str,
+    states: Iterable[KeyState],
+    *,
+    stops: bool = False,
 ) -> Search:
-    """Where the paths of a container lead on which its key begins in those states.
+    """Breadth-first search over the vertices of a container, with the state of one key.
 
-    Writes count that are sure; or those that are trusted, where `stops` says that a leaf that
-    reads the key without finding it ends the path. A container that can be entered again has what
-    was set before (smach-semantics V3).
+    `states` are the states of the key at the start. Sure writes count; with `stops`, trusted writes
+    count, and a leaf that reads the unset key ends the path. A container that can be entered again
+    keeps what was set before (smach-semantics V3).
     """
     found: dict[Reached, tuple[Reached, str] | None] = {
         Reached(START, state): None for state in states
@@ -49,28 +55,30 @@ def search(
     todo = list(found)
     for here in todo:
         for step, state in _following(scope, key, here, stops):
-            both: tuple[State, ...] = (state,)
+            both: tuple[KeyState, ...] = (state,)
             if step.target in beside and state != "set":
                 both = ("set", state)
             for reached in (Reached(step.target, each) for each in both):
                 if reached not in found:
                     found[reached] = (here, step.outcome)
                     todo.append(reached)
-        ends = is_exit(here.place) and scope.path in flow.repeated
+        ends = is_exit(here.vertex) and scope.path in flow.repeated
         if ends and here.state == "set" and Reached(START, "set") not in found:
             found[Reached(START, "set")] = None
             todo.append(Reached(START, "set"))
     return found
 
 
-def _following(scope: Scope, key: str, here: Reached, stops: bool) -> Iterator[tuple[Step, State]]:
-    """The steps from a place, and what becomes of the key on them."""
+def _following(
+    scope: UserdataScope, key: str, here: Reached, stops: bool
+) -> Iterator[tuple[KeyStep, KeyState]]:
+    """The steps from a vertex, with the state of the key after each."""
     state = here.state
-    if stops and state == "unset" and key in scope.reads.get(here.place, ()):
-        if here.place not in scope.inner:
+    if stops and state == "unset" and key in scope.reads.get(here.vertex, ()):
+        if here.vertex not in scope.inner:
             return
         state = "told"
-    for step in scope.steps.get(here.place, ()):
+    for step in scope.steps.get(here.vertex, ()):
         writes = step.writes
         if state == "set" or writes.anything or key in writes.perhaps:
             yield step, "set"
@@ -79,12 +87,12 @@ def _following(scope: Scope, key: str, here: Reached, stops: bool) -> Iterator[t
             yield step, state
 
 
-def is_exit(place: Place) -> bool:
-    return isinstance(place, tuple) and place != START
+def is_exit(vertex: Vertex) -> bool:
+    return isinstance(vertex, tuple) and vertex != START
 
 
-def _found_beside(flow: Flow, scope: Scope, key: str) -> frozenset[Place]:
-    """The children of a concurrence that may find the key because a sibling has written it."""
+def _found_beside(flow: DataFlow, scope: UserdataScope, key: str) -> frozenset[Vertex]:
+    """The children of a concurrence that can find the key set because a sibling wrote it."""
     if not isinstance(scope.container, Concurrence):
         return frozenset()
     names = [child.name for child in scope.container.children]
@@ -94,8 +102,8 @@ def _found_beside(flow: Flow, scope: Scope, key: str) -> frozenset[Place]:
     return frozenset(name for name in names if writers - {name})
 
 
-def may_write(flow: Flow, scope: Scope, child: Node, key: str) -> bool:
-    """Whether a child of a container may set the container's key."""
+def may_write(flow: DataFlow, scope: UserdataScope, child: Node, key: str) -> bool:
+    """Whether a child of a container can set a key of the container."""
     inner = flow.scopes.get(f"{scope.path}/{child.name}")
     raw = isinstance(scope.container, nodes.Iterator)
     if isinstance(child, Leaf) and child.open:
@@ -107,7 +115,7 @@ def may_write(flow: Flow, scope: Scope, child: Node, key: str) -> bool:
     return False
 
 
-def around(flow: Flow, path: str) -> str | None:
+def around(flow: DataFlow, path: str) -> str | None:
     """The path of the container around a state; None for the machine itself."""
     cut = len(path) if path != flow.machine.root.name else -1
     while cut >= 0:
@@ -123,8 +131,8 @@ def place_in(container: str, path: str) -> str:
     return path[len(container) + 1 :]
 
 
-def source_of(flow: Flow, path: str, key: str) -> list[tuple[str, str]]:
-    """A container and its key, and before them where the key is handed in from, outermost first."""
+def source_of(flow: DataFlow, path: str, key: str) -> list[tuple[str, str]]:
+    """The containers that a key is passed in through, outermost first, with its name in each."""
     found = [(path, key)]
     while True:
         scope = flow.scopes[path]
@@ -135,18 +143,18 @@ def source_of(flow: Flow, path: str, key: str) -> list[tuple[str, str]]:
         found.append((path, key))
 
 
-def key_status(flow: Flow, path: str, key: str) -> Status:
-    """Whether the state at a path finds a key of its container when it is entered."""
+def key_status(flow: DataFlow, path: str, key: str) -> Status:
+    """Whether a key of its container is set when the state at a path is entered."""
     return _status(_states(_searches(flow, path, key), path))
 
 
-def _searches(flow: Flow, path: str, key: str) -> list[tuple[str, Search]]:
-    """For each container that the key comes through, outermost first, where its paths lead."""
+def _searches(flow: DataFlow, path: str, key: str) -> list[tuple[str, Search]]:
+    """The search in each container that the key is passed in through, outermost first."""
     outer = around(flow, path)
     if outer is None or path not in flow.entered:
         return []
     found: list[tuple[str, Search]] = []
-    states: set[State] = {"unset"}
+    states: set[KeyState] = {"unset"}
     for where, name in source_of(flow, outer, key):
         scope = flow.scopes[where]
         if found:
@@ -157,14 +165,14 @@ def _searches(flow: Flow, path: str, key: str) -> list[tuple[str, Search]]:
     return found
 
 
-def _states(searches: list[tuple[str, Search]], path: str) -> set[State]:
+def _states(searches: list[tuple[str, Search]], path: str) -> set[KeyState]:
     if not searches:
         return set()
     where, found = searches[-1]
-    return {here.state for here in found if here.place == place_in(where, path)}
+    return {here.state for here in found if here.vertex == place_in(where, path)}
 
 
-def _status(states: set[State]) -> Status:
+def _status(states: set[KeyState]) -> Status:
     if not states:
         return "unreachable"
     if "set" not in states:
@@ -172,7 +180,7 @@ def _status(states: set[State]) -> Status:
     return "always" if states == {"set"} else "sometimes"
 
 
-def path_without(flow: Flow, path: str, key: str) -> tuple[str, ...]:
+def path_without(flow: DataFlow, path: str, key: str) -> tuple[str, ...]:
     """A shortest path to a state on which a key of its container is unset; empty if there is none.
 
     Names of states as they are entered, in brackets the outcomes between them.
@@ -184,51 +192,51 @@ def path_without(flow: Flow, path: str, key: str) -> tuple[str, ...]:
         end = Reached(place_in(where, target), "unset")
         if end not in found:
             return ()
-        whole += way_to(found, end)
+        whole += [step.label for step in way_to(where, found, end)]
     return tuple(whole)
 
 
-def way_to(found: Search, end: Reached) -> list[str]:
-    """The path by which a search came to a place."""
-    names: list[str] = []
+def way_to(path: str, found: Search, end: Reached) -> list[PathStep]:
+    """The path that a search in the container at `path` found to a vertex."""
+    steps: list[PathStep] = []
     here: Reached | None = end
     while here is not None:
         before = found[here]
-        if isinstance(here.place, str):
-            names.append(here.place)
+        if isinstance(here.vertex, str):
+            steps.append(entered(here.vertex, f"{path}/{here.vertex}"))
         if before is not None and before[1]:
-            names.append(f"({before[1]})")
+            steps.append(ended(before[1]))
         here = before[0] if before is not None else None
-    return names[::-1]
+    return steps[::-1]
 
 
-Kind = Literal["presets", "items", "reads", "writes", "takes in", "hands out"]
+UseKind = Literal["presets", "items", "reads", "writes", "takes in", "hands out"]
 """How a key is used: the container holds it before it starts; an iterator puts its items there; a
-leaf; a container, from and to the userdata around it."""
+leaf reads or writes it; a container copies it from or to the userdata around it."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Use:
-    """One use of a key of a container, at its place in a script.
+    """One use of a key of a container, with its span.
 
-    `path` is the state that uses it, `key` what it calls it there. `outcomes` are those of a
-    writer that come with the key; `always` says that they are all it has.
+    `path` is the state that uses the key, `key` the name of the key in that state. `outcomes` are
+    the outcomes of a writer with which the key is set; `always`: these are all its outcomes.
     """
 
     path: str
-    kind: Kind
+    kind: UseKind
     key: str
     outcomes: tuple[str, ...] = ()
     always: bool = True
     span: Span = field(compare=False, repr=False)
 
 
-def uses(flow: Flow, path: str, key: str) -> list[Use]:
+def uses(flow: DataFlow, path: str, key: str) -> list[Use]:
     """The uses of one key of the container at a path, in the order of the script."""
     return uses_by_key(flow, path).get(key, [])
 
 
-def uses_by_key(flow: Flow, path: str) -> dict[str, list[Use]]:
+def uses_by_key(flow: DataFlow, path: str) -> dict[str, list[Use]]:
     """The uses of the keys of the container at a path, by key, in the order of the script."""
     scope = flow.scopes[path]
     container = scope.container
@@ -248,13 +256,13 @@ def uses_by_key(flow: Flow, path: str) -> dict[str, list[Use]]:
     return found
 
 
-def _uses_of(flow: Flow, scope: Scope, child: Node) -> Iterator[tuple[str, Use]]:
+def _uses_of(flow: DataFlow, scope: UserdataScope, child: Node) -> Iterator[tuple[str, Use]]:
     """The uses that a child makes of the keys of its container."""
     raw = isinstance(scope.container, nodes.Iterator) and isinstance(child, Leaf)
     names = remapping(child)
     path = f"{scope.path}/{child.name}"
     is_leaf = isinstance(child, Leaf)
-    kind: Kind = "reads" if is_leaf else "takes in"
+    kind: UseKind = "reads" if is_leaf else "takes in"
     for each in child.inputs:
         span = place_of(child, each)
         yield (
@@ -279,15 +287,15 @@ def _uses_of(flow: Flow, scope: Scope, child: Node) -> Iterator[tuple[str, Use]]
 
 
 def place_of(node: Node, key: Key) -> Span:
-    """Where a script says that a state has a key: its list of keys, its remapping, or its name."""
+    """The span of a key of a state: in its list of keys, else its remap, else the state."""
     remap = next((remap for remap in node.remaps if remap.key == key.name), None)
     if key.span.source is node.span.source:
         return key.span
     return remap.span if remap is not None else node.span
 
 
-def same_key(flow: Flow, path: str, key: str) -> tuple[tuple[str, str], ...]:
-    """The keys of other containers that a key of one comes from or goes to, itself among them.
+def same_key(flow: DataFlow, path: str, key: str) -> tuple[tuple[str, str], ...]:
+    """The keys of containers that are copied to or from a key, with the key itself.
 
     In the order of the script.
     """
@@ -303,7 +311,7 @@ def same_key(flow: Flow, path: str, key: str) -> tuple[tuple[str, str], ...]:
     return tuple(sorted(found, key=lambda pair: (order[pair[0]], pair[1])))
 
 
-def _next_to(flow: Flow, path: str, key: str) -> Iterator[tuple[str, str]]:
+def _next_to(flow: DataFlow, path: str, key: str) -> Iterator[tuple[str, str]]:
     """The keys one copy away, inwards and outwards."""
     scope = flow.scopes[path]
     outer = around(flow, path)

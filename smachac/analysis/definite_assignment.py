@@ -1,10 +1,10 @@
-"""Definite assignment of userdata: which keys are surely set where, through the whole hierarchy.
+"""Definite assignment: the userdata keys that are surely set at each state of the hierarchy.
 
 Keys are only ever added to a container's userdata (smach-semantics V3, V4), so a key is surely set
-at a place exactly if every path from the container's start writes it on the way. A container is
-therefore judged once, from the inside to the outside, as if nothing were handed in; an input that
-is set at its entry is set everywhere in it. From outside a container is what it needs and what it
-writes. Linear in the states; keys are bits of whole numbers.
+at a vertex if and only if every path from the container's start writes it. So each container is
+analysed once, inner ones first, as if nothing were passed in; an input that is set at its entry is
+set everywhere in it. The summary of a container is the keys that it needs and the keys that it
+writes. Linear in the number of states; sets of keys are bits of integers.
 """
 
 from __future__ import annotations
@@ -24,31 +24,30 @@ from smachac.analysis.accesses import (
     userdata_fields,
 )
 from smachac.analysis.fixpoint import (
+    KeyStep,
+    KeySteps,
     Order,
-    Step,
-    Steps,
     flow_order,
     looping,
     may_be_set,
     may_be_unset,
 )
 from smachac.ir import nodes
-from smachac.ir.graph import START, Place, edges, exit_place, stopped_endings
+from smachac.ir.graph import START, Vertex, edges, exit_vertex, stopped_endings
 from smachac.ir.nodes import Concurrence, Container, Expression, Leaf, Machine, Node, OutcomeRule
 from smachac.ir.traversal import containers, outcome_names, remapping
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
-class Scope:
-    """A container and its own userdata.
+class UserdataScope:
+    """A container with its own userdata.
 
-    `held` are the keys that are there before it starts; `inputs` and `outputs` go by its own names
-    to those of the container around it, `optional` inputs may be absent. `steps` lead on from each
-    place that can be reached, `reads` are the keys that a place needs. `needed` inputs are read
-    inside before they are written; `endings` are the keys around it that each outcome sets.
-    `places` are what can be reached, and `unset` the keys that may be unset where a place needs
-    them, if nothing is handed in. `inner` are the containers inside, `again` those of them that a
-    path can come back to.
+    `held` are the keys that are set before it starts; `inputs` and `outputs` map its own names to
+    those of the container around it; `optional` inputs may be absent. `vertices` are the reachable
+    ones, `steps` lead on from each, `reads` are the keys that each needs, and `unset` are those of
+    them that can be unset if nothing is passed in. `needed` inputs are read inside before they are
+    written; `endings` are the keys around it that each outcome sets. `inner` are the containers
+    inside, `again` those of them that a path can enter again.
     """
 
     path: str
@@ -58,33 +57,33 @@ class Scope:
     inputs: Mapping[str, str]
     optional: frozenset[str]
     outputs: Mapping[str, str]
-    reads: Mapping[Place, tuple[str, ...]]
-    steps: Steps
-    places: AbstractSet[Place]
-    unset: Mapping[Place, tuple[str, ...]]
+    reads: Mapping[Vertex, tuple[str, ...]]
+    steps: KeySteps
+    vertices: AbstractSet[Vertex]
+    unset: Mapping[Vertex, tuple[str, ...]]
     needed: frozenset[str]
     endings: Mapping[str, Writes]
     inner: frozenset[str]
-    again: frozenset[Place]
+    again: frozenset[Vertex]
 
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False)
-class Flow:
-    """The scopes of a machine by path, parents before children; equal to itself alone.
+class DataFlow:
+    """The userdata scopes of a machine by path, parents before children.
 
     `entered` are the paths of states and containers that can be entered, `repeated` the containers
     that can be entered more than once.
     """
 
     machine: Machine
-    scopes: Mapping[str, Scope]
+    scopes: Mapping[str, UserdataScope]
     entered: frozenset[str]
     repeated: frozenset[str]
 
 
-def data_flow(machine: Machine) -> Flow:
-    """The flow of userdata in a machine."""
-    found: dict[str, Scope] = {}
+def data_flow(machine: Machine) -> DataFlow:
+    """The data flow of userdata in a machine."""
+    found: dict[str, UserdataScope] = {}
     for path, container in reversed(list(containers(machine.root))):
         found[path] = _scope(path, container, found, machine.root)
     entered = {machine.root.name}
@@ -93,13 +92,13 @@ def data_flow(machine: Machine) -> Flow:
     for path, scope in scopes.items():
         if path not in entered:
             continue
-        entered.update(f"{path}/{place}" for place in scope.places if isinstance(place, str))
+        entered.update(f"{path}/{vertex}" for vertex in scope.vertices if isinstance(vertex, str))
         repeated.update(
             f"{path}/{name}"
             for name in scope.inner
-            if name in scope.places and (name in scope.again or path in repeated)
+            if name in scope.vertices and (name in scope.again or path in repeated)
         )
-    return Flow(
+    return DataFlow(
         machine=machine,
         scopes=scopes,
         entered=frozenset(entered),
@@ -107,7 +106,9 @@ def data_flow(machine: Machine) -> Flow:
     )
 
 
-def _scope(path: str, container: Container, inner: Mapping[str, Scope], root: Container) -> Scope:
+def _scope(
+    path: str, container: Container, inner: Mapping[str, UserdataScope], root: Container
+) -> UserdataScope:
     names = remapping(container)
     inputs = {key.name: names.get(key.name, key.name) for key in container.inputs}
     held = {preset.key for preset in container.userdata}
@@ -115,7 +116,7 @@ def _scope(path: str, container: Container, inner: Mapping[str, Scope], root: Co
         held |= inputs.keys()
     optional = frozenset(k.name for k in container.inputs if k.type.name == "optional")
     outputs = {key.name: names.get(key.name, key.name) for key in container.outputs}
-    reads: dict[Place, tuple[str, ...]] = {START: _items_read(container)}
+    reads: dict[Vertex, tuple[str, ...]] = {START: _items_read(container)}
     raw = isinstance(container, nodes.Iterator)
     # Of two states of one name (SM106) the first counts, everywhere.
     children = {child.name: child for child in reversed(container.children)}
@@ -125,13 +126,13 @@ def _scope(path: str, container: Container, inner: Mapping[str, Scope], root: Co
     steps = _steps(path, container, inner)
     order = flow_order(steps)
     asked = {
-        place: [key for key in keys if key not in held] for place, keys in reads.items() if keys
+        vertex: [key for key in keys if key not in held] for vertex, keys in reads.items() if keys
     }
     unset = may_be_unset(asked, steps, order)
     needed = {
         key for keys in unset.values() for key in keys if key in inputs and key not in optional
     }
-    return Scope(
+    return UserdataScope(
         path=path,
         container=container,
         children={child.name: child for child in reversed(container.children)},
@@ -139,9 +140,9 @@ def _scope(path: str, container: Container, inner: Mapping[str, Scope], root: Co
         inputs=inputs,
         optional=optional,
         outputs=outputs,
-        reads={place: keys for place, keys in reads.items() if keys},
+        reads={vertex: keys for vertex, keys in reads.items() if keys},
         steps=steps,
-        places=order.keys(),
+        vertices=order.keys(),
         unset=unset,
         needed=frozenset(needed),
         endings=_with_caught(container, _endings(outputs, held, steps, order)),
@@ -151,14 +152,14 @@ def _scope(path: str, container: Container, inner: Mapping[str, Scope], root: Co
 
 
 def _endings(
-    outputs: Mapping[str, str], held: AbstractSet[str], steps: Steps, order: Order
+    outputs: Mapping[str, str], held: AbstractSet[str], steps: KeySteps, order: Order
 ) -> Mapping[str, Writes]:
-    """What each outcome that can come hands out (smach-semantics V4)."""
-    exits = [place for place in order if isinstance(place, tuple) and place != START]
+    """The keys around a container that each possible outcome sets (smach-semantics V4)."""
+    exits = [vertex for vertex in order if isinstance(vertex, tuple) and vertex != START]
     if not outputs:
-        return {place[1]: NOTHING for place in exits}
+        return {vertex[1]: NOTHING for vertex in exits}
     open_keys = [key for key in outputs if key not in held]
-    asked: dict[Place, list[str]] = dict.fromkeys(exits, open_keys)
+    asked: dict[Vertex, list[str]] = dict.fromkeys(exits, open_keys)
     unsure = may_be_unset(asked, steps, order, sure=True)
     untrusted = may_be_unset(asked, steps, order)
     possible = may_be_set(asked, steps, order)
@@ -168,17 +169,17 @@ def _endings(
         return frozenset(outputs[key] for key in outputs.keys() - set(missing))
 
     return {
-        place[1]: Writes(
-            outer(unsure.get(place, ())),
-            outer(untrusted.get(place, ())),
-            outer(set(open_keys).difference(possible.get(place, ()))),
+        vertex[1]: Writes(
+            outer(unsure.get(vertex, ())),
+            outer(untrusted.get(vertex, ())),
+            outer(set(open_keys).difference(possible.get(vertex, ()))),
         )
-        for place in exits
+        for vertex in exits
     }
 
 
 def _with_caught(container: Container, found: Mapping[str, Writes]) -> Mapping[str, Writes]:
-    """The endings of a container, also that of an exception, which hands nothing out."""
+    """The endings of a container with that of an exception, which copies no output."""
     if not container.catches:
         return found
     known = found.get(container.catches, NOTHING)
@@ -186,7 +187,7 @@ def _with_caught(container: Container, found: Mapping[str, Writes]) -> Mapping[s
 
 
 def _items_read(container: Container) -> tuple[str, ...]:
-    """The keys that an iterator needs to know what it goes through."""
+    """The keys that an iterator reads to get its items."""
     if not isinstance(container, nodes.Iterator):
         return ()
     if container.items_key:
@@ -197,7 +198,7 @@ def _items_read(container: Container) -> tuple[str, ...]:
     return ()
 
 
-def _reads(child: Node, scope: Scope | None, raw: bool) -> tuple[str, ...]:
+def _reads(child: Node, scope: UserdataScope | None, raw: bool) -> tuple[str, ...]:
     """The keys of its container that a child needs at its entry."""
     names = remapping(child)
     own: tuple[str, ...]
@@ -208,7 +209,9 @@ def _reads(child: Node, scope: Scope | None, raw: bool) -> tuple[str, ...]:
     return tuple(dict.fromkeys(names.get(key, key) for key in own))
 
 
-def child_writes(child: Node, scope: Scope | None, outcome: str, *, raw: bool) -> Writes | None:
+def child_writes(
+    child: Node, scope: UserdataScope | None, outcome: str, *, raw: bool
+) -> Writes | None:
     """The keys of its container that a child has set when it ends so; None where it never does."""
     if not isinstance(child, Leaf):
         return scope.endings.get(outcome) if scope else NOTHING
@@ -220,7 +223,7 @@ def child_writes(child: Node, scope: Scope | None, outcome: str, *, raw: bool) -
     return Writes(sure, trusted, perhaps, writes.anything)
 
 
-def _steps(path: str, container: Container, inner: Mapping[str, Scope]) -> Steps:
+def _steps(path: str, container: Container, inner: Mapping[str, UserdataScope]) -> KeySteps:
     """The steps of a container, those of a concurrence being its start, its children and ends."""
     children = {child.name: child for child in reversed(container.children)}
     raw = isinstance(container, nodes.Iterator)
@@ -233,17 +236,17 @@ def _steps(path: str, container: Container, inner: Mapping[str, Scope]) -> Steps
             known[key] = child_writes(children[name], scope, outcome, raw=raw)
         return known[key]
 
-    found: dict[Place, list[Step]] = {}
+    found: dict[Vertex, list[KeyStep]] = {}
     if isinstance(container, Concurrence):
         for target, together in joined(container, writes):
-            found.setdefault(START, []).append(Step(target, "", together))
-        return {place: tuple(steps) for place, steps in found.items()}
+            found.setdefault(START, []).append(KeyStep(target, "", together))
+        return {vertex: tuple(steps) for vertex, steps in found.items()}
     if isinstance(container, nodes.Iterator):
         for child in container.children[:1]:
             for outcome, result in stopped_endings(container).items():
                 stopped = writes(child.name, outcome)
                 if stopped is not None and result in outcome_names(container):
-                    step = Step(exit_place(result), outcome, stopped)
+                    step = KeyStep(exit_vertex(result), outcome, stopped)
                     found.setdefault(child.name, []).append(step)
     for edge in edges(container):
         given: Writes | None = NOTHING
@@ -254,25 +257,25 @@ def _steps(path: str, container: Container, inner: Mapping[str, Scope]) -> Steps
         if isinstance(container, nodes.Iterator) and isinstance(edge.target, str):
             item = frozenset([container.item_key])
             given = Writes(given[0] | item, given[1] | item, given[2] | item, given[3])
-        found.setdefault(edge.source, []).append(Step(edge.target, edge.outcome, given))
-    return {place: tuple(steps) for place, steps in found.items()}
+        found.setdefault(edge.source, []).append(KeyStep(edge.target, edge.outcome, given))
+    return {vertex: tuple(steps) for vertex, steps in found.items()}
 
 
-Endings = Mapping[str, Writes]
-"""The outcomes that a child can have, and what it writes on each; `*` is any outcome at all."""
+ChildEndings = Mapping[str, Writes]
+"""The outcomes that a child can have, with its writes on each; `*` is any outcome."""
 
-ANY = "*"
+ANY_OUTCOME = "*"
 
 MOST_ROUNDS = 10
-"""So often the rules are gone through for what their failing to match tells."""
+"""The most passes over the rules to exclude outcomes of children."""
 
 MOST_WORK = 5_000_000
-"""Rules times keys: beyond that the rules are not told apart, which is on the safe side."""
+"""The most rules times keys: beyond it the writes of all rules are joined, which is sound."""
 
 
 def joined(
     container: Concurrence, writes: Callable[[str, str], Writes | None]
-) -> Iterator[tuple[Place, Writes]]:
+) -> Iterator[tuple[Vertex, Writes]]:
     """Where a concurrence goes from its start: into each child, and to each outcome.
 
     With an outcome comes what all children together have written. They all run to their end, also
@@ -289,18 +292,21 @@ def joined(
     ways.append((container.default_outcome, _otherwise(every, container.rules)))
     for outcome, left in ways:
         if outcome in exits and left is not None:
-            yield exit_place(outcome), base.writes(left if exact else {})
+            yield exit_vertex(outcome), base.writes(left if exact else {})
 
 
-def _child_endings(child: Node, writes: Callable[[str, str], Writes | None]) -> Endings:
+def _child_endings(child: Node, writes: Callable[[str, str], Writes | None]) -> ChildEndings:
     is_open = isinstance(child, Leaf) and child.open
-    found = ((name, writes(child.name, name)) for name in outcome_names(child) or (ANY,) * is_open)
+    found = (
+        (name, writes(child.name, name))
+        for name in outcome_names(child) or (ANY_OUTCOME,) * is_open
+    )
     endings = {name: written for name, written in found if written is not None}
-    return {ANY: next(iter(endings.values()), ANYTHING)} if is_open else endings
+    return {ANY_OUTCOME: next(iter(endings.values()), ANYTHING)} if is_open else endings
 
 
 def _either(several: Iterable[Writes]) -> Writes:
-    """What is written when one of several things happens."""
+    """The join of several writes: one of them happens."""
     ways = list(several)
     return Writes(
         frozenset.intersection(*(each.sure for each in ways)),
@@ -313,7 +319,7 @@ def _either(several: Iterable[Writes]) -> Writes:
 class _Base:
     """What the children write whichever outcome they have, and with fewer outcomes left."""
 
-    def __init__(self, every: Mapping[str, Endings]) -> None:
+    def __init__(self, every: Mapping[str, ChildEndings]) -> None:
         self._every = every
         self._of = {name: _either(endings.values()) for name, endings in every.items()}
         self._sure = NONE.union(*(each.sure for each in self._of.values()))
@@ -321,7 +327,7 @@ class _Base:
         self.perhaps = Counter(key for each in self._of.values() for key in each.perhaps)
         self._anything = any(each.anything for each in self._of.values())
 
-    def writes(self, left: Mapping[str, Endings]) -> Writes:
+    def writes(self, left: Mapping[str, ChildEndings]) -> Writes:
         """What is written when the children in `left` have one of those outcomes.
 
         Fewer outcomes write more for sure, and less perhaps.
@@ -339,12 +345,12 @@ class _Base:
         )
 
 
-def _given(every: Mapping[str, Endings], rule: OutcomeRule) -> dict[str, Endings] | None:
+def _given(every: Mapping[str, ChildEndings], rule: OutcomeRule) -> dict[str, ChildEndings] | None:
     """The outcomes left to children when a rule matches; None where it never does."""
-    left: dict[str, Endings] = {}
+    left: dict[str, ChildEndings] = {}
     for condition in rule.when:
         known = left.get(condition.child) or every.get(condition.child, {})
-        writes = known.get(condition.outcome) or known.get(ANY)
+        writes = known.get(condition.outcome) or known.get(ANY_OUTCOME)
         if writes is None:
             return None
         left[condition.child] = {condition.outcome: writes}
@@ -352,14 +358,14 @@ def _given(every: Mapping[str, Endings], rule: OutcomeRule) -> dict[str, Endings
 
 
 def _otherwise(
-    every: Mapping[str, Endings], rules: tuple[OutcomeRule, ...]
-) -> dict[str, Endings] | None:
+    every: Mapping[str, ChildEndings], rules: tuple[OutcomeRule, ...]
+) -> dict[str, ChildEndings] | None:
     """The outcomes left to children when no rule matches; None where one always does.
 
     A rule with one condition that is not certain, beside others that are, shows an outcome that
     the child did not have. Rules say more together than that; what is left out here is safe.
     """
-    left: dict[str, Endings] = {}
+    left: dict[str, ChildEndings] = {}
     conditions = [{(each.child, each.outcome) for each in rule.when} for rule in rules if rule.when]
     for _ in range(MOST_ROUNDS):
         before = sum(map(len, left.values())), len(left)

@@ -1,16 +1,14 @@
-"""The flow of userdata as the rules judge it: with misspelt names put right, so that one fault is
-reported once, and keys told apart by who could set them."""
+"""Error recovery: misspelt names are corrected, so that one fault gives one finding."""
 
 from __future__ import annotations
 
 from collections.abc import Iterator
+from collections.abc import Sequence as PathSequence
 from dataclasses import replace
 from typing import NamedTuple, cast
 
 from smachac.analysis.accesses import callbacks, scripted_steps, userdata_fields
-from smachac.analysis.context import containers, once
 from smachac.analysis.control_flow import is_open, mended
-from smachac.analysis.definite_assignment import Flow, data_flow
 from smachac.diagnostics.spelling import guesser
 from smachac.ir import nodes
 from smachac.ir.leaf import CALLING
@@ -20,7 +18,7 @@ from smachac.ir.types import ANY, Type
 
 
 class UnknownRemap(NamedTuple):
-    """A remap of a key that the state does not have: the key meant, and that if it is certain."""
+    """A remap of an unknown key, the nearest known key, and that key again if it is certain."""
 
     remap: Remap
     meant: str | None
@@ -41,7 +39,7 @@ def unknown_remaps(node: Node) -> list[UnknownRemap]:
 
 
 def undeclared_writes(leaf: Leaf) -> tuple[str, ...]:
-    """The keys that the script lets a leaf write though they are none of its outputs."""
+    """The keys that the script makes a leaf write although they are not among its outputs."""
     written: list[str] = []
     if leaf.type in CALLING:
         written = sorted(callbacks(leaf) or ())
@@ -52,7 +50,7 @@ def undeclared_writes(leaf: Leaf) -> tuple[str, ...]:
 
 
 def undeclared_reads(leaf: Leaf) -> Iterator[tuple[str, nodes.Expression]]:
-    """The keys that code of the script reads though they are none of the leaf's inputs."""
+    """The keys that code of the script reads although they are not among the leaf's inputs."""
     if leaf.type not in CALLING and leaf.type != "ConditionalOutcomeState":
         return
     inputs = {key.name for key in leaf.inputs}
@@ -66,17 +64,18 @@ def undeclared_reads(leaf: Leaf) -> Iterator[tuple[str, nodes.Expression]]:
 
 
 PERHAPS = Type("optional", (ANY,))
-"""What code reads without declaring it counts as used, but is not asked for: SM310 has said it."""
+"""The type of a key that code reads without a declaration: used but not required (SM310)."""
 
 
-def mended_machine(machine: Machine) -> Machine:
-    """The machine as it was meant: misspelt targets, outcomes and remaps put right, and what the
-    code of the script reads and writes declared. Iterative, so that deep nesting costs nothing."""
-    built: dict[int, Container] = {}
-    for _, container in reversed(containers(machine)):
+def mended_machine(machine: Machine, containers: PathSequence[tuple[str, Container]]) -> Machine:
+    """The machine with misspelt targets, outcomes and remaps corrected, and with the keys declared
+    that code of the script reads and writes. Iterative, so that nesting can be deep."""
+    # In reversed preorder the containers inside one have just been built, its first child last.
+    built: list[Container] = []
+    for _, container in reversed(containers):
         raw = isinstance(container, nodes.Iterator)
         children = tuple(
-            _meant(built.get(id(child), child), raw and isinstance(child, Leaf))
+            _meant(child, raw=raw) if isinstance(child, Leaf) else _meant(built.pop(), raw=False)
             for child in container.children
         )
         whole = container
@@ -84,14 +83,14 @@ def mended_machine(machine: Machine) -> Machine:
             whole = replace(container, children=children)
         if isinstance(whole, StateMachine | Sequence):
             whole = mended(whole)
-        if whole is not container:
-            built[id(container)] = whole
-    root = cast(StateMachine, built.get(id(machine.root), machine.root))
+        built.append(whole)
+    root = cast(StateMachine, built.pop())
     return machine if root is machine.root else replace(machine, root=root)
 
 
-def _meant(node: Node, raw: bool) -> Node:
-    """A state with its keys as they were meant. `raw`: it sees all keys as they are."""
+def _meant(node: Node, *, raw: bool) -> Node:
+    """A state with its remaps corrected and its keys declared. `raw`: it sees the keys of its
+    container without remapping, as the child of an iterator does."""
     remaps = unknown_remaps(node)
     if remaps:
         wrong = {each.remap: each.meant for each in remaps}
@@ -105,9 +104,3 @@ def _meant(node: Node, raw: bool) -> Node:
         if reads or writes:
             node = replace(node, inputs=(*node.inputs, *reads), outputs=(*node.outputs, *writes))
     return node
-
-
-@once
-def flow_of(machine: Machine) -> Flow:
-    """The flow of a machine as it was meant."""
-    return data_flow(mended_machine(machine))

@@ -1,8 +1,8 @@
-"""What cannot work in a portable expression, by the types of what it is over (see operands.py).
+"""Type errors in portable expressions.
 
-An expression of unknown type is never at fault. What is evaluated in some runs only is told apart;
-where a condition asks for a key first, what it guards is not judged by that key: it may well be
-asked so that the fault does not come about.
+An expression of unknown type has no error. Errors in parts that only some runs evaluate are marked.
+A part that is guarded by a condition over a key has no error because of that key: the condition may
+exclude the error.
 """
 
 from __future__ import annotations

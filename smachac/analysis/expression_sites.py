@@ -1,35 +1,34 @@
-"""The portable code of a machine, with what is known of the types that it is over."""
+"""Expression sites: the portable code of a machine, with the types of the keys that it reads."""
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Iterable, Iterator
 from dataclasses import dataclass, field
 
 from smachac.analysis.accesses import callbacks
-from smachac.analysis.context import once, states, types_of
 from smachac.analysis.expression_errors import Fault, expression_faults, function_faults
 from smachac.analysis.expression_types import keys_read, parsed
-from smachac.analysis.type_inference import Place, Types
+from smachac.analysis.type_inference import Cell, Types
 from smachac.analysis.type_lattice import join, record
 from smachac.ir import nodes
-from smachac.ir.leaf import CALLING, variable
-from smachac.ir.nodes import Expression, Leaf, Machine, Node
-from smachac.ir.traversal import expressions, outcome_names, remapping
+from smachac.ir.leaf import CALLING
+from smachac.ir.nodes import Expression, Leaf, Node, Struct
+from smachac.ir.traversal import expressions, expressions_in, outcome_names, remapping
 from smachac.ir.types import ANY, Type
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
-class Code:
-    """An expression of a state, and where the keys that it reads are.
+class ExpressionSite:
+    """An expression of a state, with the cells of the keys that it reads.
 
-    `types` are those of the keys. None where it is no function over userdata.
+    `types` are the types of the keys; None where the expression is no function over userdata.
     """
 
     path: str
     node: Node
     expression: Expression
     types: dict[str, Type] | None = None
-    places: dict[str, Place] = field(default_factory=dict)
+    cells: dict[str, Cell] = field(default_factory=dict)
 
     def faults(self) -> tuple[Fault, ...]:
         text = self.expression.text
@@ -41,74 +40,81 @@ class Code:
         return tuple(fault for fault in found if not fault.length or self.lengths_hold(fault))
 
     def lengths_hold(self, fault: Fault) -> bool:
-        """Whether lists stay as long as they are: a script's own may grow in a state's hands, only
-        a declaration says that they do not."""
-        return all(
-            map(_is_declared, (self.places[key] for key in fault.keys if key in self.places))
-        )
+        """Whether the lists of a fault have a fixed length: only a declaration fixes it, as a state
+        can lengthen a list of the script."""
+        return all(map(_is_declared, (self.cells[key] for key in fault.keys if key in self.cells)))
 
 
-def _is_declared(place: Place) -> bool:
-    flows = [alike[0] for alike in place.flows.values() if not alike[0].judged]
-    return place.declared != ANY or all(flow.origin.how == "declared" for flow in flows)
+def _is_declared(cell: Cell) -> bool:
+    flows = [alike[0] for alike in cell.flows.values() if not alike[0].judged]
+    return cell.declared != ANY or all(flow.origin.how == "declared" for flow in flows)
 
 
-@once
-def faults_of(machine: Machine) -> list[tuple[Code, Fault]]:
-    """What is wrong with the code of a machine."""
-    return [(code, fault) for code in codes(machine) for fault in code.faults()]
-
-
-def codes(machine: Machine) -> Iterator[Code]:
-    """The code of every state, as far as it is portable."""
-    types = types_of(machine)
-    for path, node in states(machine):
-        over_userdata = dict(_functions(path, node, types))
-        for expression in expressions(node):
-            known = over_userdata.get(id(expression))
-            if known is not None:
-                yield _over(path, node, expression, known, types)
+def expression_sites(states: Iterable[tuple[str, Node]], types: Types) -> Iterator[ExpressionSite]:
+    """The portable code of every state."""
+    for path, node in states:
+        for expression, written in _expressions(path, node, types):
+            if written is not None:
+                yield _over(path, node, expression, written, types)
             else:
-                yield Code(path=path, node=node, expression=expression)
+                yield ExpressionSite(path=path, node=node, expression=expression)
 
 
 Written = dict[str, Type]
 """The keys of a container, with the types of what was written since the state began."""
 
 
-def _functions(path: str, node: Node, types: Types) -> Iterator[tuple[int, Written]]:
-    """The expressions that are called with the userdata of the state, by `id`."""
-    items = node.items.data if isinstance(node, nodes.Iterator) and node.items else None
-    if isinstance(items, Expression):
-        yield id(items), {}
+def _expressions(
+    path: str, node: Node, types: Types
+) -> Iterator[tuple[Expression, Written | None]]:
+    """The expressions of a state, in the order of the script; those that are called with its
+    userdata come with what was written before, the others with None."""
     if not isinstance(node, Leaf):
+        items = node.items.data if isinstance(node, nodes.Iterator) and node.items else None
+        for expression in expressions(node):
+            yield expression, {} if expression is items else None
         return
-    if node.type == "SleepState" and isinstance(time := variable(node, "time"), Expression):
-        yield id(time), {}
-    functions = callbacks(node) or {}
-    if node.type == "ConditionalOutcomeState":
-        for name in outcome_names(node):
-            if name in functions:
-                yield id(functions[name]), {}
-    elif node.type in CALLING:
-        names = remapping(node)
+    called = _called(path, node, types)
+    for held in node.variables:
+        data = held.value.data
+        if held.name == "callbacks" and isinstance(data, Struct):
+            for key, value in data.entries:
+                for expression in expressions_in(value):
+                    yield expression, called.get(key) if expression is value else None
+        else:
+            is_time = held.name == "time" and node.type == "SleepState"
+            for expression in expressions_in(data):
+                yield expression, {} if is_time and expression is data else None
+
+
+def _called(path: str, leaf: Leaf, types: Types) -> dict[str, Written]:
+    """By name of a callback the keys that are written before it is called."""
+    functions = callbacks(leaf) or {}
+    if leaf.type == "ConditionalOutcomeState":
+        return {name: {} for name in outcome_names(leaf) if name in functions}
+    found: dict[str, Written] = {}
+    if leaf.type in CALLING:
+        names = remapping(leaf)
         written: Written = {}
         for key in sorted(functions):
-            yield id(functions[key]), dict(written)
+            found[key] = dict(written)
             written[names.get(key, key)] = types.outputs.get((path, key), ANY)
+    return found
 
 
-def _over(path: str, node: Node, expression: Expression, written: Written, types: Types) -> Code:
+def _over(
+    path: str, node: Node, expression: Expression, written: Written, types: Types
+) -> ExpressionSite:
     names = remapping(node) if isinstance(node, Leaf) else {}
-    places = {
-        key: types.places[path, key]
+    cells = {
+        key: types.cells[path, key]
         for key in sorted(keys_read(expression))
-        if (path, key) in types.places
+        if (path, key) in types.cells
     }
     held: dict[str, Type] = {}
-    for key, place in places.items():
-        held[key] = place.declared if place.declared != ANY else place.holds or ANY
+    for key, cell in cells.items():
+        held[key] = cell.declared if cell.declared != ANY else cell.holds or ANY
         outer = names.get(key, key)
         if outer in written:
             held[key] = join(held[key], written[outer])
-    return Code(path=path, node=node, expression=expression, types=held, places=places)
+    return ExpressionSite(path=path, node=node, expression=expression, types=held, cells=cells)

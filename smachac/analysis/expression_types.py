@@ -1,7 +1,7 @@
-"""The types of values and of portable expressions, as far as they are known without running them.
+"""Types of values and of portable expressions, inferred without evaluation.
 
-What is not known is `any`. Literals keep their form (see fitting.py), so that `[x, y, z]` fits
-whatever three numbers can be written for.
+An unknown type is `any`. The types of literals are exact (see type_lattice.py), so that `[x, y, z]`
+fits every type that three numbers can be written for.
 """
 
 from __future__ import annotations

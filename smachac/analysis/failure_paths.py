@@ -1,18 +1,16 @@
-"""The failures of a machine: where each one leads, who catches it, how the machine ends then."""
+"""Failure paths: where each failure leads, which state catches it, and how the machine ends."""
 
 from __future__ import annotations
 
-from collections import deque
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterable, Iterator, Mapping
 from dataclasses import dataclass, field
 from typing import Literal
 
-from smachac.analysis.context import states
-from smachac.analysis.successors import Arrival, Routes, Step
+from smachac.analysis.successors import Arrival, Routes
 from smachac.diagnostics.source import Span
 from smachac.ir import nodes
-from smachac.ir.graph import is_unread
-from smachac.ir.nodes import Concurrence, Leaf, Machine, Node
+from smachac.ir.graph import Event, is_unread
+from smachac.ir.nodes import Concurrence, Leaf, Node
 from smachac.ir.outcome_names import PREEMPTED, is_failure, successes
 from smachac.ir.traversal import outcome_names
 
@@ -43,7 +41,7 @@ class Failure:
 
 
 def starts_failure(node: Node, outcome: str) -> bool:
-    """Whether a failure begins here: with a leaf, tries that are used up, or a time limit."""
+    """Whether an outcome begins a failure: that of a leaf, of exhausted tries or a time limit."""
     if node.catches == outcome:
         return True
     match node:
@@ -56,27 +54,25 @@ def starts_failure(node: Node, outcome: str) -> bool:
     return False
 
 
-def failures(machine: Machine) -> Iterator[Failure]:
+def failures(states: Iterable[tuple[str, Node]], routes: Routes) -> Iterator[Failure]:
     """Every failure that can begin, in the order of the script; one for each way that it takes.
 
-    A failure begins where a leaf ends with an outcome of failure (hints.is_failure), tries are used
+    A failure begins where a leaf ends with an outcome of failure (`is_failure`), tries are used
     up, or a time limit is over. Linear in the states, but for the depth of containers.
     """
-    routes = Routes(machine)
-    ways = routes.ways()
-    ends = _possible_ends(routes, ways)
-    for path, node in states(machine):
+    ends = _possible_ends(routes)
+    for path, node in states:
         if node is not routes.nodes[path] or is_unread(node):
             continue
         for name in outcome_names(node):
-            if starts_failure(node, name) and (path, name) in ways:
+            if starts_failure(node, name) and (path, name) in routes.before:
                 yield from _failures(routes, ends, path, node, name)
 
 
 def _failures(
-    routes: Routes, ends: Mapping[Step, frozenset[str]], path: str, node: Node, name: str
+    routes: Routes, ends: Mapping[Event, frozenset[str]], path: str, node: Node, name: str
 ) -> Iterator[Failure]:
-    root = routes.machine.root
+    root = routes.root
     order = outcome_names(root)
     good = successes(order)
     span = next((step.span for step in node.transitions if step.outcome == name), node.span)
@@ -86,7 +82,7 @@ def _failures(
     same = len(good_ways) == 1 or good_ways == {(each.target, _final(each)) for each in arrivals}
     alike = good_ways if same else set[tuple[str, str]]()
     for arrival in arrivals:
-        last: Step = (arrival.target, "") if arrival.target else arrival.through[-1]
+        last: Event = (arrival.target, "") if arrival.target else arrival.through[-1]
         final = [end for end in order if end in ends.get(last, ())]
         yield Failure(
             path=path,
@@ -133,25 +129,16 @@ def _way(path: str, outcome: str, arrival: Arrival) -> tuple[str, ...]:
     return (*way, arrival.target.rpartition("/")[2] or _final(arrival))
 
 
-def _possible_ends(routes: Routes, ways: Mapping[Step, Step | None]) -> dict[Step, frozenset[str]]:
-    """The outcomes of the machine that each place can lead to while nobody asks it to stop."""
-    before: dict[Step, list[Step]] = {}
-    for place in ways:
-        if place[1] == PREEMPTED and isinstance(routes.nodes[place[0]], Leaf):
-            continue
-        for step in routes.follow(place):
-            before.setdefault(step, []).append(place)
-    root = routes.machine.root
-    found: dict[Step, frozenset[str]] = {}
+def _possible_ends(routes: Routes) -> dict[Event, frozenset[str]]:
+    """The outcomes of the machine that each event can lead to without a preempt request."""
+    import networkx as nx
+
+    stopped = {(path, PREEMPTED) for path, node in routes.nodes.items() if isinstance(node, Leaf)}
+    possible = nx.DiGraph(routes.graph.subgraph(routes.before.keys() - stopped))
+    root = routes.root
+    found: dict[Event, frozenset[str]] = {}
     for name in dict.fromkeys(outcome_names(root)):
         end = (root.name, name)
-        todo = deque([end] if end in ways else [])
-        seen = set(todo)
-        while todo:
-            here = todo.popleft()
-            found[here] = found.get(here, frozenset()) | {name}
-            for place in before.get(here, ()):
-                if place not in seen:
-                    seen.add(place)
-                    todo.append(place)
+        for event in {end, *nx.ancestors(possible, end)} if end in possible else ():
+            found[event] = found.get(event, frozenset()) | {name}
     return found

@@ -1,4 +1,4 @@
-"""Which keys are set along the paths of one container: fixpoints over sets of keys as bits."""
+"""Fixpoints over the vertices of one container: the sets of keys that are set, as bits."""
 
 from __future__ import annotations
 
@@ -7,46 +7,47 @@ from heapq import heappop, heappush
 from typing import NamedTuple, TypeAlias
 
 from smachac.analysis.accesses import Writes
-from smachac.ir.graph import START, Place
+from smachac.ir.graph import START, Vertex
 
 
-class Step(NamedTuple):
-    """Control passes to `target` on `outcome`, and the keys that are set by then."""
+class KeyStep(NamedTuple):
+    """Control passes to `target` on `outcome`; `writes` are the keys that are set then."""
 
-    target: Place
+    target: Vertex
     outcome: str
     writes: Writes
 
 
-Steps: TypeAlias = Mapping[Place, tuple[Step, ...]]
-"""The steps from each place of a container, in the order of the script."""
+KeySteps: TypeAlias = Mapping[Vertex, tuple[KeyStep, ...]]
+"""The steps from each vertex of a container, in the order of the script."""
 
 
-Order: TypeAlias = Mapping[Place, int]
-"""The places that can be reached, each before what follows it, but for loops."""
+Order: TypeAlias = Mapping[Vertex, int]
+"""The reachable vertices in reverse postorder, with their numbers."""
 
 
-def flow_order(steps: Steps) -> Order:
-    """The order in which control flows from the start."""
-    seen: set[Place] = {START}
-    left: list[Place] = []
+def flow_order(steps: KeySteps) -> Order:
+    """The order in which control flows from the start: reverse postorder."""
+    # By hand, as every check comes here (see ir/graph.py on the import of networkx).
+    seen: set[Vertex] = {START}
+    left: list[Vertex] = []
     stack = [(START, iter(steps.get(START, ())))]
     while stack:
-        place, leading = stack[-1]
+        vertex, leading = stack[-1]
         following = next((step.target for step in leading if step.target not in seen), None)
         if following is None:
-            left.append(place)
+            left.append(vertex)
             stack.pop()
         else:
             seen.add(following)
             stack.append((following, iter(steps.get(following, ()))))
-    return {place: number for number, place in enumerate(reversed(left))}
+    return {vertex: number for number, vertex in enumerate(reversed(left))}
 
 
-def looping(steps: Steps, order: Order) -> frozenset[Place]:
-    """The places that a path can come back to."""
+def looping(steps: KeySteps, order: Order) -> frozenset[Vertex]:
+    """The vertices that a path can come back to."""
     backwards = any(
-        order[step.target] <= order[place] for place in order for step in steps.get(place, ())
+        order[step.target] <= order[vertex] for vertex in order for step in steps.get(vertex, ())
     )
     if not backwards:
         return frozenset()
@@ -59,18 +60,18 @@ def looping(steps: Steps, order: Order) -> frozenset[Place]:
 
 
 CELLS = 400_000_000
-"""Bits that are kept at a time (50 MB): more keys than fit are judged in turn."""
+"""The most bits that are kept at a time (50 MB); more keys are analysed in several passes."""
 
-Asked: TypeAlias = Mapping[Place, Iterable[str]]
-"""At each place the keys that are of interest there."""
+Asked: TypeAlias = Mapping[Vertex, Iterable[str]]
+"""At each vertex the keys that are of interest there."""
 
 
 def may_be_unset(
-    asked: Asked, steps: Steps, order: Order, *, sure: bool = False
-) -> dict[Place, tuple[str, ...]]:
-    """The keys asked for that some path from the start leaves unset, by places where there are any.
+    asked: Asked, steps: KeySteps, order: Order, *, sure: bool = False
+) -> dict[Vertex, tuple[str, ...]]:
+    """Of the keys of interest at each vertex, those that some path from the start leaves unset.
 
-    By what is trusted to be written; `sure`: by what surely is.
+    Trusted writes count; with `sure`, only sure writes count.
     """
 
     def kept(bits: _Bits, writes: Writes) -> tuple[int, int]:
@@ -81,8 +82,8 @@ def may_be_unset(
     return _some_path(asked, steps, order, kept, from_start=True)
 
 
-def may_be_set(asked: Asked, steps: Steps, order: Order) -> dict[Place, tuple[str, ...]]:
-    """The keys asked for that some path from the start sets, by places where there are any."""
+def may_be_set(asked: Asked, steps: KeySteps, order: Order) -> dict[Vertex, tuple[str, ...]]:
+    """Of the keys of interest at each vertex, those that some path from the start sets."""
 
     def added(bits: _Bits, writes: Writes) -> tuple[int, int]:
         return bits.whole, bits.whole if writes.anything else bits.mask(writes.perhaps)
@@ -109,48 +110,48 @@ class _Bits:
 
 def _some_path(
     asked: Asked,
-    steps: Steps,
+    steps: KeySteps,
     order: Order,
     effect: Callable[[_Bits, Writes], tuple[int, int]],
     *,
     from_start: bool,
-) -> dict[Place, tuple[str, ...]]:
-    """The keys that arrive at places on some path, when `effect` says which bits stay on a step and
-    which are added, and all begin `from_start` or none."""
-    here = {place: tuple(dict.fromkeys(keys)) for place, keys in asked.items() if place in order}
+) -> dict[Vertex, tuple[str, ...]]:
+    """Of the keys of interest at each vertex, those that arrive on some path. `effect` gives the
+    bits that a step keeps and those that it adds; at the start all bits are set or none."""
+    here = {vertex: tuple(dict.fromkeys(keys)) for vertex, keys in asked.items() if vertex in order}
     keys = list(dict.fromkeys(key for several in here.values() for key in several))
     size = max(1000, CELLS // len(order))
-    found: dict[Place, list[str]] = {}
+    found: dict[Vertex, list[str]] = {}
     for first in range(0, len(keys), size):
         bits = _Bits(keys[first : first + size])
         moves = {
-            place: [(step.target, *effect(bits, step.writes)) for step in leading]
-            for place, leading in steps.items()
+            vertex: [(step.target, *effect(bits, step.writes)) for step in leading]
+            for vertex, leading in steps.items()
         }
         arrived = _spread(bits.whole if from_start else 0, moves, order)
-        for place, several in here.items():
-            mask = arrived[place]
+        for vertex, several in here.items():
+            mask = arrived[vertex]
             some = [key for key in several if bits.of.get(key, 0) & mask]
             if some:
-                found.setdefault(place, []).extend(some)
-    return {place: tuple(several) for place, several in found.items()}
+                found.setdefault(vertex, []).extend(some)
+    return {vertex: tuple(several) for vertex, several in found.items()}
 
 
-Moves = Mapping[Place, list[tuple[Place, int, int]]]
-"""From each place the targets, the bits that stay on the way, and those that are added."""
+Moves = Mapping[Vertex, list[tuple[Vertex, int, int]]]
+"""From each vertex the targets, the bits that stay on the way, and those that are added."""
 
 
-def _spread(start: int, moves: Moves, order: Order) -> Mapping[Place, int]:
+def _spread(start: int, moves: Moves, order: Order) -> Mapping[Vertex, int]:
     """The union over all paths of the bits that arrive, by rounds in the order of the flow."""
-    places = list(order)
-    found: dict[Place, int] = {START: start}
+    vertices = list(order)
+    found: dict[Vertex, int] = {START: start}
     todo = [order[START]]
     waiting = set(todo)
     while todo:
         number = heappop(todo)
         waiting.discard(number)
-        here = found[places[number]]
-        for target, kept, added in moves.get(places[number], ()):
+        here = found[vertices[number]]
+        for target, kept, added in moves.get(vertices[number], ()):
             before = found.get(target)
             after = (here & kept) | added | (before or 0)
             if before != after:

@@ -1,27 +1,27 @@
-"""Userdata that is written inside a container, read outside, and not handed out."""
+"""Lost outputs: keys that are written inside a container and read outside, but are no outputs."""
 
 from __future__ import annotations
 
-from collections.abc import Iterator
-from functools import cache, lru_cache
+from collections.abc import Iterable, Iterator
+from functools import cache
 from itertools import chain
 from typing import NamedTuple
 
 from smachac.analysis.def_use import around, place_in
-from smachac.analysis.definite_assignment import Flow, Scope
-from smachac.analysis.unset_reads import MOST_STEPS, Missing, Reader, missing_keys, reader_at
-from smachac.ir.graph import Place
+from smachac.analysis.definite_assignment import DataFlow, UserdataScope
+from smachac.analysis.unset_reads import MOST_STEPS, Missing, Reader, reader_at
+from smachac.ir.graph import Vertex
 from smachac.ir.nodes import Key, Leaf, Node
 from smachac.ir.traversal import remapping
 
 
 class Lost(NamedTuple):
-    """A key that the container `keeper` writes inside and keeps, though `reader` needs it.
+    """A key that is written inside the container `keeper` and is no output, but `reader` reads it.
 
     `own` is what the keeper calls it. `is_missing`: the reader finds nothing else.
     """
 
-    keeper: Scope
+    keeper: UserdataScope
     own: str
     writer: Node
     written: Key
@@ -30,15 +30,15 @@ class Lost(NamedTuple):
     is_missing: bool
 
 
-@lru_cache(maxsize=1)
-def lost_outputs(flow: Flow) -> tuple[Lost, ...]:
-    """The outputs that containers keep to themselves, in the order of the script."""
-    return tuple(_lost(flow))
+def lost_outputs(flow: DataFlow, lost_keys: Iterable[Missing]) -> tuple[Lost, ...]:
+    """The outputs that containers keep to themselves, in the order of the script. `lost_keys` are
+    those of them without which a reader finds nothing."""
+    return tuple(_lost(flow, lost_keys))
 
 
-def _lost(flow: Flow) -> Iterator[Lost]:
+def _lost(flow: DataFlow, lost_keys: Iterable[Missing]) -> Iterator[Lost]:
     told: set[tuple[str, str]] = set()
-    for missing in missing_keys(flow, "lost"):
+    for missing in lost_keys:
         lost = _missed(flow, missing)
         told.add((lost.keeper.path, lost.own))
         yield lost
@@ -54,25 +54,25 @@ def _lost(flow: Flow) -> Iterator[Lost]:
             if key not in read(outer) or left <= 0 or (scope.path, own) in told:
                 continue
             left -= len(around_it.steps) + len(around_it.reads)
-            place = _read_after(around_it, place_in(outer, scope.path), key)
-            if place is not None:
-                reader = reader_at(around_it, place, key)
+            vertex = _read_after(around_it, place_in(outer, scope.path), key)
+            if vertex is not None:
+                reader = reader_at(around_it, vertex, key)
                 yield Lost(scope, own, writer, written, reader, key, False)
 
 
-def _missed(flow: Flow, missing: Missing) -> Lost:
+def _missed(flow: DataFlow, missing: Missing) -> Lost:
     keeper = flow.scopes[missing.other]
     for writer in keeper.container.children:
         names = remapping(writer)
         for written in writer.outputs:
             own = names.get(written.name, written.name)
             if own not in keeper.outputs and _name_at(flow, keeper, own, missing) == missing.key:
-                reader = reader_at(missing.scope, missing.places[0], missing.key)
+                reader = reader_at(missing.scope, missing.vertices[0], missing.key)
                 return Lost(keeper, own, writer, written, reader, missing.key, True)
     raise AssertionError("a keeper writes what it keeps")
 
 
-def _name_at(flow: Flow, scope: Scope, own: str, missing: Missing) -> str:
+def _name_at(flow: DataFlow, scope: UserdataScope, own: str, missing: Missing) -> str:
     """What a key would be called in the container where it is missing."""
     path: str | None = scope.path
     while path is not None and path != missing.scope.path:
@@ -81,7 +81,7 @@ def _name_at(flow: Flow, scope: Scope, own: str, missing: Missing) -> str:
     return own
 
 
-def _kept(scope: Scope) -> Iterator[tuple[Node, Key, str]]:
+def _kept(scope: UserdataScope) -> Iterator[tuple[Node, Key, str]]:
     """What leaves of a container write by the word of the script, and it does not hand out: where
     it reads that itself only what it has also taken in, for that goes by the same name outside."""
     container = scope.container
@@ -98,12 +98,12 @@ def _kept(scope: Scope) -> Iterator[tuple[Node, Key, str]]:
                 yield child, key, own
 
 
-def _read_after(scope: Scope, start: str, key: str) -> Place | None:
-    """A place that reads a key after another one and before anything writes it."""
-    todo: list[Place] = [start]
-    seen: set[Place] = set(todo)
-    for place in todo:
-        for step in scope.steps.get(place, ()):
+def _read_after(scope: UserdataScope, start: str, key: str) -> Vertex | None:
+    """A vertex that reads a key after another one and before anything writes it."""
+    todo: list[Vertex] = [start]
+    seen: set[Vertex] = set(todo)
+    for vertex in todo:
+        for step in scope.steps.get(vertex, ()):
             if key in step.writes.trusted or step.writes.anything or step.target in seen:
                 continue
             if key in scope.reads.get(step.target, ()):

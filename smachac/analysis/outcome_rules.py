@@ -1,10 +1,10 @@
-"""How the children of a concurrence may end together, without going through the product.
+"""Outcome rules of a concurrence: which combinations of outcomes match, without enumeration.
 
 Rules are conjunctions of `child: outcome`; each is one bit of a number, so that a choice for one
-child strikes out in one step all rules that ask for something else. What is looked for is always
-the same: a combination, with some outcomes given, in which none of some rules holds. A child with
-an outcome that no rule asks for settles all rules about it; only where each of its outcomes is
-asked for is there something to try.
+child excludes in one step all rules that require another. Every query is of one kind: find a
+combination, with some outcomes given, in which none of certain rules holds. A child with an outcome
+that no rule requires excludes all rules about it; the search branches only where each outcome of a
+child is required by some rule.
 """
 
 from __future__ import annotations
@@ -25,12 +25,12 @@ Domains = Mapping[str, Sequence[str]]
 """The outcomes that each child can end with, those to show first in front."""
 
 MOST_LOOKED_AT = 1_000_000
-"""So many children one rule of the checker looks at for one concurrence. Forty branches with forty
-rules take some thousands."""
+"""The most children that one rule of the checker looks at for one concurrence. Forty
+branches with forty rules take some thousands."""
 
 
 class UndecidedError(Exception):
-    """There was more to look at than MOST_LOOKED_AT."""
+    """The search needs more than MOST_LOOKED_AT."""
 
 
 class Rules:
@@ -162,8 +162,8 @@ def bits(number: int) -> Iterator[int]:
 OTHER = ""
 """An outcome of an open leaf that is not known."""
 
-Known = Mapping[int, tuple[str, ...]]
-"""The possible outcomes of states by `id`."""
+OutcomesByPath = Mapping[str, tuple[str, ...]]
+"""The possible outcomes of states by path."""
 
 Space = dict[str, tuple[str, ...]]
 """The outcomes that each branch may end with, independent of the others; good ones first."""
@@ -171,8 +171,10 @@ Space = dict[str, tuple[str, ...]]
 
 @dataclass(frozen=True, slots=True)
 class Study:
-    """A concurrence whose rules have no fault of their own: misspelt names are put right."""
+    """A concurrence, at its path, whose rules have no fault of their own: misspelt names are put
+    right."""
 
+    path: str
     node: Concurrence
     children: Mapping[str, Node]
     written: tuple[OutcomeRule, ...]
@@ -201,7 +203,7 @@ class Study:
         return [number for number in found if len(self.rules.conditions[number]) == most]
 
 
-def study(node: Concurrence) -> Study | None:
+def study(path: str, node: Concurrence) -> Study | None:
     """What the rules of a concurrence say; None where it has no states, two of one name, or a rule
     that says nothing which can be understood."""
     children = {child.name: child for child in node.children}
@@ -218,7 +220,7 @@ def study(node: Concurrence) -> Study | None:
             return None
         written.append(understood)
     conditions = ({one.child: one.outcome for one in rule.when} for rule in written)
-    return Study(node, children, tuple(written), Rules(conditions))
+    return Study(path, node, children, tuple(written), Rules(conditions))
 
 
 def _is_sound(rule: OutcomeRule, ends: Mapping[str, frozenset[str] | None]) -> bool:
@@ -250,7 +252,7 @@ def _understood(rule: OutcomeRule, children: Mapping[str, Node]) -> OutcomeRule 
     return understood if when and once else None
 
 
-def space(read: Study, known: Known) -> Space:
+def space(read: Study, known: OutcomesByPath) -> Space:
     """How the branches may end. One that never does ends here with an outcome that is not known
     where the others do not wait for it: that it does not end is told elsewhere."""
     asked: dict[str, list[str]] = {}
@@ -259,7 +261,7 @@ def space(read: Study, known: Known) -> Space:
             asked.setdefault(condition.child, []).append(condition.outcome)
     found: Space = {}
     for child in read.node.children:
-        names = known[id(child)]
+        names = known[f"{read.path}/{child.name}"]
         if is_open(child):
             names = tuple(dict.fromkeys([*good_first(names), *asked.get(child.name, ()), OTHER]))
         elif not names and read.node.join == "any":
@@ -268,7 +270,9 @@ def space(read: Study, known: Known) -> Space:
     return found
 
 
-def calm_spaces(read: Study, ever: Known, calm: Known) -> Iterator[tuple[Space, str]]:
+def calm_spaces(
+    read: Study, ever: OutcomesByPath, calm: OutcomesByPath
+) -> Iterator[tuple[Space, str]]:
     """How the branches may end while nobody asks the concurrence to stop, and for `join: any` the
     branch that ends first. The others are preempted; one that answers has no other outcome here,
     though it may have one in the moment in which two end at once."""
@@ -282,7 +286,7 @@ def calm_spaces(read: Study, ever: Known, calm: Known) -> Iterator[tuple[Space, 
         for name, outcomes in whole.items()
     }
     for child in read.node.children:
-        if calm[id(child)] or is_open(child):
+        if calm[f"{read.path}/{child.name}"] or is_open(child):
             yield {**others, child.name: own[child.name]}, child.name
 
 

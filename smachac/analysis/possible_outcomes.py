@@ -1,4 +1,4 @@
-"""The outcomes with which states can really end, through all containers inside them."""
+"""Possible outcomes: those that a state can really end with, given what is inside it."""
 
 from __future__ import annotations
 
@@ -6,7 +6,6 @@ from collections.abc import Iterable, Sequence
 from dataclasses import replace
 from typing import NamedTuple
 
-from smachac.analysis.context import containers, once, states
 from smachac.analysis.control_flow import Linear, children_names, is_open, leads_somewhere, mended
 from smachac.analysis.outcome_rules import (
     OTHER,
@@ -21,73 +20,77 @@ from smachac.analysis.outcome_rules import (
 from smachac.diagnostics.source import assert_never
 from smachac.ir import nodes
 from smachac.ir.graph import edges, is_unread, stopped_endings
-from smachac.ir.nodes import Concurrence, Leaf, Machine, Node, StateMachine
+from smachac.ir.nodes import Concurrence, Container, Leaf, Node, StateMachine
 from smachac.ir.outcome_names import PREEMPTED
 from smachac.ir.traversal import leads_to_child, outcome_names
 
-Known = dict[int, tuple[str, ...]]
+OutcomesByPath = dict[str, tuple[str, ...]]
 
 
 class Endings(NamedTuple):
-    """The outcomes of states by `id`: those that ever come, and those that come while nobody asks
-    the state to stop."""
+    """The outcomes of states by path: those that are possible at all, and those that are possible
+    without a preempt request."""
 
-    ever: Known
-    calm: Known
+    ever: OutcomesByPath
+    calm: OutcomesByPath
 
 
-@once
-def endings(machine: Machine) -> Endings:
+def endings(states: Sequence[tuple[str, Node]]) -> Endings:
     """The possible endings of all states inside concurrences, in the order of declaration.
 
     A declared outcome that nothing brings about is none of them. Where a fault hides what a state
     does, it may end with any of its outcomes.
     """
     found = Endings({}, {})
-    inside: list[Node] = []
-    within: set[int] = set()
-    for _, node in states(machine):
+    inside: list[tuple[str, Node]] = []
+    within: set[str] = set()
+    for path, node in states:
         if isinstance(node, Leaf):
             continue
-        if isinstance(node, Concurrence) or id(node) in within:
-            inside += node.children
-            within.update(map(id, node.children))
-    for node in reversed(inside):
-        found.ever[id(node)] = _ever(node, found.ever)
-        found.calm[id(node)] = _calm(node, found)
+        if isinstance(node, Concurrence) or path in within:
+            children = [(f"{path}/{child.name}", child) for child in node.children]
+            inside += children
+            within.update(inner for inner, _ in children)
+    for path, node in reversed(inside):
+        found.ever[path] = _ever(path, node, found.ever)
+        found.calm[path] = _calm(path, node, found)
     return found
 
 
-def _ever(node: Node, known: Known) -> tuple[str, ...]:
+def _ever(path: str, node: Node, known: OutcomesByPath) -> tuple[str, ...]:
     match node:
         case Leaf():
             return (*outcome_names(node), *(OTHER,) * node.open)
         case Concurrence():
-            read = study(node)
+            read = study(path, node)
             spaces = [space(read, known)] if read else []
             return _declared(node, [*_results(node, read, spaces), PREEMPTED])
-    return _of_container(node, known, asked=True)
+    return _of_container(path, node, known, asked=True)
 
 
-def _calm(node: Node, found: Endings) -> tuple[str, ...]:
+def _calm(path: str, node: Node, found: Endings) -> tuple[str, ...]:
     match node:
         case Leaf():
-            return tuple(name for name in found.ever[id(node)] if name != PREEMPTED)
+            return tuple(name for name in found.ever[path] if name != PREEMPTED)
         case Concurrence():
-            read = study(node)
+            read = study(path, node)
             spaces = [each for each, _ in calm_spaces(read, *found)] if read else []
             return _declared(node, _results(node, read, spaces))
-    return _of_container(node, found.calm, asked=False)
+    return _of_container(path, node, found.calm, asked=False)
 
 
 def _of_container(
-    node: StateMachine | nodes.Sequence | nodes.Iterator, known: Known, *, asked: bool
+    path: str,
+    node: StateMachine | nodes.Sequence | nodes.Iterator,
+    known: OutcomesByPath,
+    *,
+    asked: bool,
 ) -> tuple[str, ...]:
     match node:
         case nodes.Iterator():
-            return _declared(node, _iterator(node, known, asked=asked))
+            return _declared(node, _iterator(path, node, known, asked=asked))
         case StateMachine() | nodes.Sequence():
-            return _declared(node, _linear(node, known))
+            return _declared(node, _linear(path, node, known))
     return assert_never(node)
 
 
@@ -96,7 +99,7 @@ def _declared(node: Node, results: Iterable[str]) -> tuple[str, ...]:
     return tuple(name for name in outcome_names(node) if name in possible)
 
 
-def _linear(container: Linear, known: Known) -> set[str]:
+def _linear(path: str, container: Linear, known: OutcomesByPath) -> set[str]:
     """The exits that can be reached from the initial state."""
     whole = mended(container)
     names = children_names(whole)
@@ -106,7 +109,8 @@ def _linear(container: Linear, known: Known) -> set[str]:
     for old, child in zip(container.children, whole.children, strict=True):
         states[child.name] = child
         # What a misspelt leaf was mended to says more than what was known of it.
-        ends[child.name] = known[id(old)] if old.outcomes or is_open(old) else outcome_names(child)
+        told = old.outcomes or is_open(old)
+        ends[child.name] = known[f"{path}/{old.name}"] if told else outcome_names(child)
     todo = [whole.initial] if whole.initial in names else list(states)
     seen, found = set(todo), set[str]()
     while todo:
@@ -131,11 +135,15 @@ def _linear(container: Linear, known: Known) -> set[str]:
     return found
 
 
-def _iterator(container: nodes.Iterator, known: Known, *, asked: bool) -> set[str]:
+def _iterator(
+    path: str, container: nodes.Iterator, known: OutcomesByPath, *, asked: bool
+) -> set[str]:
     """What an iterator can end with. One that is asked to stop ends with its child's outcome, also
     with one on which it goes on else (smach-semantics P9)."""
     children = tuple(
-        child if is_open(child) else replace(child, outcomes=_only(child, known[id(child)]))
+        child
+        if is_open(child)
+        else replace(child, outcomes=_only(child, known[f"{path}/{child.name}"]))
         for child in container.children
     )
     shown = replace(container, children=children)
@@ -181,16 +189,14 @@ class Judged(NamedTuple):
     calm: list[tuple[Space, str]]
 
 
-@once
-def judged(machine: Machine) -> list[Judged]:
+def judged(containers: Iterable[tuple[str, Container]], known: Endings) -> list[Judged]:
     """The concurrences of a machine whose rules can be judged, without those made for sugar."""
     found: list[Judged] = []
-    for path, container in containers(machine):
+    for path, container in containers:
         if not isinstance(container, Concurrence) or container.sugar:
             continue
-        read = study(container)
+        read = study(path, container)
         if read is not None:
-            known = endings(machine)
             spaces = calm_spaces(read, *known)
             calm = [(without_other(each), first) for each, first in spaces]
             found.append(Judged(path, read, known, space(read, known.ever), calm))

@@ -1,14 +1,14 @@
-"""Whether a value can get from where it is written to where it is read, and is not replaced on the
-way: what a rule asks before it complains of the two."""
+"""Reaching definitions: the written values that can arrive at a read."""
 
 from __future__ import annotations
 
+from collections.abc import Iterable
 from dataclasses import replace
 
-from smachac.analysis.type_inference import Clash, Flow, Place
+from smachac.analysis.type_inference import Cell, Clash, TypeFlow
+from smachac.analysis.type_lattice import MisfitKind
 from smachac.ir import nodes
-from smachac.ir.graph import START, edges
-from smachac.ir.graph import Place as Stop
+from smachac.ir.graph import START, Vertex, edges
 from smachac.ir.nodes import Leaf, Node
 from smachac.ir.traversal import remapping
 from smachac.ir.types import ANY
@@ -19,64 +19,77 @@ MOST_VISITS = 1_000_000
 PREEMPTED = "preempted"
 
 
-class Arrivals:
-    """The searches of one run of the rules, with what they found and the edges they went along."""
+def reaching_clashes(clashes: Iterable[Clash]) -> dict[MisfitKind, list[Clash]]:
+    """The clashes whose value can be there when it is read, by kind."""
+    searches = _Searches()
+    found: dict[MisfitKind, list[Clash]] = {"type": [], "length": [], "unit": []}
+    for clash in clashes:
+        reaching = searches.reaching(clash)
+        if reaching is not None:
+            found[clash.misfit.kind].append(reaching)
+    return found
+
+
+class _Searches:
+    """The searches over the containers of one machine, and their results."""
 
     def __init__(self) -> None:
         self.visits = 0
-        self.steps: dict[int, dict[Stop, list[tuple[Stop, str]]]] = {}
-        self.children: dict[int, dict[str, Node]] = {}
-        self.found: dict[tuple[int, str, str | None], tuple[Stop, ...] | None] = {}
-        self.flows: dict[tuple[int, object], dict[Stop, Flow]] = {}
+        self.steps: dict[str, dict[Vertex, list[tuple[Vertex, str]]]] = {}
+        self.children: dict[str, dict[str, Node]] = {}
+        self.found: dict[tuple[str, str, str | None], tuple[Vertex, ...] | None] = {}
+        self.flows: dict[tuple[Cell, object], dict[Vertex, TypeFlow]] = {}
 
-    def arrived(self, clash: Clash) -> Clash | None:
-        """The clash, by a way that the value can come; None where it cannot be there."""
-        seen: set[int] = set()
-        todo: list[tuple[Flow, tuple[Flow, ...]]] = [(clash.flow, ())]
+    def reaching(self, clash: Clash) -> Clash | None:
+        """The clash, with flows that can happen; None where the value cannot arrive."""
+        seen: set[TypeFlow] = set()
+        todo: list[tuple[TypeFlow, tuple[TypeFlow, ...]]] = [(clash.flow, ())]
         while todo:
             flow, after = todo.pop()
-            if id(flow) in seen:
+            if flow in seen:
                 continue
-            seen.add(id(flow))
-            sources = self.sources(flow.place, after)
+            seen.add(flow)
+            sources = self.sources(flow.cell, after)
             alike = self.alike(flow)
-            coming = [alike[stop] for stop in sources if stop in alike] if sources else []
+            coming = [alike[vertex] for vertex in sources if vertex in alike] if sources else []
             for each in coming if sources is not None else [flow]:
                 if each.before is None:
                     return replace(clash, flow=_linked(each, after))
                 todo.append((each.before, (each, *after)))
         return None
 
-    def alike(self, flow: Flow) -> dict[Stop, Flow]:
-        """The flows of one place that are of one type, by the stop they come from."""
-        which = id(flow.place), flow.mark
+    def alike(self, flow: TypeFlow) -> dict[Vertex, TypeFlow]:
+        """The flows of one cell with one mark, by the vertex they come from."""
+        which = flow.cell, flow.mark
         if which not in self.flows:
-            every = flow.place.flows.get(flow.mark, [flow])
+            every = flow.cell.flows.get(flow.mark, [flow])
             self.flows[which] = {_stop(each): each for each in reversed(every)}
         return self.flows[which]
 
-    def sources(self, place: Place, after: tuple[Flow, ...]) -> tuple[Stop, ...] | None:
-        """From where the value can come that the next place takes; None for anywhere."""
-        container = place.node
+    def sources(self, cell: Cell, after: tuple[TypeFlow, ...]) -> tuple[Vertex, ...] | None:
+        """The vertices from which a value that flows into the next cell can come; None for any."""
+        container = cell.node
         linear = isinstance(container, nodes.StateMachine | nodes.Sequence)
-        if not after or not linear or place.role != "scope" or place.declared != ANY:
+        if not after or not linear or cell.role != "scope" or cell.declared != ANY:
             return None
         assert isinstance(container, nodes.StateMachine | nodes.Sequence)
-        which = id(container), place.key, _child(place, after[0].place)
+        which = cell.path, cell.key, _child(cell, after[0].cell)
         if which not in self.found:
             spent = self.visits > MOST_VISITS
-            self.found[which] = None if spent else self.search(container, *which[1:])
+            self.found[which] = None if spent else self.search(container, *which)
         return self.found[which]
 
-    def search(self, container: nodes.Container, key: str, goal: str | None) -> tuple[Stop, ...]:
+    def search(
+        self, container: nodes.Container, path: str, key: str, goal: str | None
+    ) -> tuple[Vertex, ...]:
         """The children that may have been the last to write a key before a child reads it, or
         before the end (no goal); and the start, where none need be."""
-        steps = self.steps_back(container)
-        children = self.children[id(container)]
-        todo: list[Stop] = [goal] if goal is not None else []
-        todo += [stop for stop in steps if goal is None and isinstance(stop, tuple)]
-        seen: set[Stop] = set(todo)
-        sources: dict[Stop, None] = {}
+        steps = self.steps_back(path, container)
+        children = self.children[path]
+        todo: list[Vertex] = [goal] if goal is not None else []
+        todo += [vertex for vertex in steps if goal is None and isinstance(vertex, tuple)]
+        seen: set[Vertex] = set(todo)
+        sources: dict[Vertex, None] = {}
         while todo:
             self.visits += 1
             for before, outcome in steps.get(todo.pop(), ()):
@@ -87,34 +100,36 @@ class Arrivals:
                     todo.append(before)
         return tuple(sources)
 
-    def steps_back(self, container: nodes.Container) -> dict[Stop, list[tuple[Stop, str]]]:
-        """For each stop of a container, the stops before it and their outcomes."""
-        if id(container) not in self.steps:
-            found: dict[Stop, list[tuple[Stop, str]]] = {}
+    def steps_back(
+        self, path: str, container: nodes.Container
+    ) -> dict[Vertex, list[tuple[Vertex, str]]]:
+        """For each vertex of a container, the stops before it and their outcomes."""
+        if path not in self.steps:
+            found: dict[Vertex, list[tuple[Vertex, str]]] = {}
             for edge in edges(container):
                 found.setdefault(edge.target, []).append((edge.source, edge.outcome))
-            self.steps[id(container)] = found
-            self.children[id(container)] = {child.name: child for child in container.children}
-        return self.steps[id(container)]
+            self.steps[path] = found
+            self.children[path] = {child.name: child for child in container.children}
+        return self.steps[path]
 
 
-def _stop(flow: Flow) -> Stop:
-    """The child that a value in a key of a container comes from, or the start."""
+def _stop(flow: TypeFlow) -> Vertex:
+    """The child that a value in a cell of a container comes from, or the start."""
     if flow.before is None:
         return START
-    return _child(flow.place, flow.before.place) or START
+    return _child(flow.cell, flow.before.cell) or START
 
 
-def _linked(flow: Flow, after: tuple[Flow, ...]) -> Flow:
+def _linked(flow: TypeFlow, after: tuple[TypeFlow, ...]) -> TypeFlow:
     """The last of several flows, each with the one before it."""
     for each in after:
-        flow = each if each.before is flow else replace(each, before=flow)
+        flow = each if each.before is flow else replace(each, before=flow, first=flow.origin)
     return flow
 
 
-def _child(place: Place, other: Place) -> str | None:
-    """The child of a container's key that the other place belongs to, if it is inside."""
-    inside = f"{place.path}/"
+def _child(cell: Cell, other: Cell) -> str | None:
+    """The child of a container's key that the other cell belongs to, if it is inside."""
+    inside = f"{cell.path}/"
     return other.path[len(inside) :] if other.path.startswith(inside) else None
 
 

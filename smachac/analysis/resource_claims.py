@@ -1,17 +1,16 @@
-"""The resources that states hold while they run, as far as they are known before the run."""
+"""Resource claims: the resources that each state holds while it runs, as far as they are static."""
 
 from __future__ import annotations
 
 import re
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterable, Iterator, Mapping, Sequence
 
-from smachac.analysis.accesses import accesses, inside
-from smachac.analysis.context import containers, states
-from smachac.ir.nodes import Data, Machine, Node
+from smachac.analysis.accesses import Accesses, inside
+from smachac.ir.nodes import Container, Data, Node
 from smachac.ir.traversal import remapping
 
-Held = dict[int, dict[str, Node]]
-"""By `id` of a state what it or something in it claims, with the innermost that does."""
+Held = dict[str, dict[str, Node]]
+"""By path of a state the claims of it and of the nodes inside, with the innermost claimant."""
 
 Constants = dict[str, "str | None"]
 """The keys that a container's userdata may hold; None where the value is not known."""
@@ -26,26 +25,30 @@ def prefixes(claim: str) -> Iterator[str]:
         yield ".".join(parts[:end])
 
 
-def claims(machine: Machine) -> Held:
-    """The claims of every state. One that is not known keeps its key in braces: two such claims
-    may be of different things."""
-    values = _constants(machine) if _have_keys(machine) else {}
-    found: Held = {id(machine.root): {}}
-    for _, container in containers(machine):
+def claims(
+    states: Iterable[tuple[str, Node]],
+    containers: Sequence[tuple[str, Container]],
+    known: Mapping[str, Accesses],
+) -> Held:
+    """The claims of every state. A claim with an unknown key keeps the key in braces: two such
+    claims can be of different resources."""
+    values = _constants(containers, known) if _have_keys(states) else {}
+    found: Held = {path: {} for path, _ in containers[:1]}
+    for path, container in containers:
         for child in container.children:
-            keys = values.get(id(container), {})
+            keys = values.get(path, {})
             own = (_filled(claim, child, keys) for claim in child.claims)
-            found[id(child)] = dict.fromkeys(own, child)
-    for _, container in reversed(containers(machine)):
-        held = found[id(container)]
+            found.setdefault(f"{path}/{child.name}", dict.fromkeys(own, child))
+    for path, container in reversed(containers):
+        held = found[path]
         for child in container.children:
-            for claim, origin in found[id(child)].items():
+            for claim, origin in found[f"{path}/{child.name}"].items():
                 held.setdefault(claim, origin)
     return found
 
 
-def _have_keys(machine: Machine) -> bool:
-    return any("{" in claim for _, node in states(machine) for claim in node.claims)
+def _have_keys(states: Iterable[tuple[str, Node]]) -> bool:
+    return any("{" in claim for _, node in states for claim in node.claims)
 
 
 def _filled(claim: str, node: Node, keys: Mapping[str, str | None]) -> str:
@@ -60,15 +63,14 @@ def _filled(claim: str, node: Node, keys: Mapping[str, str | None]) -> str:
     return _KEY.sub(value, claim)
 
 
-def _constants(machine: Machine) -> dict[int, Constants]:
-    """By `id` of a container what its userdata holds whenever something in it runs."""
-    known = accesses(machine)
-    found: dict[int, Constants] = {}
-    parents: dict[int, Node] = {}
-    for _, container in containers(machine):
-        parents.update((id(child), container) for child in container.children)
+def _constants(
+    containers: Iterable[tuple[str, Container]], known: Mapping[str, Accesses]
+) -> dict[str, Constants]:
+    """By path of a container the constant keys of its userdata, while something in it runs."""
+    found: dict[str, Constants] = {}
+    for path, container in containers:
         own: Constants = {preset.key: _text(preset.value.data) for preset in container.userdata}
-        outside = found[id(parents[id(container)])] if id(container) in parents else None
+        outside = found.get(path.removesuffix(f"/{container.name}"))
         names = remapping(container)
         for key in container.inputs:
             outer = names.get(key.name, key.name)
@@ -76,8 +78,8 @@ def _constants(machine: Machine) -> dict[int, Constants]:
                 own.setdefault(key.name, None)
             elif outer in outside:
                 own[key.name] = outside[outer]
-        own.update(dict.fromkeys(inside(container, known).writes))
-        found[id(container)] = own
+        own.update(dict.fromkeys(inside(path, container, known).writes))
+        found[path] = own
     return found
 
 

@@ -1,20 +1,17 @@
-"""Where control passes when a state ends: out of its containers, to the state that is next."""
+"""The control flow of a whole machine: which event can follow which, through all containers."""
 
 from __future__ import annotations
 
 from collections import deque
-from collections.abc import Iterable, Iterator, Mapping
-from dataclasses import dataclass, field
+from collections.abc import Iterable, Iterator, Mapping, Sequence
+from functools import cached_property, partial
 from typing import NamedTuple
 
 from smachac.analysis.outcome_rules import Study, UndecidedError, calm_spaces, space, study
-from smachac.analysis.possible_outcomes import Endings, endings
-from smachac.ir.graph import START, Place, edges, exit_place
-from smachac.ir.nodes import Concurrence, Container, Leaf, Machine, Node
-from smachac.ir.traversal import containers, outcome_names, walk
-
-Step = tuple[str, str]
-"""A state, by path, that is entered (no outcome) or ends with an outcome."""
+from smachac.analysis.possible_outcomes import Endings
+from smachac.ir.graph import START, Edge, Event, edges, exit_vertex, machine_graph
+from smachac.ir.nodes import Concurrence, Container, Node
+from smachac.ir.traversal import outcome_names
 
 
 class Arrival(NamedTuple):
@@ -24,123 +21,70 @@ class Arrival(NamedTuple):
     the state that is entered then, empty where the machine has ended.
     """
 
-    through: tuple[Step, ...]
+    through: tuple[Event, ...]
     target: str
 
 
-Following = dict[str, dict[Step, None]]
-"""What can follow a child at once, by its outcomes."""
-
-
-@dataclass(slots=True)
 class Routes:
-    """The ways through a machine. Of two states with one path the first counts.
+    """The control flow of a whole machine: which event can follow which.
 
-    `around` is the path of the container of each state.
+    `root` is the machine itself; `nodes` are its states by path. Of two states with one path the
+    first counts. In a concurrence, an end of a child leads to the results that can come of it.
     """
 
-    machine: Machine
-    nodes: dict[str, Node] = field(default_factory=dict)
-    around: dict[str, str] = field(default_factory=dict)
-    _following: dict[str, dict[str, Following]] = field(default_factory=dict)
-    _endings: Endings | None = None
+    def __init__(self, states: Sequence[tuple[str, Node]], known: Endings) -> None:
+        self.root = states[0][1]
+        self.nodes = dict(reversed(states))
+        self.graph = machine_graph(states, partial(_possible_edges, known))
 
-    def __post_init__(self) -> None:
-        for path, node in walk(self.machine.root):
-            self.nodes.setdefault(path, node)
-        for path, container in containers(self.machine.root):
-            for child in container.children:
-                self.around.setdefault(f"{path}/{child.name}", path)
+    @cached_property
+    def before(self) -> Mapping[Event, Event | None]:
+        """Every event that can come, nearest first, with the one before it on a shortest path."""
+        import networkx as nx
 
-    def after(self, path: str, outcome: str) -> tuple[Step, ...]:
-        """What can follow at once when a state ends with an outcome."""
-        outer = self.around.get(path)
-        if outer is None:
-            return ()
-        if outer not in self._following:
-            self._following[outer] = self._of_container(outer)
-        return tuple(self._following[outer].get(path, {}).get(outcome, ()))
+        start: Event = (self.root.name, "")
+        return {start: None, **{event: last for last, event in nx.bfs_edges(self.graph, start)}}
 
-    def _of_container(self, path: str) -> dict[str, Following]:
-        container = self.nodes[path]
-        assert not isinstance(container, Leaf)
-        found: dict[str, Following] = {}
-        for source, outcome, target in self._leaving(container):
-            following = found.setdefault(f"{path}/{source}", {}).setdefault(outcome, {})
-            following[_step(path, target)] = None
-        return found
-
-    def _leaving(self, container: Container) -> Iterator[tuple[str, str, Place]]:
-        """What the outcomes of children lead to; in a concurrence, as far as that can come."""
-        read = study(container) if isinstance(container, Concurrence) else None
-        if read is None:
-            for edge in edges(container):
-                if isinstance(edge.source, str):
-                    yield edge.source, edge.outcome, edge.target
-            return
-        if self._endings is None:
-            self._endings = endings(self.machine)
-        exits = outcome_names(container)
-        for child in container.children:
-            for outcome in outcome_names(child):
-                for result in _results(read, self._endings, child.name, outcome):
-                    if result in exits:
-                        yield child.name, outcome, exit_place(result)
+    def after(self, event: Event) -> Iterable[Event]:
+        """The events that can follow one at once."""
+        return self.graph.adj.get(event, ())  # type: ignore[no-any-return]
 
     def arrivals(self, path: str, outcome: str) -> list[Arrival]:
         """Where an outcome of a state can lead, through the ends of containers."""
         found: list[Arrival] = []
-        through: dict[Step, tuple[Step, ...]] = {(path, outcome): ()}
+        through: dict[Event, tuple[Event, ...]] = {(path, outcome): ()}
         todo = deque(through)
         while todo:
             here = todo.popleft()
-            if through[here] and here[0] == self.machine.root.name:
+            if through[here] and here[0] == self.root.name:
                 found.append(Arrival(through[here], ""))
-            for step in self.after(*here):
-                if not step[1]:
-                    found.append(Arrival(through[here], step[0]))
-                elif step not in through:
-                    through[step] = (*through[here], step)
-                    todo.append(step)
+            for event in self.after(here):
+                if not event[1]:
+                    found.append(Arrival(through[here], event[0]))
+                elif event not in through:
+                    through[event] = (*through[here], event)
+                    todo.append(event)
         return found
 
-    def follow(self, step: Step) -> Iterator[Step]:
-        """What can follow a step: an entered container starts, a leaf ends."""
-        path, outcome = step
-        if outcome:
-            yield from self.after(path, outcome)
-            return
-        node = self.nodes[path]
-        if isinstance(node, Leaf):
-            known = [*outcome_names(node), *(each.outcome for each in node.transitions)]
-            yield from ((path, name) for name in dict.fromkeys(known))
-            return
-        yield from (_step(path, edge.target) for edge in edges(node) if edge.source == START)
-        if node.catches:
-            yield path, node.catches
 
-    def ways(self) -> Mapping[Step, Step | None]:
-        """Every step that the machine can come to, with the one before it on a shortest way."""
-        start: Step = (self.machine.root.name, "")
-        before: dict[Step, Step | None] = {start: None}
-        todo: deque[Step] = deque([start])
-        while todo:
-            here = todo.popleft()
-            for step in self.follow(here):
-                if step not in before:
-                    before[step] = here
-                    todo.append(step)
-        return before
-
-
-def _step(path: str, target: Place) -> Step:
-    """What an edge inside the container at a path leads to."""
-    return (f"{path}/{target}", "") if isinstance(target, str) else (path, target[1])
+def _possible_edges(known: Endings, path: str, container: Container) -> Iterator[Edge]:
+    """The edges of a container; those of a concurrence as far as they can be taken."""
+    read = study(path, container) if isinstance(container, Concurrence) else None
+    if read is None:
+        yield from edges(container)
+        return
+    exits = outcome_names(container)
+    for child in container.children:
+        yield Edge(START, child.name, "", "enter")
+        for outcome in outcome_names(child):
+            for result in _results(read, known, child.name, outcome):
+                if result in exits:
+                    yield Edge(child.name, exit_vertex(result), outcome, "rule")
 
 
 def _results(read: Study, ends: Endings, child: str, outcome: str) -> Iterable[str]:
-    """What a concurrence can end with when a child ends so and nobody stops the concurrence, or
-    else at all; everything it says where that cannot be decided."""
+    """The results of a concurrence that are possible when a child ends with an outcome: without a
+    preempt request, else with one; all results where that cannot be decided."""
     calm = [each for each, first in calm_spaces(read, *ends) if first in ("", child)]
     spaces = [each for each in calm if outcome in each[child]] or [space(read, ends.ever)]
     given = {child: outcome}
@@ -159,16 +103,16 @@ def _results(read: Study, ends: Endings, child: str, outcome: str) -> Iterable[s
     return found or [*(rule.outcome for rule in read.written), read.node.default_outcome]
 
 
-def path_to(ways: Mapping[Step, Step | None], last: Step) -> tuple[str, ...]:
-    """The states on a shortest way to a step as they are entered, and in brackets the outcomes
-    between them: those of leaves, where containers end with them."""
-    steps: list[Step] = []
-    here: Step | None = last
+def path_to(before: Mapping[Event, Event | None], last: Event) -> tuple[str, ...]:
+    """A shortest path to an event: the states that are entered, and in brackets the outcomes
+    between them. Where containers end together with a leaf, the outcome is that of the leaf."""
+    events: list[Event] = []
+    here: Event | None = last
     while here is not None:
-        steps.append(here)
-        here = ways[here]
+        events.append(here)
+        here = before[here]
     found: list[str] = []
-    for path, outcome in steps[-2::-1]:
+    for path, outcome in events[-2::-1]:
         if not outcome:
             found.append(path.rpartition("/")[2])
         elif found and not found[-1].startswith("("):

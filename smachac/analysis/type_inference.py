@@ -1,16 +1,16 @@
-"""The types of userdata, inferred over a whole machine, and where they clash.
+"""Type inference: the types of all userdata of a machine, and the type clashes.
 
-Every key of every container, and every input, output and variable of a leaf, is a *place*. A value
-comes to be in a place (a preset, a declared output, a result of code) and is carried along links,
-which are the remaps, from place to place. What a place declares is asked of all that arrives
-there, and stands for it from there on; literals are carried through, so that a list of six numbers
-is told from one of seven wherever it ends up.
+Every key of every container, and every input, output and variable of a leaf, is a *cell*. A value
+originates in a cell (a preset, a declared output, a result of code) and flows along links, which
+are the remaps, from cell to cell. A value that arrives at a cell with a declared type must fit it,
+and has the declared type from there on; literals keep their own type, so that a list of six numbers
+differs from one of seven at every cell.
 
-Places without a declaration that are linked are one type variable. Its type is what fits whatever
-is written to it and can be read as whatever reads it; `any` where nothing is known.
+Linked cells without a declaration are one type variable. Its type fits everything that is written
+to it and can be read as every type that reads it; it is `any` where nothing is known.
 
-The result is kept beside the machine and not in it: a node says what the script declares, so that
-the text of a machine is read again as the same machine.
+The result is not stored in the machine: a node holds what the script declares, so that the text of
+a machine is parsed to the same machine.
 """
 
 from __future__ import annotations
@@ -43,28 +43,28 @@ from smachac.ir.traversal import remapping
 from smachac.ir.types import ANY, Type
 
 MOST_FLOWS = 64
-"""Values of one type that are told apart in one place."""
+"""The most values of one type that are distinguished in one cell."""
 
 MOST_ROUNDS = 20
-"""Times that one piece of code is typed anew as more becomes known of what it reads."""
+"""The most times that one computation is typed again because its inputs have changed."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Types:
-    """What is known of a machine's types.
+    """The types of a machine.
 
     `keys` maps the path of a container and a key of its userdata to the key's type; `inputs` and
     `outputs` do so for leaves, under their own names. `constants` are the literals that reach a
-    place with a declared type and fit it. `places` are the keys of containers and the inputs of
-    leaves, with what arrives there.
+    cell with a declared type and fit it. `cells` are the keys of containers and the inputs of
+    leaves, with the flows that arrive there.
     """
 
     keys: Mapping[tuple[str, str], Type]
     inputs: Mapping[tuple[str, str], Type]
     outputs: Mapping[tuple[str, str], Type]
     clashes: tuple[Clash, ...] = ()
-    constants: tuple[Flow, ...] = ()
-    places: Mapping[tuple[str, str], Place] = field(default_factory=dict, repr=False)
+    constants: tuple[TypeFlow, ...] = ()
+    cells: Mapping[tuple[str, str], Cell] = field(default_factory=dict, repr=False)
 
     def names(self, path: str, leaf: Leaf) -> dict[str, Type]:
         """The types of the keys that code of a leaf reads (see `type_of_call`)."""
@@ -81,38 +81,41 @@ def infer(machine: Machine) -> Types:
     return run.result()
 
 
-class _Scope:
-    """The userdata of one container: its keys as they are first met."""
+class _ContainerCells:
+    """The cells of one container's userdata, each made at the first use of its key."""
 
     def __init__(self, run: _Inference, path: str, node: Container) -> None:
         self.run = run
         self.path = path
         self.node = node
-        self.places: dict[str, Place] = {}
+        self.cells: dict[str, Cell] = {}
 
-    def at(self, key: str, span: Span | None = None) -> Place:
-        if key not in self.places:
-            place = self.run.place(self.path, key, "scope", self.node, span or self.node.span)
-            self.places[key] = place
-        return self.places[key]
+    def at(self, key: str, span: Span | None = None) -> Cell:
+        if key not in self.cells:
+            cell = self.run.cell(self.path, key, "scope", self.node, span or self.node.span)
+            self.cells[key] = cell
+        return self.cells[key]
 
 
 class _Inference:
-    """The places of one machine, and what is still to be carried along."""
+    """The cells of one machine, and the worklist of flows."""
 
     def __init__(self) -> None:
-        self.places: list[Place] = []
-        self.rounds: dict[int, int] = {}
-        self.todo: deque[Flow] = deque()
-        self.codes: list[Code] = []
-        self.open: list[_Scope] = []
+        self.cells: list[Cell] = []
+        self.rounds: dict[Computation, int] = {}
+        self.todo: deque[TypeFlow] = deque()
+        self.computations: list[Computation] = []
+        self.open: list[_ContainerCells] = []
         self.clashes: dict[tuple[object, ...], Clash] = {}
-        self.constants: list[Flow] = []
+        self.constants: list[TypeFlow] = []
+        self.literals: set[tuple[Cell, Span, Type, Data]] = set()
 
     def read(self, machine: Machine) -> None:
         for held in machine.variables:
             self.variable(held, machine.root.name, None)
-        stack: list[tuple[str, Node, _Scope | None]] = [(machine.root.name, machine.root, None)]
+        stack: list[tuple[str, Node, _ContainerCells | None]] = [
+            (machine.root.name, machine.root, None)
+        ]
         while stack:
             path, node, around = stack.pop()
             if not isinstance(node, Leaf):
@@ -121,62 +124,70 @@ class _Inference:
             elif around is not None:
                 self.leaf(path, node, around)
 
-    def place(self, path: str, key: str, role: Role, node: Node | None, span: Span) -> Place:
-        made = Place(path=path, key=key, role=role, node=node, span=span)
-        self.places.append(made)
+    def cell(self, path: str, key: str, role: Role, node: Node | None, span: Span) -> Cell:
+        made = Cell(path=path, key=key, role=role, node=node, span=span)
+        self.cells.append(made)
         return made
 
-    def declare(self, place: Place, type_: Type, span: Span) -> None:
-        """Say what a place holds. A second declaration is asked to fit the first."""
+    def declare(self, cell: Cell, type_: Type, span: Span) -> None:
+        """Declare the type of a cell. A second declaration must fit the first."""
         if is_open(type_):
             return
-        if place.declared == ANY:
-            place.declared, place.span = type_, span
-        self.arrive(Flow(type=type_, how="declared", span=span, place=place))
+        if cell.declared == ANY:
+            cell.declared, cell.span = type_, span
+        self.arrive(TypeFlow(type=type_, how="declared", span=span, cell=cell))
 
-    def literal(self, place: Place, data: Data, span: Span) -> None:
+    def literal(self, cell: Cell, data: Data, span: Span) -> None:
         type_ = type_of_data(data)
-        self.arrive(Flow(type=type_, how="value", span=span, place=place, value=data))
+        which = cell, span, type_, data
+        if which in self.literals:
+            return
+        self.literals.add(which)
+        self.arrive(TypeFlow(type=type_, how="value", span=span, cell=cell, value=data))
 
     def variable(self, held: Variable, path: str, node: Node | None) -> None:
         if not is_open(held.type):
-            place = self.place(path, held.name, "variable", node, held.span)
-            place.declared = held.type
-            self.literal(place, held.value.data, held.value.span)
+            cell = self.cell(path, held.name, "variable", node, held.span)
+            cell.declared = held.type
+            self.literal(cell, held.value.data, held.value.span)
 
-    def leaf(self, path: str, leaf: Leaf, around: _Scope) -> None:
+    def leaf(self, path: str, leaf: Leaf, around: _ContainerCells) -> None:
         names = remapping(leaf)
-        inputs: dict[str, Place] = {}
+        inputs: dict[str, Cell] = {}
         if leaf.open:
             self.open.append(around)
         for key in leaf.inputs:
-            place = self.place(path, key.name, "input", leaf, place_of(leaf, key))
-            self.declare(place, key.type, place.span)
-            around.at(names.get(key.name, key.name)).links.append(place)
-            inputs[key.name] = place
+            cell = self.cell(path, key.name, "input", leaf, place_of(leaf, key))
+            self.declare(cell, key.type, cell.span)
+            around.at(names.get(key.name, key.name)).links.append(cell)
+            inputs[key.name] = cell
         written = _written(leaf)
         if isinstance(around.node, nodes.Iterator):
             # Its child writes every key as it is (smach-semantics I7).
             for name in sorted(written.keys() - {key.name for key in leaf.outputs}):
                 self.unknown(around.at(name))
         for key in leaf.outputs:
-            place = self.place(path, key.name, "output", leaf, place_of(leaf, key))
-            place.links.append(around.at(names.get(key.name, key.name)))
-            self.declare(place, key.type, place.span)
+            cell = self.cell(path, key.name, "output", leaf, place_of(leaf, key))
+            cell.links.append(around.at(names.get(key.name, key.name)))
+            self.declare(cell, key.type, cell.span)
             if key.name in written:
                 for span, data in written[key.name]:
                     if isinstance(data, Expression) and leaf.type in _BY_CODE:
                         reads = {k: inputs[k] for k in keys_read(data) if k in inputs}
-                        self.code(Code(place=place, span=span, reads=reads, expression=data))
+                        self.computation(
+                            Computation(cell=cell, span=span, reads=reads, expression=data)
+                        )
                     else:
-                        self.literal(place, data, span)
+                        self.literal(cell, data, span)
             elif is_open(key.type):
-                self.arrive(Flow(type=ANY, how="declared", span=place.span, place=place))
+                self.arrive(TypeFlow(type=ANY, how="declared", span=cell.span, cell=cell))
         for held in leaf.variables:
             self.variable(held, path, leaf)
 
-    def container(self, path: str, node: Container, around: _Scope | None) -> _Scope:
-        scope = _Scope(self, path, node)
+    def container(
+        self, path: str, node: Container, around: _ContainerCells | None
+    ) -> _ContainerCells:
+        scope = _ContainerCells(self, path, node)
         names = remapping(node)
         for key in node.inputs:
             inner = scope.at(key.name, place_of(node, key))
@@ -186,9 +197,9 @@ class _Inference:
             else:
                 self.unknown(inner)
         for preset in node.userdata:
-            place = scope.at(preset.key, preset.span)
-            self.declare(place, preset.type, preset.span)
-            self.literal(place, preset.value.data, preset.value.span)
+            cell = scope.at(preset.key, preset.span)
+            self.declare(cell, preset.type, preset.span)
+            self.literal(cell, preset.value.data, preset.value.span)
         for key in node.outputs:
             inner = scope.at(key.name, place_of(node, key))
             self.declare(inner, key.type, place_of(node, key))
@@ -198,130 +209,136 @@ class _Inference:
             self.iterator(node, scope)
         return scope
 
-    def iterator(self, node: nodes.Iterator, scope: _Scope) -> None:
-        """The key that holds each item gets what the items are."""
+    def iterator(self, node: nodes.Iterator, scope: _ContainerCells) -> None:
+        """The items flow into the cell of the item key."""
         item = scope.at(node.item_key)
         if node.items_key:
             source = scope.at(node.items_key)
-            self.code(Code(place=item, span=node.span, reads={node.items_key: source}, items=True))
+            self.computation(
+                Computation(cell=item, span=node.span, reads={node.items_key: source}, items=True)
+            )
         elif node.items is not None:
             items, span = node.items.data, node.items.span
             if isinstance(items, Expression):
                 reads = {key: scope.at(key) for key in keys_read(items)}
-                code = Code(place=item, span=span, reads=reads, expression=items, items=True)
-                self.code(code)
+                computation = Computation(
+                    cell=item, span=span, reads=reads, expression=items, items=True
+                )
+                self.computation(computation)
             elif isinstance(items, tuple):
                 for each in items:
                     self.literal(item, each, span)
             else:
                 self.unknown(item)
 
-    def code(self, code: Code) -> None:
-        self.codes.append(code)
-        for place in code.reads.values():
-            place.readers.append(code)
-        if not code.reads:
-            self.compute(code)
+    def computation(self, computation: Computation) -> None:
+        self.computations.append(computation)
+        for cell in computation.reads.values():
+            cell.readers.append(computation)
+        if not computation.reads:
+            self.compute(computation)
 
-    def unknown(self, place: Place) -> None:
-        """Say that a place may get what nothing is known of."""
-        if place.declared == ANY:
-            self.arrive(Flow(type=ANY, how="declared", span=place.span, place=place))
+    def unknown(self, cell: Cell) -> None:
+        """A value of unknown type can flow into a cell."""
+        if cell.declared == ANY:
+            self.arrive(TypeFlow(type=ANY, how="declared", span=cell.span, cell=cell))
 
-    # Carrying along
+    # Propagation
 
     def open_up(self) -> None:
         """What may come where nothing is known: from code that reads a key which nothing known
         sets, and from states without an interface, which may write every key around them."""
-        for code in self.codes:
-            if any(place.holds is None for place in code.reads.values()):
-                self.unknown(code.place)
+        for computation in self.computations:
+            if any(cell.holds is None for cell in computation.reads.values()):
+                self.unknown(computation.cell)
         for scope in self.open:
-            for place in scope.places.values():
-                self.unknown(place)
+            for cell in scope.cells.values():
+                self.unknown(cell)
         self.propagate()
 
     def propagate(self) -> None:
         while self.todo:
             flow = self.todo.popleft()
-            for link in flow.place.links:
-                self.arrive(replace(flow, place=link, before=flow))
+            for link in flow.cell.links:
+                self.arrive(flow.moved_to(link))
             if not flow.judged:
-                for code in flow.place.readers:
-                    self.compute(code)
+                for computation in flow.cell.readers:
+                    self.compute(computation)
 
-    def arrive(self, flow: Flow) -> None:
-        """A value comes to a place: it is judged, kept, and will be carried on if it is new."""
-        place = flow.place
-        own = flow.how == "declared" and flow.before is None and flow.type == place.declared
-        if place.declared != ANY and not own:
-            found = misfit(flow.type, place.declared)
+    def arrive(self, flow: TypeFlow) -> None:
+        """A value arrives at a cell: it is checked, stored, and queued if it is new."""
+        cell = flow.cell
+        own = flow.how == "declared" and flow.before is None and flow.type == cell.declared
+        if cell.declared != ANY and not own:
+            found = misfit(flow.type, cell.declared)
             if found is not None and (found.kind == "length" or not flow.judged):
-                self.clash(Clash(flow=flow, place=place, misfit=found))
+                self.clash(Clash(flow=flow, cell=cell, misfit=found))
             if found is not None or flow.how != "value":
                 return
             self.constants.append(flow)
             flow = replace(flow, judged=True)
         mark = flow.mark
-        if mark in place.flows:
-            place.flows[mark].append(flow)
+        if mark in cell.flows:
+            cell.flows[mark].append(flow)
             return
         kind = widened(flow.type) if flow.how == "value" else flow.type
-        if len(place.flows) >= MOST_FLOWS and kind in place.kinds:
+        if len(cell.flows) >= MOST_FLOWS and kind in cell.kinds:
             return
-        place.flows[mark] = [flow]
-        place.kinds.add(kind)
+        cell.flows[mark] = [flow]
+        cell.kinds.add(kind)
         if not flow.judged:
             # Nothing, written before the run, stands where something is to come.
-            if place.holds is None or place.holds == NONE:
-                place.holds = flow.type
+            if cell.holds is None or cell.holds == NONE:
+                cell.holds = flow.type
             elif flow.type != NONE:
-                place.holds = join(place.holds, flow.type)
+                cell.holds = join(cell.holds, flow.type)
         self.todo.append(flow)
 
     def clash(self, clash: Clash) -> None:
         """Keep a clash, but not its like on the way back of a key that goes in and out."""
-        origin, place = clash.flow.origin, clash.place
-        ends = frozenset([(origin.place.path, origin.place.key), (place.path, place.key)])
-        which = (origin.span, id(origin.value)) if origin.how == "value" else None
+        origin, cell = clash.flow.origin, clash.cell
+        ends = frozenset([(origin.cell.path, origin.cell.key), (cell.path, cell.key)])
+        which = origin if origin.how == "value" else None
         self.clashes.setdefault((ends, which), clash)
 
-    def compute(self, code: Code) -> None:
+    def compute(self, computation: Computation) -> None:
         """Type a piece of code again, once all that it reads is known of."""
-        held = {key: place.holds for key, place in code.reads.items()}
+        held = {key: cell.holds for key, cell in computation.reads.items()}
         known = {key: type_ for key, type_ in held.items() if type_ is not None}
-        rounds = self.rounds[id(code)] = self.rounds.get(id(code), 0) + 1
+        rounds = self.rounds[computation] = self.rounds.get(computation, 0) + 1
         if len(known) < len(held) or rounds > MOST_ROUNDS:
             return
-        if code.expression is not None:
-            type_ = type_of_call(code.expression, known)
-            if type_ == ANY and always_fails(code.expression, known):
+        if computation.expression is not None:
+            type_ = type_of_call(computation.expression, known)
+            if type_ == ANY and always_fails(computation.expression, known):
                 return
         else:
             (type_,) = known.values()
-        if code.items:
+        if computation.items:
             type_ = item_of(type_)
-        self.arrive(Flow(type=type_, how="computed", span=code.span, place=code.place))
+        self.arrive(
+            TypeFlow(type=type_, how="computed", span=computation.span, cell=computation.cell)
+        )
 
-    # What is known in the end
+    # Results
 
     def result(self) -> Types:
         found: dict[Role, dict[tuple[str, str], Type]] = {
             role: {} for role in ("scope", "input", "output", "variable")
         }
-        types = key_types(self.places)
-        for place in self.places:
-            found[place.role].setdefault((place.path, place.key), types[id(place)])
+        types = key_types(self.cells)
+        for cell in self.cells:
+            found[cell.role].setdefault((cell.path, cell.key), types[cell])
         return Types(
             keys=found["scope"],
             inputs=found["input"],
             outputs=found["output"],
             clashes=tuple(self.clashes.values()),
             constants=tuple(self.constants),
-            places={
-                (place.path, place.key): place
-                for place in self.places
-                if place.role in ("scope", "input")
+            cells={
+                (cell.path, cell.key): cell
+                for cell in self.cells
+                if cell.role in ("scope", "input")
             },
         )
 
@@ -349,42 +366,41 @@ def _written(leaf: Leaf) -> dict[str, list[tuple[Span, Data]]]:
     return found
 
 
-def key_types(places: list[Place]) -> dict[int, Type]:
-    """The type of each place by `id`. Linked places without a declaration have one type."""
+def key_types(cells: list[Cell]) -> dict[Cell, Type]:
+    """The type of each cell. Linked cells without a declaration have one type."""
     groups = Groups()
-    for place in places:
-        for link in place.links:
-            if place.declared == ANY and link.declared == ANY:
-                groups.unite(id(place), id(link))
-    read = _read(places, groups)
-    written: dict[int, set[Type]] = {}
-    for place in places:
-        fresh = (alike[0].type for alike in place.flows.values() if not alike[0].judged)
-        written.setdefault(groups.of(id(place)), set()).update(fresh)
+    for cell in cells:
+        for link in cell.links:
+            if cell.declared == ANY and link.declared == ANY:
+                groups.unite(cell, link)
+    read = _read(cells, groups)
+    written: dict[Cell, set[Type]] = {}
+    for cell in cells:
+        fresh = (alike[0].type for alike in cell.flows.values() if not alike[0].judged)
+        written.setdefault(groups.of(cell), set()).update(fresh)
     types = {
         group: settled(joined(found), _common(read.get(group, ())))
         for group, found in written.items()
     }
     return {
-        id(place): types[groups.of(id(place))] if place.declared == ANY else place.declared
-        for place in places
+        cell: types[groups.of(cell)] if cell.declared == ANY else cell.declared for cell in cells
     }
 
 
-def _read(places: list[Place], groups: Groups) -> dict[int, set[Type]]:
-    """What the readers of each group ask for; those of an item ask for a list of such."""
-    read: dict[int, set[Type]] = {}
-    for place in places:
-        wanted = (link.declared for link in place.links if link.declared != ANY)
-        read.setdefault(groups.of(id(place)), set()).update(wanted)
-    for place in places:
-        for code in place.readers:
-            if code.items and code.expression is None:
-                item = code.place.declared
+def _read(cells: list[Cell], groups: Groups) -> dict[Cell, set[Type]]:
+    """The types that the readers of each group require; the readers of an item require a list."""
+    read: dict[Cell, set[Type]] = {}
+    for cell in cells:
+        wanted = (link.declared for link in cell.links if link.declared != ANY)
+        read.setdefault(groups.of(cell), set()).update(wanted)
+    for cell in cells:
+        for computation in cell.readers:
+            if computation.items and computation.expression is None:
+                item = computation.cell.declared
                 if item == ANY:
-                    item = _common(read.get(groups.of(id(code.place)), ()))
+                    item = _common(read.get(groups.of(computation.cell), ()))
                 if item != ANY:
-                    read[groups.of(id(place))].add(Type("list", (item,)))
+                    read[groups.of(cell)].add(Type("list", (item,)))
     return read
 
 
@@ -394,20 +410,20 @@ def _common(types: Iterable[Type]) -> Type:
 
 
 class Groups:
-    """Sets that are united step by step; each has one member that stands for it."""
+    """Union-find over cells: each set has one representative."""
 
     def __init__(self) -> None:
-        self.parent: dict[int, int] = {}
+        self.parent: dict[Cell, Cell] = {}
 
-    def of(self, member: int) -> int:
+    def of(self, member: Cell) -> Cell:
         root = member
-        while (above := self.parent.get(root, root)) != root:
+        while (above := self.parent.get(root, root)) is not root:
             root = above
-        while member != root:
+        while member is not root:
             self.parent[member], member = root, self.parent[member]
         return root
 
-    def unite(self, one: int, other: int) -> None:
+    def unite(self, one: Cell, other: Cell) -> None:
         self.parent[self.of(one)] = self.of(other)
 
 
@@ -415,11 +431,11 @@ Role: TypeAlias = Literal["scope", "input", "output", "variable"]
 
 
 @dataclass(slots=True, eq=False, kw_only=True)
-class Place:
-    """Where a value can be: a key of a container (`scope`), or one of a leaf, or a variable.
+class Cell:
+    """A cell that holds values: a key of a container (`scope`) or of a leaf, or a variable.
 
-    `path` and `node` are those of the state; a variable of the base has no node. `span` is the
-    place in the text that speaks of it. `declared` is `any` where nothing is.
+    `path` and `node` are those of the state; a variable of the base has no node. `span` is where
+    the script names it. `declared` is the declared type, or `any`.
     """
 
     path: str
@@ -428,69 +444,71 @@ class Place:
     node: Node | None
     span: Span
     declared: Type = ANY
-    links: list[Place] = field(default_factory=list, repr=False)
-    flows: dict[tuple[object, ...], list[Flow]] = field(default_factory=dict, repr=False)
+    links: list[Cell] = field(default_factory=list, repr=False)
+    flows: dict[tuple[object, ...], list[TypeFlow]] = field(default_factory=dict, repr=False)
     kinds: set[Type] = field(default_factory=set, repr=False)
-    readers: list[Code] = field(default_factory=list, repr=False)
+    readers: list[Computation] = field(default_factory=list, repr=False)
     holds: Type | None = None
 
 
 @dataclass(frozen=True, slots=True, eq=False, kw_only=True)
-class Flow:
-    """A value that is in a place: its type, and how it came there.
+class TypeFlow:
+    """A typed value that has arrived at a cell.
 
-    `how`: the script gives a literal (`value`), the place declares it, or code computes it.
-    `before` is the same value one link earlier. `judged`: a declaration on the way accepted it.
+    `how`: the script gives a literal (`value`), the cell declares it, or code computes it.
+    `before` is the same value one link earlier, `first` where the value came to be (none: here).
+    `judged`: a declaration on the way accepted it.
     """
 
     type: Type
     how: Literal["value", "declared", "computed"]
     span: Span
-    place: Place
+    cell: Cell
     value: Data = None
-    before: Flow | None = None
+    before: TypeFlow | None = None
+    first: TypeFlow | None = None
     judged: bool = False
 
     @property
     def mark(self) -> tuple[object, ...]:
-        """What tells a flow from others in its place; of those alike one is carried along."""
-        which = (self.span, id(self.value)) if self.how == "value" else None
-        return self.type, self.judged, which
+        """The identity of a flow within its cell; of flows with one mark, one is propagated."""
+        return self.type, self.judged, self.origin if self.how == "value" else None
 
     @property
-    def origin(self) -> Flow:
-        """The flow where the value came to be."""
-        flow = self
-        while flow.before is not None:
-            flow = flow.before
-        return flow
+    def origin(self) -> TypeFlow:
+        """The flow where the value originates."""
+        return self.first or self
+
+    def moved_to(self, cell: Cell) -> TypeFlow:
+        """The same value one link later."""
+        return replace(self, cell=cell, before=self, first=self.origin)
 
 
 @dataclass(frozen=True, slots=True, eq=False, kw_only=True)
 class Clash:
-    """A value that arrives where it does not fit; `misfit` are the innermost types."""
+    """A value that does not fit the cell where it arrives; `misfit` are the innermost types."""
 
-    flow: Flow
-    place: Place
+    flow: TypeFlow
+    cell: Cell
     misfit: Misfit
 
 
 @dataclass(frozen=True, slots=True, eq=False, kw_only=True)
-class Code:
-    """An expression whose type a place gets; `reads` are the places of the keys it names.
+class Computation:
+    """An expression whose value flows into a cell; `reads` are the cells of the keys it reads.
 
-    `items`: the place gets the items of what the expression, or the one place, holds.
+    `items`: the items of the value of the expression, or of the one cell read, flow into the cell.
     """
 
-    place: Place
+    cell: Cell
     span: Span
-    reads: Mapping[str, Place]
+    reads: Mapping[str, Cell]
     expression: Expression | None = None
     items: bool = False
 
 
 def place_of(node: Node, key: Key) -> Span:
-    """Where the script speaks of a key of a state: its declaration, its remap, else the state."""
+    """The span of a key of a state: its declaration, else its remap, else the state."""
     if key.span.source is node.span.source and key.span.source is not NOWHERE.source:
         return key.span
     return next((remap.span for remap in node.remaps if remap.key == key.name), node.span)

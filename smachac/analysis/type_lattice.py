@@ -1,10 +1,10 @@
-"""What fits what: the order of types, and the types of literals.
+"""The lattice of types: subtyping, join and meet, and the types of literals.
 
 An int fits a float, a `T` a `T?`, an enumeration a larger one or a `str`; a list of unknown length
 fits an array, a number without a unit every unit; `any` fits everything and everything fits `any`.
 Nothing else converts. Three forms that no script can write stand for what is known of a literal:
 `Type("literal", (1, "a"))` is one of these constants, `Type("tuple", (T, U))` a list of two items,
-`Type("record", ("x", T))` a mapping with these names. They fit whatever they can be written for.
+`Type("record", ("x", T))` a mapping with these names. They fit every type they can be written for.
 """
 
 from __future__ import annotations
@@ -16,7 +16,7 @@ from typing import Literal, NamedTuple, TypeAlias
 
 from smachac.ir.types import ANY, STRUCTS, WORDS, Type, optional
 
-Kind: TypeAlias = Literal["type", "length", "unit"]
+MisfitKind: TypeAlias = Literal["type", "length", "unit"]
 
 BOOL, INT, FLOAT, STR, NONE = map(Type, ("bool", "int", "float", "str", "none"))
 LIST, DICT = Type("list"), Type("dict")
@@ -26,7 +26,7 @@ POINT, QUATERNION = Type("Point"), Type("Quaternion")
 class Misfit(NamedTuple):
     """Why one type does not fit another: the innermost parts that clash, and how."""
 
-    kind: Kind
+    kind: MisfitKind
     given: Type
     wanted: Type
 

@@ -1,23 +1,24 @@
-"""Userdata that is read where it may be unset, sorted by what is wrong."""
+"""Reads of userdata keys that can be unset, with the cause."""
 
 from __future__ import annotations
 
 from collections.abc import Callable, Iterator
 from collections.abc import Set as AbstractSet
 from dataclasses import dataclass
-from functools import cache, lru_cache
+from functools import cache
 from typing import Literal, NamedTuple
 
 from smachac.analysis.def_use import Reached, Search, around, place_of, search, way_to
-from smachac.analysis.definite_assignment import Flow, Scope, child_writes
+from smachac.analysis.definite_assignment import DataFlow, UserdataScope, child_writes
+from smachac.diagnostics.diagnostic import PathStep
 from smachac.diagnostics.source import Span
 from smachac.ir import nodes
-from smachac.ir.graph import Place
+from smachac.ir.graph import Vertex
 from smachac.ir.nodes import Concurrence, Node
 from smachac.ir.traversal import outcome_names, remapping
 
 MOST_LEVELS = 50
-"""So many containers outwards a key is looked for that something inside keeps."""
+"""The most containers outwards in which a key that is no output is searched."""
 
 Cause = Literal["unset", "nowhere", "lost", "outside", "remapped"]
 """Why a key is not there: some path does not set it; nothing in the container sets it at all; what
@@ -27,36 +28,31 @@ a remap leads to a name that nothing has."""
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Missing:
-    """A key of a container that is needed at places where it may be unset.
+    """A key of a container that is needed at vertices where it may be unset.
 
     `other` is the path of the container around that has the key, or of the one inside that keeps
     it.
     """
 
-    scope: Scope
+    scope: UserdataScope
     key: str
-    places: tuple[Place, ...]
+    vertices: tuple[Vertex, ...]
     cause: Cause
     other: str = ""
 
 
-def missing_keys(flow: Flow, *causes: Cause) -> Iterator[Missing]:
-    """The keys that are missing for one of those causes, in the order of the script."""
-    return (each for each in _all_missing(flow) if each.cause in causes)
-
-
-@lru_cache(maxsize=1)
-def _all_missing(flow: Flow) -> tuple[Missing, ...]:
+def missing_keys(flow: DataFlow) -> tuple[Missing, ...]:
+    """The keys that are needed where they may be unset, in the order of the script."""
     provided = cache(lambda path: _provided(flow.scopes[path]))
     found = [
-        (scope, key, tuple(places))
+        (scope, key, tuple(vertices))
         for scope in flow.scopes.values()
         if scope.path in flow.entered
-        for key, places in _unset_reads(flow, scope).items()
+        for key, vertices in _unset_reads(flow, scope).items()
     ]
     kept = _kept_inside(flow, {(scope.path, key) for scope, key, _ in found})
     sorted_out = []
-    for scope, key, places in found:
+    for scope, key, vertices in found:
         cause: Cause = "unset"
         other = ""
         if not provided(scope.path).has(key):
@@ -66,36 +62,38 @@ def _all_missing(flow: Flow) -> tuple[Missing, ...]:
                 cause, other = "outside", outer
             elif other:
                 cause = "lost"
-            elif any(_remapped(scope, place, key) for place in places):
+            elif any(_remapped(scope, vertex, key) for vertex in vertices):
                 cause = "remapped"
-        sorted_out.append(Missing(scope=scope, key=key, places=places, cause=cause, other=other))
+        sorted_out.append(
+            Missing(scope=scope, key=key, vertices=vertices, cause=cause, other=other)
+        )
     return tuple(sorted_out)
 
 
-def _unset_reads(flow: Flow, scope: Scope) -> dict[str, list[Place]]:
-    """The keys that may be unset where they are needed.
+def _unset_reads(flow: DataFlow, scope: UserdataScope) -> dict[str, list[Vertex]]:
+    """The keys that can be unset where they are read.
 
     What can be handed in is judged outside; what a sibling of a concurrence writes at that time is
     a race (SM405).
     """
-    found: dict[str, list[Place]] = {}
-    for place, keys in scope.unset.items():
+    found: dict[str, list[Vertex]] = {}
+    for vertex, keys in scope.unset.items():
         for key in keys:
             if key not in scope.inputs or key in scope.optional:
-                found.setdefault(key, []).append(place)
+                found.setdefault(key, []).append(vertex)
     if found and isinstance(scope.container, Concurrence):
         writers = sibling_writers(flow, scope)
         return {
-            key: places
-            for key, places in found.items()
-            if all(writers.get(key, set()) <= {place} for place in places)
+            key: vertices
+            for key, vertices in found.items()
+            if all(writers.get(key, set()) <= {vertex} for vertex in vertices)
         }
     return found
 
 
-def sibling_writers(flow: Flow, scope: Scope) -> dict[str, set[Place]]:
+def sibling_writers(flow: DataFlow, scope: UserdataScope) -> dict[str, set[Vertex]]:
     """By key the children of a concurrence that may write it."""
-    found: dict[str, set[Place]] = {}
+    found: dict[str, set[Vertex]] = {}
     for child in scope.container.children:
         inner = flow.scopes.get(f"{scope.path}/{child.name}")
         for outcome in outcome_names(child):
@@ -115,7 +113,7 @@ class Provided(NamedTuple):
         return self.anything or key in self.keys
 
 
-def _provided(scope: Scope) -> Provided:
+def _provided(scope: UserdataScope) -> Provided:
     container = scope.container
     keys = {*scope.held, *scope.inputs}
     if isinstance(container, nodes.Iterator):
@@ -128,7 +126,7 @@ def _provided(scope: Scope) -> Provided:
     return Provided(frozenset(keys), any(step.writes.anything for step in leading))
 
 
-def _outside(flow: Flow, path: str, key: str, provided: Callable[[str], Provided]) -> str:
+def _outside(flow: DataFlow, path: str, key: str, provided: Callable[[str], Provided]) -> str:
     """The nearest container around that has a key of that name; empty if there is none."""
     outer = around(flow, path)
     while outer is not None and key not in provided(outer).keys:
@@ -136,16 +134,18 @@ def _outside(flow: Flow, path: str, key: str, provided: Callable[[str], Provided
     return outer or ""
 
 
-def _remapped(scope: Scope, place: Place, key: str) -> bool:
+def _remapped(scope: UserdataScope, vertex: Vertex, key: str) -> bool:
     return any(
         remap.to == key
         for child in scope.container.children
-        if child.name == place
+        if child.name == vertex
         for remap in child.remaps
     )
 
 
-def _kept_inside(flow: Flow, missing: AbstractSet[tuple[str, str]]) -> dict[tuple[str, str], str]:
+def _kept_inside(
+    flow: DataFlow, missing: AbstractSet[tuple[str, str]]
+) -> dict[tuple[str, str], str]:
     """For keys that are missing, the container that writes them inside and keeps them."""
     found: dict[tuple[str, str], str] = {}
     for scope in flow.scopes.values() if missing else ():
@@ -159,8 +159,8 @@ def _kept_inside(flow: Flow, missing: AbstractSet[tuple[str, str]]) -> dict[tupl
 
 
 def _climb(
-    flow: Flow,
-    scope: Scope,
+    flow: DataFlow,
+    scope: UserdataScope,
     key: str,
     missing: AbstractSet[tuple[str, str]],
     found: dict[tuple[str, str], str],
@@ -183,76 +183,76 @@ thousand faults take no longer than they should."""
 
 
 class Witness(NamedTuple):
-    """A place of a container that finds a key unset.
+    """A vertex of a container that finds a key unset.
 
-    `always`: whichever way it is entered. `inner` is what reads it in the end, where the place is a
-    container. `also` are more such places.
+    `always`: on every path. `inner` is the state that reads the key, where the vertex is a
+    container. `also` are further such vertices.
     """
 
     reader: Reader
     always: bool
     inner: Reader | None
-    path: tuple[str, ...]
-    also: tuple[Place, ...] = ()
+    path: tuple[PathStep, ...]
+    also: tuple[Vertex, ...] = ()
 
 
 @dataclass(slots=True)
 class Searches:
     """Searches for witnesses as long as there are steps left."""
 
-    flow: Flow
+    flow: DataFlow
     left: int = MOST_STEPS
 
     def witnesses(self, missing: Missing) -> Iterator[Witness]:
-        """Each place that is the first to find the key unset on some path.
+        """Each vertex that is the first to find the key unset on some path.
 
         One for all where nothing sets the key, as that is one fault.
         """
         scope, nothing_sets = missing.scope, missing.cause != "unset"
         if self.left <= 0:
-            reader = reader_at(scope, missing.places[0], missing.key)
+            reader = reader_at(scope, missing.vertices[0], missing.key)
             yield Witness(reader, nothing_sets, None, ())
             return
         found = self._search(scope, missing.key)
         unset = [
-            each.place
+            each.vertex
             for each in found
-            if each.state == "unset" and missing.key in scope.reads.get(each.place, ())
+            if each.state == "unset" and missing.key in scope.reads.get(each.vertex, ())
         ]
-        for place in unset[:1] if nothing_sets else unset:
-            inner, inside, always = self._inside(scope, place, missing.key)
+        for vertex in unset[:1] if nothing_sets else unset:
+            inner, inside, always = self._inside(scope, vertex, missing.key)
             yield Witness(
-                reader_at(scope, place, missing.key),
-                always and Reached(place, "set") not in found,
+                reader_at(scope, vertex, missing.key),
+                always and Reached(vertex, "set") not in found,
                 inner,
-                tuple(way_to(found, Reached(place, "unset")) + inside),
-                tuple(each for each in missing.places if each != place) if nothing_sets else (),
+                tuple(way_to(scope.path, found, Reached(vertex, "unset")) + inside),
+                tuple(each for each in missing.vertices if each != vertex) if nothing_sets else (),
             )
 
-    def _search(self, scope: Scope, key: str) -> Search:
+    def _search(self, scope: UserdataScope, key: str) -> Search:
         found = search(self.flow, scope, key, ["unset"], stops=True)
         self.left -= len(scope.reads) + len(found)
         return found
 
     def _inside(
-        self, scope: Scope, place: Place, key: str
-    ) -> tuple[Reader | None, list[str], bool]:
+        self, scope: UserdataScope, vertex: Vertex, key: str
+    ) -> tuple[Reader | None, list[PathStep], bool]:
         """What reads the key inside a container, the way to it there, and whether it never finds
         the key."""
-        way: list[str] = []
+        way: list[PathStep] = []
         always, outermost = True, scope
-        while place in scope.inner and self.left > 0:
-            scope = self.flow.scopes[f"{scope.path}/{place}"]
+        while vertex in scope.inner and self.left > 0:
+            scope = self.flow.scopes[f"{scope.path}/{vertex}"]
             key = next(own for own, to in scope.inputs.items() if to == key and own in scope.needed)
             found = self._search(scope, key)
-            place = next(
-                each.place
+            vertex = next(
+                each.vertex
                 for each in found
-                if each.state == "unset" and key in scope.reads.get(each.place, ())
+                if each.state == "unset" and key in scope.reads.get(each.vertex, ())
             )
-            always = always and Reached(place, "set") not in found
-            way += way_to(found, Reached(place, "unset"))
-        inner = reader_at(scope, place, key) if scope is not outermost else None
+            always = always and Reached(vertex, "set") not in found
+            way += way_to(scope.path, found, Reached(vertex, "unset"))
+        inner = reader_at(scope, vertex, key) if scope is not outermost else None
         return inner, way, always
 
 
@@ -265,23 +265,23 @@ class Reader(NamedTuple):
     words: str
 
 
-def container_name(scope: Scope, span: Span) -> str:
+def container_name(scope: UserdataScope, span: Span) -> str:
     """What a finding calls a container: a sub-script has another name at each call, and a fault
     in it is one fault."""
     is_called = scope.container.span.source is not span.source
     return "the sub-script" if is_called else f"`{scope.container.name}`"
 
 
-def reader_at(scope: Scope, place: Place, key: str) -> Reader:
-    """The state at a place of a container; the container itself where that is its start."""
+def reader_at(scope: UserdataScope, vertex: Vertex, key: str) -> Reader:
+    """The state at a vertex of a container; the container itself where that is its start."""
     node: Node = scope.container
-    if not isinstance(place, str):
+    if not isinstance(vertex, str):
         return Reader(scope.path, node, node.span, f"`{node.name}` goes through `{key}`")
-    node = scope.children[place]
+    node = scope.children[vertex]
     names = remapping(node)
     own = next((each for each in node.inputs if names.get(each.name, each.name) == key), None)
     span = node.span if own is None else place_of(node, own)
     called = f"`{key}`"
     if own is not None and own.name != key:
         called = f"`{own.name}` (`{key}` of {container_name(scope, span)})"
-    return Reader(f"{scope.path}/{place}", node, span, f"`{node.name}` reads {called}")
+    return Reader(f"{scope.path}/{vertex}", node, span, f"`{node.name}` reads {called}")

@@ -1,7 +1,10 @@
-"""The rules over the state graph: each is one function, filed by its code."""
+"""The rules over the state graph: each is one function; `RULES` lists them all."""
 
 from __future__ import annotations
 
+from collections.abc import Iterator
+
+from smachac.analysis.context import Context
 from smachac.checks import (
     concurrence,
     declarations,
@@ -10,6 +13,7 @@ from smachac.checks import (
     initial_values,
     loops,
     names,
+    outcomes,
     races,
     reachability,
     robot,
@@ -18,28 +22,68 @@ from smachac.checks import (
     userdata,
     workspace,
 )
-from smachac.diagnostics.diagnostic import Report, run_rules
+from smachac.checks.rule import Rule
+from smachac.diagnostics.diagnostic import Diagnostic, Report, diagnostic
 from smachac.ir.nodes import Machine
 
-__all__ = [
-    "check_machine",
-    "concurrence",
-    "declarations",
-    "expressions",
-    "failures",
-    "initial_values",
-    "loops",
-    "names",
-    "races",
-    "reachability",
-    "robot",
-    "timeouts",
-    "types",
-    "userdata",
-    "workspace",
-]
+RULES: tuple[Rule, ...] = (
+    expressions.bad_expression,
+    names.unknown_target,
+    names.unknown_outcome,
+    outcomes.undeclared_container_outcome,
+    outcomes.unhandled_outcome,
+    outcomes.implicit_exit,
+    names.duplicate_state,
+    names.name_clash,
+    names.shadowed_name,
+    reachability.unreachable_state,
+    loops.trap,
+    reachability.impossible_outcome,
+    loops.unbounded_loop,
+    reachability.no_initial,
+    failures.unhandled_failure,
+    timeouts.no_timeout,
+    timeouts.no_way_to_stop,
+    userdata.read_before_write,
+    userdata.unknown_remap,
+    userdata.undeclared_container_key,
+    types.type_mismatch,
+    declarations.dead_key,
+    declarations.unused_declaration,
+    userdata.lost_output,
+    declarations.lossy_write,
+    declarations.undeclared_return,
+    declarations.undeclared_access,
+    expressions.impossible_operation,
+    expressions.constant_comparison,
+    initial_values.overruled_value,
+    concurrence.uncovered_combination,
+    concurrence.overlapping_rules,
+    concurrence.dead_rule,
+    failures.masked_failure,
+    races.data_race,
+    races.resource_clash,
+    timeouts.never_ends,
+    concurrence.empty_concurrence,
+    robot.wrong_length,
+    robot.joint_limit,
+    robot.not_a_rotation,
+    robot.unit_mismatch,
+    robot.unknown_frame,
+)
+"""All rules, in the order of their codes."""
+
+PROBLEMS = workspace.PROBLEMS
 
 
-def check_machine(machine: Machine) -> Report:
-    """What every rule has to say about a machine, in the order of the codes."""
-    return list(run_rules(machine))
+def check_machine(machine: Machine, rules: tuple[Rule, ...] = RULES) -> Report:
+    """The findings of all rules over a machine, in the order of the rules."""
+    return list(_diagnostics(Context(machine), rules))
+
+
+def _diagnostics(context: Context, rules: tuple[Rule, ...]) -> Iterator[Diagnostic]:
+    for rule in rules:
+        for finding in rule.function(context):
+            spans = context.spans if finding.path else {}
+            steps = tuple(spans.get(step.node or "") for step in finding.path)
+            yield diagnostic(rule.code, finding, steps)

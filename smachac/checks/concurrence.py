@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Mapping
 
-from smachac.analysis.context import containers
+from smachac.analysis.context import Context
 from smachac.analysis.control_flow import is_open
 from smachac.analysis.outcome_rules import (
     Combination,
@@ -14,18 +14,19 @@ from smachac.analysis.outcome_rules import (
     bits,
     without_other,
 )
-from smachac.analysis.possible_outcomes import Judged, judged
+from smachac.analysis.possible_outcomes import Judged
 from smachac.checks.messages import calls, did_you_mean, other_place
-from smachac.diagnostics.diagnostic import Finding, Severity, rule
+from smachac.checks.rule import rule
+from smachac.diagnostics.diagnostic import Finding, Severity
 from smachac.diagnostics.spelling import guesser
 from smachac.diagnostics.wording import listed
 from smachac.ir import nodes
-from smachac.ir.nodes import Concurrence, Machine, Node
+from smachac.ir.nodes import Concurrence, Node
 from smachac.ir.traversal import outcome_names
 
 
 @rule("SM403", "dead-rule", Severity.ERROR, firm=True)
-def dead_rule(machine: Machine) -> Iterator[Finding]:
+def dead_rule(context: Context) -> Iterator[Finding]:
     """A rule can never decide: it names a child or an outcome that does not exist, or nothing, or
     larger rules always win over it.
 
@@ -69,13 +70,13 @@ def dead_rule(machine: Machine) -> Iterator[Finding]:
                 - RIGHT: {template: ScriptedState, outcomes: [done]}
               transitions: {ready: ready, failed: failed}
     """
-    for path, container in containers(machine):
+    for path, container in context.containers:
         match container:
             case Concurrence():
                 yield from _dead_rules(path, container)
             case nodes.Iterator(sugar=""):
                 yield from _dead_renames(path, container)
-    for each in judged(machine):
+    for each in context.judged:
         yield from _shadowed_rules(each)
 
 
@@ -162,7 +163,7 @@ def _dead_renames(path: str, container: nodes.Iterator) -> Iterator[Finding]:
 
 
 @rule("SM408", "empty-concurrence", Severity.ERROR, firm=True)
-def empty_concurrence(machine: Machine) -> Iterator[Finding]:
+def empty_concurrence(context: Context) -> Iterator[Finding]:
     """A concurrence has no states.
 
     SMACH for ROS 2 waits for ever for the first child to end, SMACH for Noetic fails.
@@ -193,7 +194,7 @@ def empty_concurrence(machine: Machine) -> Iterator[Finding]:
                 - RIGHT: {template: ScriptedState, outcomes: [ok]}
               transitions: {done: done}
     """
-    for path, container in containers(machine):
+    for path, container in context.containers:
         if isinstance(container, Concurrence) and not container.children:
             yield Finding(
                 span=container.span,
@@ -210,7 +211,7 @@ def written(combination: Mapping[str, str]) -> str:
 
 
 @rule("SM401", "uncovered-combination", Severity.ERROR, firm=True)
-def uncovered_combination(machine: Machine) -> Iterator[Finding]:
+def uncovered_combination(context: Context) -> Iterator[Finding]:
     """The children can end in a way that no rule speaks of, and there is no default outcome.
 
     A concurrence without `default_outcome` says that its rules are complete. Where one
@@ -254,7 +255,7 @@ def uncovered_combination(machine: Machine) -> Iterator[Finding]:
                 - RIGHT: {template: ScriptedState, outcomes: [done, slipped]}
               transitions: {ready: ready, half: failed, failed: failed}
     """
-    for each in judged(machine):
+    for each in context.judged:
         node, rules = each.read.node, each.read.rules
         if node.default_outcome and not node.rules:
             continue
@@ -298,7 +299,7 @@ def _unexceptional(read: Study, space: Space) -> Space:
 
 
 @rule("SM402", "overlapping-rules", Severity.WARNING)
-def overlapping_rules(machine: Machine) -> Iterator[Finding]:
+def overlapping_rules(context: Context) -> Iterator[Finding]:
     """Two rules hold at once, and neither lists more children than the other.
 
     What the robot does next then depends on the framework: SMACH for ROS 2 takes the rule listed
@@ -343,7 +344,7 @@ def overlapping_rules(machine: Machine) -> Iterator[Finding]:
                 - RIGHT: {template: ScriptedState, outcomes: [found, nothing]}
               transitions: {left: left, right: right, neither: neither}
     """
-    for each in judged(machine):
+    for each in context.judged:
         if len(each.read.written) > 1:
             spaces = [without_other(each.whole)]
             if each.read.node.join == "any":

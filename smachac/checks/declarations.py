@@ -5,17 +5,17 @@ from __future__ import annotations
 from collections.abc import Iterable, Iterator
 
 from smachac.analysis.accesses import callback_names, callbacks, userdata_fields
-from smachac.analysis.context import containers
+from smachac.analysis.context import Context
 from smachac.analysis.control_flow import is_open
 from smachac.analysis.def_use import place_of
-from smachac.analysis.definite_assignment import Scope
-from smachac.analysis.error_recovery import flow_of, undeclared_reads, undeclared_writes
-from smachac.analysis.lost_outputs import lost_outputs
-from smachac.analysis.unset_reads import container_name, missing_keys
+from smachac.analysis.definite_assignment import UserdataScope
+from smachac.analysis.error_recovery import undeclared_reads, undeclared_writes
+from smachac.analysis.unset_reads import container_name
 from smachac.checks.edits import with_output
 from smachac.checks.expressions import unknown_endings
 from smachac.checks.messages import CALLED_HERE, calls, did_you_mean
-from smachac.diagnostics.diagnostic import Finding, Related, Severity, rule
+from smachac.checks.rule import rule
+from smachac.diagnostics.diagnostic import Finding, Related, Severity
 from smachac.diagnostics.source import Span, Word
 from smachac.diagnostics.spelling import guesser
 from smachac.diagnostics.wording import listed
@@ -27,7 +27,7 @@ from smachac.ir.traversal import outcome_names, remapping
 
 
 @rule("SM305", "dead-key", Severity.WARNING)
-def dead_key(machine: Machine) -> Iterator[Finding]:
+def dead_key(context: Context) -> Iterator[Finding]:
     """A key is set, and nothing ever reads it.
 
     Either it is left over, or its reader knows it by another name and works with something else.
@@ -57,9 +57,9 @@ def dead_key(machine: Machine) -> Iterator[Finding]:
               input_keys: [pose]
               transitions: {succeeded: held}
     """
-    flow = flow_of(machine)
-    told = {(each.keeper.path, each.own) for each in lost_outputs(flow)}
-    told |= {(each.other, each.key) for each in missing_keys(flow, "outside")}
+    flow = context.mended_flow
+    told = {(each.keeper.path, each.own) for each in context.lost_outputs}
+    told |= {(each.other, each.key) for each in context.missing_keys("outside")}
     for scope in flow.scopes.values():
         container = scope.container
         if container.sugar or _sees_everything(scope):
@@ -81,7 +81,7 @@ def dead_key(machine: Machine) -> Iterator[Finding]:
             )
 
 
-def _sees_everything(scope: Scope) -> bool:
+def _sees_everything(scope: UserdataScope) -> bool:
     """Whether something in a container may read any key."""
     raw = isinstance(scope.container, nodes.Iterator)
     return any(
@@ -89,7 +89,7 @@ def _sees_everything(scope: Scope) -> bool:
     )
 
 
-def _read_in(scope: Scope) -> set[str]:
+def _read_in(scope: UserdataScope) -> set[str]:
     """The keys that something in a container declares as its input, or goes through."""
     found = set(scope.reads.get(START, ()))
     for child in scope.container.children:
@@ -98,7 +98,7 @@ def _read_in(scope: Scope) -> set[str]:
     return found
 
 
-def _written_in(scope: Scope) -> set[str]:
+def _written_in(scope: UserdataScope) -> set[str]:
     """The keys that are there from the start, or that something in a container declares to set."""
     container = scope.container
     found = {*scope.inputs, *(preset.key for preset in container.userdata)}
@@ -110,7 +110,7 @@ def _written_in(scope: Scope) -> set[str]:
     return found
 
 
-def _set_by_the_script(scope: Scope) -> Iterator[tuple[str, Node, Span]]:
+def _set_by_the_script(scope: UserdataScope) -> Iterator[tuple[str, Node, Span]]:
     """The keys of a container that the script itself sets, each once: presets and outputs that it
     lists, not those of a state type or sub-script."""
     seen: set[str] = set()
@@ -134,7 +134,7 @@ def _sets(node: Node, key: Key) -> bool:
 
 
 @rule("SM306", "unused-declaration", Severity.WARNING)
-def unused_declaration(machine: Machine) -> Iterator[Finding]:
+def unused_declaration(context: Context) -> Iterator[Finding]:
     """A key, an outcome, a param or a type is declared, and nothing uses it.
 
     Who calls a container has to hand in what nobody needs, or waits for a result that never comes;
@@ -175,10 +175,10 @@ def unused_declaration(machine: Machine) -> Iterator[Finding]:
                     transitions: {succeeded: done}
               transitions: {done: held}
     """
-    flow = flow_of(machine)
-    missing = {(each.scope.path, each.key) for each in missing_keys(flow, "unset", "nowhere")}
-    kept = {(each.other, each.key) for each in missing_keys(flow, "outside")}
-    for path, leaf in _leaves_with_code(machine):
+    flow = context.mended_flow
+    missing = {(each.scope.path, each.key) for each in context.missing_keys("unset", "nowhere")}
+    kept = {(each.other, each.key) for each in context.missing_keys("outside")}
+    for path, leaf in _leaves_with_code(context):
         yield from _unused_by_code(path, leaf)
     for scope in flow.scopes.values():
         container = scope.container
@@ -193,7 +193,7 @@ def unused_declaration(machine: Machine) -> Iterator[Finding]:
         for key in container.outputs:
             if key.name not in set_ and (outer, scope.outputs[key.name]) not in missing:
                 yield _unused(scope.path, container, key, "output", "sets")
-    yield from _unused_by_the_script(machine)
+    yield from _unused_by_the_script(context.machine)
 
 
 def _unused(path: str, node: Node, key: Key, what: str, use: str) -> Finding:
@@ -266,7 +266,7 @@ def _unused_keys(
 
 
 @rule("SM308", "lossy-write", Severity.ERROR)
-def lossy_write(machine: Machine) -> Iterator[Finding]:
+def lossy_write(context: Context) -> Iterator[Finding]:
     """A state sets a key that is not among its output keys.
 
     SMACH drops the write and only logs it: the counter never counts, and the loop that it is to
@@ -297,7 +297,7 @@ def lossy_write(machine: Machine) -> Iterator[Finding]:
               callbacks: {n: 'lambda ud: ud.n + 1'}
               transitions: {succeeded: counted}
     """
-    for path, leaf in _leaves_with_code(machine):
+    for path, leaf in _leaves_with_code(context):
         for key in undeclared_writes(leaf):
             only = any(each.name == key for each in leaf.inputs)
             what = "which is an input key only" if only else "which is none of its output keys"
@@ -311,12 +311,12 @@ def lossy_write(machine: Machine) -> Iterator[Finding]:
                 node=path,
                 edits=with_output(leaf, key) if not meant else (),
             )
-    yield from dropped_writes(machine)
+    yield from dropped_writes(context)
 
 
-def _leaves_with_code(machine: Machine) -> Iterator[tuple[str, Leaf]]:
+def _leaves_with_code(context: Context) -> Iterator[tuple[str, Leaf]]:
     """The leaves but those that see every key of an iterator, as there is nothing to declare."""
-    for path, container in containers(machine):
+    for path, container in context.containers:
         for child in container.children if not isinstance(container, nodes.Iterator) else ():
             if isinstance(child, Leaf) and not child.open:
                 yield f"{path}/{child.name}", child
@@ -341,7 +341,7 @@ def _place_of_write(leaf: Leaf, key: str) -> Span:
 
 
 @rule("SM310", "undeclared-access", Severity.ERROR)
-def undeclared_access(machine: Machine) -> Iterator[Finding]:
+def undeclared_access(context: Context) -> Iterator[Finding]:
     """Code of the script reads a userdata key that its state does not declare.
 
     The state sees only its input keys: the read fails, and the machine stops there.
@@ -375,7 +375,7 @@ def undeclared_access(machine: Machine) -> Iterator[Finding]:
               default_outcome: high
               transitions: {low: low, high: high}
     """
-    for path, leaf in _leaves_with_code(machine):
+    for path, leaf in _leaves_with_code(context):
         for key, code in undeclared_reads(leaf):
             yield Finding(
                 span=code.span,
@@ -385,24 +385,24 @@ def undeclared_access(machine: Machine) -> Iterator[Finding]:
                 related=calls(leaf, code.span),
                 node=path,
             )
-    yield from unknown_reads(machine)
+    yield from unknown_reads(context)
 
 
-def leaves_by_type(machine: Machine, *, declared: bool) -> Iterator[tuple[str, Leaf, Body]]:
+def leaves_by_type(context: Context, *, declared: bool) -> Iterator[tuple[str, Leaf, Body]]:
     """A leaf of each type whose code was read, with its path. `declared`: one that sees only the
     keys it declares, unlike the child of an iterator."""
-    seen: set[int] = set()
-    for path, container in containers(machine):
+    seen: set[str] = set()
+    for path, container in context.containers:
         if declared and isinstance(container, nodes.Iterator):
             continue
         for child in container.children:
-            if isinstance(child, Leaf) and child.body is not None and id(child.body) not in seen:
-                seen.add(id(child.body))
+            if isinstance(child, Leaf) and child.body is not None and child.type not in seen:
+                seen.add(child.type)
                 yield f"{path}/{child.name}", child, child.body
 
 
 @rule("SM309", "undeclared-return", Severity.ERROR)
-def undeclared_return(machine: Machine) -> Iterator[Finding]:
+def undeclared_return(context: Context) -> Iterator[Finding]:
     """The Python code of a state type returns what is not one of its outcomes, or nothing.
 
     SMACH ends the whole machine with an error then. The code is read, never run; what Jinja fills
@@ -453,7 +453,7 @@ def undeclared_return(machine: Machine) -> Iterator[Finding]:
                 return "pressed" if button.wait(10) else "timed_out"
         {% endblock %}
     """
-    for path, leaf, body in leaves_by_type(machine, declared=False):
+    for path, leaf, body in leaves_by_type(context, declared=False):
         yield from _wrong_returns(path, leaf, body)
 
 
@@ -480,9 +480,9 @@ def _wrong_returns(path: str, leaf: Leaf, body: Body) -> Iterator[Finding]:
         )
 
 
-def unknown_reads(machine: Machine) -> Iterator[Finding]:
+def unknown_reads(context: Context) -> Iterator[Finding]:
     """The keys that code of a type reads and its interface does not take; SM310 says them."""
-    for path, leaf, body in leaves_by_type(machine, declared=True):
+    for path, leaf, body in leaves_by_type(context, declared=True):
         inputs = [key.name for key in leaf.inputs]
         for word in _first_of_each(body.reads, inputs):
             yield Finding(
@@ -495,10 +495,10 @@ def unknown_reads(machine: Machine) -> Iterator[Finding]:
             )
 
 
-def dropped_writes(machine: Machine) -> Iterator[Finding]:
+def dropped_writes(context: Context) -> Iterator[Finding]:
     """The keys that code of a type writes and its interface does not give; SM308 says them, but
     for those that are read as well and not known at all, which is SM310."""
-    for path, leaf, body in leaves_by_type(machine, declared=True):
+    for path, leaf, body in leaves_by_type(context, declared=True):
         inputs = {key.name for key in leaf.inputs}
         outputs = [key.name for key in leaf.outputs]
         unknown = {word.text for word in body.reads} - inputs

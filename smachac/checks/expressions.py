@@ -7,16 +7,17 @@ import warnings
 from collections.abc import Iterator
 
 from smachac.analysis.accesses import callbacks
-from smachac.analysis.context import states
+from smachac.analysis.context import Context
 from smachac.analysis.expression_errors import Fault, FaultKind
-from smachac.analysis.expression_sites import Code, faults_of
+from smachac.analysis.expression_sites import ExpressionSite
 from smachac.checks.messages import calls, did_you_mean, other_place
+from smachac.checks.rule import rule
 from smachac.checks.types import written
-from smachac.diagnostics.diagnostic import Finding, Related, Severity, rule
+from smachac.diagnostics.diagnostic import Finding, Related, Severity
 from smachac.diagnostics.source import Word
 from smachac.diagnostics.spelling import guesser
 from smachac.diagnostics.wording import listed
-from smachac.ir.nodes import Expression, Leaf, Machine, Struct
+from smachac.ir.nodes import Expression, Leaf, Struct
 from smachac.ir.traversal import expressions, outcome_names
 
 MAX_LEVELS = 500
@@ -24,7 +25,7 @@ MAX_LEVELS = 500
 
 
 @rule("SM016", "bad-expression", Severity.ERROR, firm=True)
-def bad_expression(machine: Machine) -> Iterator[Finding]:
+def bad_expression(context: Context) -> Iterator[Finding]:
     """Code of the script is no expression, or something else stands where code is due.
 
     The generated program would not even start, or would fail at the first visit of the state,
@@ -56,7 +57,7 @@ def bad_expression(machine: Machine) -> Iterator[Finding]:
               callbacks: {n: 'lambda ud: ud.n + 1'}
               transitions: {succeeded: succeeded}
     """
-    for path, node in states(machine):
+    for path, node in context.states:
         for expression in expressions(node):
             fault = _fault(expression.text)
             if fault:
@@ -130,8 +131,8 @@ def unknown_endings(path: str, leaf: Leaf) -> Iterator[Finding]:
 def _endings(leaf: Leaf) -> Iterator[tuple[Word, str]]:
     """The outcomes that conditions and steps of a leaf speak of."""
     if leaf.type == "ConditionalOutcomeState":
-        for outcome, code in (callbacks(leaf) or {}).items():
-            yield Word(outcome, code.span), "a condition"
+        for outcome, site in (callbacks(leaf) or {}).items():
+            yield Word(outcome, site.span), "a condition"
     elif leaf.type == "ScriptedState":
         for held in leaf.variables:
             steps = held.value.data if held.name == "steps" else ()
@@ -146,7 +147,7 @@ MOST_SOURCES = 3
 
 
 @rule("SM311", "impossible-operation", Severity.ERROR)
-def impossible_operation(machine: Machine) -> Iterator[Finding]:
+def impossible_operation(context: Context) -> Iterator[Finding]:
     """Code of the script does with a value what its type cannot do.
 
     It fails in every run that comes to it, with the robot in the middle of its task: a number is
@@ -179,14 +180,14 @@ def impossible_operation(machine: Machine) -> Iterator[Finding]:
               callbacks: {limb: 'lambda ud: ud.limb + "_2"'}
               transitions: {succeeded: done}
     """
-    for code, fault in _faults(machine, "operation"):
+    for site, fault in _faults(context, "operation"):
         does = "fails" if fault.always else "can fail"
         severity = None if fault.always else Severity.WARNING
-        yield _finding(code, fault, f"{_owner(code)} {does}: {fault.what}", severity)
+        yield _finding(site, fault, f"{_owner(site)} {does}: {fault.what}", severity)
 
 
 @rule("SM312", "constant-comparison", Severity.WARNING)
-def constant_comparison(machine: Machine) -> Iterator[Finding]:
+def constant_comparison(context: Context) -> Iterator[Finding]:
     """Code of the script compares values of which it is known that they are never equal.
 
     Python does not complain of it: the condition is never true, or always, and the machine goes on
@@ -220,44 +221,46 @@ def constant_comparison(machine: Machine) -> Iterator[Finding]:
               default_outcome: other
               transitions: {shut: shut, other: other}
     """
-    for code, fault in _faults(machine, "comparison"):
-        yield _finding(code, fault, f"in {_owner(code)}, {fault.what}")
+    for site, fault in _faults(context, "comparison"):
+        yield _finding(site, fault, f"in {_owner(site)}, {fault.what}")
 
 
-def mixed_units(machine: Machine) -> Iterator[Finding]:
+def mixed_units(context: Context) -> Iterator[Finding]:
     """The operations over numbers of different units; SM504 says them."""
-    for code, fault in _faults(machine, "unit"):
-        yield _finding(code, fault, f"in {_owner(code)}, {fault.what}")
+    for site, fault in _faults(context, "unit"):
+        yield _finding(site, fault, f"in {_owner(site)}, {fault.what}")
 
 
-def _faults(machine: Machine, kind: FaultKind) -> Iterator[tuple[Code, Fault]]:
-    return ((code, fault) for code, fault in faults_of(machine) if fault.kind == kind)
+def _faults(context: Context, kind: FaultKind) -> Iterator[tuple[ExpressionSite, Fault]]:
+    return ((site, fault) for site, fault in context.expression_faults if fault.kind == kind)
 
 
-def _owner(code: Code) -> str:
-    return f"the {'code' if isinstance(code.node, Leaf) else 'data'} of `{code.node.name}`"
+def _owner(site: ExpressionSite) -> str:
+    return f"the {'code' if isinstance(site.node, Leaf) else 'data'} of `{site.node.name}`"
 
 
-def _finding(code: Code, fault: Fault, message: str, severity: Severity | None = None) -> Finding:
+def _finding(
+    site: ExpressionSite, fault: Fault, message: str, severity: Severity | None = None
+) -> Finding:
     guess = did_you_mean(guesser(fault.choices)(fault.word)) if fault.choices else None
     choices = f"it is one of {', '.join(f'`{each}`' for each in fault.choices)}"
-    span = code.expression.span
+    span = site.expression.span
     return Finding(
         span=span,
         message=message,
         help=guess or (choices if fault.choices else fault.help),
-        related=(*_sources(code, fault), *calls(code.node, span)),
-        node=code.path,
+        related=(*_sources(site, fault), *calls(site.node, span)),
+        node=site.path,
         severity=severity,
     )
 
 
-def _sources(code: Code, fault: Fault) -> Iterator[Related]:
+def _sources(site: ExpressionSite, fault: Fault) -> Iterator[Related]:
     """Where the types of the keys come from."""
-    shown = {code.expression.span}
+    shown = {site.expression.span}
     for key in fault.keys:
-        place = code.places.get(key)
-        for alike in place.flows.values() if place is not None else ():
+        cell = site.cells.get(key)
+        for alike in cell.flows.values() if cell is not None else ():
             origin = alike[0].origin
             if not alike[0].judged and origin.span not in shown and len(shown) <= MOST_SOURCES:
                 shown.add(origin.span)

@@ -3,25 +3,27 @@
 from __future__ import annotations
 
 from collections.abc import Iterator, Mapping
-from typing import NamedTuple
+from typing import NamedTuple, TypeAlias
 
+from smachac.analysis.context import Context
 from smachac.analysis.control_flow import MOST_STEPS
 from smachac.analysis.failure_paths import starts_failure
 from smachac.analysis.outcome_rules import Combination, Space, Study, UndecidedError
-from smachac.analysis.possible_outcomes import Judged, judged
+from smachac.analysis.possible_outcomes import Judged
 from smachac.checks.concurrence import written
 from smachac.checks.messages import calls, other_place
-from smachac.diagnostics.diagnostic import Finding, Severity, rule
+from smachac.checks.rule import rule
+from smachac.diagnostics.diagnostic import Finding, PathStep, Severity, ended, entered
 from smachac.diagnostics.source import Span
 from smachac.diagnostics.wording import listed
 from smachac.ir import nodes
-from smachac.ir.nodes import Concurrence, Container, Leaf, Machine, Node, Sequence, StateMachine
+from smachac.ir.nodes import Concurrence, Container, Leaf, Node, Sequence, StateMachine, Transition
 from smachac.ir.outcome_names import GOOD, PREEMPTED, SUCCESSES, is_failure, successes
-from smachac.ir.traversal import containers, leads_to_child, outcome_names
+from smachac.ir.traversal import leads_to_child, outcome_names
 
 
 @rule("SM404", "masked-failure", Severity.WARNING)
-def masked_failure(machine: Machine) -> Iterator[Finding]:
+def masked_failure(context: Context) -> Iterator[Finding]:
     """A child failed, and the concurrence ends as if all had gone well.
 
     The robot goes on with a part it did not grasp, or to a place it did not look at. Most often
@@ -66,14 +68,14 @@ def masked_failure(machine: Machine) -> Iterator[Finding]:
                 - RIGHT: {template: ScriptedState, outcomes: [done, aborted]}
               transitions: {ready: ready, failed: failed}
     """
-    for each in judged(machine):
+    for each in context.judged:
         try:
-            yield from _masked(each)
+            yield from _masked(context, each)
         except UndecidedError:
             continue
 
 
-def _masked(each: Judged) -> Iterator[Finding]:
+def _masked(context: Context, each: Judged) -> Iterator[Finding]:
     """For the default outcome and each rule with a success the failures that it hides."""
     read, node = each.read, each.read.node
     spaces = each.calm
@@ -83,14 +85,14 @@ def _masked(each: Judged) -> Iterator[Finding]:
     if node.default_outcome in good:
         hidden = _hidden(read, spaces, {}, read.rules.all)
         help = "let the default be an outcome of failure, and list what is a success in a rule"
-        yield from _masks(each, node.default_outcome, node.default_span, hidden, help)
+        yield from _masks(context, each, node.default_outcome, node.default_span, hidden, help)
     for number, entry in enumerate(read.written):
         if entry.outcome in good:
             given = read.rules.conditions[number]
             rivals = read.rules.larger_than(len(given) - 1) & ~(1 << number)
             hidden = _hidden(read, spaces, given, rivals)
             help = f"list every child in the rule for `{entry.outcome}`"
-            yield from _masks(each, entry.outcome, entry.span, hidden, help)
+            yield from _masks(context, each, entry.outcome, entry.span, hidden, help)
 
 
 def _good_results(read: Study, spaces: list[Space]) -> frozenset[str]:
@@ -146,7 +148,12 @@ def _hidden(
 
 
 def _masks(
-    each: Judged, outcome: str, span: Span, hidden: dict[str, Combination], help: str
+    context: Context,
+    each: Judged,
+    outcome: str,
+    span: Span,
+    hidden: dict[str, Combination],
+    help: str,
 ) -> Iterator[Finding]:
     if not hidden:
         return
@@ -165,9 +172,21 @@ def _masks(
             *other_place(failed.span, f"ends with `{shown[child]}`"),
             *calls(node, span),
         ),
-        path=(node.name, f"({outcome})", step.target) if step else (),
+        path=_onwards(context, each.path, node, step) if step else (),
         node=each.path,
     )
+
+
+def _onwards(context: Context, path: str, node: Node, step: Transition) -> tuple[PathStep, ...]:
+    """A state, its outcome, and the state beside it, or the outcome, that this leads to."""
+    beside: str | None = f"{path.removesuffix(node.name)}{step.target}"
+    if step.origin == "implicit" or beside not in context.spans:
+        beside = None
+    return entered(node.name, path), ended(step.outcome), entered(step.target, beside)
+
+
+_Ending: TypeAlias = "tuple[str, str]"
+"""The path of a state, and an outcome of it."""
 
 
 class _Fate(NamedTuple):
@@ -184,7 +203,7 @@ class _Fate(NamedTuple):
 
 
 @rule("SM206", "unhandled-failure", Severity.WARNING)
-def unhandled_failure(machine: Machine) -> Iterator[Finding]:
+def unhandled_failure(context: Context) -> Iterator[Finding]:
     """A state fails, and the machine ends with a success, without any other state in between.
 
     Whoever started the robot is told that the task is done. The failure needs a recovery, or an
@@ -223,31 +242,31 @@ def unhandled_failure(machine: Machine) -> Iterator[Finding]:
               outcomes: [done, timeout]
               transitions: {done: succeeded, timeout: failed}
     """
-    root = machine.root
+    root = context.machine.root
     good = successes(outcome_names(root))
     if not good:
         return
-    fates: dict[tuple[int, str], _Fate | None] = {(id(root), name): None for name in good}
-    turns: dict[tuple[int, str], list[_Fate]] = {}
-    for path, container in containers(root):
+    fates: dict[_Ending, _Fate | None] = {(root.name, name): None for name in good}
+    turns: dict[_Ending, list[_Fate]] = {}
+    for path, container in context.containers:
         names = frozenset(child.name for child in container.children)
         for child in container.children:
-            for fate in _fates(container, names, f"{path}/{child.name}", child, fates):
+            for fate in _fates(path, container, names, child, fates):
                 if not isinstance(child, Leaf):
-                    fates[id(child), fate.outcome] = fate
+                    fates.setdefault((fate.path, fate.outcome), fate)
                 if starts_failure(child, fate.outcome):
                     turn = fate.turn or fate
-                    turns.setdefault((id(turn.node), turn.outcome), []).append(fate)
+                    turns.setdefault((turn.path, turn.outcome), []).append(fate)
     for found in turns.values():
         yield _unhandled_failure(root, found)
 
 
 def _fates(
+    path: str,
     container: Container,
     names: frozenset[str],
-    path: str,
     child: Node,
-    fates: Mapping[tuple[int, str], _Fate | None],
+    fates: Mapping[_Ending, _Fate | None],
 ) -> Iterator[_Fate]:
     """The outcomes of a child that end the machine with a success."""
     ways: list[tuple[str, str, Span]] = []
@@ -263,21 +282,21 @@ def _fates(
             inner = outcome_names(child) if child.name == container.name else ()
             ways = [(end, end, container.span) for end in inner]
     for outcome, target, span in ways:
-        if (id(container), target) in fates:
-            then = fates[id(container), target]
+        if (path, target) in fates:
+            then = fates[path, target]
             called_good = target.lower() in SUCCESSES | GOOD
             turn = None if called_good or then is None else then.turn or then
-            yield _Fate(path, child, outcome, target, turn, span, then)
+            yield _Fate(f"{path}/{child.name}", child, outcome, target, turn, span, then)
 
 
 def _unhandled_failure(root: StateMachine, found: list[_Fate]) -> Finding:
     first = found[0]
     turn = first.turn or first
-    way: list[str] = []
+    way: list[PathStep] = []
     end = ""
     step: _Fate | None = first
     while step is not None and len(way) < 2 * MOST_STEPS:
-        way += [step.node.name, f"({step.outcome})"]
+        way += [entered(step.node.name, step.path), ended(step.outcome)]
         end, step = step.target, step.then
     others = [fate.node.name for fate in found[1:]]
     also = f"; so it does after {listed(others)}" if others else ""
@@ -290,6 +309,6 @@ def _unhandled_failure(root: StateMachine, found: list[_Fate]) -> Finding:
             *(other_place(first.node.span, "the state that fails") if turn is not first else ()),
             *calls(turn.node, turn.span),
         ),
-        path=(*way, end),
+        path=(*way, entered(end, None)),
         node=turn.path,
     )

@@ -4,14 +4,15 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 
-from smachac.analysis.context import containers
-from smachac.diagnostics.diagnostic import Finding, Related, Severity, rule
+from smachac.analysis.context import Context
+from smachac.checks.rule import rule
+from smachac.diagnostics.diagnostic import Finding, Related, Severity
 from smachac.diagnostics.source import Span
-from smachac.ir.nodes import Given, Machine, Preset
+from smachac.ir.nodes import Given, Preset
 
 
 @rule("SM313", "overruled-value", Severity.WARNING)
-def overruled_value(machine: Machine) -> Iterator[Finding]:
+def overruled_value(context: Context) -> Iterator[Finding]:
     """Two states of one container give a key of its userdata different values.
 
     The userdata of a state is that of its container, and all of it is set before the container
@@ -51,7 +52,7 @@ def overruled_value(machine: Machine) -> Iterator[Finding]:
               input_keys: [speed]
               transitions: {succeeded: done}
     """
-    for path, container in containers(machine):
+    for path, container in context.containers:
         for preset in container.userdata:
             yield from _overruled(path, preset)
 

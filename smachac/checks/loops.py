@@ -6,32 +6,32 @@ from collections.abc import Iterator
 from dataclasses import replace
 from typing import NamedTuple
 
-from smachac.analysis.context import states
+from smachac.analysis.context import Context
 from smachac.analysis.control_flow import (
     Linear,
-    Steps,
+    SiblingSteps,
     circle,
     dead_ends,
-    endless_states,
-    linear,
     outline,
     regions,
+    shortest_paths,
+    step_graph,
     steps_of,
     stuck_states,
     way,
-    ways_from,
 )
 from smachac.checks.messages import calls
-from smachac.diagnostics.diagnostic import Finding, Severity, rule
+from smachac.checks.rule import rule
+from smachac.diagnostics.diagnostic import Finding, PathStep, Severity
 from smachac.diagnostics.wording import listed
 from smachac.ir.graph import can_end, reachable
-from smachac.ir.nodes import Leaf, Machine, Node, StateMachine, Transition
+from smachac.ir.nodes import Leaf, Node, StateMachine, Transition
 from smachac.ir.outcome_names import PREEMPTED, is_failure
 from smachac.ir.traversal import leads_to_child, outcome_names
 
 
 @rule("SM202", "trap", Severity.ERROR)
-def trap(machine: Machine) -> Iterator[Finding]:
+def trap(context: Context) -> Iterator[Finding]:
     """Once this state is entered, no outcome of the container can be reached any more.
 
     The robot goes round in circles, or waits in a part that never ends, until somebody pulls the
@@ -55,34 +55,34 @@ def trap(machine: Machine) -> Iterator[Finding]:
           - LOOK: {template: ScriptedState, outcomes: [seen], transitions: {seen: APPROACH}}
           - APPROACH: {template: ScriptedState, outcomes: [near], transitions: {near: PICK}}
     """
-    endless = endless_states(machine)
-    for path, container in linear(machine):
+    endless = context.endless
+    for path, container in context.linear:
         if isinstance(container, StateMachine) and container.forever:
             continue
-        flow = outline(container, endless)
+        flow = outline(path, container, endless)
         stuck = stuck_states(flow)
         if not stuck:
             continue
         steps = steps_of(flow)
         children = {child.name: child for child in reversed(container.children)}
-        before = ways_from(container.initial, steps)
+        graph = step_graph(steps, steps)
+        before = shortest_paths(graph, container.initial)
         for region in dead_ends(stuck, steps):
             first = region[0]
-            start = container.initial
-            round_ = circle(region, steps)
-            there = way(start, first, before) if start != first else [first]
-            yield _trapped(path, container, children[first], region, [*there, *round_[1:]])
+            witness = [*way(path, graph, before, first), *circle(path, region, steps)[1:]]
+            yield _trapped(path, container, children[first], region, witness)
 
 
 def _trapped(
-    path: str, container: Linear, child: Node, region: list[str], witness: list[str]
+    path: str, container: Linear, child: Node, region: list[str], witness: list[PathStep]
 ) -> Finding:
     what = f"from {listed(region)} no outcome of `{container.name}` can be reached"
     help = f"lead a transition to an outcome of `{container.name}`"
-    if witness.count(child.name) == 1 and isinstance(child, Leaf):
+    once = [step.node for step in witness].count(f"{path}/{child.name}") == 1
+    if once and isinstance(child, Leaf):
         what = f"`{child.name}` has no outcomes, so `{container.name}` never ends after it"
         help = f"give `{child.name}` an outcome"
-    elif witness.count(child.name) == 1:
+    elif once:
         what = f"`{child.name}` never ends, so neither does `{container.name}`"
         help = f"give `{child.name}` a way out"
     if isinstance(container, StateMachine):
@@ -107,7 +107,7 @@ class _Loop(NamedTuple):
 
 
 @rule("SM204", "unbounded-loop", Severity.WARNING)
-def unbounded_loop(machine: Machine) -> Iterator[Finding]:
+def unbounded_loop(context: Context) -> Iterator[Finding]:
     """Nothing bounds a loop: neither a number of tries nor, where it never ends, a wait.
 
     A robot that stops only when it succeeds tries until it breaks something. One that loops
@@ -146,23 +146,24 @@ def unbounded_loop(machine: Machine) -> Iterator[Finding]:
               transitions: {again: OPEN, enough: lost}
           - OPEN: {template: ScriptedState, outcomes: [done], transitions: {done: PICK}}
     """
-    endless = endless_states(machine)
-    waiting = _waiting(machine)
-    for path, container in linear(machine):
-        if not _goes_back(container):
-            continue
+    endless = context.endless
+    looping = [(path, each) for path, each in context.linear if _goes_back(each)]
+    waiting = _waiting(context) if looping else frozenset()
+    for path, container in looping:
         forever = isinstance(container, StateMachine) and container.forever
-        whole = outline(container, endless)
+        whole = outline(path, container, endless)
         trapped = frozenset(() if forever else stuck_states(whole))
         flow = _unpreempted(whole)
         steps = steps_of(flow)
-        waits = frozenset(child.name for child in container.children if id(child) in waiting)
+        waits = frozenset(
+            child.name for child in container.children if f"{path}/{child.name}" in waiting
+        )
         for loop in _unbounded(flow, reachable(whole), steps):
             if not trapped.isdisjoint(loop.region):
                 continue
             if loop.step is not None and not forever:
                 yield _retries(path, container, loop, loop.step, steps)
-            elif spin := _spin(loop.region, steps, waits):
+            elif spin := _spin(path, loop.region, steps, waits):
                 yield _spins(path, container, spin)
 
 
@@ -176,16 +177,16 @@ def _goes_back(container: Linear) -> bool:
     )
 
 
-def _waiting(machine: Machine) -> frozenset[int]:
-    """The states, by `id`, that wait, or may."""
-    found: set[int] = set()
-    for _, node in reversed(states(machine)):
+def _waiting(context: Context) -> frozenset[str]:
+    """The states, by path, that wait, or may."""
+    found: set[str] = set()
+    for path, node in reversed(context.states):
         if isinstance(node, Leaf):
             waits = node.blocking or node.open or node.type == "SleepState"
         else:
-            waits = any(id(child) in found for child in node.children)
+            waits = any(f"{path}/{child.name}" in found for child in node.children)
         if waits:
-            found.add(id(node))
+            found.add(path)
     return frozenset(found)
 
 
@@ -210,7 +211,7 @@ def _failing(node: Node) -> Node:
     return replace(node, outcomes=tuple(outcomes), transitions=tuple(steps))
 
 
-def _unbounded(flow: Linear, entered: frozenset[str], steps: Steps) -> Iterator[_Loop]:
+def _unbounded(flow: Linear, entered: frozenset[str], steps: SiblingSteps) -> Iterator[_Loop]:
     """The loops that are not left while all that retries fails."""
     part = {name: part for part, names in enumerate(regions(steps, steps)) for name in names}
     retrying = {
@@ -245,7 +246,9 @@ def _closing_step(child: Node | None, inside: frozenset[str]) -> Transition | No
     return next(closing, None)
 
 
-def _retries(path: str, container: Linear, loop: _Loop, step: Transition, steps: Steps) -> Finding:
+def _retries(
+    path: str, container: Linear, loop: _Loop, step: Transition, steps: SiblingSteps
+) -> Finding:
     child = loop.child
     region = [child.name, *(name for name in loop.region if name != child.name)]
     kept = {name: steps[name] for name in region}
@@ -256,22 +259,26 @@ def _retries(path: str, container: Linear, loop: _Loop, step: Transition, steps:
         f" `{step.outcome}`, `{container.name}` goes on for ever",
         help="count the tries, and lead the last failure out of the loop",
         related=calls(child, step.span),
-        path=tuple(circle(region, kept)),
+        path=tuple(circle(path, region, kept)),
         node=f"{path}/{child.name}",
     )
 
 
-def _spin(region: list[str], steps: Steps, waits: frozenset[str]) -> list[str]:
+def _spin(
+    path: str, region: list[str], steps: SiblingSteps, waits: frozenset[str]
+) -> list[PathStep]:
     """A circle of a region on which no state waits; empty if there is none."""
     hasty = [name for name in region if name not in waits]
-    return next(filter(None, (circle(part, steps) for part in regions(hasty, steps))), [])
+    circles = (circle(path, part, steps) for part in regions(hasty, steps))
+    return next(filter(None, circles), [])
 
 
-def _spins(path: str, container: Linear, spin: list[str]) -> Finding:
-    child = next(child for child in container.children if child.name == spin[0])
+def _spins(path: str, container: Linear, spin: list[PathStep]) -> Finding:
+    child = next(child for child in container.children if child.name == spin[0].label)
+    names = listed(step.label for step in spin[::2])
     return Finding(
         span=child.span,
-        message=f"{listed(spin[::2])} repeat without an end and without a wait",
+        message=f"{names} repeat without an end and without a wait",
         help="let a state of the loop wait, such as a SleepState",
         related=calls(child, child.span),
         path=tuple(spin),

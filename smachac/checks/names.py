@@ -5,24 +5,24 @@ from __future__ import annotations
 from collections.abc import Iterator
 from typing import NamedTuple
 
-from smachac.analysis.context import containers, states
+from smachac.analysis.context import Context
 from smachac.analysis.control_flow import (
     Linear,
     children_names,
     is_open,
     leads_somewhere,
-    linear,
     places_of,
     unknown_outcomes,
 )
 from smachac.checks.expressions import unknown_endings
 from smachac.checks.messages import calls, did_you_mean, other_place
-from smachac.diagnostics.diagnostic import Finding, Severity, rule
+from smachac.checks.rule import rule
+from smachac.diagnostics.diagnostic import Finding, Severity
 from smachac.diagnostics.source import Word
 from smachac.diagnostics.spelling import guesser, respelt
 from smachac.diagnostics.wording import listed
 from smachac.ir import nodes
-from smachac.ir.nodes import Concurrence, Container, Leaf, Machine, Node, Transition
+from smachac.ir.nodes import Concurrence, Container, Leaf, Node, Transition
 from smachac.ir.traversal import outcome_names
 
 
@@ -39,7 +39,7 @@ class _Lost(NamedTuple):
 
 
 @rule("SM101", "unknown-target", Severity.ERROR, firm=True)
-def unknown_target(machine: Machine) -> Iterator[Finding]:
+def unknown_target(context: Context) -> Iterator[Finding]:
     """A transition leads to what is neither a state beside it nor an outcome of its container.
 
     SMACH notices when the container is run, and then runs none of its states: the robot stands
@@ -73,13 +73,13 @@ def unknown_target(machine: Machine) -> Iterator[Finding]:
               outcomes: [done]
               transitions: {done: stacked}
     """
-    lost = [fault for path, container in linear(machine) for fault in _lost(path, container)]
+    lost = [fault for path, container in context.linear for fault in _lost(path, container)]
     paths: dict[str, str] = {}
-    for path, node in states(machine) if lost else ():
+    for path, node in context.states if lost else ():
         paths.setdefault(node.name, path)
     for fault in lost:
         yield _nowhere(fault, paths.get(fault.step.target))
-    for path, container in containers(machine):
+    for path, container in context.containers:
         if isinstance(container, Concurrence | nodes.Iterator):
             yield from _idle_transitions(path, container)
 
@@ -134,7 +134,7 @@ def _idle_transitions(path: str, container: Container) -> Iterator[Finding]:
 
 
 @rule("SM102", "unknown-outcome", Severity.ERROR, firm=True)
-def unknown_outcome(machine: Machine) -> Iterator[Finding]:
+def unknown_outcome(context: Context) -> Iterator[Finding]:
     """A transition starts from an outcome that its state does not have.
 
     It is never taken: the recovery that somebody wrote for the robot does not exist. Likewise the
@@ -160,7 +160,7 @@ def unknown_outcome(machine: Machine) -> Iterator[Finding]:
               outcomes: [done, slipped]
               transitions: {done: picked, slipped: lost}
     """
-    for path, container in containers(machine):
+    for path, container in context.containers:
         if isinstance(container, nodes.Iterator):
             yield from _unknown_loops(path, container)
         elif not isinstance(container, Concurrence):
@@ -207,7 +207,7 @@ def _unknown_loops(path: str, container: nodes.Iterator) -> Iterator[Finding]:
 
 
 @rule("SM106", "duplicate-state", Severity.ERROR, firm=True)
-def duplicate_state(machine: Machine) -> Iterator[Finding]:
+def duplicate_state(context: Context) -> Iterator[Finding]:
     """Two states of one container have the same name.
 
     A transition to that name can mean only one of them; the other part of the task is lost.
@@ -228,7 +228,7 @@ def duplicate_state(machine: Machine) -> Iterator[Finding]:
           - MOVE: {template: ScriptedState, outcomes: [there], transitions: {there: MOVE_BACK}}
           - MOVE_BACK: {template: ScriptedState, outcomes: [back], transitions: {back: done}}
     """
-    for path, container in containers(machine):
+    for path, container in context.containers:
         first: dict[str, Node] = {}
         for child in container.children:
             known = first.setdefault(child.name, child)
@@ -246,7 +246,7 @@ def duplicate_state(machine: Machine) -> Iterator[Finding]:
 
 
 @rule("SM107", "name-clash", Severity.ERROR, firm=True)
-def name_clash(machine: Machine) -> Iterator[Finding]:
+def name_clash(context: Context) -> Iterator[Finding]:
     """A state is called like an outcome of its container, or has a name that paths cannot hold.
 
     A transition to a name that is both goes to the state, so the machine goes on where it was to
@@ -268,7 +268,7 @@ def name_clash(machine: Machine) -> Iterator[Finding]:
           - WORK: {template: ScriptedState, outcomes: [ok, bad], transitions: {ok: done, bad: PARK}}
           - PARK: {template: ScriptedState, outcomes: [ok], transitions: {ok: stopped}}
     """
-    for path, node in states(machine):
+    for path, node in context.states:
         if not node.name.isprintable() or "/" in node.name or not node.name:
             yield Finding(
                 span=node.span,
@@ -277,7 +277,7 @@ def name_clash(machine: Machine) -> Iterator[Finding]:
                 related=calls(node, node.span),
                 node=path,
             )
-    for path, container in linear(machine):
+    for path, container in context.linear:
         exits = {outcome.name: outcome for outcome in container.outcomes}
         for child in container.children:
             if child.name in exits:
@@ -294,7 +294,7 @@ def name_clash(machine: Machine) -> Iterator[Finding]:
 
 
 @rule("SM108", "shadowed-name", Severity.WARNING)
-def shadowed_name(machine: Machine) -> Iterator[Finding]:
+def shadowed_name(context: Context) -> Iterator[Finding]:
     """A state is called like the container it is in.
 
     Pictures, traces and editors show the same name on two levels; people mend the wrong one.
@@ -323,7 +323,7 @@ def shadowed_name(machine: Machine) -> Iterator[Finding]:
                 - GRASP: {template: ScriptedState, outcomes: [ok], transitions: {ok: picked}}
               transitions: {picked: done}
     """
-    for path, container in containers(machine):
+    for path, container in context.containers:
         for child in container.children:
             if child.name == container.name and not container.sugar:
                 yield Finding(

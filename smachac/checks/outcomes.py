@@ -4,18 +4,19 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Iterator
 
-from smachac.analysis.context import containers
-from smachac.analysis.control_flow import Linear, linear, places_of, unknown_outcomes
+from smachac.analysis.context import Context
+from smachac.analysis.control_flow import Linear, places_of, unknown_outcomes
 from smachac.checks.messages import calls, did_you_mean, other_place
-from smachac.diagnostics.diagnostic import Finding, Severity, rule
+from smachac.checks.rule import rule
+from smachac.diagnostics.diagnostic import Finding, Severity
 from smachac.ir import nodes
-from smachac.ir.nodes import Concurrence, Machine, Node, Outcome, Transition
+from smachac.ir.nodes import Concurrence, Node, Outcome, Transition
 from smachac.ir.outcome_names import PREEMPTED, is_failure
 from smachac.ir.traversal import outcome_names
 
 
 @rule("SM103", "undeclared-container-outcome", Severity.ERROR, firm=True)
-def undeclared_container_outcome(machine: Machine) -> Iterator[Finding]:
+def undeclared_container_outcome(context: Context) -> Iterator[Finding]:
     """A concurrence or iterator can end with an outcome that it does not declare.
 
     What stands around it has no transition for that, so the machine stops there.
@@ -54,7 +55,7 @@ def undeclared_container_outcome(machine: Machine) -> Iterator[Finding]:
                 - RIGHT: {template: ScriptedState, outcomes: [done, slipped]}
               transitions: {ready: ready, partly: failed, failed: failed}
     """
-    for path, container in containers(machine):
+    for path, container in context.containers:
         if isinstance(container, Concurrence):
             yield from _undeclared_results(path, container)
         elif isinstance(container, nodes.Iterator):
@@ -110,7 +111,7 @@ def _undeclared_endings(path: str, container: nodes.Iterator) -> Iterator[Findin
 
 
 @rule("SM104", "unhandled-outcome", Severity.ERROR, firm=True)
-def unhandled_outcome(machine: Machine) -> Iterator[Finding]:
+def unhandled_outcome(context: Context) -> Iterator[Finding]:
     """An outcome of a state has no transition, and its container has no outcome of that name.
 
     When the state ends so, nobody has said what comes next: SMACH stops with an error, wherever
@@ -136,7 +137,7 @@ def unhandled_outcome(machine: Machine) -> Iterator[Finding]:
               outcomes: [done, slipped, blocked]
               transitions: {done: picked, slipped: lost, blocked: lost}
     """
-    for path, container in linear(machine):
+    for path, container in context.linear:
         for child in container.children:
             for outcome in unhandled(child):
                 yield _unhandled(path, container, child, outcome)
@@ -169,7 +170,7 @@ def _unhandled(path: str, container: Linear, child: Node, outcome: Outcome) -> F
 
 
 @rule("SM105", "implicit-exit", Severity.INFO)
-def implicit_exit(machine: Machine) -> Iterator[Finding]:
+def implicit_exit(context: Context) -> Iterator[Finding]:
     """An outcome ends the machine only because both have an outcome of that name.
 
     Nothing is wrong with that, unless it was forgotten: a failure that leaves by its name, while
@@ -203,7 +204,7 @@ def implicit_exit(machine: Machine) -> Iterator[Finding]:
               outcomes: [done]
               transitions: {done: placed}
     """
-    for path, container in linear(machine):
+    for path, container in context.linear:
         for child in container.children:
             if container.sugar:
                 continue

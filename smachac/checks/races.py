@@ -2,23 +2,24 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Iterator, Mapping
 
-from smachac.analysis.accesses import Accesses, accesses
-from smachac.analysis.context import containers
-from smachac.analysis.resource_claims import Held, claims, prefixes
+from smachac.analysis.accesses import Accesses
+from smachac.analysis.context import Context
+from smachac.analysis.resource_claims import Held, prefixes
 from smachac.checks.messages import calls, other_place
-from smachac.diagnostics.diagnostic import Finding, Related, Severity, rule
+from smachac.checks.rule import rule
+from smachac.diagnostics.diagnostic import Finding, Related, Severity
 from smachac.diagnostics.source import Span
 from smachac.diagnostics.wording import listed
-from smachac.ir.nodes import Concurrence, Machine, Node
+from smachac.ir.nodes import Concurrence, Node
 
 MOST_PLACES = 4
 """So many other places a finding shows."""
 
 
 @rule("SM405", "data-race", Severity.ERROR)
-def data_race(machine: Machine) -> Iterator[Finding]:
+def data_race(context: Context) -> Iterator[Finding]:
     """Two branches that run at the same time write one key, or one writes what another reads.
 
     Which value is there in the end, or is read, depends on which branch is faster that day: the
@@ -67,20 +68,19 @@ def data_race(machine: Machine) -> Iterator[Finding]:
                     remapping: {pose: right_pose}
               transitions: {done: done}
     """
-    found: dict[int, Accesses] = {}
-    for path, container in containers(machine):
+    for path, container in context.containers:
         if isinstance(container, Concurrence) and len(container.children) > 1:
-            found = found or accesses(machine)
-            yield from _races(path, container, found)
+            yield from _races(path, container, context.accesses)
 
 
-def _races(path: str, container: Concurrence, known: dict[int, Accesses]) -> Iterator[Finding]:
+def _races(path: str, container: Concurrence, known: Mapping[str, Accesses]) -> Iterator[Finding]:
     writers: dict[str, list[tuple[Node, Node]]] = {}
     readers: dict[str, list[tuple[Node, Node]]] = {}
     for child in container.children:
-        for key, origin in known[id(child)].writes.items():
+        own = known[f"{path}/{child.name}"]
+        for key, origin in own.writes.items():
             writers.setdefault(key, []).append((child, origin))
-        for key, origin in known[id(child)].reads.items():
+        for key, origin in own.reads.items():
             readers.setdefault(key, []).append((child, origin))
     for key, writing in writers.items():
         names = {child.name for child, _ in writing}
@@ -134,7 +134,7 @@ def _inner(span: Span, origin: Node, whose: str) -> tuple[Related, ...]:
 
 
 @rule("SM406", "resource-clash", Severity.ERROR)
-def resource_clash(machine: Machine) -> Iterator[Finding]:
+def resource_clash(context: Context) -> Iterator[Finding]:
     """Two branches that run at the same time hold the same resource.
 
     Two commands reach one arm at once: it follows neither, or jumps between them.
@@ -185,19 +185,18 @@ def resource_clash(machine: Machine) -> Iterator[Finding]:
                 - UP: {template: MoveToJointPositionsState, limb: right, remapping: {positions: up}}
               transitions: {succeeded: succeeded, aborted: aborted}
     """
-    concurrences = [
-        (path, one) for path, one in containers(machine) if isinstance(one, Concurrence)
-    ]
-    held = claims(machine) if concurrences else {}
+    concurrences = [(path, one) for path, one in context.containers if isinstance(one, Concurrence)]
+    held = context.claims if concurrences else {}
     for path, container in concurrences:
         yield from _clashes(path, container, held)
 
 
 def _clashes(path: str, container: Concurrence, held: Held) -> Iterator[Finding]:
-    named = {claim for child in container.children for claim in held[id(child)]}
+    branches = [(child, held[f"{path}/{child.name}"]) for child in container.children]
+    named = {claim for _, claims in branches for claim in claims}
     holders: dict[str, list[tuple[Node, str, Node]]] = {}
-    for child in container.children:
-        for claim, origin in held[id(child)].items():
+    for child, claims in branches:
+        for claim, origin in claims.items():
             widest = next(part for part in prefixes(claim) if part in named)
             holders.setdefault(widest, []).append((child, claim, origin))
     for resource, holding in holders.items():

@@ -4,31 +4,31 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 
-from smachac.analysis.context import containers
+from smachac.analysis.context import Context
 from smachac.analysis.control_flow import (
     Linear,
     children_names,
     is_open,
     leads_somewhere,
-    linear,
     mended,
 )
 from smachac.checks.messages import calls, did_you_mean
 from smachac.checks.outcomes import endings, unhandled
+from smachac.checks.rule import rule
 from smachac.checks.timeouts import undeclared_stops
-from smachac.diagnostics.diagnostic import Finding, Severity, rule
+from smachac.diagnostics.diagnostic import Finding, Severity
 from smachac.diagnostics.source import assert_never
 from smachac.diagnostics.spelling import guesser
 from smachac.diagnostics.wording import listed
 from smachac.ir import nodes
 from smachac.ir.graph import edges, reachable, stopped_endings
-from smachac.ir.nodes import Concurrence, Container, Machine, Node, Outcome, Sequence, StateMachine
+from smachac.ir.nodes import Concurrence, Container, Node, Outcome, Sequence, StateMachine
 from smachac.ir.outcome_names import PREEMPTED
 from smachac.ir.traversal import outcome_names
 
 
 @rule("SM201", "unreachable-state", Severity.ERROR)
-def unreachable_state(machine: Machine) -> Iterator[Finding]:
+def unreachable_state(context: Context) -> Iterator[Finding]:
     """No path leads to this state from the initial one.
 
     A part of the task that somebody wrote is never done, whatever happens: most often a
@@ -62,7 +62,7 @@ def unreachable_state(machine: Machine) -> Iterator[Finding]:
               outcomes: [done]
               transitions: {done: lost}
     """
-    for path, container in linear(machine):
+    for path, container in context.linear:
         whole = mended(container)
         seen = reachable(whole)
         hidden = [child for child in container.children if child.name not in seen]
@@ -99,7 +99,7 @@ def _why_unreachable(container: Linear, child: Node, before: list[str]) -> str:
 
 
 @rule("SM203", "impossible-outcome", Severity.WARNING)
-def impossible_outcome(machine: Machine) -> Iterator[Finding]:
+def impossible_outcome(context: Context) -> Iterator[Finding]:
     """A container declares an outcome that nothing in it can bring about.
 
     What stands around it waits for a case that never comes. Often it is a failure: then failures
@@ -125,7 +125,7 @@ def impossible_outcome(machine: Machine) -> Iterator[Finding]:
               outcomes: [done, slipped]
               transitions: {done: picked, slipped: lost}
     """
-    for path, container in containers(machine):
+    for path, container in context.containers:
         possible = _possible_outcomes(container)
         for outcome in container.outcomes:
             if possible is not None and outcome.name not in (*possible, container.catches):
@@ -210,7 +210,7 @@ def _impossible(path: str, container: Container, outcome: Outcome) -> Finding:
 
 
 @rule("SM205", "no-initial", Severity.ERROR, firm=True)
-def no_initial(machine: Machine) -> Iterator[Finding]:
+def no_initial(context: Context) -> Iterator[Finding]:
     """A container has no state to start with.
 
     SMACH refuses to run it: the robot stands still where the container was to work.
@@ -231,7 +231,7 @@ def no_initial(machine: Machine) -> Iterator[Finding]:
         states:
           - PICK: {template: ScriptedState, outcomes: [ok], transitions: {ok: done}}
     """
-    for path, container in containers(machine):
+    for path, container in context.containers:
         if isinstance(container, Concurrence):
             continue
         if not container.children:

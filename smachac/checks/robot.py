@@ -6,13 +6,14 @@ import math
 from collections.abc import Iterable, Iterator
 from dataclasses import replace
 
-from smachac.analysis.context import states, types_of
-from smachac.analysis.type_inference import Flow
+from smachac.analysis.context import Context
+from smachac.analysis.type_inference import TypeFlow
 from smachac.analysis.type_lattice import inside, present, unit_of
 from smachac.checks.expressions import mixed_units
 from smachac.checks.messages import calls, did_you_mean, other_place
-from smachac.checks.types import clash_findings, clashes_of
-from smachac.diagnostics.diagnostic import Finding, Related, Severity, rule
+from smachac.checks.rule import rule
+from smachac.checks.types import clash_findings
+from smachac.diagnostics.diagnostic import Finding, Related, Severity
 from smachac.diagnostics.spelling import guesser
 from smachac.ir.leaf import variable
 from smachac.ir.nodes import Data, Leaf, Machine, Struct
@@ -27,7 +28,7 @@ JOINT_TOLERANCE = 1e-4
 
 
 @rule("SM501", "wrong-length", Severity.ERROR)
-def wrong_length(machine: Machine) -> Iterator[Finding]:
+def wrong_length(context: Context) -> Iterator[Finding]:
     """A list has more or fewer items than where it is read.
 
     Seven joints take seven numbers: with six the skill fails when its turn comes, with the arm in
@@ -59,16 +60,16 @@ def wrong_length(machine: Machine) -> Iterator[Finding]:
               outcomes: [done]
               transitions: {done: done}
     """
-    yield from clash_findings(clashes_of(machine, "length"))
-    robot = robot_of(machine)
+    yield from clash_findings(context.clashes["length"])
+    robot = robot_of(context.machine)
     limbs = robot.limbs if robot is not None else ()
     lengths = sorted({len(limb) for limb in limbs})
-    for flow in types_of(machine).constants if lengths else ():
-        if moves_arm(flow) and flow.place.node and flow.place.node.type in ARM_STATES:
+    for flow in context.types.constants if lengths else ():
+        if moves_arm(flow) and flow.cell.node and flow.cell.node.type in ARM_STATES:
             assert isinstance(flow.value, tuple)
             if len(flow.value) not in lengths:
                 have = " or ".join(map(str, lengths))
-                message = f"the arm has {have} joints, and `{flow.origin.place.key}` has"
+                message = f"the arm has {have} joints, and `{flow.origin.cell.key}` has"
                 yield at(flow, f"{message} {len(flow.value)} numbers", "give one for each joint")
 
 
@@ -77,7 +78,7 @@ ARM_STATES = frozenset(["MoveToJointPositionsState"])
 
 
 @rule("SM502", "joint-limit", Severity.ERROR)
-def joint_limit(machine: Machine) -> Iterator[Finding]:
+def joint_limit(context: Context) -> Iterator[Finding]:
     """A joint position is beyond what the joint of the robot can reach.
 
     The arm stops at its limit and the skill fails. `robot:` names a built-in arm (panda, baxter) or
@@ -108,8 +109,8 @@ def joint_limit(machine: Machine) -> Iterator[Finding]:
               remapping: {positions: home}
               transitions: {succeeded: done, aborted: failed, preempted: failed}
     """
-    robot = robot_of(machine)
-    for flow in types_of(machine).constants if robot is not None else ():
+    robot = robot_of(context.machine)
+    for flow in context.types.constants if robot is not None else ():
         assert robot is not None
         if not moves_arm(flow):
             continue
@@ -123,7 +124,7 @@ def joint_limit(machine: Machine) -> Iterator[Finding]:
             what = f"joint {number}" if isinstance(flow.value, tuple) else f"`{joint.name}`"
             yield at(
                 flow,
-                f"{what} of `{flow.origin.place.key}` is {angle} rad, beyond its limits"
+                f"{what} of `{flow.origin.cell.key}` is {angle} rad, beyond its limits"
                 f" {joint.lower:g} to {joint.upper:g}",
                 "are these degrees?" if abs(_as_float(angle)) > 2 * math.pi else None,
                 other_place(joint.span, f"the limits of `{joint.name}`"),
@@ -159,11 +160,11 @@ def _misses(pairs: list[tuple[Joint, Data]]) -> int:
     return sum(not _within(joint, _as_float(angle)) for joint, angle in pairs)
 
 
-def moves_arm(flow: Flow) -> bool:
+def moves_arm(flow: TypeFlow) -> bool:
     """Whether a literal holds angles, in a list or by name, that a state which holds an arm
     reads."""
-    node, wanted = flow.place.node, present(flow.place.declared)
-    if flow.place.role != "input" or not isinstance(node, Leaf):
+    node, wanted = flow.cell.node, present(flow.cell.declared)
+    if flow.cell.role != "input" or not isinstance(node, Leaf):
         return False
     held = any(claim == "arm" or claim.startswith("arm.") for claim in node.claims)
     if not held or unit_of(inside(wanted)) != "rad":
@@ -173,7 +174,7 @@ def moves_arm(flow: Flow) -> bool:
 
 
 @rule("SM503", "not-a-rotation", Severity.WARNING)
-def not_a_rotation(machine: Machine) -> Iterator[Finding]:
+def not_a_rotation(context: Context) -> Iterator[Finding]:
     """A quaternion does not have the length 1, so it is no rotation.
 
     Some programs read the nearest rotation, others refuse it, and others bend the pose: the hand
@@ -203,8 +204,8 @@ def not_a_rotation(machine: Machine) -> Iterator[Finding]:
               outcomes: [done]
               transitions: {done: done}
     """
-    for flow in types_of(machine).constants:
-        for rotation in _rotations(flow.value, flow.place.declared):
+    for flow in context.types.constants:
+        for rotation in _rotations(flow.value, flow.cell.declared):
             numbers = [_as_float(each) for each in rotation if _is_number(each)]
             if len(numbers) != 4:
                 continue
@@ -240,7 +241,7 @@ HOLDERS = frozenset(["Pose", "Transform", "Quaternion", "optional", "list", "arr
 
 
 @rule("SM504", "unit-mismatch", Severity.ERROR)
-def unit_mismatch(machine: Machine) -> Iterator[Finding]:
+def unit_mismatch(context: Context) -> Iterator[Finding]:
     """A number is written in one unit and read in another.
 
     Ninety degrees read as radians turn a joint fourteen times, or run it into its limit. Numbers
@@ -270,8 +271,8 @@ def unit_mismatch(machine: Machine) -> Iterator[Finding]:
               outcomes: [done]
               transitions: {done: done}
     """
-    yield from clash_findings(clashes_of(machine, "unit"))
-    yield from mixed_units(machine)
+    yield from clash_findings(context.clashes["unit"])
+    yield from mixed_units(context)
 
 
 def _is_number(data: Data) -> bool:
@@ -286,20 +287,20 @@ def _as_float(data: Data) -> float:
         return math.inf
 
 
-def at(flow: Flow, message: str, help: str | None, more: tuple[Related, ...] = ()) -> Finding:
+def at(flow: TypeFlow, message: str, help: str | None, more: tuple[Related, ...] = ()) -> Finding:
     """A finding at a literal, with where it is read."""
-    origin, place = flow.origin, flow.place
-    reader = place.node.name if place.node is not None else "the base"
+    origin, cell = flow.origin, flow.cell
+    reader = cell.node.name if cell.node is not None else "the base"
     related: tuple[Related, ...] = ()
-    if place.span != origin.span and place is not origin.place:
-        related = other_place(place.span, f"`{reader}` reads it here as `{place.key}`")
-    node = origin.place.node
+    if cell.span != origin.span and cell is not origin.cell:
+        related = other_place(cell.span, f"`{reader}` reads it here as `{cell.key}`")
+    node = origin.cell.node
     return Finding(
         span=origin.span,
         message=message,
         help=help,
         related=(*related, *more, *(calls(node, origin.span) if node is not None else ())),
-        node=origin.place.path,
+        node=origin.cell.path,
     )
 
 
@@ -339,7 +340,7 @@ TAME = frozenset(
 
 
 @rule("SM505", "unknown-frame", Severity.WARNING)
-def unknown_frame(machine: Machine) -> Iterator[Finding]:
+def unknown_frame(context: Context) -> Iterator[Finding]:
     """A frame, or a joint, is named that the robot does not have.
 
     The transform is waited for in vain, or the hand goes to a place measured from another one.
@@ -380,16 +381,16 @@ def unknown_frame(machine: Machine) -> Iterator[Finding]:
         == arm.urdf ==
         <robot name="arm"><link name="base"/><link name="hand"/></robot>
     """
-    robot = robot_of(machine)
+    robot = robot_of(context.machine)
     if robot is None:
         return
-    yield from _unknown_joints(machine, robot)
-    simulated = machine.base == SIMULATED
-    known = _simulated(machine, robot) if simulated else _known(robot)
+    yield from _unknown_joints(context, robot)
+    simulated = context.machine.base == SIMULATED
+    known = _simulated(context, robot) if simulated else _known(robot)
     if not known:
         return
     guess = guesser(sorted(known))
-    for flow in types_of(machine).constants:
+    for flow in context.types.constants:
         for name in _frames_in(flow):
             if name.removeprefix("/") in known or not name:
                 continue
@@ -410,10 +411,10 @@ def _known(robot: Robot) -> frozenset[str]:
     return robot.frames | robot.added | USUAL if robot.frames else robot.frames
 
 
-def _simulated(machine: Machine, robot: Robot) -> frozenset[str]:
+def _simulated(context: Context, robot: Robot) -> frozenset[str]:
     """The frames of the simulated world; none where code of the user may add to them."""
     found = {"base", "world", robot.name, *robot.added}
-    for _, node in states(machine):
+    for _, node in context.states:
         if not isinstance(node, Leaf):
             continue
         if node.type not in TAME:
@@ -426,9 +427,9 @@ def _simulated(machine: Machine, robot: Robot) -> frozenset[str]:
     return frozenset(found)
 
 
-def _frames_in(flow: Flow) -> Iterator[str]:
+def _frames_in(flow: TypeFlow) -> Iterator[str]:
     """The frames that a literal names."""
-    place, wanted = flow.place, present(flow.place.declared)
+    cell, wanted = flow.cell, present(flow.cell.declared)
     if wanted.name == "str" and isinstance(flow.value, str) and _holds_frame(flow):
         yield flow.value
     elif wanted.name in STAMPED and isinstance(flow.value, Struct):
@@ -436,29 +437,29 @@ def _frames_in(flow: Flow) -> Iterator[str]:
         header = held.get("header")
         inner = dict(header.entries) if isinstance(header, Struct) else held
         name = inner.get("frame_id")
-        if isinstance(name, str) and place.role == "input":
+        if isinstance(name, str) and cell.role == "input":
             yield name
 
 
-def _holds_frame(flow: Flow) -> bool:
-    place = flow.place
-    if place.role not in ("input", "variable"):
+def _holds_frame(flow: TypeFlow) -> bool:
+    cell = flow.cell
+    if cell.role not in ("input", "variable"):
         return False
-    last = place.key.removesuffix("_id").rpartition("_")[2]
-    type_ = place.node.type if place.node is not None else ""
-    return last == "frame" or place.key in FRAME_KEYS.get(type_, ())
+    last = cell.key.removesuffix("_id").rpartition("_")[2]
+    type_ = cell.node.type if cell.node is not None else ""
+    return last == "frame" or cell.key in FRAME_KEYS.get(type_, ())
 
 
-def _unknown_joints(machine: Machine, robot: Robot) -> Iterator[Finding]:
+def _unknown_joints(context: Context, robot: Robot) -> Iterator[Finding]:
     """Angles by joint, where one of the joints is not there."""
     joints = [joint.name for joint in robot.joints]
-    for flow in types_of(machine).constants if joints else ():
+    for flow in context.types.constants if joints else ():
         if moves_arm(flow) and isinstance(flow.value, Struct):
             yield from _strangers(flow, flow.value.entries, joints, robot)
 
 
 def _strangers(
-    flow: Flow, entries: Iterable[tuple[str, Data]], joints: list[str], robot: Robot
+    flow: TypeFlow, entries: Iterable[tuple[str, Data]], joints: list[str], robot: Robot
 ) -> Iterator[Finding]:
     names = [name for name, _ in entries]
     strange = [name for name in names if name not in joints]

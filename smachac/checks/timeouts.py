@@ -5,15 +5,15 @@ from __future__ import annotations
 from collections.abc import Iterator
 from collections.abc import Set as AbstractSet
 
-from smachac.analysis.context import containers, states
-from smachac.analysis.control_flow import endless_states
-from smachac.analysis.possible_outcomes import Endings, endings
+from smachac.analysis.context import Context
+from smachac.analysis.possible_outcomes import Endings
 from smachac.checks.messages import calls
-from smachac.diagnostics.diagnostic import Finding, Severity, rule
+from smachac.checks.rule import rule
+from smachac.diagnostics.diagnostic import Finding, Severity
 from smachac.diagnostics.wording import listed
 from smachac.ir import nodes
 from smachac.ir.graph import stopped_endings
-from smachac.ir.nodes import Concurrence, Leaf, Machine
+from smachac.ir.nodes import Concurrence, Leaf
 from smachac.ir.outcome_names import PREEMPTED
 from smachac.ir.traversal import outcome_names
 
@@ -21,7 +21,7 @@ TIMEOUTS = frozenset(["timeout", "timed_out"])
 
 
 @rule("SM207", "no-timeout", Severity.INFO)
-def no_timeout(machine: Machine) -> Iterator[Finding]:
+def no_timeout(context: Context) -> Iterator[Finding]:
     """A state waits for the outside world, and nothing limits the wait.
 
     A person who does not come, or a message that is lost, stops the robot for good. In a
@@ -70,13 +70,13 @@ def no_timeout(machine: Machine) -> Iterator[Finding]:
         blocking: true
         code: {python: my_robot.states:WaitForButton}
     """
-    around: dict[int, Concurrence] = {}
-    for path, node in states(machine):
-        outer = around.get(id(node))
+    around: dict[str, Concurrence] = {}
+    for path, node in context.states:
+        outer = around.get(path)
         if not isinstance(node, Leaf):
             outer = node if isinstance(node, Concurrence) else outer
             if outer is not None:
-                around.update(dict.fromkeys(map(id, node.children), outer))
+                around.update((f"{path}/{child.name}", outer) for child in node.children)
         elif node.blocking and not _is_limited(node):
             yield Finding(
                 span=node.span,
@@ -109,7 +109,7 @@ def _is_limited(leaf: Leaf) -> bool:
 
 
 @rule("SM407", "never-ends", Severity.WARNING)
-def never_ends(machine: Machine) -> Iterator[Finding]:
+def never_ends(context: Context) -> Iterator[Finding]:
     """A branch of a concurrence has no end, and nobody, or nothing, can stop it.
 
     The other branches end, and the robot stands still for ever while the concurrence waits for
@@ -161,27 +161,26 @@ def never_ends(machine: Machine) -> Iterator[Finding]:
                       - LOOK: {template: ScriptedState, outcomes: [seen], transitions: {seen: WAIT}}
               transitions: {done: done}
     """
-    concurrences = [
-        (path, one) for path, one in containers(machine) if isinstance(one, Concurrence)
-    ]
+    concurrences = [(path, one) for path, one in context.containers if isinstance(one, Concurrence)]
     if not concurrences:
         return
-    found = endings(machine)
-    endless = endless_states(machine)
+    found = context.endings
+    endless = context.endless
     for path, container in concurrences:
         yield from _lasting(path, container, found, endless)
 
 
 def _lasting(
-    path: str, container: Concurrence, found: Endings, endless: AbstractSet[int]
+    path: str, container: Concurrence, found: Endings, endless: AbstractSet[str]
 ) -> Iterator[Finding]:
     ever, calm = found
-    ending = [child.name for child in container.children if calm[id(child)]]
+    ending = [child.name for child in container.children if calm[f"{path}/{child.name}"]]
     for child in container.children if ending else ():
-        if container.join == "all" and ever[id(child)] and not calm[id(child)]:
+        here = f"{path}/{child.name}"
+        if container.join == "all" and ever[here] and not calm[here]:
             why = f"ends only when it is asked to stop, and nothing in `{container.name}` asks"
             help = "write `join: any`, so that the first to end stops the others, or let it end"
-        elif container.join == "any" and not ever[id(child)] and id(child) in endless:
+        elif container.join == "any" and not ever[here] and here in endless:
             why = f"goes on for ever, also after {listed(ending)} would end `{container.name}`"
             help = "let a state in it answer with `preempted`, and lead that out"
         else:
@@ -191,12 +190,12 @@ def _lasting(
             message=f"`{child.name}` {why}",
             help=help,
             related=calls(child, child.span),
-            node=f"{path}/{child.name}",
+            node=here,
         )
 
 
 @rule("SM208", "no-way-to-stop", Severity.INFO)
-def no_way_to_stop(machine: Machine) -> Iterator[Finding]:
+def no_way_to_stop(context: Context) -> Iterator[Finding]:
     """An iterator that is asked to stop ends with an outcome that it does not have.
 
     A request to stop, such as Ctrl-C, ends it after the item at hand with the outcome of its
@@ -236,7 +235,7 @@ def no_way_to_stop(machine: Machine) -> Iterator[Finding]:
                 - LOOK: {template: ScriptedState, outcomes: [done]}
               transitions: {all: seen, preempted: stopped}
     """
-    for path, container in containers(machine):
+    for path, container in context.containers:
         lost = undeclared_stops(container) if isinstance(container, nodes.Iterator) else []
         if not lost:
             continue

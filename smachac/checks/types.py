@@ -6,36 +6,19 @@ from collections import Counter
 from collections.abc import Iterator
 from itertools import pairwise
 
-from smachac.analysis.context import once, types_of
-from smachac.analysis.reaching_values import Arrivals
-from smachac.analysis.type_inference import Clash, Flow, Place
-from smachac.analysis.type_lattice import FLOAT, Kind, fits, inside, is_open, items, widened
+from smachac.analysis.context import Context
+from smachac.analysis.type_inference import Cell, Clash, TypeFlow
+from smachac.analysis.type_lattice import FLOAT, fits, inside, is_open, items, widened
 from smachac.checks.messages import calls, did_you_mean, other_place
-from smachac.diagnostics.diagnostic import Finding, Related, Severity, rule
+from smachac.checks.rule import rule
+from smachac.diagnostics.diagnostic import Finding, Related, Severity
 from smachac.diagnostics.source import NOWHERE, Span
 from smachac.diagnostics.spelling import guesser
-from smachac.ir.nodes import Machine
 from smachac.ir.types import Type
 
 
-@once
-def _arriving(machine: Machine) -> dict[Kind, list[Clash]]:
-    arrivals = Arrivals()
-    found: dict[Kind, list[Clash]] = {"type": [], "length": [], "unit": []}
-    for clash in types_of(machine).clashes:
-        arrived = arrivals.arrived(clash)
-        if arrived is not None:
-            found[clash.misfit.kind].append(arrived)
-    return found
-
-
-def clashes_of(machine: Machine, kind: Kind) -> list[Clash]:
-    """The clashes of one kind whose value can be there when it is read."""
-    return _arriving(machine)[kind]
-
-
 @rule("SM304", "type-mismatch", Severity.ERROR)
-def type_mismatch(machine: Machine) -> Iterator[Finding]:
+def type_mismatch(context: Context) -> Iterator[Finding]:
     """A value is written as one type and read as another.
 
     Types are those of the interfaces and of the script, of literals and of what functions return,
@@ -77,7 +60,7 @@ def type_mismatch(machine: Machine) -> Iterator[Finding]:
               outcomes: [done]
               transitions: {done: done}
     """
-    yield from clash_findings(clashes_of(machine, "type"))
+    yield from clash_findings(context.clashes["type"])
 
 
 MOST_PLACES = 6
@@ -86,12 +69,12 @@ MOST_PLACES = 6
 
 def clash_findings(clashes: list[Clash]) -> Iterator[Finding]:
     """One finding for each value that fits none of its readers, else for each reader."""
-    origins = Counter(id(_root(clash)) for clash in clashes)
-    readers = Counter(id(clash.place) for clash in clashes)
-    groups: dict[tuple[str, int], list[Clash]] = {}
+    origins = Counter(map(_root, clashes))
+    readers = Counter(clash.cell for clash in clashes)
+    groups: dict[tuple[str, TypeFlow | Cell], list[Clash]] = {}
     for clash in clashes:
-        origin, reader = id(_root(clash)), id(clash.place)
-        literal = _root(clash).how == "value"
+        origin, reader = _root(clash), clash.cell
+        literal = origin.how == "value"
         if origins[origin] > readers[reader] or (literal and origins[origin] == readers[reader]):
             groups.setdefault(("origin", origin), []).append(clash)
         else:
@@ -100,15 +83,15 @@ def clash_findings(clashes: list[Clash]) -> Iterator[Finding]:
         yield _finding(group, at_origin=side == "origin")
 
 
-def _root(clash: Clash) -> Flow:
+def _root(clash: Clash) -> TypeFlow:
     return clash.flow.origin
 
 
 def _finding(group: list[Clash], *, at_origin: bool) -> Finding:
     clash = group[0]
-    origin, place = clash.flow.origin, clash.place
-    about = origin.place if at_origin else place
-    span = origin.span if at_origin else place.span
+    origin, cell = clash.flow.origin, clash.cell
+    about = origin.cell if at_origin else cell
+    span = origin.span if at_origin else cell.span
     shown = {span}
     related: list[Related] = []
 
@@ -123,8 +106,8 @@ def _finding(group: list[Clash], *, at_origin: bool) -> Finding:
         for where, message in _remaps(each):
             show(where, message)
         if at_origin:
-            show(each.place.span, _read(each.place))
-    first, second = written(origin), _read(place)
+            show(each.cell.span, _read(each.cell))
+    first, second = written(origin), _read(cell)
     message = f"{first}, but {second}" if at_origin else f"{second}, but {first}"
     return Finding(
         span=span,
@@ -135,36 +118,36 @@ def _finding(group: list[Clash], *, at_origin: bool) -> Finding:
     )
 
 
-def _owner(place: Place) -> str:
-    return f"`{place.node.name}`" if place.node is not None else "the base"
+def _owner(cell: Cell) -> str:
+    return f"`{cell.node.name}`" if cell.node is not None else "the base"
 
 
-def _read(place: Place) -> str:
-    """What a place asks for, in words."""
-    wanted = f"`{place.declared}`"
-    match place.role:
+def _read(cell: Cell) -> str:
+    """The type that a cell requires, in words."""
+    wanted = f"`{cell.declared}`"
+    match cell.role:
         case "input":
-            return f"{_owner(place)} reads `{place.key}` as {wanted}"
+            return f"{_owner(cell)} reads `{cell.key}` as {wanted}"
         case "output":
-            return f"{_owner(place)} writes `{place.key}` as {wanted}"
+            return f"{_owner(cell)} writes `{cell.key}` as {wanted}"
         case "variable":
-            return f"the variable `{place.key}` of {_owner(place)} is {wanted}"
-    return f"{_owner(place)} holds `{place.key}` as {wanted}"
+            return f"the variable `{cell.key}` of {_owner(cell)} is {wanted}"
+    return f"{_owner(cell)} holds `{cell.key}` as {wanted}"
 
 
-def written(flow: Flow) -> str:
+def written(flow: TypeFlow) -> str:
     """What comes, and from whom, in words."""
-    place = flow.place
+    cell = flow.cell
     if flow.how == "declared":
-        match place.role:
+        match cell.role:
             case "output":
-                return f"{_owner(place)} writes `{place.key}` as `{flow.type}`"
+                return f"{_owner(cell)} writes `{cell.key}` as `{flow.type}`"
             case "scope":
-                return f"{_owner(place)} holds `{place.key}` as `{flow.type}`"
+                return f"{_owner(cell)} holds `{cell.key}` as `{flow.type}`"
     what = in_words(flow.type)
     if flow.how == "computed":
-        return f"`{place.key}` of {_owner(place)} becomes {what}"
-    return f"`{place.key}` is {what}"
+        return f"`{cell.key}` of {_owner(cell)} becomes {what}"
+    return f"`{cell.key}` is {what}"
 
 
 def in_words(type_: Type) -> str:
@@ -218,18 +201,18 @@ def _help(clash: Clash) -> str:
 
 def _remaps(clash: Clash) -> Iterator[tuple[Span, str]]:
     """The remaps that the value went through."""
-    chain: list[Place] = [clash.place]
-    flow: Flow | None = clash.flow.before
+    chain: list[Cell] = [clash.cell]
+    flow: TypeFlow | None = clash.flow.before
     while flow is not None:
-        chain.append(flow.place)
+        chain.append(flow.cell)
         flow = flow.before
     for inner, outer in pairwise(chain):
-        for place, other in ((inner, outer), (outer, inner)):
-            node = place.node
-            if node is None or len(place.path) <= len(other.path):
+        for cell, other in ((inner, outer), (outer, inner)):
+            node = cell.node
+            if node is None or len(cell.path) <= len(other.path):
                 continue
             for remap in node.remaps:
-                if remap.key == place.key and remap.span.source is not NOWHERE.source:
+                if remap.key == cell.key and remap.span.source is not NOWHERE.source:
                     around = other.node.name if other.node is not None else "the base"
                     text = f"`{remap.key}` of `{node.name}` is `{remap.to}` of `{around}`"
                     yield remap.span, text

@@ -5,33 +5,32 @@ from __future__ import annotations
 from collections.abc import Iterator
 from functools import cache
 
-from smachac.analysis.context import states
+from smachac.analysis.context import Context
 from smachac.analysis.def_use import Use, place_of, uses_by_key
-from smachac.analysis.definite_assignment import Flow, Scope
-from smachac.analysis.error_recovery import flow_of, unknown_remaps
-from smachac.analysis.lost_outputs import lost_outputs
+from smachac.analysis.definite_assignment import DataFlow, UserdataScope
+from smachac.analysis.error_recovery import unknown_remaps
 from smachac.analysis.unset_reads import (
     Missing,
     Searches,
     Witness,
     container_name,
-    missing_keys,
     reader_at,
 )
 from smachac.checks.edits import with_input, with_output
 from smachac.checks.messages import calls, did_you_mean, other_place
-from smachac.diagnostics.diagnostic import Edit, Finding, Related, Severity, rule
+from smachac.checks.rule import rule
+from smachac.diagnostics.diagnostic import Edit, Finding, Related, Severity
 from smachac.diagnostics.source import Word
 from smachac.diagnostics.spelling import Guesser, guesser, respelt
 from smachac.diagnostics.wording import listed
-from smachac.ir.nodes import Machine, Node
+from smachac.ir.nodes import Node
 
 MOST_RELATED = 3
 """More places beside the fault than these help nobody."""
 
 
 @rule("SM301", "read-before-write", Severity.ERROR)
-def read_before_write(machine: Machine) -> Iterator[Finding]:
+def read_before_write(context: Context) -> Iterator[Finding]:
     """A state reads a userdata key that nothing has set on the way to it.
 
     The machine stops there with an error, with the robot wherever it happens to be. If every path
@@ -74,11 +73,11 @@ def read_before_write(machine: Machine) -> Iterator[Finding]:
               input_keys: [pose]
               transitions: {done: held}
     """
-    flow = flow_of(machine)
+    flow = context.mended_flow
     searches = Searches(flow)
     guesses = _Guesses()
     used = cache(lambda path: uses_by_key(flow, path))
-    for missing in missing_keys(flow, "unset", "nowhere"):
+    for missing in context.missing_keys("unset", "nowhere"):
         for witness in searches.witnesses(missing):
             users = used(missing.scope.path).get(missing.key, [])
             yield _unset(missing, witness, users, guesses)
@@ -90,7 +89,7 @@ class _Guesses:
     def __init__(self) -> None:
         self._known: dict[str, Guesser] = {}
 
-    def of(self, scope: Scope) -> Guesser:
+    def of(self, scope: UserdataScope) -> Guesser:
         if scope.path not in self._known:
             self._known[scope.path] = guesser(sorted(_keys_of(scope)))
         return self._known[scope.path]
@@ -121,7 +120,7 @@ def _unset(missing: Missing, witness: Witness, users: list[Use], guesses: _Guess
     )
 
 
-def _keys_of(scope: Scope) -> set[str]:
+def _keys_of(scope: UserdataScope) -> set[str]:
     """The keys that a container has, for those that misspell them."""
     keys = {*scope.held, *scope.inputs}
     for steps in scope.steps.values():
@@ -134,8 +133,8 @@ def _readers(missing: Missing, witness: Witness) -> Iterator[Related]:
     """What reads the key inside the place of a finding, and other places that miss it as well."""
     if witness.inner is not None:
         yield from other_place(witness.inner.span, f"{witness.inner.words} there")
-    for place in witness.also[:MOST_RELATED]:
-        reader = reader_at(missing.scope, place, missing.key)
+    for vertex in witness.also[:MOST_RELATED]:
+        reader = reader_at(missing.scope, vertex, missing.key)
         yield from other_place(reader.span, f"{reader.words} as well")
 
 
@@ -153,7 +152,7 @@ def _writers(users: list[Use]) -> Iterator[Related]:
 
 
 @rule("SM302", "unknown-remap", Severity.ERROR)
-def unknown_remap(machine: Machine) -> Iterator[Finding]:
+def unknown_remap(context: Context) -> Iterator[Finding]:
     """A remapping names a key that the state does not have, or leads to one that nothing has.
 
     SMACH passes over the entry in silence: the state goes on with the key of its own name, another
@@ -185,12 +184,11 @@ def unknown_remap(machine: Machine) -> Iterator[Finding]:
               remapping: {pose: block_pose}
               transitions: {succeeded: held}
     """
-    for path, node in states(machine):
-        if path != machine.root.name:
+    for path, node in context.states:
+        if path != context.machine.root.name:
             yield from _unknown_remaps(path, node)
-    flow = flow_of(machine)
     guesses = _Guesses()
-    for missing in missing_keys(flow, "remapped"):
+    for missing in context.missing_keys("remapped"):
         yield from _remapped(missing, guesses)
 
 
@@ -214,7 +212,7 @@ def _remapped(missing: Missing, guesses: _Guesses) -> Iterator[Finding]:
     around = scope.container.name
     for child in scope.container.children:
         for remap in child.remaps:
-            if remap.to != key or child.name not in missing.places:
+            if remap.to != key or child.name not in missing.vertices:
                 continue
             guess = guesses.of(scope)(key)
             yield Finding(
@@ -229,7 +227,7 @@ def _remapped(missing: Missing, guesses: _Guesses) -> Iterator[Finding]:
 
 
 @rule("SM303", "undeclared-container-key", Severity.ERROR)
-def undeclared_container_key(machine: Machine) -> Iterator[Finding]:
+def undeclared_container_key(context: Context) -> Iterator[Finding]:
     """A state needs a key that its container does not take in, though one around it has the key.
 
     A container has userdata of its own; what its `input_keys` do not name stays outside. The
@@ -270,13 +268,13 @@ def undeclared_container_key(machine: Machine) -> Iterator[Finding]:
                     transitions: {succeeded: done}
               transitions: {done: held}
     """
-    flow = flow_of(machine)
-    for missing in missing_keys(flow, "outside"):
+    flow = context.mended_flow
+    for missing in context.missing_keys("outside"):
         scope, key = missing.scope, missing.key
-        reader = reader_at(scope, missing.places[0], key)
+        reader = reader_at(scope, missing.vertices[0], key)
         holder = flow.scopes[missing.other].container
         between = _between(scope.path, missing.other)
-        others = tuple(reader_at(scope, place, key) for place in missing.places[1:])
+        others = tuple(reader_at(scope, vertex, key) for vertex in missing.vertices[1:])
         yield Finding(
             span=reader.span,
             message=f"{reader.words}, which `{holder.name}` has but {listed(between)}"
@@ -296,7 +294,7 @@ def undeclared_container_key(machine: Machine) -> Iterator[Finding]:
         )
 
 
-def _taken_in(flow: Flow, path: str, holder: str, key: str) -> tuple[Edit, ...]:
+def _taken_in(flow: DataFlow, path: str, holder: str, key: str) -> tuple[Edit, ...]:
     """What makes every container between the key and its reader take it in."""
     edits: list[Edit] = []
     while path != holder:
@@ -314,7 +312,7 @@ def _between(path: str, holder: str) -> list[str]:
 
 
 @rule("SM307", "lost-output", Severity.WARNING)
-def lost_output(machine: Machine) -> Iterator[Finding]:
+def lost_output(context: Context) -> Iterator[Finding]:
     """A key is written inside a container and read outside, but the container does not hand it out.
 
     What its `output_keys` do not name stays inside. Who reads the key outside finds nothing, which
@@ -363,8 +361,7 @@ def lost_output(machine: Machine) -> Iterator[Finding]:
               input_keys: [pose]
               transitions: {succeeded: held}
     """
-    flow = flow_of(machine)
-    for lost in lost_outputs(flow):
+    for lost in context.lost_outputs:
         keeper, written = lost.keeper.container, place_of(lost.writer, lost.written)
         inner = f"`{lost.own}`" + (f" (`{lost.key}` outside)" * (lost.own != lost.key))
         finds = "so it finds nothing" if lost.is_missing else "so it finds an older value"

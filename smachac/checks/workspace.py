@@ -6,10 +6,10 @@ from collections.abc import Iterable, Iterator
 from dataclasses import dataclass
 from typing import TypeAlias
 
-from smachac.analysis.context import containers, types_of
-from smachac.analysis.type_inference import Flow, Types
+from smachac.analysis.context import Context
+from smachac.analysis.type_inference import Cell, TypeFlow, Types
 from smachac.checks.robot import at, robot_of
-from smachac.diagnostics.diagnostic import Finding, Report, Severity, problem
+from smachac.diagnostics.diagnostic import Finding, Problem, Report, Severity, problem
 from smachac.ir.leaf import variable
 from smachac.ir.nodes import Data, Leaf, Machine
 from smachac.ir.traversal import remapping
@@ -30,14 +30,14 @@ class Reach:
     `grasp`: it is that of a body to be held from above.
     """
 
-    flow: Flow
+    flow: TypeFlow
     pose: Numbers
     offset: Numbers | None
     grasp: bool
 
 
 @problem("SM506", "out-of-reach", Severity.WARNING)
-def out_of_reach(flow: Flow, place: str) -> Finding:
+def out_of_reach(flow: TypeFlow, point: str) -> Finding:
     """The simulated arm cannot bring its tool to a pose.
 
     The state ends with `aborted`, with the arm where it was. `smachac check --sim` asks the solver
@@ -67,30 +67,30 @@ def out_of_reach(flow: Flow, place: str) -> Finding:
               remapping: {pose: goal}
               transitions: {succeeded: done, aborted: failed, preempted: failed}
     """
-    reader = flow.place.node.name if flow.place.node is not None else "the base"
-    message = f"`{reader}` cannot reach {place}: no joints bring the tool there"
+    reader = flow.cell.node.name if flow.cell.node is not None else "the base"
+    message = f"`{reader}` cannot reach {point}: no joints bring the tool there"
     return at(flow, message, "metres from the robot's base: nearer, or with another rotation?")
 
 
-def poses_to_reach(machine: Machine) -> Iterator[Reach]:
+def poses_to_reach(context: Context) -> Iterator[Reach]:
     """Every pose that a state surely asks of the simulated arm when its turn comes."""
-    robot = robot_of(machine)
-    if robot is None or (machine.base, robot.name) != SIMULATED:
+    robot = robot_of(context.machine)
+    if robot is None or (context.machine.base, robot.name) != SIMULATED:
         return
-    types = types_of(machine)
-    literals: dict[int, list[Flow]] = {}
+    types = context.types
+    literals: dict[Cell, list[TypeFlow]] = {}
     for flow in types.constants:
-        literals.setdefault(id(flow.place), []).append(flow)
-    for path, container in containers(machine):
+        literals.setdefault(flow.cell, []).append(flow)
+    for path, container in context.containers:
         for leaf in container.children:
             if not isinstance(leaf, Leaf) or leaf.type not in REACHING:
                 continue
-            place = types.places.get((f"{path}/{leaf.name}", "pose"))
+            cell = types.cells.get((f"{path}/{leaf.name}", "pose"))
             offsets = _offsets(types, path, leaf)
             limb = variable(leaf, "limb")
-            if place is None or len(offsets) != 1 or limb not in (None, "arm"):
+            if cell is None or len(offsets) != 1 or limb not in (None, "arm"):
                 continue
-            for flow in literals.get(id(place), ()):
+            for flow in literals.get(cell, ()):
                 pose = _numbers(flow.value)
                 if pose is not None:
                     grasp = variable(leaf, "grasp") is True
@@ -99,8 +99,8 @@ def poses_to_reach(machine: Machine) -> Iterator[Reach]:
 
 def _offsets(types: Types, path: str, leaf: Leaf) -> list[Numbers | None]:
     """The offsets a state may find; none where that cannot be told. The key may be absent."""
-    place = types.places.get((path, remapping(leaf).get("offset", "offset")))
-    flows = [flow for alike in place.flows.values() for flow in alike] if place is not None else []
+    cell = types.cells.get((path, remapping(leaf).get("offset", "offset")))
+    flows = [flow for alike in cell.flows.values() for flow in alike] if cell is not None else []
     found: list[Numbers | None] = []
     for flow in flows:
         offset = _numbers(flow.value)
@@ -130,7 +130,7 @@ def unreachable(machine: Machine) -> Report:
 
     Raises NoSimulationError. The simulation starts only if there is a pose to ask.
     """
-    wanted = list(poses_to_reach(machine))
+    wanted = list(poses_to_reach(Context(machine)))
     if not wanted:
         return []
     from smachac.sim import SimUnavailable
@@ -167,8 +167,12 @@ def _asked(wanted: Iterable[Reach]) -> Report:
             if pose not in known:
                 known[pose] = kinematics.solve(limb, pose) is not None
             if not known[pose]:
-                place = ", ".join(f"{number:.3f}" for number in pose[0])
-                found.append(out_of_reach(each.flow, f"({place})"))
+                point = ", ".join(f"{number:.3f}" for number in pose[0])
+                found.append(out_of_reach(each.flow, f"({point})"))
     finally:
         kinematics.close()
     return found
+
+
+PROBLEMS: tuple[Problem[...], ...] = (out_of_reach,)
+"""The problems of this module, in the order of their codes."""

@@ -11,14 +11,14 @@ from collections.abc import Iterable
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from smachac import checks
 from smachac.batch import Survey, survey
 from smachac.checks.workspace import NoSimulationError, unreachable
 from smachac.commands.files import ChangedError, rewrite_files, write_files
 from smachac.commands.output import FINDINGS, OK, print_report, shown, usage
 from smachac.diagnostics import baseline
-from smachac.diagnostics.diagnostic import CODES, Report, Severity
+from smachac.diagnostics.diagnostic import Report, Severity
 from smachac.diagnostics.severities import select_findings
+from smachac.driver import CODES
 from smachac.frontend.discovery import (
     GitError,
     NothingFoundError,
@@ -30,9 +30,6 @@ from smachac.frontend.files import Disk, read_source, stamps
 
 if TYPE_CHECKING:
     from smachac.refactor.autofix import FixResult
-
-assert checks is not None  # imported for the codes it files
-
 
 WRONG_USAGE = (NothingFoundError, GitError, baseline.BaselineError, NoSimulationError)
 

@@ -5,13 +5,10 @@ from __future__ import annotations
 import argparse
 import sys
 from pathlib import Path
-from typing import TYPE_CHECKING
 
+from smachac.analysis.context import Context
 from smachac.commands.output import FINDINGS, OK, print_report, shown, usage
-from smachac.driver import analyse_file
-
-if TYPE_CHECKING:
-    pass
+from smachac.driver import CODES, analyse_file
 
 
 def explain(arguments: argparse.Namespace) -> int:
@@ -29,16 +26,15 @@ def explain(arguments: argparse.Namespace) -> int:
     if analysis.checked is None:
         print("the script has errors: this is what can be read of it", file=sys.stderr)
     if arguments.failures:
-        from smachac.analysis.failure_paths import failures
         from smachac.report.explain_failures import render_failures
 
-        machine = analysis.machine
-        sys.stdout.write(render_failures(machine.root.name, list(failures(machine)), form))
+        name = analysis.machine.root.name
+        sys.stdout.write(render_failures(name, Context(analysis.machine).failures, form))
         return OK
     from smachac.report.explain_name import UnclearError, explain_name
 
     try:
-        sys.stdout.write(explain_name(analysis.machine, analysis.report, words[1], form))
+        sys.stdout.write(explain_name(Context(analysis.machine), analysis.report, words[1], form))
     except UnclearError as error:
         return usage(str(error))
     return OK
@@ -46,11 +42,10 @@ def explain(arguments: argparse.Namespace) -> int:
 
 def explain_code(word: str = "") -> int:
     """What a code means; without a word, all of them."""
-    from smachac.diagnostics.diagnostic import CODES
     from smachac.report.explain_code import render_code, render_rules
 
     if not word:
-        sys.stdout.write(render_rules())
+        sys.stdout.write(render_rules(CODES))
         return OK
     code = CODES.get(word.upper())
     if code is None and Path(word).suffix:

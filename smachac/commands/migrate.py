@@ -12,7 +12,7 @@ from pathlib import Path
 from smachac.commands.output import FINDINGS, OK, usage
 from smachac.diagnostics.diagnostic import Diagnostic, Report, Severity, in_order
 from smachac.diagnostics.source import Source, Span
-from smachac.driver import analyse, analyse_alone, build
+from smachac.driver import CODES, analyse, analyse_alone, build
 from smachac.frontend.discovery import NothingFoundError, scripts_of
 from smachac.frontend.files import Disk, disk_library
 from smachac.frontend.schema import LONG
@@ -131,6 +131,7 @@ def _report(
         scripts=[*arguments.scripts, *_near(path, scripts)],
         templates=[*arguments.templates, *_near(path, templates)],
         disk=disk,
+        codes=CODES,
     )
     if alone:
         return analyse_alone(source, library, report).report

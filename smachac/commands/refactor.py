@@ -15,7 +15,7 @@ from smachac.commands.output import FINDINGS, print_report, usage
 from smachac.diagnostics.diagnostic import Code, Diagnostic, Finding, Report, Severity, has_errors
 from smachac.diagnostics.source import Source, Span
 from smachac.diagnostics.spelling import is_plain
-from smachac.driver import Analysis, analyse
+from smachac.driver import CODES, Analysis, analyse
 from smachac.frontend.discovery import scripts_of
 from smachac.frontend.files import Disk, disk_library
 from smachac.frontend.loader import Library
@@ -57,8 +57,14 @@ class Desk:
         source = disk.read(path, report)
         if source is None:
             return Analysis(report=report)
-        library = disk_library(path, report, scripts=self.arguments.scripts,
-                               templates=self.arguments.templates, disk=disk)  # fmt: skip
+        library = disk_library(
+            path,
+            report,
+            scripts=self.arguments.scripts,
+            templates=self.arguments.templates,
+            disk=disk,
+            codes=CODES,
+        )
         return analyse(source, library, report)
 
     def library(self) -> Library:

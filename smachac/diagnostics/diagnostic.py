@@ -1,8 +1,8 @@
-"""What the compiler says: codes, findings, and the two decorators that file them.
+"""Codes, findings and diagnostics, and problems: the faults that no rule over the IR finds.
 
-A *problem* is declared by the phases before the IR, a *rule* judges the IR. Both are functions
-whose docstring is the documentation (`smachac explain`, docs/rules.md) and, through its examples,
-a test.
+A *problem* is a function that words one fault; its docstring is the explanation of its code
+(`smachac explain`, docs/rules.md), and the examples in it are a test. So it is for the rules over
+the IR (smachac/checks).
 """
 
 from __future__ import annotations
@@ -10,14 +10,14 @@ from __future__ import annotations
 import difflib
 import hashlib
 import re
-from collections.abc import Callable, Iterable, Iterator
+from collections.abc import Callable, Iterable
 from dataclasses import dataclass, field
 from enum import Enum
 from functools import lru_cache
 from pathlib import PurePath
-from typing import Any, ParamSpec
+from typing import Generic, ParamSpec
 
-from smachac.diagnostics.source import Span
+from smachac.diagnostics.source import Source, Span
 
 P = ParamSpec("P")
 
@@ -60,11 +60,33 @@ class Edit:
     text: str
 
 
+@dataclass(frozen=True, slots=True)
+class PathStep:
+    """One step of a witness path: a state that is entered, or an outcome that it ends with.
+
+    `label` is what is printed, `node` the path of the state; an outcome has none.
+    """
+
+    label: str
+    node: str | None = None
+    is_outcome: bool = False
+
+
+def entered(name: str, path: str | None) -> PathStep:
+    """The state of a name is entered; `path` is its path."""
+    return PathStep(name, path)
+
+
+def ended(outcome: str) -> PathStep:
+    """The state of the step before ends with an outcome."""
+    return PathStep(f"({outcome})", is_outcome=True)
+
+
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Finding:
     """One fault at one place: what is wrong, where, the other places, what to do.
 
-    `path` is a witness: names of states in the order in which they are entered.
+    `path` is a witness: the states that are entered, in order, and the outcomes between them.
     `severity` overrides that of the code. `node` is the path of the state it is about.
     `edits` mend the fault, all of them together; none where the cure is not certain.
     """
@@ -73,18 +95,22 @@ class Finding:
     message: str
     help: str | None = None
     related: tuple[Related, ...] = ()
-    path: tuple[str, ...] = ()
+    path: tuple[PathStep, ...] = ()
     severity: Severity | None = None
     node: str | None = None
     edits: tuple[Edit, ...] = ()
+
+    @property
+    def path_labels(self) -> tuple[str, ...]:
+        """The steps of the witness path as they are printed."""
+        return tuple([step.label for step in self.path])
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Diagnostic:
     """A finding with its code: what reports print.
 
-    `steps` has one entry for each of the finding's `path`: where that step stands in a text, if
-    it is known.
+    `steps` has one entry for each step of the finding's `path`: the span of its state, if known.
     """
 
     code: Code
@@ -98,68 +124,44 @@ class Diagnostic:
 
 
 Report = list[Diagnostic]
-RuleFunction = Callable[[Any], Iterator[Finding]]
-
-CODES: dict[str, Code] = {}
-"""Every code there is, problems and rules alike."""
-
-RULES: dict[str, RuleFunction] = {}
-"""The rules over the IR by code: functions from a machine to findings."""
 
 
-def _register(
-    code: str, name: str, severity: Severity, function: Callable[..., Any], firm: bool
-) -> Code:
-    if code in CODES:
-        raise ValueError(f"{code} is taken by {CODES[code].name}")
-    text = function.__doc__ or ""
-    CODES[code] = Code(code=code, name=name, severity=severity, explanation=text, firm=firm)
-    return CODES[code]
+def diagnostic(code: Code, finding: Finding, steps: tuple[Span | None, ...] = ()) -> Diagnostic:
+    """A finding with its code, in the severity that it has."""
+    severity = finding.severity or code.severity
+    return Diagnostic(code=code, severity=severity, finding=finding, steps=steps)
 
 
-def _diagnostic(code: Code, finding: Finding) -> Diagnostic:
-    return Diagnostic(code=code, severity=finding.severity or code.severity, finding=finding)
+@dataclass(frozen=True, slots=True)
+class Problem(Generic[P]):
+    """A code, and the function that words its finding; a call of it gives the diagnostic."""
+
+    code: Code
+    function: Callable[P, Finding]
+
+    def __call__(self, *args: P.args, **kwargs: P.kwargs) -> Diagnostic:
+        return diagnostic(self.code, self.function(*args, **kwargs))
 
 
 def problem(
     code: str, name: str, severity: Severity
-) -> Callable[[Callable[P, Finding]], Callable[P, Diagnostic]]:
-    """Declare a fault that a phase before the IR finds: the function words it.
+) -> Callable[[Callable[P, Finding]], Problem[P]]:
+    """Make a problem of the function that words its finding.
 
-    As an error it is firm: nobody knows what the script would be without it.
+    As an error it is firm: without what is wrong the script has no meaning.
     """
 
-    def declare(function: Callable[P, Finding]) -> Callable[P, Diagnostic]:
-        entry = _register(code, name, severity, function, severity is Severity.ERROR)
-
-        def build(*args: P.args, **kwargs: P.kwargs) -> Diagnostic:
-            return _diagnostic(entry, function(*args, **kwargs))
-
-        build.__doc__ = function.__doc__
-        build.__name__ = function.__name__
-        return build
-
-    return declare
-
-
-def rule(
-    code: str, name: str, severity: Severity, *, firm: bool = False
-) -> Callable[[RuleFunction], RuleFunction]:
-    """Declare a rule over the IR: the function yields its findings."""
-
-    def declare(function: RuleFunction) -> RuleFunction:
-        _register(code, name, severity, function, firm)
-        RULES[code] = function
-        return function
+    def declare(function: Callable[P, Finding]) -> Problem[P]:
+        entry = Code(
+            code=code,
+            name=name,
+            severity=severity,
+            explanation=function.__doc__ or "",
+            firm=severity is Severity.ERROR,
+        )
+        return Problem(entry, function)
 
     return declare
-
-
-def run_rules(machine: object) -> Iterator[Diagnostic]:
-    """The findings of every rule over a machine, in the order of the codes."""
-    for code in sorted(RULES):
-        for finding in RULES[code](machine):
-            yield _diagnostic(CODES[code], finding)
 
 
 def identity(item: Diagnostic) -> tuple[object, ...]:
@@ -180,15 +182,15 @@ def in_order(report: Iterable[Diagnostic]) -> Report:
 
     A sub-script that is called twice yields the same finding twice; the second is dropped.
     """
-    files: dict[int, int] = {}
+    files: dict[Source, int] = {}
     unique: dict[tuple[object, ...], Diagnostic] = {}
     for item in report:
-        files.setdefault(id(item.span.source), len(files))
+        files.setdefault(item.span.source, len(files))
         unique.setdefault(identity(item), item)
     return sorted(
         unique.values(),
         key=lambda item: (
-            files[id(item.span.source)],
+            files[item.span.source],
             item.span.start,
             item.code.code,
             item.finding.message,

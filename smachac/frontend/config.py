@@ -7,7 +7,7 @@ from collections.abc import Iterable, Mapping
 from dataclasses import dataclass, field
 from pathlib import Path
 
-from smachac.diagnostics.diagnostic import CODES, Report, Severity, did_you_mean
+from smachac.diagnostics.diagnostic import Code, Report, Severity, did_you_mean
 from smachac.diagnostics.severities import Policy
 from smachac.diagnostics.source import Source, Span
 from smachac.diagnostics.wording import listed
@@ -34,10 +34,13 @@ class Project:
     policy: Policy = field(default_factory=Policy)
 
 
-def read_project(source: Source, path: Path, report: Report) -> Project | None:
+def read_project(
+    source: Source, path: Path, report: Report, codes: Mapping[str, Code] | None = None
+) -> Project | None:
     """The project that a file describes; None where it is not about smachac.
 
-    What is wrong in it is SM007, and left out.
+    What is wrong in it is SM007, and left out. `codes` are those whose severity can
+    be set; without them the codes in the file are not checked.
     """
     try:
         import tomllib as toml
@@ -58,7 +61,7 @@ def read_project(source: Source, path: Path, report: Report) -> Project | None:
         if key not in SETTINGS:
             _wrong(source, key, f"unknown setting `{key}`", _near(key, SETTINGS, "it has"), report)
         elif key == "severity":
-            policy = Policy(severities=_severities(source, value, report))
+            policy = Policy(severities=_severities(source, value, report, codes))
         elif not isinstance(value, list) or not all(isinstance(item, str) for item in value):
             kind = "patterns" if key == "exclude" else "folders"
             _wrong(source, key, f"`{key}` must be a list of {kind}", None, report)
@@ -76,20 +79,22 @@ def read_project(source: Source, path: Path, report: Report) -> Project | None:
     )
 
 
-def _severities(source: Source, value: object, report: Report) -> dict[str, Severity | None]:
+def _severities(
+    source: Source, value: object, report: Report, codes: Mapping[str, Code] | None
+) -> dict[str, Severity | None]:
     if not isinstance(value, dict):
         help = 'write `[severity]`, and below it lines such as `SM204 = "error"`'
         _wrong(source, "severity", "`severity` must be a table", help, report)
         return {}
     found: dict[str, Severity | None] = {}
     for code, word in value.items():
-        if not any(known.startswith(code) for known in CODES):
-            help = _near(code, CODES, "known are")
+        if codes is not None and not any(known.startswith(code) for known in codes):
+            help = _near(code, codes, "known are")
             _wrong(source, code, f"there is no code `{code}`", help, report)
         elif not isinstance(word, str) or word not in LEVELS:
             help = _near(str(word), LEVELS, "it is one of")
             _wrong(source, code, f"{word!r} is not a severity", help, report)
-        elif code in CODES and CODES[code].firm and word != "error":
+        elif codes and code in codes and codes[code].firm and word != "error":
             help = "remove the line: no code could be made of a machine with such a fault"
             _wrong(source, code, f"{code} is always an error", help, report)
         else:

@@ -7,7 +7,7 @@ import os
 from collections.abc import Iterable, Mapping, Sequence
 from pathlib import Path
 
-from smachac.diagnostics.diagnostic import Report, did_you_mean
+from smachac.diagnostics.diagnostic import Code, Report, did_you_mean
 from smachac.diagnostics.source import Source, Span
 from smachac.frontend.config import Project, read_project
 from smachac.frontend.errors.script import too_big, unreadable_file
@@ -106,7 +106,12 @@ def with_line_feeds(text: str) -> str:
     return text.replace("\r\n", "\n").replace("\r", "\n")
 
 
-def find_project(main: Path, report: Report, disk: Disk | None = None) -> Project:
+def find_project(
+    main: Path,
+    report: Report,
+    disk: Disk | None = None,
+    codes: Mapping[str, Code] | None = None,
+) -> Project:
     """The settings of the nearest `smachac.toml`, or `[tool.smachac]` of a `pyproject.toml`.
 
     Looked for from the script's folder upwards, as far as the root of the git repository.
@@ -117,7 +122,9 @@ def find_project(main: Path, report: Report, disk: Disk | None = None) -> Projec
             path = folder / name
             if disk.is_file(path):
                 source = disk.read(path, report)
-                project = read_project(source, path, report) if source is not None else Project()
+                if source is None:
+                    return Project()
+                project = read_project(source, path, report, codes)
                 if project is not None:
                     return project
         if (folder / ".git").exists():
@@ -142,6 +149,7 @@ def disk_library(
     scripts: Sequence[Path] = (),
     templates: Sequence[Path] = (),
     disk: Disk | None = None,
+    codes: Mapping[str, Code] | None = None,
 ) -> Library:
     """The library of a script on disk.
 
@@ -149,9 +157,10 @@ def disk_library(
     project file's; templates in `templates`, the project file's, `templates/` beside the main
     script, and the built-in ones; modules and headers of the user in the project file's `code`, in
     the folder of the main script and its `include/`. Nothing outside these folders is read.
+    `codes`: see `read_project`.
     """
     disk = disk or Disk()
-    project = find_project(main, report, disk)
+    project = find_project(main, report, disk, codes)
     own_scripts = [*scripts, *project.scripts]
     template_folders = [*templates, *project.templates, main.parent / "templates", *BUILT_IN]
 

@@ -4,10 +4,10 @@ from __future__ import annotations
 
 import re
 from bisect import bisect_right
-from collections.abc import Callable, Iterator, Sequence
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from typing import NamedTuple
 
-from smachac.diagnostics.diagnostic import CODES, Report
+from smachac.diagnostics.diagnostic import Code, Report
 from smachac.diagnostics.severities import is_firm
 from smachac.diagnostics.source import Source, Span, Word
 from smachac.frontend.errors.suppressions import (
@@ -37,8 +37,11 @@ _COMMENT = re.compile(
 _CODE = re.compile(r"[^\S\n]*(?P<code>[A-Za-z]{2}\d+)\b[,:]?")
 
 
-def allowances(source: Source, report: Report, parse: Parser = parse) -> list[Allowance]:
-    """The allowances of a text, in its order. SM022 for a comment that does not say all it must.
+def allowances(
+    source: Source, report: Report, codes: Mapping[str, Code], parse: Parser = parse
+) -> list[Allowance]:
+    """The allowances of a text, in its order. SM022 for a comment that does not say all it must, or
+    names a code that is not one of `codes`.
 
     A comment behind something speaks of its own line, one alone of the next line that holds more
     than a comment.
@@ -57,7 +60,7 @@ def allowances(source: Source, report: Report, parse: Parser = parse) -> list[Al
             word = Word(comment["verb"], Span(source, *comment.span("verb")))
             report.append(bad_comment(word))
             continue
-        found += _codes(source, comment, span, speaks, report)
+        found += _codes(source, comment, span, speaks, report, codes)
     return found
 
 
@@ -86,7 +89,12 @@ def _spans(tree: Tree) -> Iterator[Span]:
 
 
 def _codes(
-    source: Source, comment: re.Match[str], span: Span, speaks: Sequence[int], report: Report
+    source: Source,
+    comment: re.Match[str],
+    span: Span,
+    speaks: Sequence[int],
+    report: Report,
+    known: Mapping[str, Code],
 ) -> Iterator[Allowance]:
     line, column = source.position(comment.start())
     if not source.line(line)[: column - 1].strip():
@@ -97,8 +105,8 @@ def _codes(
         words.append(Word(word["code"].upper(), Span(source, *word.span("code"))))
         at = word.end()
     for code in words:
-        if code.text not in CODES:
-            report.append(unknown_code(code, CODES))
+        if code.text not in known:
+            report.append(unknown_code(code, known))
         else:
             yield Allowance(code.text, code.span, line)
     if not words or not source.text[at:end].strip(" \t\r:,-"):

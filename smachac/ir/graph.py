@@ -1,28 +1,27 @@
-"""Containers and machines as graphs: which state can follow which, and on what.
+"""Control-flow graphs of containers and of whole machines.
 
-`edges` is the one reading of a container's control flow; graphs and searches are made from it.
+`edges` defines the control flow of a container; the graphs and searches are made from it.
 """
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Iterator, Sequence
-from itertools import chain
+from collections.abc import Callable, Iterable, Iterator, Sequence
 from typing import TYPE_CHECKING, Literal, NamedTuple, TypeAlias
 
 from smachac.diagnostics.source import assert_never
 from smachac.ir import nodes
-from smachac.ir.nodes import Concurrence, Container, Leaf, Machine, Node, Transition
-from smachac.ir.traversal import containers, leads_to_child, outcome_names
+from smachac.ir.nodes import Concurrence, Container, Leaf, Node, Transition
+from smachac.ir.traversal import leads_to_child, outcome_names
 
 if TYPE_CHECKING:
     import networkx as nx
 
-Place: TypeAlias = "str | tuple[str, ...]"
+Vertex: TypeAlias = "str | tuple[str, ...]"
 """A child by its name, `START`, or an exit `("outcome", name)`."""
 
-START: Place = ("start",)
+START: Vertex = ("start",)
 
-Kind = Literal[
+EdgeKind = Literal[
     "enter",
     "written",
     "implicit",
@@ -46,14 +45,14 @@ class Edge(NamedTuple):
     machine, where one stands behind it.
     """
 
-    source: Place
-    target: Place
+    source: Vertex
+    target: Vertex
     outcome: str
-    kind: Kind
+    kind: EdgeKind
     transition: Transition | None = None
 
 
-def exit_place(outcome: str) -> Place:
+def exit_vertex(outcome: str) -> Vertex:
     """The place that stands for leaving the container with an outcome."""
     return ("outcome", outcome)
 
@@ -73,15 +72,6 @@ def edges(container: Container) -> Iterator[Edge]:
             yield from _iterator_edges(container)
         case _:
             assert_never(container)
-
-
-def caught_edges(container: Container) -> Iterator[Edge]:
-    """How a container is left when something in it raises an exception that it catches.
-
-    Not among `edges`: no state leads there, and nothing is handed out.
-    """
-    if container.catches:
-        yield Edge(START, exit_place(container.catches), container.catches, "caught")
 
 
 def _live_transitions(child: Node) -> Sequence[Transition]:
@@ -110,7 +100,7 @@ def _transition_edges(container: nodes.StateMachine | nodes.Sequence) -> Iterato
             if leads_to_child(step, names):
                 yield Edge(child.name, step.target, step.outcome, step.origin, step)
             elif step.target in exits:
-                target = exit_place(step.target)
+                target = exit_vertex(step.target)
                 yield Edge(child.name, target, step.outcome, step.origin, step)
 
 
@@ -126,11 +116,11 @@ def _concurrence_edges(container: Concurrence) -> Iterator[Edge]:
         declared = outcome_names(child)
         for outcome, result in wanted.get(child.name, {}):
             if result in exits and (_is_open(child) or outcome in declared):
-                yield Edge(child.name, exit_place(result), outcome, "rule")
+                yield Edge(child.name, exit_vertex(result), outcome, "rule")
         if container.default_outcome in exits:
             outcomes = declared or (("",) if _is_open(child) else ())
             for outcome in outcomes:
-                yield Edge(child.name, exit_place(container.default_outcome), outcome, "default")
+                yield Edge(child.name, exit_vertex(container.default_outcome), outcome, "default")
 
 
 def _iterator_edges(container: nodes.Iterator) -> Iterator[Edge]:
@@ -144,12 +134,12 @@ def _iterator_edges(container: nodes.Iterator) -> Iterator[Edge]:
             if outcome in looping:
                 yield Edge(child.name, child.name, outcome, "loop")
                 if exhausted in exits:
-                    yield Edge(child.name, exit_place(exhausted), outcome, "exhausted")
+                    yield Edge(child.name, exit_vertex(exhausted), outcome, "exhausted")
             elif renamed.get(outcome, outcome) in exits:
-                target = exit_place(renamed.get(outcome, outcome))
+                target = exit_vertex(renamed.get(outcome, outcome))
                 yield Edge(child.name, target, outcome, "break")
     if exhausted in exits and not _surely_has_items(container):
-        yield Edge(START, exit_place(exhausted), "", "exhausted")
+        yield Edge(START, exit_vertex(exhausted), "", "exhausted")
 
 
 def stopped_endings(container: nodes.Iterator) -> dict[str, str]:
@@ -184,7 +174,7 @@ def reachable(container: Container) -> frozenset[str]:
         return frozenset(names)
     if container.initial not in names:
         return frozenset(names)
-    followers: dict[Place, list[Place]] = {}
+    followers: dict[Vertex, list[Vertex]] = {}
     for edge in edges(container):
         followers.setdefault(edge.source, []).append(edge.target)
     found = _children_from([START], followers)
@@ -202,8 +192,8 @@ def can_end(container: Container) -> frozenset[str]:
         ending = (child for child in container.children if child.outcomes or _is_open(child))
         return frozenset(child.name for child in ending)
     names = frozenset(child.name for child in container.children)
-    before: dict[Place, list[Place]] = {}
-    leaving: list[Place] = []
+    before: dict[Vertex, list[Vertex]] = {}
+    leaving: list[Vertex] = []
     for child in container.children:
         steps = _live_transitions(child)
         handled = {step.outcome for step in steps}
@@ -218,7 +208,10 @@ def can_end(container: Container) -> frozenset[str]:
     return _children_from(leaving, before)
 
 
-def _children_from(places: list[Place], follow: dict[Place, list[Place]]) -> frozenset[str]:
+def _children_from(places: list[Vertex], follow: dict[Vertex, list[Vertex]]) -> frozenset[str]:
+    """The children that can be reached from some places."""
+    # By hand, because every check comes here: networkx takes as long for 10,000 states (60 ms of
+    # CPU time), but its import adds 130 ms to a check of a short script, which takes 310 ms.
     seen = set(places)
     todo = list(places)
     while todo:
@@ -229,57 +222,44 @@ def _children_from(places: list[Place], follow: dict[Place, list[Place]]) -> fro
     return frozenset(place for place in seen if isinstance(place, str))
 
 
-def container_graph(container: Container) -> nx.MultiDiGraph:
-    """One container: its children, `START` and an exit for each outcome it declares.
+Event: TypeAlias = "tuple[str, str]"
+"""The state at a path is entered (no outcome), or ends with an outcome."""
 
-    Every edge carries the `Edge` it stands for, as the attribute `edge`; `kind` and `outcome`
-    are given beside it. Children carry `node`.
+
+def machine_graph(
+    states: Iterable[tuple[str, Node]],
+    edges_of: Callable[[str, Container], Iterable[Edge]],
+) -> nx.DiGraph:
+    """The whole machine as a graph of events; its nodes are of type `Event`.
+
+    A leaf leads from its entry to each of its ends, a container from its entry to the entries of
+    the children that it starts. The end of a child leads on as `edges_of` the container at its
+    path says. Of two states with one path the first counts.
     """
     import networkx as nx
 
-    graph = nx.MultiDiGraph()
-    graph.add_node(START)
-    for child in container.children:
-        graph.add_node(child.name, node=child)
-    graph.add_nodes_from(map(exit_place, outcome_names(container)))
-    for edge in chain(edges(container), caught_edges(container)):
-        graph.add_edge(edge.source, edge.target, edge=edge, kind=edge.kind, outcome=edge.outcome)
+    graph = nx.DiGraph()
+    known: set[str] = set()
+    for path, node in states:
+        start = (path, "")
+        if path in known:
+            continue
+        known.add(path)
+        graph.add_node(start)
+        if isinstance(node, Leaf):
+            names = [*outcome_names(node), *(step.outcome for step in node.transitions)]
+            graph.add_edges_from((start, (path, name)) for name in names)
+            continue
+        for edge in edges_of(path, node):
+            if edge.source == START:
+                graph.add_edge(start, _event(path, edge.target))
+            elif edge.outcome:
+                graph.add_edge((f"{path}/{edge.source}", edge.outcome), _event(path, edge.target))
+        if node.catches:
+            graph.add_edge(start, (path, node.catches))
     return graph
 
 
-def flat_graph(machine: Machine) -> nx.MultiDiGraph:
-    """The whole machine: a path stands for being entered, `("outcome", path, name)` for a
-    container that ends so.
-
-    Leaves are left from their path, containers from their ends, so that walks through the graph
-    keep outcome and transition together. Edges are labelled as in `container_graph`; entering
-    a container is an edge of kind "enter".
-    """
-    import networkx as nx
-
-    graph = nx.MultiDiGraph()
-    graph.add_node(machine.root.name, node=machine.root)
-    for path, container in containers(machine.root):
-        inside = {child.name: child for child in container.children}
-        for name, child in inside.items():
-            graph.add_node(f"{path}/{name}", node=child)
-        graph.add_nodes_from(("outcome", path, name) for name in outcome_names(container))
-        for edge in chain(edges(container), caught_edges(container)):
-            source = _flat_source(edge, path, inside)
-            target = _flat_target(edge.target, path)
-            graph.add_edge(source, target, edge=edge, kind=edge.kind, outcome=edge.outcome)
-    return graph
-
-
-def _flat_source(edge: Edge, path: str, inside: dict[str, Node]) -> Place:
-    if not isinstance(edge.source, str):
-        return path
-    here = f"{path}/{edge.source}"
-    is_leaf = isinstance(inside[edge.source], Leaf)
-    return here if is_leaf else ("outcome", here, edge.outcome)
-
-
-def _flat_target(target: Place, path: str) -> Place:
-    if isinstance(target, str):
-        return f"{path}/{target}"
-    return ("outcome", path, target[1])
+def _event(path: str, target: Vertex) -> Event:
+    """What an edge inside the container at a path leads to."""
+    return (f"{path}/{target}", "") if isinstance(target, str) else (path, target[1])

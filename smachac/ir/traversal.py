@@ -52,21 +52,22 @@ def leads_to_child(transition: Transition, children: frozenset[str]) -> bool:
 def expressions(node: Node) -> Iterator[Expression]:
     """The expressions in the values of one node, in the order of the script."""
     for held in node.variables if isinstance(node, Leaf) else node.userdata:
-        yield from _expressions(held.value.data)
+        yield from expressions_in(held.value.data)
     if isinstance(node, IteratorNode) and node.items is not None:
-        yield from _expressions(node.items.data)
+        yield from expressions_in(node.items.data)
 
 
-def _expressions(data: Data) -> Iterator[Expression]:
+def expressions_in(data: Data) -> Iterator[Expression]:
+    """The code in a value, in the order of the script."""
     match data:
         case Expression():
             yield data
         case Struct(entries=entries):
             for _, value in entries:
-                yield from _expressions(value)
+                yield from expressions_in(value)
         case tuple():
             for value in data:
-                yield from _expressions(value)
+                yield from expressions_in(value)
 
 
 def remapping(node: Node) -> dict[str, str]:

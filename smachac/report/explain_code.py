@@ -8,14 +8,7 @@ from collections.abc import Iterator, Mapping
 from dataclasses import dataclass, field
 from textwrap import dedent, fill, indent
 
-# These imports register all codes.
-from smachac import checks
-from smachac.diagnostics.diagnostic import CODES, Code
-from smachac.frontend.errors import references, script, suppressions
-from smachac.targets import errors
-
-__all__ = ["CODES", "GROUPS", "Explanation", "checks", "errors", "explanation", "references"]
-__all__ += ["render_code", "render_rules", "render_section", "script", "suppressions"]
+from smachac.diagnostics.diagnostic import Code
 
 MAIN = "main.yml"
 
@@ -82,9 +75,9 @@ def render_code(code: Code) -> str:
     return "\n\n".join(lines)
 
 
-def render_rules() -> str:
-    """All codes as one Markdown document, by hundreds, with a table of contents."""
-    return "\n\n".join([_PREFACE, _contents(), *_sections()]) + "\n"
+def render_rules(known: Mapping[str, Code]) -> str:
+    """Codes as one Markdown document, by hundreds, with a table of contents."""
+    return "\n\n".join([_PREFACE, _contents(known), *_sections(known)]) + "\n"
 
 
 _PREFACE = """# What smachac finds
@@ -98,9 +91,9 @@ gives exactly its code, and each one marked as right gives nothing above an info
 them all. A line `# --- name` begins another file."""
 
 
-def _groups() -> Iterator[tuple[str, list[Code]]]:
+def _groups(known: Mapping[str, Code]) -> Iterator[tuple[str, list[Code]]]:
     for prefix, title in GROUPS.items():
-        codes = [CODES[name] for name in sorted(CODES) if name.startswith(prefix)]
+        codes = [known[name] for name in sorted(known) if name.startswith(prefix)]
         if codes:
             yield f"{prefix}xx {title}", codes
 
@@ -109,9 +102,9 @@ def _anchor(title: str) -> str:
     return re.sub(r"[^a-z0-9 -]", "", title.lower()).replace(" ", "-")
 
 
-def _contents() -> str:
+def _contents(known: Mapping[str, Code]) -> str:
     lines = []
-    for title, codes in _groups():
+    for title, codes in _groups(known):
         lines.append(f"- [{title}](#{_anchor(title)})")
         for code in codes:
             heading = f"{code.code} {code.name}"
@@ -120,8 +113,8 @@ def _contents() -> str:
     return "\n".join(lines)
 
 
-def _sections() -> Iterator[str]:
-    for title, codes in _groups():
+def _sections(known: Mapping[str, Code]) -> Iterator[str]:
+    for title, codes in _groups(known):
         yield f"## {title}"
         yield from (f"### {code.code} {code.name}\n\n{render_section(code)}" for code in codes)
 

@@ -6,9 +6,9 @@ from collections.abc import Iterable, Iterator
 from dataclasses import dataclass, field
 from typing import Any
 
+from smachac.analysis.context import Context
 from smachac.analysis.def_use import Status, Use, around, key_status, path_without, same_key, uses
-from smachac.analysis.definite_assignment import Flow, Scope
-from smachac.analysis.type_inference import Types
+from smachac.analysis.definite_assignment import DataFlow, UserdataScope
 from smachac.diagnostics.source import Span
 from smachac.ir import nodes
 from smachac.ir.printer import print_data
@@ -51,7 +51,7 @@ KeyStory = tuple[KeyPart, ...]
 """One key in all the containers that share it, outer ones first."""
 
 
-def key_names(flow: Flow) -> dict[str, list[tuple[str, str]]]:
+def key_names(flow: DataFlow) -> dict[str, list[tuple[str, str]]]:
     """The keys of containers, as path and key, by each name that they have in the container or with
     one of its states; in the order of the script."""
     found: dict[str, dict[tuple[str, str], None]] = {}
@@ -61,7 +61,7 @@ def key_names(flow: Flow) -> dict[str, list[tuple[str, str]]]:
     return {name: list(pairs) for name, pairs in found.items()}
 
 
-def _names_in(scope: Scope) -> Iterator[tuple[str, str]]:
+def _names_in(scope: UserdataScope) -> Iterator[tuple[str, str]]:
     """The names of keys in a container, with the name that the container uses."""
     container = scope.container
     own = [*scope.held, *scope.inputs, *scope.outputs]
@@ -76,17 +76,18 @@ def _names_in(scope: Scope) -> Iterator[tuple[str, str]]:
             yield each.name, outer
 
 
-def key_stories(flow: Flow, types: Types, pairs: Iterable[tuple[str, str]]) -> Iterator[KeyStory]:
+def key_stories(context: Context, pairs: Iterable[tuple[str, str]]) -> Iterator[KeyStory]:
     """The explanations of some keys; keys that are copies of each other share one."""
     told: set[tuple[str, str]] = set()
     for pair in pairs:
         if pair not in told:
-            same = same_key(flow, *pair)
+            same = same_key(context.flow, *pair)
             told.update(same)
-            yield tuple(_part(flow, types, path, key) for path, key in same)
+            yield tuple(_part(context, path, key) for path, key in same)
 
 
-def _part(flow: Flow, types: Types, path: str, key: str) -> KeyPart:
+def _part(context: Context, path: str, key: str) -> KeyPart:
+    flow = context.flow
     scope = flow.scopes[path]
     container = scope.container
     outer = around(flow, path)
@@ -99,7 +100,7 @@ def _part(flow: Flow, types: Types, path: str, key: str) -> KeyPart:
     return KeyPart(
         container=path,
         key=key,
-        type=types.keys.get((path, key), ANY),
+        type=context.types.keys.get((path, key), ANY),
         value=print_data(preset.value.data) if preset else "",
         given=outer is None and key in scope.inputs,
         inside=inside,
@@ -108,7 +109,7 @@ def _part(flow: Flow, types: Types, path: str, key: str) -> KeyPart:
     )
 
 
-def _met(flow: Flow, use: Use, key: str, followed: frozenset[str]) -> Met:
+def _met(flow: DataFlow, use: Use, key: str, followed: frozenset[str]) -> Met:
     if use.path not in followed or use.kind not in ("reads", "takes in"):
         return Met(use=use)
     status = key_status(flow, use.path, key)

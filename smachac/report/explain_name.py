@@ -5,12 +5,10 @@ from __future__ import annotations
 import json
 from collections.abc import Iterable
 
-from smachac.analysis.definite_assignment import Flow, data_flow
-from smachac.analysis.type_inference import infer
+from smachac.analysis.context import Context
+from smachac.analysis.definite_assignment import DataFlow
 from smachac.diagnostics.diagnostic import Report, did_you_mean
 from smachac.diagnostics.wording import listed
-from smachac.ir.nodes import Machine
-from smachac.ir.traversal import walk
 from smachac.report.explain_key import KeyStory, key_json, key_names, key_stories, key_text
 from smachac.report.explain_state import StateStory, state_json, state_story, state_text
 from smachac.report.outline import paragraphs
@@ -23,26 +21,25 @@ class UnclearError(Exception):
     """A name has no meaning, or too many; the message lists candidates."""
 
 
-def explain_name(machine: Machine, report: Report, name: str, form: str) -> str:
+def explain_name(context: Context, report: Report, name: str, form: str) -> str:
     """The explanation of the state or key `name`; `form` is `text` or `json`.
 
     A state is named by its path or the end of it; a key by its name, optionally after the path of
     its container. Raises UnclearError if the name has no meaning, or too many.
     """
-    flow = data_flow(machine)
-    types = infer(machine)
-    paths = [path for path, _ in walk(machine.root)]
+    flow = context.flow
+    paths = [path for path, _ in context.states]
     states = list(dict.fromkeys(path for path in paths if _ends(path, name)))
     exact = [path for path in states if path == name]
     keys = _keys(flow, name)
     if not states and not keys:
         raise UnclearError(_unknown(flow, paths, name))
     if len(states) > 1 and not exact:
-        raise UnclearError(_several_states(machine, name, states, keys))
+        raise UnclearError(_several_states(context, name, states, keys))
     if not states and len(keys) > 1 and all(key != name.rpartition("/")[2] for _, key in keys):
         raise UnclearError(_several_keys(name, keys))
-    found = [state_story(machine, flow, types, path, report) for path in exact or states]
-    stories = list(key_stories(flow, types, keys))
+    found = [state_story(context, path, report) for path in exact or states]
+    stories = list(key_stories(context, keys))
     return _json(found, stories) if form == "json" else _text(found, stories)
 
 
@@ -50,7 +47,7 @@ def _ends(path: str, name: str) -> bool:
     return path == name or path.endswith(f"/{name}")
 
 
-def _keys(flow: Flow, name: str) -> list[tuple[str, str]]:
+def _keys(flow: DataFlow, name: str) -> list[tuple[str, str]]:
     """The keys of a name: those of containers, else those of states."""
     names = key_names(flow)
     pairs = names.get(name, [])
@@ -61,7 +58,7 @@ def _keys(flow: Flow, name: str) -> list[tuple[str, str]]:
     return [pair for pair in pairs if pair[1] == name] or pairs
 
 
-def _unknown(flow: Flow, paths: Iterable[str], name: str) -> str:
+def _unknown(flow: DataFlow, paths: Iterable[str], name: str) -> str:
     states = dict.fromkeys(path.rpartition("/")[2] for path in paths)
     keys = key_names(flow)
     near = did_you_mean(name.rpartition("/")[2], [*states, *keys])
@@ -70,11 +67,10 @@ def _unknown(flow: Flow, paths: Iterable[str], name: str) -> str:
 
 
 def _several_states(
-    machine: Machine, name: str, states: list[str], keys: list[tuple[str, str]]
+    context: Context, name: str, states: list[str], keys: list[tuple[str, str]]
 ) -> str:
-    spans = {path: node.span for path, node in reversed(list(walk(machine.root)))}
     lines = [f"there are {len(states)} states `{name}`; name one by its path:"]
-    named = [f"  {path} ({spans[path]})" for path in states]
+    named = [f"  {path} ({context.spans[path]})" for path in states]
     named += [f"  {path}/{key} (a key)" for path, key in keys]
     return "\n".join([*lines, *_few(named)])
 

@@ -6,14 +6,12 @@ from collections.abc import Iterable, Iterator
 from dataclasses import dataclass, field
 from typing import Any
 
+from smachac.analysis.context import Context
 from smachac.analysis.def_use import Status, key_status
-from smachac.analysis.definite_assignment import Flow
-from smachac.analysis.resource_claims import claims
-from smachac.analysis.successors import Arrival, Routes, path_to
-from smachac.analysis.type_inference import Types
+from smachac.analysis.successors import Arrival, path_to
 from smachac.diagnostics.diagnostic import Report
 from smachac.diagnostics.wording import MOST_LISTED
-from smachac.ir.nodes import Key, Leaf, Machine, Node, Transition
+from smachac.ir.nodes import Key, Leaf, Node, Transition
 from smachac.ir.printer import print_data
 from smachac.ir.traversal import outcome_names, remapping
 from smachac.ir.types import ANY, Type
@@ -60,23 +58,20 @@ class StateStory:
     report: Report = field(compare=False, repr=False)
 
 
-def state_story(
-    machine: Machine, flow: Flow, types: Types, path: str, report: Report
-) -> StateStory:
+def state_story(context: Context, path: str, report: Report) -> StateStory:
     """The explanation of the state at a path, which must exist."""
-    routes = Routes(machine)
-    ways = routes.ways()
+    routes, types = context.routes, context.types
     node = routes.nodes[path]
     names = remapping(node)
     entered = {
         (before[0].rpartition("/")[2] if before[1] else "", before[1]): None
-        for before in ways
-        if (path, "") in routes.follow(before)
+        for before in routes.before
+        if (path, "") in routes.after(before)
     }
 
     def read(key: Key) -> Taken:
         outer = names.get(key.name, key.name)
-        status = key_status(flow, path, outer) if node is not machine.root else None
+        status = key_status(context.flow, path, outer) if node is not routes.root else None
         known = types.inputs.get((path, key.name)) or types.keys.get((path, key.name), key.type)
         return Taken(key=key, type=known, outer=outer, status=status)
 
@@ -90,10 +85,10 @@ def state_story(
         node=node,
         reads=tuple(map(read, node.inputs)),
         writes=tuple(map(written, node.outputs)),
-        claims=tuple(sorted(claims(machine)[id(node)])),
+        claims=tuple(sorted(context.claims[path])),
         entered=tuple(entered),
-        way=path_to(ways, (path, "")) if (path, "") in ways else (),
-        reachable=(path, "") in ways,
+        way=path_to(routes.before, (path, "")) if (path, "") in routes.before else (),
+        reachable=(path, "") in routes.before,
         exits=tuple(
             Exit(
                 outcome=name,

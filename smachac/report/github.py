@@ -43,7 +43,7 @@ def _words(item: Diagnostic) -> str:
         for related in finding.related
     ]
     if finding.path:
-        lines.append(f"path: {''.join(steps(finding.path))}")
+        lines.append(f"path: {''.join(steps(finding.path_labels))}")
     if finding.help:
         lines.append(f"help: {finding.help}")
     return visible("\n".join(lines))

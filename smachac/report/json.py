@@ -34,7 +34,7 @@ def _diagnostic(item: Diagnostic) -> dict[str, Any]:
             {"place": place(related.span), "message": related.message}
             for related in finding.related
         ],
-        "path": list(finding.path),
+        "path": list(finding.path_labels),
         "node": finding.node,
         "edits": [{"place": place(edit.span), "text": edit.text} for edit in finding.edits],
     }

@@ -133,12 +133,12 @@ def _flow(item: Diagnostic) -> list[dict[str, Any]]:
     """The states of a witness path; each message has the outcome that leads on."""
     flow: list[dict[str, Any]] = []
     places = item.steps or (None,) * len(item.finding.path)
-    for name, span in zip(item.finding.path, places, strict=True):
-        if name.startswith("(") and name.endswith(")") and flow:
-            flow[-1]["location"]["message"]["text"] += f" -{name}->"
+    for step, span in zip(item.finding.path, places, strict=True):
+        if step.is_outcome and flow:
+            flow[-1]["location"]["message"]["text"] += f" -{step.label}->"
             continue
         place = _location(span if span is not None else item.span)
-        flow.append({"location": {**place, "message": _message(name)}})
+        flow.append({"location": {**place, "message": _message(step.label)}})
     return flow
 
 

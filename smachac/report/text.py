@@ -117,7 +117,7 @@ def _lines(item: Diagnostic, width: int, paint: Paint) -> Iterator[str]:
         if _nowhere(span) and style == "related":
             yield paint("related", "note") + f": {visible(label)}"
     if finding.path:
-        yield from _path(finding.path, width, paint)
+        yield from _path(finding.path_labels, width, paint)
     if finding.help:
         for line in visible(finding.help).split("\n"):
             yield paint("help", "help") + f": {line}"

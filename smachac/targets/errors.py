@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 
-from smachac.diagnostics.diagnostic import Finding, Related, Severity, problem
+from smachac.diagnostics.diagnostic import Finding, Problem, Related, Severity, problem
 from smachac.diagnostics.source import Span, Word
 
 
@@ -303,3 +303,14 @@ def defined_twice(
             Related(span=other, message="defines it last"),
         ),
     )
+
+
+PROBLEMS: tuple[Problem[...], ...] = (
+    unsupported_by_target,
+    no_code_for_target,
+    interfaces_differ,
+    stale_code,
+    python_2_code,
+    defined_twice,
+)
+"""The problems of this module, in the order of their codes."""

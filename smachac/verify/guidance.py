@@ -8,7 +8,7 @@ from types import MappingProxyType
 
 from smachac.analysis.outcome_rules import Combination, Domains, Rules, UndecidedError
 from smachac.ir import nodes
-from smachac.ir.graph import START, Edge, Place, edges, exit_place
+from smachac.ir.graph import START, Edge, Vertex, edges, exit_vertex
 from smachac.ir.nodes import Concurrence, Container, Leaf, Machine, Node
 from smachac.ir.traversal import PREEMPTED, containers, outcome_names, walk
 
@@ -54,8 +54,8 @@ class Planner:
         self.possible: dict[str, frozenset[str]] = {}
         self.entered: set[str] = {machine.root.name}
         self._edges: dict[str, list[Edge]] = {}
-        self._distances: dict[tuple[str, str | None], dict[Place, int]] = {}
-        self._sources: dict[str, dict[Place, list[Edge]]] = {}
+        self._distances: dict[tuple[str, str | None], dict[Vertex, int]] = {}
+        self._sources: dict[str, dict[Vertex, list[Edge]]] = {}
         self._rules: dict[str, Rules] = {}
         self._combined: dict[tuple[str, str | int | None], Combination | None] = {}
         self._undecided: set[str] = set()
@@ -232,14 +232,14 @@ class Planner:
         for first in able:
             yield {**able, **stopped, first: able[first]}
 
-    def _distances_to_end(self, path: str, goal: str | None) -> dict[Place, int]:
+    def _distances_to_end(self, path: str, goal: str | None) -> dict[Vertex, int]:
         """For each place of a container, the number of states on the shortest way to its end."""
         if (path, goal) not in self._distances:
             node = self.nodes[path]
             assert not isinstance(node, Leaf)
             ends = (goal,) if goal is not None else outcome_names(node)
             planned = [edge for edge in self._edges[path] if not self._caught(path, edge)]
-            self._distances[path, goal] = _distances_to(planned, [exit_place(end) for end in ends])
+            self._distances[path, goal] = _distances_to(planned, [exit_vertex(end) for end in ends])
         return self._distances[path, goal]
 
     def _raises(self, node: Container) -> bool:
@@ -254,12 +254,12 @@ class Planner:
         return node is not None and not isinstance(node, Leaf) and edge.outcome == node.catches
 
 
-def _reachable_places(found: list[Edge]) -> dict[Place, None]:
+def _reachable_places(found: list[Edge]) -> dict[Vertex, None]:
     """The places that can be reached from the start."""
-    following: dict[Place, list[Place]] = {}
+    following: dict[Vertex, list[Vertex]] = {}
     for edge in found:
         following.setdefault(edge.source, []).append(edge.target)
-    seen: dict[Place, None] = {START: None}
+    seen: dict[Vertex, None] = {START: None}
     todo = [START]
     while todo:
         for place in following.get(todo.pop(), ()):
@@ -269,12 +269,12 @@ def _reachable_places(found: list[Edge]) -> dict[Place, None]:
     return seen
 
 
-def _distances_to(found: list[Edge], ends: list[Place]) -> dict[Place, int]:
+def _distances_to(found: list[Edge], ends: list[Vertex]) -> dict[Vertex, int]:
     """For each place, the number of edges to the nearest of some ends."""
-    before: dict[Place, list[Place]] = {}
+    before: dict[Vertex, list[Vertex]] = {}
     for edge in found:
         before.setdefault(edge.target, []).append(edge.source)
-    distances: dict[Place, int] = dict.fromkeys(ends, 0)
+    distances: dict[Vertex, int] = dict.fromkeys(ends, 0)
     todo = deque(ends)
     while todo:
         here = todo.popleft()

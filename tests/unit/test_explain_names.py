@@ -11,8 +11,8 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 from strategies import machines
 
+from smachac.analysis.context import Context
 from smachac.analysis.definite_assignment import data_flow
-from smachac.analysis.failure_paths import failures
 from smachac.commands.cli import main
 from smachac.ir.nodes import Machine
 from smachac.ir.traversal import walk
@@ -108,7 +108,7 @@ def test_nothing_of_a_script_steers_the_terminal(
 
 def explained(machine: Machine, name: str, form: str) -> str:
     try:
-        return explain_name(machine, [], name, form)
+        return explain_name(Context(machine), [], name, form)
     except UnclearError as error:
         return str(error)
 
@@ -126,4 +126,4 @@ def test_every_name_of_any_machine_can_be_asked_for(machine: Machine, data: st.D
         found = json.loads(said)
         assert found["states"] or found["keys"]
     for table in ("text", "json", "md", "csv"):
-        assert render_failures("sm", list(failures(machine)), table)
+        assert render_failures("sm", Context(machine).failures, table)

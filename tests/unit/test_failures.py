@@ -4,12 +4,13 @@ from __future__ import annotations
 
 from ir_machines import concurrence, iterator, leaf, machine
 
-from smachac.analysis.failure_paths import Failure, failures
+from smachac.analysis.context import Context
+from smachac.analysis.failure_paths import Failure
 from smachac.ir.nodes import Machine, StateMachine
 
 
 def told(root: StateMachine) -> list[str]:
-    return [row(each) for each in failures(Machine(root=root))]
+    return [row(each) for each in Context(Machine(root=root)).failures]
 
 
 def row(each: Failure) -> str:
@@ -41,7 +42,7 @@ def test_a_failure_leaves_containers_until_it_is_caught() -> None:
     inner = machine("IN", "out lost", a, to={"out": "out", "lost": "lost"})
     middle = machine("MID", "out lost", inner, to={"out": "good", "lost": "FIX"})
     root = machine("sm", "good", middle, leaf("FIX", {"ok": "good"}))
-    (found,) = failures(Machine(root=root))
+    (found,) = Context(Machine(root=root)).failures
     assert row(found) == "MID/IN/A failed: caught sm/FIX good"
     assert found.way == ("A", "(failed)", "IN", "(lost)", "MID", "(lost)", "FIX")
     back = machine(

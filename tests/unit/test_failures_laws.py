@@ -7,8 +7,9 @@ from hypothesis import event, given, settings
 from hypothesis import strategies as st
 from strategies import valid_machines
 
-from smachac.analysis.failure_paths import Failure, failures
-from smachac.analysis.successors import Routes, path_to
+from smachac.analysis.context import Context
+from smachac.analysis.failure_paths import Failure
+from smachac.analysis.successors import path_to
 from smachac.interpreter.behaviours import builtin_behaviour
 from smachac.interpreter.interpreter import run
 from smachac.interpreter.result import Event, RunResult
@@ -21,7 +22,7 @@ MACHINES = st.one_of(valid_machines(), data_machines())
 
 def told(machine: Machine) -> dict[tuple[str, str], list[Failure]]:
     found: dict[tuple[str, str], list[Failure]] = {}
-    for each in failures(machine):
+    for each in Context(machine).failures:
         found.setdefault((each.path, each.outcome), []).append(each)
     return found
 
@@ -71,7 +72,7 @@ def test_what_follows_a_failure_is_told(machine: Machine, seed: int) -> None:
 @settings(max_examples=100)
 @given(MACHINES, st.integers(0, 9))
 def test_every_state_of_a_run_has_a_way_to_it(machine: Machine, seed: int) -> None:
-    ways = Routes(machine).ways()
+    ways = Context(machine).routes.before
     _, trace = ran(machine, seed)
     for path in {line["path"] for line in trace if line["event"] == "enter"} - {machine.root.name}:
         way = path_to(ways, (path, ""))

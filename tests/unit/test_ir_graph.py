@@ -1,9 +1,12 @@
 from __future__ import annotations
 
+from dataclasses import replace
+
 from smachac.diagnostics.source import NOWHERE
 from smachac.ir import nodes
-from smachac.ir.graph import START, can_end, container_graph, edges, flat_graph, reachable
-from smachac.ir.nodes import Concurrence, Leaf, Machine, StateMachine, Transition
+from smachac.ir.graph import START, can_end, edges, machine_graph, reachable
+from smachac.ir.nodes import Concurrence, Leaf, StateMachine, Transition
+from smachac.ir.traversal import walk
 
 
 def outcomes(*names: str) -> tuple[nodes.Outcome, ...]:
@@ -144,19 +147,7 @@ def test_an_iterator_loops_breaks_and_runs_out_of_items() -> None:
     assert reachable(each) == can_end(each) == {"A"}
 
 
-def test_the_graph_of_a_container_holds_children_start_and_exits() -> None:
-    graph = container_graph(machine_of(leaf("A", ok="A", bad="done"), ends="done unused"))
-    assert set(graph) == {START, "A", ("outcome", "done"), ("outcome", "unused")}
-    labels = {(a, b, data["outcome"], data["kind"]) for a, b, data in graph.edges(data=True)}
-    assert labels == {
-        (START, "A", "", "enter"),
-        ("A", "A", "ok", "written"),
-        ("A", ("outcome", "done"), "bad", "written"),
-    }
-    assert graph.nodes["A"]["node"].name == "A"
-
-
-def test_the_flat_graph_keeps_outcome_and_transition_of_a_container_together() -> None:
+def test_the_graph_of_a_machine_keeps_outcome_and_transition_of_a_container_together() -> None:
     inner = StateMachine(
         name="B",
         type="StateMachine",
@@ -169,16 +160,25 @@ def test_the_flat_graph_keeps_outcome_and_transition_of_a_container_together() -
         ),
         span=NOWHERE,
     )
-    graph = flat_graph(Machine(root=machine_of(leaf("A", ok="B"), inner)))
-    assert {(a, b) for a, b in graph.edges()} == {
-        ("sm", "sm/A"),
-        ("sm/A", "sm/B"),
-        ("sm/B", "sm/B/X"),
-        ("sm/B/X", ("outcome", "sm/B", "done")),
-        (("outcome", "sm/B", "done"), ("outcome", "sm", "done")),
-        (("outcome", "sm/B", "lost"), "sm/A"),
+    root = machine_of(leaf("A", ok="B"), inner)
+    graph = machine_graph(walk(root), lambda path, container: edges(container))
+    assert set(graph.edges()) == {
+        (("sm", ""), ("sm/A", "")),
+        (("sm/A", ""), ("sm/A", "ok")),
+        (("sm/A", "ok"), ("sm/B", "")),
+        (("sm/B", ""), ("sm/B/X", "")),
+        (("sm/B/X", ""), ("sm/B/X", "ok")),
+        (("sm/B/X", "ok"), ("sm/B", "done")),
+        (("sm/B", "done"), ("sm", "done")),
+        (("sm/B", "lost"), ("sm/A", "")),
     }
-    assert graph.in_degree(("outcome", "sm/B", "lost")) == 0
+    assert graph.in_degree(("sm/B", "lost")) == 0
+
+
+def test_an_exception_that_is_caught_leaves_from_the_entry_of_the_container() -> None:
+    root = replace(machine_of(leaf("A", ok="done")), catches="done")
+    graph = machine_graph(walk(root), lambda path, container: edges(container))
+    assert list(graph.successors(("sm", ""))) == [("sm/A", ""), ("sm", "done")]
 
 
 def test_searches_are_linear_in_the_size_of_a_container() -> None:

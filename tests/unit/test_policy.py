@@ -8,12 +8,11 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from smachac import checks
-from smachac.diagnostics.diagnostic import CODES, Code, Finding, Report, Severity
+from smachac.diagnostics.diagnostic import Code, Finding, Report, Severity
 from smachac.diagnostics.diagnostic import Diagnostic as Item
 from smachac.diagnostics.severities import Policy, apply_severities, select_findings
 from smachac.diagnostics.source import NOWHERE, Source
-from smachac.driver import Analysis, analyse, build
+from smachac.driver import CODES, Analysis, analyse, build
 from smachac.frontend.files import disk_library, read_source
 from smachac.frontend.suppressions import MARK, allowances
 from smachac.report.explain_code import MAIN, explanation
@@ -30,7 +29,7 @@ def judged(text: str, folder: Path, **others: str) -> Analysis:
     report: Report = []
     source = read_source(folder / MAIN, report)
     assert source is not None
-    return analyse(source, disk_library(folder / MAIN, report), report)
+    return analyse(source, disk_library(folder / MAIN, report, codes=CODES), report)
 
 
 def found(analysis: Analysis) -> list[str]:
@@ -71,7 +70,7 @@ def test_comments(states: str, expected: list[str], tmp_path: Path) -> None:
 
 def test_a_comment_ends_with_its_line() -> None:
     report: Report = []
-    assert allowances(Source("main.yml", "#\nsmachac: allow SM201 x\n"), report) == []
+    assert allowances(Source("main.yml", "#\nsmachac: allow SM201 x\n"), report, CODES) == []
     assert report == []
 
 
@@ -167,7 +166,6 @@ def item(code: str, severity: Severity | None = None) -> Item:
     ],
 )
 def test_selecting_and_ignoring(select: list[str], ignore: list[str], expected: str) -> None:
-    assert checks is not None
     report = [item(code) for code in ("SM101", "SM105", "SM201", "SM204")]
     kept = [each.code.code for each in select_findings(report, select, ignore)]
     assert kept == expected.split()
@@ -191,7 +189,7 @@ def test_what_can_be_allowed_can_be_built(code: Code, tmp_path: Path) -> None:
     report: Report = []
     source = read_source(tmp_path / MAIN, report)
     assert source is not None
-    library = disk_library(tmp_path / MAIN, report)
+    library = disk_library(tmp_path / MAIN, report, codes=CODES)
     checked = analyse(source, library, report).checked
     assert checked is not None
     for name in target_names():
@@ -226,7 +224,7 @@ states:
     report: Report = []
     source = read_source(tmp_path / MAIN, report)
     assert source is not None
-    analysis = analyse(source, disk_library(tmp_path / MAIN, report), report)
+    analysis = analyse(source, disk_library(tmp_path / MAIN, report, codes=CODES), report)
     assert analysis.checked is None
     assert "SM401" in {each.code.code for each in analysis.report}
 
@@ -240,7 +238,7 @@ WORDS = st.sampled_from(
 def test_any_text_with_comments_is_read(text: str) -> None:
     report: Report = []
     source = Source("main.yml", text)
-    for fit in allowances(source, report):
+    for fit in allowances(source, report, CODES):
         assert fit.code == fit.span.text
         assert 1 <= fit.line <= len(source.line_starts)
     assert {each.code.code for each in report} <= {"SM022"}

@@ -7,6 +7,7 @@ from pathlib import Path
 
 import pytest
 
+from smachac.analysis.context import Context
 from smachac.checks.workspace import poses_to_reach, unreachable
 from smachac.commands.cli import main
 from smachac.driver import load
@@ -66,7 +67,7 @@ def test_poses(tmp_path: Path, goal: str, above: str, type: str, more: str, reac
 
 def test_an_offset_that_is_computed_is_not_guessed(tmp_path: Path) -> None:
     machine = machine_of(tmp_path, FAR, "[[0, 0, '`-1.8`'], [0, 0, 0, 1]]")
-    assert list(poses_to_reach(machine)) == []
+    assert list(poses_to_reach(Context(machine))) == []
 
 
 def test_nothing_starts_without_a_pose(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:

@@ -14,17 +14,18 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 import smachac
-from smachac.checks import loops
 from smachac.diagnostics.diagnostic import (
-    CODES,
     Diagnostic,
     Edit,
     Finding,
     Related,
     Report,
     Severity,
+    ended,
+    entered,
 )
 from smachac.diagnostics.source import NOWHERE, Source, Span
+from smachac.driver import CODES
 from smachac.report.explain_code import MAIN, explanation
 from smachac.report.github import render_github
 from smachac.report.junit import render_junit
@@ -40,7 +41,6 @@ def schema() -> Any:
 
 
 def diagnostic(finding: Finding, severity: Severity = Severity.ERROR) -> Diagnostic:
-    assert loops is not None  # imported for the codes it files
     return Diagnostic(code=CODES["SM204"], severity=severity, finding=finding)
 
 
@@ -53,7 +53,7 @@ FULL = diagnostic(
             Related(span=Span(SCRIPT, 6, 10), message="of this machine"),
             Related(span=NOWHERE, message="and of none"),
         ),
-        path=("A", "(a)", "B"),
+        path=(entered("A", "sm/A"), ended("a"), entered("B", "sm/B")),
         node="sm/A",
         edits=(Edit(span=Span(SCRIPT, 26, 27), text="A"),),
     )
@@ -166,7 +166,7 @@ def test_any_text_survives_every_form(
         message=message,
         help=text,
         related=(Related(span=span, message=text),),
-        path=(message, f"({text})"),
+        path=(entered(message, None), ended(text)),
         node=text,
         edits=(Edit(span=span, text=message),),
     )

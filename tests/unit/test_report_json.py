@@ -9,7 +9,16 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 from schemas import faults, load_schema
 
-from smachac.diagnostics.diagnostic import Code, Diagnostic, Edit, Finding, Related, Severity
+from smachac.diagnostics.diagnostic import (
+    Code,
+    Diagnostic,
+    Edit,
+    Finding,
+    Related,
+    Severity,
+    ended,
+    entered,
+)
 from smachac.diagnostics.source import NOWHERE, Source, Span
 from smachac.report.json import render_json
 
@@ -28,7 +37,7 @@ FULL = diagnostic(
         message="`B` is nothing",
         help="did you mean `A`?",
         related=(Related(span=Span(SCRIPT, 6, 9), message="of this machine"),),
-        path=("sm", "A", "(a)"),
+        path=(entered("sm", "sm"), entered("A", "sm/A"), ended("a")),
         node="sm/A",
     )
 )
@@ -128,7 +137,7 @@ def test_any_text_gives_a_report_in_ascii(text: str, message: str, data: st.Data
     source = Source(message, text)
     start = data.draw(st.integers(0, len(text)))
     end = data.draw(st.integers(start, len(text)))
-    finding = Finding(span=Span(source, start, end), message=message, path=(text,))
+    finding = Finding(span=Span(source, start, end), message=message, path=(entered(text, None),))
     rendered = render_json([diagnostic(finding)])
     assert rendered.isascii()
     assert rendered.endswith("}\n")

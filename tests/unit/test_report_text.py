@@ -9,7 +9,7 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from smachac.diagnostics.diagnostic import Code, Diagnostic, Finding, Related, Severity
+from smachac.diagnostics.diagnostic import Code, Diagnostic, Finding, PathStep, Related, Severity
 from smachac.diagnostics.source import NOWHERE, Source, Span
 from smachac.report.terminal import columns, lay_out, visible
 from smachac.report.text import MOST_FINDINGS, render_text, steps, summary
@@ -49,7 +49,8 @@ def finding(
     hint: str | None = None,
 ) -> Diagnostic:
     code = Code(code="SM101", name="unknown-target", severity=severity, explanation="")
-    found = Finding(span=span, message=message, related=related, path=path, help=hint)
+    steps = tuple(map(PathStep, path))
+    found = Finding(span=span, message=message, related=related, path=steps, help=hint)
     return Diagnostic(code=code, severity=severity, finding=found)
 
 

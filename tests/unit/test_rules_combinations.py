@@ -234,7 +234,7 @@ def test_with_join_any_the_first_to_end_decides(node: Concurrence) -> None:
 def test_shown_parts_decide_and_are_as_small_as_they_can_be(
     node: Concurrence, data: st.DataObject
 ) -> None:
-    read = study(node)
+    read = study(node.name, node)
     assert read is not None
     rules = read.rules
     domains = {child.name: tuple(one.name for one in child.outcomes) for child in node.children}

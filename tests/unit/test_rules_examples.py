@@ -8,8 +8,8 @@ from pathlib import Path
 import pytest
 
 from smachac.checks.workspace import unreachable
-from smachac.diagnostics.diagnostic import CODES, Code, Diagnostic, Report, Severity
-from smachac.driver import analyse, build
+from smachac.diagnostics.diagnostic import Code, Diagnostic, Report, Severity
+from smachac.driver import CODES, analyse, build
 from smachac.frontend.files import disk_library, read_source
 from smachac.report.explain_code import MAIN, explanation
 from smachac.targets import load_target

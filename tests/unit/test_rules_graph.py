@@ -77,7 +77,7 @@ def test_a_trap_is_one_finding_with_the_way_into_it_and_round() -> None:
         leaf("D", {"x": "C", "y": "D"}),
     )
     assert found(root) == ["SM202 sm/C"]
-    way = one(root, "SM202").finding.path
+    way = one(root, "SM202").finding.path_labels
     assert way == ("A", "(no)", "B", "(x)", "C", "(x)", "D", "(x)", "C")
 
 

@@ -107,7 +107,7 @@ def test_a_machine_that_goes_on_spins_only_where_it_is_never_left(flow: Steps) -
 @given(flows(), st.booleans())
 def test_witnesses_follow_transitions(flow: Steps, forever: bool) -> None:
     for item in report(built(flow, forever)):
-        path = item.finding.path
+        path = item.finding.path_labels
         for state, outcome, target in zip(path[::2], path[1::2], path[2::2], strict=False):
             assert flow[state][outcome.strip("()")] == target
 

@@ -56,7 +56,7 @@ def test_the_witness_of_a_retry_leads_round() -> None:
     root = machine("sm", "done", leaf("GO", {"x": "A"}), leaf("B", {"x": "A"}),
                    leaf("A", {"ok": "done", "failed": "B"}))  # fmt: skip
     item = one(root, "SM204")
-    assert item.finding.path == ("A", "(failed)", "B", "(x)", "A")
+    assert item.finding.path_labels == ("A", "(failed)", "B", "(x)", "A")
     assert item.severity is Severity.WARNING
 
 
@@ -72,7 +72,7 @@ def test_a_machine_that_goes_on_must_wait_somewhere() -> None:
 
     a, b = leaf("A", {"x": "B"}), leaf("B", {"x": "A"})
     assert found(pair(a, b), "SM204") == ["SM204 sm/A"]
-    assert one(pair(a, b), "SM204").finding.path == ("A", "(x)", "B", "(x)", "A")
+    assert one(pair(a, b), "SM204").finding.path_labels == ("A", "(x)", "B", "(x)", "A")
     assert found(pair(a, blocking(b)), "SM204") == []
     assert found(pair(a, replace(b, open=True)), "SM204") == []
     assert found(pair(a, replace(b, type="SleepState")), "SM204") == []

@@ -33,7 +33,7 @@ def test_a_rule_that_asks_one_child_hides_the_other() -> None:
     assert item.finding.message == (
         "`BOTH` ends with `ready` although `RIGHT` failed: `LEFT: done`, `RIGHT: aborted`"
     )
-    assert item.finding.path == ("BOTH", "(ready)", "succeeded")
+    assert item.finding.path_labels == ("BOTH", "(ready)", "succeeded")
 
 
 @pytest.mark.parametrize(
@@ -124,7 +124,7 @@ def test_the_turn_is_told_once_with_a_way_there() -> None:
                      leaf("B", {"aborted": "=aborted", "x": "x"}),
                      to={"x": "succeeded", "aborted": "succeeded"})  # fmt: skip
     item = one(machine("sm", ROOT, inside), "SM206")
-    assert item.finding.path == ("A", "(aborted)", "IN", "(aborted)", "succeeded")
+    assert item.finding.path_labels == ("A", "(aborted)", "IN", "(aborted)", "succeeded")
     assert item.finding.message == (
         "`A` fails with `aborted`, and `sm` ends with a success; so it does after `B`"
     )

@@ -48,7 +48,7 @@ def test_a_key_that_one_way_leaves_unset_is_a_warning_with_that_way() -> None:
     )
     item = one(node, "SM301")
     assert item.severity is Severity.WARNING
-    assert item.finding.path == ("W", "(bad)", "B", "(ok)", "R")
+    assert item.finding.path_labels == ("W", "(bad)", "B", "(ok)", "R")
 
 
 def test_a_key_that_no_way_sets_is_an_error() -> None:
@@ -85,7 +85,7 @@ def test_a_key_that_nothing_sets_is_one_fault_however_many_read_it() -> None:
 
 def test_an_outcome_of_preemption_comes_without_the_outputs() -> None:
     node = root(writer("W", {"ok": "R", "preempted": "R"}), reader("R", DONE))
-    assert one(node, "SM301").finding.path == ("W", "(preempted)", "R")
+    assert one(node, "SM301").finding.path_labels == ("W", "(preempted)", "R")
 
 
 def test_presets_and_inputs_of_the_machine_are_set() -> None:
@@ -110,7 +110,7 @@ def test_a_container_needs_what_is_read_in_it_first() -> None:
     inner = machine("C", "out", reader("R", {"ok": "out"}), ins="k", to={"out": "done"})
     item = one(root(inner, leaf("W", DONE, outs="k")), "SM301")
     assert item.finding.node == "sm/C"
-    assert item.finding.path == ("C", "R")
+    assert item.finding.path_labels == ("C", "R")
     own = machine("C", "out", writer("W", {"ok": "R"}), reader("R", {"ok": "out"}), ins="k",
                   to={"out": "done"})  # fmt: skip
     assert found(root(own)) == []
@@ -139,7 +139,7 @@ def test_outputs_of_a_container_count_per_outcome() -> None:
     inner = machine("C", "good bad", writer("W", {"ok": "good", "no": "bad"}, ok="1"), outs="k",
                     to={"good": "R", "bad": "R"})  # fmt: skip
     item = one(root(inner, reader("R", DONE)), "SM301")
-    assert item.finding.path == ("C", "(bad)", "R")
+    assert item.finding.path_labels == ("C", "(bad)", "R")
     fine = replace(inner, transitions=leaf("X", {"good": "R", "bad": "done"}).transitions)
     assert found(root(fine, reader("R", DONE))) == []
 
@@ -192,7 +192,7 @@ def test_the_rule_of_an_outcome_says_what_is_written() -> None:
         return root(both, reader("R", DONE))
 
     assert found(node("done")) == []
-    assert one(node("R"), "SM301").finding.path == ("C", "(lost)", "R")
+    assert one(node("R"), "SM301").finding.path_labels == ("C", "(lost)", "R")
 
 
 def test_a_race_is_no_missing_key() -> None:

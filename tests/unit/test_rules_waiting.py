@@ -11,7 +11,7 @@ from hypothesis import strategies as st
 from ir_machines import concurrence, iterator, leaf, machine
 from rule_findings import blocking, found, one, report
 
-from smachac.analysis.possible_outcomes import endings
+from smachac.analysis.context import Context
 from smachac.diagnostics.diagnostic import Severity
 from smachac.ir.nodes import Machine, Node, StateMachine
 
@@ -124,8 +124,8 @@ def exits(flow: Flow, left_out: str = "") -> set[str]:
 def test_endings_are_the_exits_that_can_be_reached(flow: Flow) -> None:
     branch = machine("IN", "out lost", *(leaf(name, to) for name, to in flow.items()))
     root = both(WORK, branch)
-    ever, calm = endings(Machine(root=root))
-    assert set(ever[id(branch)]) == exits(flow)
-    assert set(calm[id(branch)]) == exits(flow, left_out="preempted")
+    ever, calm = Context(Machine(root=root)).endings
+    assert set(ever["sm/BOTH/IN"]) == exits(flow)
+    assert set(calm["sm/BOTH/IN"]) == exits(flow, left_out="preempted")
     lasting = bool(exits(flow)) and not exits(flow, left_out="preempted")
     assert bool(found(root, "SM407")) == lasting

@@ -4,7 +4,15 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Sequence
 
-from smachac.diagnostics.diagnostic import Finding, Related, Severity, did_you_mean, problem
+from smachac.diagnostics.diagnostic import (
+    Finding,
+    PathStep,
+    Problem,
+    Related,
+    Severity,
+    did_you_mean,
+    problem,
+)
 from smachac.diagnostics.source import Span, Word
 from smachac.diagnostics.spelling import guesser_of, respelt
 from smachac.diagnostics.wording import listed
@@ -97,7 +105,7 @@ def recursive_include(chain: Sequence[tuple[str, Span]]) -> Finding:
         related=tuple(
             Related(span=at, message=f"`{other}` is called here") for other, at in before
         ),
-        path=tuple(circle),
+        path=tuple(PathStep(other) for other in circle),
     )
 
 
@@ -298,3 +306,15 @@ def template_error(span: Span, message: str, help: str | None = None) -> Finding
         message=message,
         help=help or "look at this line of the template, and at the block it stands in",
     )
+
+
+PROBLEMS: tuple[Problem[...], ...] = (
+    script_not_found,
+    recursive_include,
+    template_not_found,
+    bad_sub_script,
+    unresolved_look_up,
+    bad_robot,
+    template_error,
+)
+"""The problems of this module, in the order of their codes."""

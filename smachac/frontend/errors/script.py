@@ -4,7 +4,14 @@ from __future__ import annotations
 
 from collections.abc import Iterable
 
-from smachac.diagnostics.diagnostic import Finding, Related, Severity, did_you_mean, problem
+from smachac.diagnostics.diagnostic import (
+    Finding,
+    Problem,
+    Related,
+    Severity,
+    did_you_mean,
+    problem,
+)
 from smachac.diagnostics.source import Span, Word
 from smachac.diagnostics.spelling import Guesser, respelt
 from smachac.diagnostics.wording import listed
@@ -358,3 +365,17 @@ def undefined_name(span: Span, name: str, code: str, by_look: bool) -> Finding:
     else:
         help = f'write `"{code}"` if it is text, or define `{name}` in the template of the base'
     return Finding(span=span, message=message, help=help)
+
+
+PROBLEMS: tuple[Problem[...], ...] = (
+    yaml_syntax,
+    duplicate_key,
+    unknown_variable,
+    wrong_shape,
+    missing_variable,
+    too_big,
+    unreadable_file,
+    bad_type,
+    undefined_name,
+)
+"""The problems of this module, in the order of their codes."""

@@ -9,6 +9,7 @@ from smachac.diagnostics.diagnostic import (
     Diagnostic,
     Edit,
     Finding,
+    Problem,
     Severity,
     did_you_mean,
     problem,
@@ -137,3 +138,10 @@ def vain_allowance(code: Word) -> Diagnostic:
     """SM022 for an allowance of what must be mended."""
     message = f"{code.text} cannot be allowed here: no code could be made of such a machine"
     return bad_allowance(code.span, message, "mend the fault, and remove the comment")
+
+
+PROBLEMS: tuple[Problem[...], ...] = (
+    unused_allowance,
+    bad_allowance,
+)
+"""The problems of this module, in the order of their codes."""

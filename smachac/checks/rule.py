@@ -1,0 +1,34 @@
+"""A rule: a function that finds one kind of fault in a machine, with its code."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterator
+from dataclasses import dataclass
+from typing import TypeAlias
+
+from smachac.analysis.context import Context
+from smachac.diagnostics.diagnostic import Code, Finding, Severity
+
+RuleFunction: TypeAlias = Callable[[Context], Iterator[Finding]]
+"""Finds the faults of one kind in a machine."""
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Rule:
+    """A code, and the function that finds its faults."""
+
+    code: Code
+    function: RuleFunction
+
+
+def rule(
+    code: str, name: str, severity: Severity, *, firm: bool = False
+) -> Callable[[RuleFunction], Rule]:
+    """Make a rule of a function. Its docstring is the explanation of the code."""
+
+    def declare(function: RuleFunction) -> Rule:
+        text = function.__doc__ or ""
+        entry = Code(code=code, name=name, severity=severity, explanation=text, firm=firm)
+        return Rule(code=entry, function=function)
+
+    return declare

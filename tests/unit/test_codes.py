@@ -1,0 +1,43 @@
+"""The tables of codes: complete, in order, and each code once."""
+
+from __future__ import annotations
+
+import re
+from pathlib import Path
+
+from smachac import checks
+from smachac.driver import CODES
+from smachac.frontend.errors import references, script, suppressions
+from smachac.targets import errors
+
+PROBLEMS = (
+    script.PROBLEMS,
+    references.PROBLEMS,
+    suppressions.PROBLEMS,
+    checks.PROBLEMS,
+    errors.PROBLEMS,
+)
+ALL = [
+    *(each.code.code for problems in PROBLEMS for each in problems),
+    *(each.code.code for each in checks.RULES),
+]
+
+DECLARED = re.compile(r"^@(?:rule|problem)\(\s*\"(SM\d+)\"", re.M)
+
+
+def test_every_rule_and_problem_in_the_source_is_in_one_tuple() -> None:
+    files = Path(checks.__file__).parents[1].rglob("*.py")
+    declared = [code for file in files for code in DECLARED.findall(file.read_text("utf-8"))]
+    assert sorted(declared) == sorted(ALL)
+
+
+def test_each_code_is_given_once_and_is_in_the_table() -> None:
+    assert len(set(ALL)) == len(ALL)
+    assert list(CODES) == sorted(ALL)
+    assert all(name == code.code for name, code in CODES.items())
+
+
+def test_the_tuples_are_in_the_order_of_their_codes() -> None:
+    tuples = [[each.code.code for each in problems] for problems in PROBLEMS]
+    tuples.append([rule.code.code for rule in checks.RULES])
+    assert tuples == [sorted(codes) for codes in tuples]
