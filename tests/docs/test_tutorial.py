@@ -1,4 +1,4 @@
-"""docs/tutorial.md and docs/robot.md: each command, in order, in an empty folder, prints what is shown."""
+"""docs/tutorial.md and docs/robot.md: every command, in order, in an empty folder."""
 
 from __future__ import annotations
 
