@@ -23,7 +23,7 @@ def main(each: int = EACH, projects: int = PROJECTS) -> int:
     begun = time.process_time()
     victims = victims_of(projects)
     tallies = tallied(mutants(victims, each))
-    print("| damage | caught | missed | no fault | why that is none |")
+    print("| damage | caught | missed | no fault | reason why it is none |")
     print("| --- | --- | --- | --- | --- |")
     for name, tally in tallies.items():
         counts = [tally.counts[word] for word in ("caught", "missed", "equivalent")]
