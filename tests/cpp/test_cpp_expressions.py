@@ -85,6 +85,14 @@ def folder(tmp_path_factory: pytest.TempPathFactory) -> Path:
         ("max(ud.whole, key=lambda v: -v)",
          "py::max_of(in.whole, [&](const auto &item_1) { return py::negate(item_1); })"),
         ("'at ' + str(ud.x) + 'm'", '"at " + py::text(in.x) + "m"'),
+        ("ud.s + ' == ' != ud.mode", 'in.s + " == " != in.mode'),
+        ("(ud.note if ud.n == 1 else None) != None",
+         "(in.n == 1 ? in.note : std::optional<std::string>{}) != std::nullopt"),
+        ("max(ud.whole, key=lambda v: ud.n)",
+         "py::max_of(in.whole, [&]([[maybe_unused]] const auto &item_1) { return in.n; })"),
+        ("max([ud.pose], key=lambda v: len(v))",
+         "py::max_of(std::array<smachac::Pose, 1>{{in.pose}}, "
+         "[&]([[maybe_unused]] const auto &item_1) { return 2; })"),
     ],
 )  # fmt: skip
 def test_expressions_are_printed(code: str, text: str) -> None:
@@ -149,7 +157,7 @@ def test_expressions_are_refused_with_a_reason(code: str, wanted: str, reason: s
 
 def test_conditions_are_truth() -> None:
     def text(code: str) -> str:
-        return cpp_condition(*cpp_function(code, KEYS)).replace("smachac::py::", "py::")
+        return cpp_condition(*cpp_function(code, KEYS)).text.replace("smachac::py::", "py::")
 
     assert text("ud.n and ud.flag") == "in.n != 0 && in.flag"
     assert text("ud.words") == "py::truth(in.words)"

@@ -81,6 +81,28 @@ int main() {
 """
 
 
+NAMED_STOP = """
+name: sm
+outcomes: [going, standing]
+userdata: {stop: false}
+states:
+  - JUDGE:
+      template: ConditionalOutcomeState
+      input_keys: [stop]
+      outcomes: [standing, going]
+      callbacks: {standing: ud.stop}
+      default_outcome: going
+"""
+
+
+def test_a_key_named_stop_is_no_request_to_stop() -> None:
+    report, header = made({"main.yml": NAMED_STOP})
+    assert report == []
+    assert "Outcome execute(Userdata &ud) {" in header
+    assert "if (ud.stop.get())" in header
+    assert "stop_for" not in header
+
+
 @COMPILERS
 def test_the_class_of_the_documentation_is_one(compiler: Compiler, tmp_path: Path) -> None:
     interface, class_ = blocks("yaml")[0], blocks("cpp")[0]

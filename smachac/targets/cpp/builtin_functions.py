@@ -12,8 +12,8 @@ from smachac.targets.cpp.terms import (
     NUMBER,
     RANGE,
     SEQUENCES,
+    CppText,
     Term,
-    Text,
     call,
     cpp,
     fixed,
@@ -62,7 +62,7 @@ def items(term: Term) -> Term:
         raise UnportableError(f"a `{kind}` is no list: name its parts")
     if kind.name not in SEQUENCES:
         raise UnportableError(f"there is nothing to go through in a `{shown(term.type)}`")
-    return fixed(kind, Text(term.present()))
+    return fixed(kind, CppText(term.present()))
 
 
 def _no_names(named: Named, *but: str) -> None:
@@ -102,7 +102,7 @@ def _dict(given: list[Term], named: Named) -> Term:
     only = _only(given, named, "a copy")
     if present(only.type).name != "dict":
         raise UnportableError(f"a `{shown(only.type)}` is no mapping")
-    return fixed(present(only.type), Text(only.present()))
+    return fixed(present(only.type), CppText(only.present()))
 
 
 def _float(given: list[Term], named: Named) -> Term:
@@ -125,7 +125,7 @@ def _int(given: list[Term], named: Named) -> Term:
         return fixed(INT, call("whole", only.present()))
     if kind is None:
         raise UnportableError(f"a `{shown(only.type)}` is no number")
-    return fixed(INT, Text(f"std::int64_t{{{whole(only).text}}}"))
+    return fixed(INT, CppText(f"std::int64_t{{{whole(only).text}}}"))
 
 
 def _len(given: list[Term], named: Named) -> Term:
@@ -140,7 +140,7 @@ def _len(given: list[Term], named: Named) -> Term:
 
 def _list(given: list[Term], named: Named, kind: str = "list") -> Term:
     if not given:
-        return fixed(Type(kind, (INT,)), Text(f"{cpp(Type(kind, (INT,)))}{{}}"))
+        return fixed(Type(kind, (INT,)), CppText(f"{cpp(Type(kind, (INT,)))}{{}}"))
     only = _only(given, named, "a list")
     if present(only.type).name == "dict":
         raise UnportableError("C++ does not keep the order of a mapping: write `sorted(...)`")

@@ -1,9 +1,9 @@
-"""Leaves of the built-in state types: structs whose bodies are printed from the script."""
+"""Leaves of the built-in state types: structs whose `execute` is made from the script."""
 
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 from smachac.analysis.accesses import callbacks
 from smachac.diagnostics.source import Span
@@ -11,9 +11,16 @@ from smachac.ir.leaf import default_outcome, variable
 from smachac.ir.nodes import Data, Expression, Iterator, Leaf, Struct
 from smachac.ir.traversal import PREEMPTED, own_outcomes
 from smachac.ir.types import Type
-from smachac.targets.cpp.expressions import Spelling, cpp_condition, cpp_expression, cpp_function
+from smachac.targets.cpp.expressions import (
+    Printed,
+    Spelling,
+    cpp_condition,
+    cpp_expression,
+    cpp_function,
+)
 from smachac.targets.cpp.identifiers import identifier
-from smachac.targets.cpp.plan import Scope, place
+from smachac.targets.cpp.plan import ContainerScope, place
+from smachac.targets.cpp.terms import BOOL
 from smachac.targets.cpp.types import UnportableError, cpp_literal, cpp_value
 
 FLOAT = Type("float")
@@ -21,245 +28,284 @@ LARGEST_WORD = 2**32
 
 
 Refuse = Callable[[Span, UnportableError], None]
-"""Notes what C++ cannot say, and where."""
+"""Reports what C++ cannot express, with its place in the script."""
 
 STOP = "run.stop_for(places, state)"
-"""What hands a state the requests to stop."""
+"""The argument that passes the requests to stop to a state."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class LeafCode:
-    """A leaf in C++: its type, the call that runs it, and the definition of the type if it is ours.
+    """A leaf in C++: its type, the call that runs it, and the definition of the type if the header
+    has to contain it.
 
-    `made_with` are the arguments of its constructor; `parameter` is what the `States` around have
-    to be made with for that."""
+    `made_with` are the arguments of its constructor; `parameter` is the parameter that the `States`
+    of its container need for them. `uses_userdata`: the call uses the userdata of the container.
+    `uses_stop`: the state receives requests to stop.
+    """
 
     type: str
     call: str
     definition: tuple[str, ...] = ()
     made_with: str = ""
     parameter: str = ""
+    uses_userdata: bool
+    uses_stop: bool
 
-    def outcome(self, name: str) -> str:
-        return f"{self.type}::Outcome::{identifier(name)}"
+    @property
+    def outcome_type(self) -> str:
+        return f"{self.type}::Outcome"
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
-class _Body:
-    """What a leaf does: statements, and members beside `execute`."""
+class _Statements:
+    """Statements of `execute`, and the parameters of `execute` that they use."""
 
-    lines: tuple[str, ...]
-    members: tuple[str, ...] = ()
+    lines: tuple[str, ...] = ()
+    uses_userdata: bool = False
+    uses_run: bool = False
+    uses_stop: bool = False
+
+    def __add__(self, other: _Statements) -> _Statements:
+        return _Statements(
+            lines=(*self.lines, *other.lines),
+            uses_userdata=self.uses_userdata or other.uses_userdata,
+            uses_run=self.uses_run or other.uses_run,
+            uses_stop=self.uses_stop or other.uses_stop,
+        )
+
+    def within(self, head: str, end: str = "") -> _Statements:
+        """The statements one level deeper, after a head and before an end."""
+        inner = (f"  {line}" for line in self.lines)
+        return replace(self, lines=(head, *inner, *((end,) if end else ())))
+
+    def parameters(self) -> Mapping[str, str]:
+        """The parameters of `execute`, with the argument for each."""
+        return {
+            **({"Userdata &ud": "ud"} if self.uses_userdata else {}),
+            **({"Run &run": "run"} if self.uses_run else {}),
+            **({"smachac::Stop &stop": STOP} if self.uses_stop else {}),
+        }
 
 
 def is_built_in(type_: str) -> bool:
-    """Whether leaves of a type are printed from the script."""
-    return type_ in _BODIES
+    """Whether the code of leaves of a type is made from the script."""
+    return type_ in _STATEMENTS
 
 
-def builtin_behaviour(leaf: Leaf, scope: Scope, refuse: Refuse) -> LeafCode | None:
-    """The struct of a leaf of a built-in type; None for other types. What is wrong in one of its
-    expressions is refused there, and the struct lacks it. Raises UnportableError."""
-    make = _BODIES.get(leaf.type)
+def built_in(leaf: Leaf, scope: ContainerScope, refuse: Refuse) -> LeafCode | None:
+    """The struct of a leaf of a built-in type; None for other types.
+
+    An expression that C++ cannot express is refused at its place, and the struct lacks it. Raises
+    UnportableError for other faults.
+    """
+    make = _STATEMENTS.get(leaf.type)
     if make is None:
         return None
-    body = make(_Code(leaf=leaf, scope=scope, refuse=refuse))
+    statements, member = make(_BuiltInLeaf(leaf=leaf, scope=scope, refuse=refuse))
+    arguments = ", ".join(statements.parameters().values())
     return LeafCode(
         type=f"types::{identifier(leaf.name)}",
-        call=f"states.{identifier(leaf.name)}.execute({', '.join(_parameters(body).values())})",
-        definition=_definition(leaf, body),
+        call=f"states.{identifier(leaf.name)}.execute({arguments})",
+        definition=_definition(leaf, statements, member),
+        uses_userdata=statements.uses_userdata,
+        uses_stop=statements.uses_stop,
     )
 
 
-def _parameters(body: _Body) -> dict[str, str]:
-    """The parameters that a body needs, with what is given for each."""
-    text = "\n".join(body.lines)
-    watched = "run.write(" in text
-    return {
-        **({"Userdata &ud": "ud"} if "ud." in text else {}),
-        **({"Run &run": "run"} if watched else {}),
-        **({"smachac::Stop &stop": STOP} if "stop." in text else {}),
-    }
-
-
-def _definition(leaf: Leaf, body: _Body) -> tuple[str, ...]:
-    parameters = _parameters(body)
-    head = ["  template <class Run>"] if "Run &run" in parameters else []
+def _definition(leaf: Leaf, statements: _Statements, member: str) -> tuple[str, ...]:
     return (
         *((f"/// {place(leaf)}",) if place(leaf) else ()),
         f"struct {identifier(leaf.name)} {{",
         *(f"  {line}" for line in enumeration(own_outcomes(leaf))),
         "",
-        *head,
-        f"  Outcome execute({', '.join(parameters)}) {{",
-        *(f"    {line}" for line in body.lines),
+        *(("  template <class Run>",) if statements.uses_run else ()),
+        f"  Outcome execute({', '.join(statements.parameters())}) {{",
+        *(f"    {line}" for line in statements.lines),
         "  }",
-        *(("",) if body.members else ()),
-        *(f"  {line}" for line in body.members),
+        *(("", f"  {member}") if member else ()),
         "};",
     )
 
 
 def enumeration(names: tuple[str, ...]) -> list[str]:
-    """The outcomes of a state."""
+    """The enumeration of the outcomes of a state."""
     size = 8 if len(names) <= 2**8 else 16 if len(names) <= 2**16 else 32
     head = f"enum class Outcome : std::uint{size}_t {{"
     return [head, *(f"  {identifier(each)}," for each in names), "};"]
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
-class _Code:
-    """A leaf and the userdata it works on."""
+class _BuiltInLeaf:
+    """A leaf of a built-in type and the container around it."""
 
     leaf: Leaf
-    scope: Scope
+    scope: ContainerScope
     refuse: Refuse
 
     @property
-    def raw(self) -> bool:
-        """Whether the leaf sees every key of its container, as the child of an iterator does."""
+    def in_iterator(self) -> bool:
+        """Whether the leaf reads and writes every key of its container, without remapping."""
         return isinstance(self.scope.node, Iterator)
 
     def bound(self, key: str) -> str:
+        """The key of the container that a key of the leaf stands for."""
         return self.scope.names(self.leaf).get(key, key)
 
     def reads(self) -> dict[str, Spelling]:
-        """The keys that its functions may read."""
+        """The keys that functions of the leaf may read."""
         inputs = [key.name for key in self.leaf.inputs]
-        return {key: self.read(key) for key in (self.scope.keys if self.raw else inputs)}
+        return {key: self.read(key) for key in (self.scope.keys if self.in_iterator else inputs)}
 
     def read(self, key: str) -> Spelling:
         return self.scope.read(self.bound(key), key)
 
     def writes(self, key: str) -> bool:
-        return self.raw or any(each.name == key for each in self.leaf.outputs)
+        return self.in_iterator or any(each.name == key for each in self.leaf.outputs)
 
-    def write(self, key: str, make: Callable[[Type], str]) -> str:
-        """The statement that writes what `make` prints for the type of the key."""
+    def write(self, key: str, make: Callable[[Type], str]) -> _Statements:
+        """The statement that writes a key; `make` gives the value for the type of the key."""
         outer = self.bound(key)
         value = make(self.scope.key(outer))
-        return f"run.write({cpp_literal(key)}, ud.{identifier(outer)}, {value});"
+        line = f"run.write({cpp_literal(key)}, ud.{identifier(outer)}, {value});"
+        return _Statements(lines=(line,), uses_userdata=True, uses_run=True)
 
-    def function(self, code: Expression, wanted: Type | None = None) -> str:
-        """What a function of the script gives, as a value of the wanted type or else a truth."""
+    def function(self, code: Expression, wanted: Type | None = None) -> Printed:
+        """The result of a function of the script, as a value of the wanted type or else as a truth
+        value; without text where it is refused."""
         try:
             body, names = cpp_function(code.text, self.reads())
             if wanted is None:
                 return cpp_condition(body, names)
-            return cpp_expression(body, names, wanted).text
+            return cpp_expression(body, names, wanted)
         except UnportableError as error:
             self.refuse(code.span, error)
-            return ""
+            return Printed(text="", type=BOOL, uses_names=False)
 
-    def end(self, outcome: str) -> str:
+    def end(self, outcome: str) -> _Statements:
         if outcome not in own_outcomes(self.leaf):
             raise UnportableError(f"it ends with `{outcome}`, which is not one of its outcomes")
-        return f"return Outcome::{identifier(outcome)};"
+        return _Statements(lines=(f"return Outcome::{identifier(outcome)};",))
 
-    def stopping(self) -> tuple[str, ...]:
-        """What answers a request to stop, where the leaf can."""
+    def stopping(self) -> _Statements:
+        """The statements that answer a request to stop; none for a leaf without that outcome."""
         if PREEMPTED not in own_outcomes(self.leaf):
-            return ()
-        return ("if (stop.requested()) {", "  stop.service();", f"  {self.end(PREEMPTED)}", "}")
+            return _Statements()
+        return self.preempted("stop.requested()")
+
+    def preempted(self, test: str) -> _Statements:
+        """The statements that end the leaf as preempted where a test of `stop` holds."""
+        service = _Statements(lines=("stop.service();",), uses_stop=True)
+        return (service + self.end(PREEMPTED)).within(f"if ({test}) {{", "}")
 
     def functions(self) -> Mapping[str, Expression]:
+        """The functions of the variable `callbacks`, by name."""
         found = callbacks(self.leaf)
         data = variable(self.leaf, "callbacks")
         if found is None or (isinstance(data, Struct) and len(found) < len(data.entries)):
             raise UnportableError("`callbacks` is no mapping of names to functions")
         return found
 
-
-def _callbacks(code: _Code) -> _Body:
-    return _Body(lines=(*_calls(code), code.end(default_outcome(code.leaf))))
-
-
-def _calls(code: _Code) -> list[str]:
-    """The statements that call the functions of the script, each for the key of its name."""
-    lines = []
-    functions = code.functions()
-    for key in sorted(functions):
-        if not code.writes(key):
-            raise UnportableError(f"it writes `{key}`, which is not one of its outputs")
-        lines.append(code.write(key, lambda type_, f=functions[key]: code.function(f, type_)))  # type: ignore[misc]
-    return lines
+    def calls(self) -> _Statements:
+        """The statements that call the functions of the script and write each result to the key of
+        its name."""
+        found = _Statements()
+        functions = self.functions()
+        for key in sorted(functions):
+            if not self.writes(key):
+                raise UnportableError(f"it writes `{key}`, which is not one of its outputs")
+            code = functions[key]
+            found += self.write(key, lambda type_, code=code: self.function(code, type_).text)  # type: ignore[misc]
+        return found
 
 
-def _conditional(code: _Code) -> _Body:
-    functions = code.functions()
-    if code.leaf.outputs:
+Code = tuple[_Statements, str]
+"""The statements of a leaf, and the member that it has beside `execute`, if any."""
+
+
+def _callbacks(leaf: _BuiltInLeaf) -> Code:
+    return leaf.calls() + leaf.end(default_outcome(leaf.leaf)), ""
+
+
+def _conditional(leaf: _BuiltInLeaf) -> Code:
+    functions = leaf.functions()
+    if leaf.leaf.outputs:
         raise UnportableError("it writes its outcome under a key")
-    lines = []
-    for outcome in own_outcomes(code.leaf):
+    found = _Statements()
+    for outcome in own_outcomes(leaf.leaf):
         if outcome in functions:
-            holds = code.function(functions[outcome])
-            lines += [f"if ({holds}) {{", f"  {code.end(outcome)}", "}"]
-    otherwise = variable(code.leaf, "default_outcome")
+            holds = leaf.function(functions[outcome])
+            test = leaf.end(outcome).within(f"if ({holds.text}) {{", "}")
+            found += replace(test, uses_userdata=holds.uses_names)
+    otherwise = variable(leaf.leaf, "default_outcome")
     if not isinstance(otherwise, str):
         raise UnportableError("it has no `default_outcome`")
-    return _Body(lines=(*lines, code.end(otherwise)))
+    return found + leaf.end(otherwise), ""
 
 
-def _scripted(code: _Code) -> _Body:
-    data = variable(code.leaf, "steps")
-    steps = [_step(code, step) for step in data] if isinstance(data, tuple) else []
+def _scripted(leaf: _BuiltInLeaf) -> Code:
+    data = variable(leaf.leaf, "steps")
+    steps = [_step(leaf, step) for step in data] if isinstance(data, tuple) else []
     if not steps:
-        return _Body(lines=(*code.stopping(), code.end(own_outcomes(code.leaf)[0])))
+        return leaf.stopping() + leaf.end(own_outcomes(leaf.leaf)[0]), ""
     if len(steps) == 1:
-        return _Body(lines=(*code.stopping(), *steps[0]))
-    lines = ["++visits_;", *code.stopping(), "switch (visits_) {"]
+        return leaf.stopping() + steps[0], ""
+    found = _Statements(lines=("++visits_;",)) + leaf.stopping()
+    found += _Statements(lines=("switch (visits_) {",))
     for number, step in enumerate(steps, 1):
-        lines.append(f"case {number}:" if number < len(steps) else "default:")
-        lines += [f"  {line}" for line in step]
-    return _Body(lines=(*lines, "}"), members=("std::uint64_t visits_ = 0;",))
+        found += step.within(f"case {number}:" if number < len(steps) else "default:")
+    return found + _Statements(lines=("}",)), "std::uint64_t visits_ = 0;"
 
 
-def _step(code: _Code, step: Data) -> list[str]:
-    told = dict(step.entries) if isinstance(step, Struct) else None
-    if told is None:
+def _step(leaf: _BuiltInLeaf, step: Data) -> _Statements:
+    given = dict(step.entries) if isinstance(step, Struct) else None
+    if given is None:
         raise UnportableError("a step is no mapping of `outcome` and `set`")
-    sets = told.get("set")
-    lines = []
+    sets = given.get("set")
+    found = _Statements()
     for key, value in sets.entries if isinstance(sets, Struct) else ():
-        if code.writes(key):
-            lines.append(code.write(key, lambda type_, v=value: cpp_value(v, type_)))  # type: ignore[misc]
-    return [*lines, code.end(str(told.get("outcome") or default_outcome(code.leaf)))]
+        if leaf.writes(key):
+            found += leaf.write(key, lambda type_, value=value: cpp_value(value, type_))  # type: ignore[misc]
+    return found + leaf.end(str(given.get("outcome") or default_outcome(leaf.leaf)))
 
 
-def _sleep(code: _Code) -> _Body:
-    time = variable(code.leaf, "time")
-    seconds = code.function(time, FLOAT) if isinstance(time, Expression) else cpp_value(time, FLOAT)
-    if PREEMPTED not in own_outcomes(code.leaf):
-        return _Body(lines=(f"smachac::sleep({seconds});", code.end(default_outcome(code.leaf))))
-    lines = (f"if (stop.wait({seconds})) {{", "  stop.service();", f"  {code.end(PREEMPTED)}", "}")
-    return _Body(lines=(*lines, code.end(default_outcome(code.leaf))))
+def _sleep(leaf: _BuiltInLeaf) -> Code:
+    time = variable(leaf.leaf, "time")
+    if isinstance(time, Expression):
+        seconds = leaf.function(time, FLOAT)
+    else:
+        seconds = Printed(text=cpp_value(time, FLOAT), type=FLOAT, uses_names=False)
+    if PREEMPTED in own_outcomes(leaf.leaf):
+        sleep = leaf.preempted(f"stop.wait({seconds.text})")
+    else:
+        sleep = _Statements(lines=(f"smachac::sleep({seconds.text});",))
+    sleep = replace(sleep, uses_userdata=seconds.uses_names)
+    return sleep + leaf.end(default_outcome(leaf.leaf)), ""
 
 
-def _random(code: _Code) -> _Body:
-    if {key.name for key in code.leaf.outputs} - {*code.functions()}:
+def _random(leaf: _BuiltInLeaf) -> Code:
+    if {key.name for key in leaf.leaf.outputs} - {*leaf.functions()}:
         raise UnportableError("it writes its outcome under a key")
-    seed = variable(code.leaf, "seed")
+    seed = variable(leaf.leaf, "seed")
     number = abs(seed) if isinstance(seed, int) else 0
     words: list[str] = []
     while number or not words:
         words.append(f"{number % LARGEST_WORD}U")
         number //= LARGEST_WORD
-    names = own_outcomes(code.leaf)
+    names = own_outcomes(leaf.leaf)
     draw = f"return static_cast<Outcome>(draws_.below({len(names)}));"
-    return _Body(
-        lines=(*_calls(code), draw), members=(f"smachac::Draws draws_{{{', '.join(words)}}};",)
-    )
+    member = f"smachac::Draws draws_{{{', '.join(words)}}};"
+    return leaf.calls() + _Statements(lines=(draw,)), member
 
 
-def _print(code: _Code) -> _Body:
-    keys = sorted(key.name for key in code.leaf.inputs)
-    lines = [f"smachac::print({cpp_literal(key)}, {code.read(key).text});" for key in keys]
-    return _Body(
-        lines=(*code.stopping(), *lines, code.end(default_outcome(code.leaf))),
-    )
+def _print(leaf: _BuiltInLeaf) -> Code:
+    keys = sorted(key.name for key in leaf.leaf.inputs)
+    lines = [f"smachac::print({cpp_literal(key)}, {leaf.read(key).text});" for key in keys]
+    prints = _Statements(lines=tuple(lines), uses_userdata=bool(lines))
+    return leaf.stopping() + prints + leaf.end(default_outcome(leaf.leaf)), ""
 
 
-_BODIES: dict[str, Callable[[_Code], _Body]] = {
+_STATEMENTS: Mapping[str, Callable[[_BuiltInLeaf], Code]] = {
     "CallbacksState": _callbacks,
     "ConditionalOutcomeState": _conditional,
     "ScriptedState": _scripted,

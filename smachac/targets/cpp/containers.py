@@ -1,15 +1,20 @@
-"""The functions that run containers, from their entry to their end."""
+"""Containers in C++: one function for each, which runs it from its entry to its outcome.
+
+A state machine or sequence is a loop around a switch over its states; with many states the switch
+is divided among several functions. A concurrence runs its states in threads and then evaluates its
+rules. An iterator is a loop over its items.
+"""
 
 from __future__ import annotations
 
-import re
 from collections.abc import Iterable, Mapping
 from collections.abc import Set as AbstractSet
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from itertools import islice
 
 from smachac.ir.nodes import (
     Concurrence,
+    Container,
     Expression,
     Iterator,
     Leaf,
@@ -20,87 +25,117 @@ from smachac.ir.nodes import (
 )
 from smachac.ir.traversal import leads_to_child, own_outcomes, walk
 from smachac.ir.types import Type
-from smachac.targets.cpp.builtin_states import STOP, LeafCode
+from smachac.targets.cpp.builtin_states import LeafCode
 from smachac.targets.cpp.expressions import cpp_expression, cpp_function
 from smachac.targets.cpp.identifiers import identifier
-from smachac.targets.cpp.plan import Scope, member, place
+from smachac.targets.cpp.plan import ContainerScope, member, place
 from smachac.targets.cpp.types import UnportableError, cpp_literal, cpp_type, cpp_value
-
-
-def execute(inside: Inside) -> Lines:
-    """The function that runs a container from its entry to its end."""
-    match inside.node:
-        case Iterator():
-            body = iterator(inside)
-        case Concurrence():
-            body = concurrence(inside)
-        case _:
-            body = machine(inside)
-    states, userdata = used(body)
-    run = next((name for name in ("around", "run") if says(body, name)), "")
-    # A container is run from one place only: if it is small, what surrounds it takes it in.
-    few = len(list(islice(walk(inside.node), MOST_STATES + 1))) <= MOST_STATES
-    inline = "[[gnu::always_inline]] inline" if few else "inline"
-    return [
-        "template <class Run>",
-        f"{inline} Outcome execute(States &{states}, Userdata &{userdata}, Run &{run}) {{",
-        *indented(body),
-        "}",
-    ]
-
 
 Lines = list[str]
 
+MOST_STATES = 40
+"""The most states in one function. Up to this number a compiler goes from state to state by jumps;
+with more it uses a table, and its own running time is quadratic in the branches of a function."""
+
 NEVER = ["default:", "  smachac::never();"]
-"""With it compilers know that there are no other states, and look a state up without a test."""
+"""The last case of the switch over the states. It tells the compiler that there is no other state,
+so that the compiler omits the range check."""
 
 NO_OUTCOME = "run.no_outcome(places, state);"
-"""Where a state gets to that ended with none of its outcomes, a number cast to one. As this never
-returns, compilers need not keep what it takes to run the state again."""
+"""The statement after the switch over the outcomes: the state has ended with none of them (a number
+cast to an outcome). It never returns, so that the compiler need not keep what a next turn needs."""
 
 CAUGHT = "run.caught(places, state);"
-GOES_ON = "SMACHAC_CATCH { run.failed(places, state); }"
-"""What is done about an exception where it is caught, and where it is not."""
+"""The statement for an exception that is an outcome of the state."""
+
+FAILED = "SMACHAC_CATCH { run.failed(places, state); }"
+"""The handler for an exception that leaves the container."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
-class Inside:
-    """A container that is to be printed, the code of its leaves by name, and the names of all
-    its states; `scopes` are those of the machine. `stopping` are the paths of containers in which
-    something hears of requests to stop."""
+class ContainerPlan:
+    """A container to be printed: its scope, the code of its leaves and the names of its states.
 
-    scope: Scope
+    `scopes` are those of the machine, by path. `stopping` holds the paths of the containers in
+    which a state receives requests to stop.
+    """
+
+    scope: ContainerScope
     leaves: Mapping[str, LeafCode]
     names: frozenset[str]
-    scopes: Mapping[str, Scope]
+    scopes: Mapping[str, ContainerScope]
     stopping: AbstractSet[str]
 
-    def hears(self, child: Node) -> bool:
-        """Whether a state, or something in it, is told of requests to stop."""
-        if isinstance(child, Leaf):
-            return STOP in self.leaves[child.name].call
-        return f"{self.scope.path}/{child.name}" in self.stopping
-
     @property
-    def node(self) -> StateMachine | Sequence | Concurrence | Iterator:
+    def node(self) -> Container:
         return self.scope.node
 
-    def outcome(self, child: Node, name: str) -> str:
-        """An outcome of a child."""
+    def receives_stop(self, child: Node) -> bool:
+        """Whether a state, or a state in it, receives requests to stop."""
         if isinstance(child, Leaf):
-            return self.leaves[child.name].outcome(name)
-        return f"{identifier(child.name)}::Outcome::{identifier(name)}"
+            return self.leaves[child.name].uses_stop
+        return f"{self.scope.path}/{child.name}" in self.stopping
 
-    def ends(self, name: str) -> str:
-        """An outcome of the container."""
+    def outcome_type(self, child: Node) -> str:
+        """The enumeration of the outcomes of a child."""
+        if isinstance(child, Leaf):
+            return self.leaves[child.name].outcome_type
+        return f"{identifier(child.name)}::Outcome"
+
+    def child_outcome(self, child: Node, name: str) -> str:
+        """An outcome of a child."""
+        return f"{self.outcome_type(child)}::{identifier(name)}"
+
+    def own_outcome(self, name: str) -> str:
+        """An outcome of the container. Raises UnportableError where it has none of that name."""
         if name not in results(self.node):
             raise UnportableError(f"`{self.scope.path}` has no outcome `{name}`")
         return f"Outcome::{identifier(name)}"
 
 
+@dataclass(frozen=True, slots=True, kw_only=True)
+class FunctionBody:
+    """The body of a function, and the names of those parameters that it uses; a parameter that is
+    not used has no name."""
+
+    statements: Lines
+    states: str = ""
+    userdata: str = ""
+    run: str = ""
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class ChildCall:
+    """The call of a state: the statements before it and the expression for its outcome.
+
+    `declares`: the statements declare a variable. `uses_userdata`: they use the userdata of the
+    container.
+    """
+
+    statements: Lines
+    outcome: str
+    declares: bool
+    uses_userdata: bool
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class OutcomeCode:
+    """The statements for one outcome of a state. `loops`: the container goes on with its next turn.
+    `ends`: the container ends."""
+
+    statements: Lines
+    loops: bool = False
+    ends: bool = False
+
+    @property
+    def in_loop(self) -> Lines:
+        """The statements within the loop of the container."""
+        return [*self.statements, "continue;"] if self.loops else self.statements
+
+
 def results(node: Node) -> tuple[str, ...]:
-    """The outcomes that a state itself ends with: an iterator that is asked to stop ends as its
-    state did, declared or not (smach-semantics P9)."""
+    """The outcomes that a state itself ends with. An iterator that is stopped ends with the outcome
+    of its state, whether it declares that outcome or not."""
     found = dict.fromkeys(own_outcomes(node))
     if isinstance(node, Iterator):
         final = dict(node.final_map)
@@ -110,150 +145,212 @@ def results(node: Node) -> tuple[str, ...]:
 
 
 def all_results(node: Node) -> tuple[str, ...]:
-    """The outcomes that a state can end with, the one for its exceptions among them."""
+    """The outcomes that a state can end with, including the one for its exceptions."""
     return (*results(node), *([node.catches] if node.catches else []))
 
 
-def indented(lines: Lines, by: int = 1) -> Lines:
-    """Lines, so many levels deeper."""
-    return [f"{'  ' * by}{line}" if line else "" for line in lines]
+def execute(plan: ContainerPlan) -> Lines:
+    """The function that runs a container from its entry to its outcome."""
+    match plan.node:
+        case Iterator() as node:
+            body = _iterator(plan, node)
+        case Concurrence() as node:
+            body = _concurrence(plan, node)
+        case StateMachine() | Sequence() as node:
+            body = _machine(plan, node)
+    # A container is run from one place only: if it is small, its caller takes it in.
+    small = len(list(islice(walk(plan.node), MOST_STATES + 1))) <= MOST_STATES
+    inline = "[[gnu::always_inline]] inline" if small else "inline"
+    return [
+        "template <class Run>",
+        f"{inline} Outcome execute(States &{body.states}, Userdata &{body.userdata},"
+        f" Run &{body.run}) {{",
+        *indented(body.statements),
+        "}",
+    ]
 
 
-def called(inside: Inside, child: Node) -> tuple[Lines, str]:
-    """The statements that run a child, and the expression for its outcome."""
+def indented(lines: Lines) -> Lines:
+    """Lines, one level deeper."""
+    return [f"  {line}" if line else "" for line in lines]
+
+
+def _call(plan: ContainerPlan, child: Node) -> ChildCall:
+    """The call of a child. The keys of a container are copied in before and out after its call."""
     if isinstance(child, Leaf):
-        return [], inside.leaves[child.name].call
+        leaf = plan.leaves[child.name]
+        return ChildCall(
+            statements=[], outcome=leaf.call, declares=False, uses_userdata=leaf.uses_userdata
+        )
     own = f"ud.{member(child)}"
-    inner = inside.scopes[f"{inside.scope.path}/{child.name}"]
-    names = inside.scope.names(child)
+    inner = plan.scopes[f"{plan.scope.path}/{child.name}"]
+    names = plan.scope.names(child)
     before, after = [], []
     for key in child.inputs:
         outer = names.get(key.name, key.name)
-        before.append(copied(f"{own}.", key.name, inside.scope, "ud.", outer))
+        before.append(_copy(f"{own}.", key.name, plan.scope, "ud.", outer))
     for key in child.outputs:
         outer = names.get(key.name, key.name)
-        held = outer in inside.scope.sure
-        after.append(copied("ud.", outer, inner, f"{own}.", key.name, held=held))
+        held = outer in plan.scope.sure
+        after.append(_copy("ud.", outer, inner, f"{own}.", key.name, held=held))
     call = f"{identifier(child.name)}::execute(states.{member(child)}, {own}, run)"
+    found = ChildCall(statements=before, outcome=call, declares=False, uses_userdata=True)
     if not after:
-        return before, call
-    return [*before, f"const auto outcome = {call};", *after], "outcome"
+        return found
+    found = _with_variable(found)
+    return replace(found, statements=[*found.statements, *after])
 
 
-def copied(to: str, key: str, source: Scope, place: str, name: str, *, held: bool = False) -> str:
-    """The statement that copies a key at the border of a container. `held`: where it goes to,
-    there is a value already."""
-    target, given = f"{to}{identifier(key)}", f"{place}{identifier(name)}"
+def _with_variable(call: ChildCall) -> ChildCall:
+    """A call whose outcome is in a variable."""
+    if call.declares:
+        return call
+    declared = f"const auto outcome = {call.outcome};"
+    statements = [*call.statements, declared]
+    return replace(call, statements=statements, outcome="outcome", declares=True)
+
+
+def _copy(
+    to: str, key: str, source: ContainerScope, owner: str, name: str, *, held: bool = False
+) -> str:
+    """The statement that copies a key into or out of a container. `held`: the destination surely
+    holds a value."""
+    target, given = f"{to}{identifier(key)}", f"{owner}{identifier(name)}"
     if name in source.sure:
         return f"{target}.{'replace' if held else 'hold'}({given}.get());"
     return f"{target}.take({given});"
 
 
-def case(inside: Inside, child: Node, cases: Lines, result: str = "") -> Lines:
-    """A case of the switch over the states: the child runs, then the switch over its outcomes."""
-    before, outcome = called(inside, child)
+def _case(child: Node, call: ChildCall, outcomes: Lines, result: str = "") -> Lines:
+    """The case of a state: the state runs, then the switch over its outcomes.
+
+    `result` is a variable that keeps the outcome.
+    """
+    before, outcome = call.statements, call.outcome
+    if result:
+        before = [*before, f"{result} = {outcome};"]
+        outcome = f"*{result}" if child.catches else result
     head = f"case State::{identifier(child.name)}:"
     where = f" // {place(child)}" if place(child) else ""
-    if result:
-        before, outcome = [*before, f"{result} = {outcome};"], result
-        outcome = f"*{result}" if child.catches else result
-    body = [*before, f"switch ({outcome}) {{", *cases, "}", "break;"]
-    if any(line.startswith("const auto") for line in before):
+    body = [*before, f"switch ({outcome}) {{", *outcomes, "}", "break;"]
+    if call.declares:
         return [f"{head} {{{where}", *indented(body), "}"]
     return [f"{head}{where}", *indented(body)]
 
 
-def switch(cases: Lines) -> Lines:
-    """The switch over the states, as the body of a loop."""
+def _switch(cases: Lines) -> Lines:
+    """The switch over the states: one turn of a container."""
     return [
-        "  run.enter(places, state);",
-        "  switch (state) {",
-        *indented([*cases, *NEVER]),
-        "  }",
-        f"  {NO_OUTCOME}",
+        "run.enter(places, state);",
+        "switch (state) {",
+        *cases,
+        *NEVER,
+        "}",
+        NO_OUTCOME,
     ]
 
 
-def guarded(lines: Lines, caught: Lines) -> Lines:
-    """Statements, and what is done about their exceptions; if nothing, they go on with the place of
-    the state."""
-    catch = ["SMACHAC_CATCH {", *indented(caught), "}"] if caught else [GOES_ON]
-    return ["SMACHAC_TRY {", *indented(lines), "}", *catch]
+def _guarded(lines: Lines, caught: Lines) -> Lines:
+    """Statements in a `try`. `caught` are the statements of the handler; without any, exceptions
+    leave the container with the place of the state."""
+    handler = ["SMACHAC_CATCH {", *indented(caught), "}"] if caught else [FAILED]
+    return ["SMACHAC_TRY {", *indented(lines), "}", *handler]
 
 
-def caught_switch(cases: Lines) -> Lines:
-    """What is done about an exception by states that end with theirs: nothing where none does."""
+def _caught_switch(cases: Lines) -> Lines:
+    """The handler with a case for each state that catches its exceptions; empty without any."""
     if not cases:
         return []
     return ["switch (state) {", *cases, "default:", "  run.failed(places, state);", "}"]
 
 
-def used(lines: Lines) -> tuple[str, str]:
-    """The names of the states and of the userdata, as far as they are used."""
-    return "states" if says(lines, "states") else "", "ud" if says(lines, "ud") else ""
+# State machines and sequences
 
 
-def says(lines: Lines, name: str) -> bool:
-    """Whether statements use a name, beyond texts."""
-    code = (re.sub(r'"(?:[^"\\]|\\.)*"|//.*', "", line) for line in lines)
-    return any(re.search(rf"(?<![\w.:]){name}\b", line) for line in code)
-
-
-MOST_STATES = 40
-"""Of one function. Of as many, compilers go from state to state by jumps; with more they look each
-up in a table, and the time they take themselves is quadratic in the branches of a function."""
-
-
-def machine(inside: Inside) -> Lines:
+def _machine(plan: ContainerPlan, node: StateMachine | Sequence) -> FunctionBody:
     """The body of the function of a state machine or sequence."""
-    node = inside.node
-    assert isinstance(node, StateMachine | Sequence)
     first = identifier(node.initial or node.children[0].name)
     start = f"State state = State::{first};"
     if len(node.children) > MOST_STATES:
-        return [start, "Outcome ended{};", *_dispatch(len(node.children))]
-    cases = [line for child in node.children for line in _step(inside, child, "")]
-    steps = guarded(["for (;;) {", *switch(cases), "}"], _caught_steps(inside, node.children, ""))
-    again = any(child.catches for child in node.children)
-    return [start, *(["for (;;) {", *indented(steps), "}"] if again else steps)]
+        lines = [start, "Outcome ended{};", *_dispatch(len(node.children))]
+        return FunctionBody(statements=lines, states="states", userdata="ud", run="run")
+    part = _part(plan, node.children, "")
+    steps = _guarded(["for (;;) {", *indented(_switch(part.cases)), "}"], part.caught)
+    if part.caught:
+        steps = ["for (;;) {", *indented(steps), "}"]
+    return FunctionBody(
+        statements=[start, *steps],
+        states="states",
+        userdata="ud" if part.uses_userdata else "",
+        run="run",
+    )
 
 
-def _caught_steps(inside: Inside, children: Iterable[Node], ended: str) -> Lines:
-    """The cases for the states that end with their exceptions, as in `_step`."""
-    lines: Lines = []
-    for child in children:
-        if child.catches:
-            ways = _way(inside, child, child.catches, ended)
-            ways = ["break;" if line == "continue;" else line for line in ways]
-            lines += [f"case State::{identifier(child.name)}:", f"  {CAUGHT}", *indented(ways)]
-    return caught_switch(lines)
+@dataclass(frozen=True, slots=True, kw_only=True)
+class _Part:
+    """The cases of some states of a machine, and the handler for their exceptions.
 
-
-def parts(inside: Inside) -> Lines:
-    """The functions that hold the states of a machine with too many for one; none where they fit.
-
-    Each goes on while it has the state, and says whether the machine has ended.
+    `ends`: the machine ends in one of them.
     """
-    node = inside.node
+
+    cases: Lines
+    caught: Lines
+    uses_userdata: bool
+    ends: bool
+
+
+def _part(plan: ContainerPlan, children: Iterable[Node], ended: str) -> _Part:
+    """The code of some states of a machine. `ended` is the variable for the outcome of the machine,
+    in a function that returns whether the machine has ended."""
+    cases: Lines = []
+    caught: Lines = []
+    calls: list[ChildCall] = []
+    ends = False
+    for child in children:
+        lines: Lines = []
+        for name in results(child):
+            code = _outcome(plan, child, name, ended)
+            ends = ends or code.ends
+            lines.append(f"case {plan.child_outcome(child, name)}:")
+            lines += indented(code.in_loop)
+        calls.append(_call(plan, child))
+        cases += _case(child, calls[-1], lines)
+        if child.catches:
+            code = _outcome(plan, child, child.catches, ended)
+            ends = ends or code.ends
+            after = ["break;"] if code.loops else []
+            caught += [f"case State::{identifier(child.name)}:", f"  {CAUGHT}"]
+            caught += indented([*code.statements, *after])
+    return _Part(
+        cases=cases,
+        caught=_caught_switch(caught),
+        uses_userdata=any(call.uses_userdata for call in calls),
+        ends=ends,
+    )
+
+
+def parts(plan: ContainerPlan) -> Lines:
+    """The functions that hold the states of a machine with too many for one; empty for others.
+
+    Each function runs as long as its states follow one another, and returns whether the machine
+    has ended.
+    """
+    node = plan.node
     if len(node.children) <= MOST_STATES or not isinstance(node, StateMachine | Sequence):
         return []
     lines: Lines = []
     for number, start in enumerate(range(0, len(node.children), MOST_STATES)):
-        children = node.children[start : start + MOST_STATES]
-        cases = [line for child in children for line in _step(inside, child, "ended")]
-        states, userdata = used(cases)
-        ends = [*cases, *_caught_steps(inside, children, "ended")]
-        ended = "ended" if any(line.endswith("return true;") for line in ends) else ""
+        part = _part(plan, node.children[start : start + MOST_STATES], "ended")
+        userdata, ended = "ud" if part.uses_userdata else "", "ended" if part.ends else ""
         here = f"while (static_cast<std::size_t>(state) / {MOST_STATES} == {number}) {{"
-        loop = [here, *switch(cases), "}"]
-        caught = _caught_steps(inside, children, "ended")
-        steps = guarded(loop, caught)
+        steps = _guarded([here, *indented(_switch(part.cases)), "}"], part.caught)
+        head = f"bool part_{number}("
         lines += [
             *([""] if lines else []),
             "template <class Run>",
-            f"bool part_{number}(States &{states}, Userdata &{userdata}, Run &run, State &state,",
-            f"{' ' * len(f'bool part_{number}(')}Outcome &{ended}) {{",
-            *indented([here, *indented(steps), "}"] if caught else steps),
+            f"{head}States &states, Userdata &{userdata}, Run &run, State &state,",
+            f"{' ' * len(head)}Outcome &{ended}) {{",
+            *indented([here, *indented(steps), "}"] if part.caught else steps),
             "  return false;",
             "}",
         ]
@@ -261,6 +358,7 @@ def parts(inside: Inside) -> Lines:
 
 
 def _dispatch(count: int) -> Lines:
+    """The loop that calls the function of the present state."""
     cases = []
     for number in range(-(-count // MOST_STATES)):
         cases += [f"case {number}:", f"  if (part_{number}(states, ud, run, state, ended)) {{"]
@@ -269,69 +367,66 @@ def _dispatch(count: int) -> Lines:
     return ["for (;;) {", f"  {head}", *indented(cases), "  default:", "    break;", "  }", "}"]
 
 
-def _step(inside: Inside, child: Node, ended: str) -> Lines:
-    """The case of one state: the child runs and the machine goes on. `ended`: the variable for how
-    it ends, in a function that only says whether it does."""
-    ways: Lines = []
-    for name in results(child):
-        ways.append(f"case {inside.outcome(child, name)}:")
-        ways += indented(_way(inside, child, name, ended))
-    return case(inside, child, ways)
-
-
-def _way(inside: Inside, child: Node, name: str, ended: str) -> Lines:
-    """Where a state of a machine leads with an outcome."""
-    told = cpp_literal(name)
+def _outcome(plan: ContainerPlan, child: Node, name: str, ended: str) -> OutcomeCode:
+    """The transition of a state of a machine for an outcome; `ended` as in `_part`."""
+    text = cpp_literal(name)
     edge = next((edge for edge in child.transitions if edge.outcome == name), None)
     if edge is None:
-        return [f"run.undeclared(places, state, {told});"]
-    if leads_to_child(edge, inside.names):
-        return [f"run.go(places, state, {told}, State::{identifier(edge.target)});", "continue;"]
-    how = "end_asked" if inside.hears(child) else "end"
-    end = f"run.{how}(places, state, {told}, {inside.ends(edge.target)});"
-    return [f"{ended} = {end}", "return true;"] if ended else [f"return {end}"]
+        return OutcomeCode(statements=[f"run.undeclared(places, state, {text});"])
+    if leads_to_child(edge, plan.names):
+        go = f"run.go(places, state, {text}, State::{identifier(edge.target)});"
+        return OutcomeCode(statements=[go], loops=True)
+    end = "end_asked" if plan.receives_stop(child) else "end"
+    value = f"run.{end}(places, state, {text}, {plan.own_outcome(edge.target)});"
+    if ended:
+        return OutcomeCode(statements=[f"{ended} = {value}", "return true;"], ends=True)
+    return OutcomeCode(statements=[f"return {value}"], ends=True)
 
 
-def concurrence(inside: Inside) -> Lines:
+# Concurrences
+
+
+def _concurrence(plan: ContainerPlan, node: Concurrence) -> FunctionBody:
     """The body of the function of a concurrence."""
-    node = inside.node
-    assert isinstance(node, Concurrence)
     fields: Lines = []
     cases: Lines = []
     caught: Lines = []
+    calls: list[ChildCall] = []
     for child in node.children:
-        type_ = inside.outcome(child, "x").rpartition("::")[0]
-        fields.append(
-            f"  {f'std::optional<{type_}>' if child.catches else type_} {identifier(child.name)};"
-        )
-        ways: Lines = []
+        type_ = plan.outcome_type(child)
+        type_ = f"std::optional<{type_}>" if child.catches else type_
+        fields.append(f"  {type_} {identifier(child.name)};")
+        lines: Lines = []
         for name in results(child):
-            ways.append(f"case {inside.outcome(child, name)}:")
-            ways += [f"  run.exit(places, state, {cpp_literal(name)});", "  return;"]
-        cases += case(inside, child, ways, f"ended.{identifier(child.name)}")
+            lines.append(f"case {plan.child_outcome(child, name)}:")
+            lines += [f"  run.exit(places, state, {cpp_literal(name)});", "  return;"]
+        calls.append(_call(plan, child))
+        cases += _case(child, calls[-1], lines, f"ended.{identifier(child.name)}")
         if child.catches:
-            exit_ = f"run.exit(places, state, {cpp_literal(child.catches)});"
             caught += [
                 f"case State::{identifier(child.name)}:",
                 f"  {CAUGHT}",
-                f"  {exit_}",
+                f"  run.exit(places, state, {cpp_literal(child.catches)});",
                 "  break;",
             ]
-    return [
+    lines = [
         "struct {",
         *fields,
         "} ended{};",
         f"smachac::Branches<Run, {len(node.children)}> branches(around, places);",
         f"branches.run({str(node.join == 'any').lower()}, [&](std::size_t branch, Run &run) {{",
         "  const auto state = static_cast<State>(branch);",
-        *indented(guarded([line[2:] for line in switch(cases)], caught_switch(caught))),
+        *indented(_guarded(_switch(cases), _caught_switch(caught))),
         "});",
-        *_rules(inside, node),
+        *_rules(plan, node),
     ]
+    userdata = "ud" if any(call.uses_userdata for call in calls) else ""
+    return FunctionBody(statements=lines, states="states", userdata=userdata, run="around")
 
 
-def _rules(inside: Inside, node: Concurrence) -> Lines:
-    """Rules with more conditions first, of as many the last listed first (smach-semantics N5)."""
+def _rules(plan: ContainerPlan, node: Concurrence) -> Lines:
+    """The statements that return the outcome: of the rules that hold the one with the most
+    conditions, among equals the last one listed."""
     children = {child.name: child for child in node.children}
 
     def order(item: tuple[int, OutcomeRule]) -> tuple[int, int]:
@@ -344,15 +439,15 @@ def _rules(inside: Inside, node: Concurrence) -> Lines:
             child = children.get(one.child)
             if child is None or one.outcome not in all_results(child):
                 break
-            how = inside.outcome(child, one.outcome)
-            how = "std::nullopt" if one.outcome == child.catches else how
-            tests.append(f"ended.{identifier(one.child)} == {how}")
+            value = plan.child_outcome(child, one.outcome)
+            value = "std::nullopt" if one.outcome == child.catches else value
+            tests.append(f"ended.{identifier(one.child)} == {value}")
         else:
-            end = f"return {inside.ends(rule.outcome)};"
+            end = f"return {plan.own_outcome(rule.outcome)};"
             if not tests:
                 return [*lines, end]
             lines += [*_test(tests), f"  {end}", "}"]
-    return [*lines, f"return {inside.ends(node.default_outcome)};"]
+    return [*lines, f"return {plan.own_outcome(node.default_outcome)};"]
 
 
 def _test(tests: Lines) -> Lines:
@@ -362,81 +457,80 @@ def _test(tests: Lines) -> Lines:
     return [start + test + end for start, test, end in zip(starts, tests, ends, strict=True)]
 
 
-def iterator(inside: Inside) -> Lines:
+# Iterators
+
+
+def _iterator(plan: ContainerPlan, node: Iterator) -> FunctionBody:
     """The body of the function of an iterator."""
-    node = inside.node
-    assert isinstance(node, Iterator)
     final = dict(node.final_map)
-    done = inside.ends(final.get(node.exhausted_outcome, node.exhausted_outcome))
-    items = _items(inside, node)
+    done = plan.own_outcome(final.get(node.exhausted_outcome, node.exhausted_outcome))
+    items = _items(plan, node)
     if items is None or not node.children:
-        return [f"return {done};"]
+        return FunctionBody(statements=[f"return {done};"])
     child = node.children[0]
-    item = f"ud.{identifier(node.item_key)}"
-    state = f"State::{identifier(child.name)}"
-    ways: Lines = []
+    cases: Lines = []
     for name in results(child):
-        ways.append(f"case {inside.outcome(child, name)}:")
-        ways += indented(_round(inside, node, name))
+        cases.append(f"case {plan.child_outcome(child, name)}:")
+        cases += indented(_item_outcome(plan, node, name).in_loop)
     caught: Lines = []
     if child.catches:
-        told = _over(node, [child.catches])
-        ways_out = _round(inside, node, child.catches)
-        caught = [CAUGHT, told, *(line for line in ways_out if line != "continue;")]
-    before, outcome = called(inside, child)
-    if outcome != "outcome":
-        before, outcome = [*before, f"const auto outcome = {outcome};"], "outcome"
+        code = _item_outcome(plan, node, child.catches)
+        caught = [CAUGHT, _end_of_item(node, [child.catches]), *code.statements]
+    call = _with_variable(_call(plan, child))
     steps = [
         "run.enter(places, state);",
-        *before,
-        _over(node, results(child)),
-        "switch (outcome) {",
-        *ways,
+        *call.statements,
+        _end_of_item(node, results(child)),
+        f"switch ({call.outcome}) {{",
+        *cases,
         "}",
         NO_OUTCOME,
     ]
-    return [
+    lines = [
         *items,
         "if (items.empty()) {",
         f"  return {done};",
         "}",
-        f"const auto state = {state};",
+        f"const auto state = State::{identifier(child.name)};",
         "smachac::Round round(run.stop, places[0], items.size());",
         "for (const auto &item : items) {",
-        f"  {item}.hold(item);",
+        f"  ud.{identifier(node.item_key)}.hold(item);",
         *([f"  // {place(child)}"] if place(child) else []),
-        *indented(guarded(steps, caught)),
+        *indented(_guarded(steps, caught)),
         "}",
         f"return {done};",
     ]
+    return FunctionBody(statements=lines, states="states", userdata="ud", run="run")
 
 
-def _over(node: Iterator, outcomes: Iterable[str]) -> str:
-    """The statement that ends an item, and notes where it matters whether that ends them all."""
-    matters = any(name in node.loop_outcomes for name in outcomes)
-    return f"{'const bool over = ' if matters else ''}round.over();"
+def _end_of_item(node: Iterator, outcomes: Iterable[str]) -> str:
+    """The statement that ends an item. It keeps whether a request to stop ends the iterator where
+    an outcome would start the next item."""
+    loops = any(name in node.loop_outcomes for name in outcomes)
+    return f"{'const bool over = ' if loops else ''}round.over();"
 
 
-def _round(inside: Inside, node: Iterator, name: str) -> Lines:
-    """Where an iterator's state leads with an outcome."""
+def _item_outcome(plan: ContainerPlan, node: Iterator, name: str) -> OutcomeCode:
+    """The code for an outcome of an iterator's state."""
     final = dict(node.final_map)
-    told = cpp_literal(name)
-    end = f"return run.end(places, state, {told}, {inside.ends(final.get(name, name))});"
+    text = cpp_literal(name)
+    end = f"return run.end(places, state, {text}, {plan.own_outcome(final.get(name, name))});"
     if name not in node.loop_outcomes:
-        return [end]
-    done = inside.ends(final.get(node.exhausted_outcome, node.exhausted_outcome))
-    return [
+        return OutcomeCode(statements=[end], ends=True)
+    done = plan.own_outcome(final.get(node.exhausted_outcome, node.exhausted_outcome))
+    lines = [
         *("if (over) {", f"  {end}", "}"),
-        *("if (round.last()) {", f"  return run.end(places, state, {told}, {done});", "}"),
-        *(f"run.again(places, state, {told});", "continue;"),
+        *("if (round.last()) {", f"  return run.end(places, state, {text}, {done});", "}"),
+        f"run.again(places, state, {text});",
     ]
+    return OutcomeCode(statements=lines, loops=True)
 
 
-def _items(inside: Inside, node: Iterator) -> Lines | None:
-    """The statement that finds the items; None where there are none."""
-    wanted = inside.scope.key(node.item_key)
+def _items(plan: ContainerPlan, node: Iterator) -> Lines | None:
+    """The statement that declares the items; None where there are none."""
+    wanted = plan.scope.key(node.item_key)
     if node.items_key:
-        type_ = inside.scope.key(node.items_key)
+        type_ = plan.scope.key(node.items_key)
         if type_.name not in ("list", "array"):
             raise UnportableError(f"`{node.items_key}` is `{type_}`, not a list of items")
         need = f"smachac::need(ud.{identifier(node.items_key)}, {cpp_literal(node.items_key)})"
@@ -445,8 +539,8 @@ def _items(inside: Inside, node: Iterator) -> Lines | None:
         return None
     listed = Type("list", (wanted,))
     if isinstance(node.items.data, Expression):
-        spelt = {key: inside.scope.read(key, key) for key in inside.scope.keys}
-        body, names = cpp_function(node.items.data.text, spelt)
+        keys = {key: plan.scope.read(key, key) for key in plan.scope.keys}
+        body, names = cpp_function(node.items.data.text, keys)
         return [f"const {cpp_type(listed)} items = {cpp_expression(body, names, listed).text};"]
     if not isinstance(node.items.data, tuple):
         raise UnportableError("its items are no list")

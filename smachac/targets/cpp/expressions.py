@@ -7,7 +7,6 @@ bits. The functions of Python are those of smachac/values.hpp.
 from __future__ import annotations
 
 import itertools
-import re
 from collections.abc import Iterator, Mapping
 from dataclasses import dataclass, field, replace
 
@@ -42,9 +41,10 @@ from smachac.targets.cpp.terms import (
     POSTFIX,
     SIGNED,
     TERNARY,
+    CppText,
     Term,
-    Text,
     call,
+    converted,
     fixed,
     ground,
     has,
@@ -67,10 +67,14 @@ class Spelling:
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Printed:
-    """An expression in C++: a full expression that fits an initializer, and its type."""
+    """An expression in C++: a full expression that fits an initializer, and its type.
+
+    `uses_names`: it reads one of the names that it was given.
+    """
 
     text: str
     type: Type
+    uses_names: bool
 
 
 def cpp_expression(
@@ -81,25 +85,30 @@ def cpp_expression(
     A name may be dotted: `{"ud.n": Spelling(text="in.n", type=INT)}`. The text belongs into a
     function: lambdas in it capture by reference. Raises UnportableError.
     """
-    term = lowered(expr, names)
+    inner = _Names(spellings=names)
+    term = _term(expr, inner)
     try:
         type_ = ground(term.type) if wanted is None else plain(wanted)
-        return Printed(text=term.spell(type_).text, type=type_)
+        text = term.spell(type_).text
     except UnportableError as error:
-        raise _told(expr, error) from error
+        raise _located(expr, error) from error
+    return Printed(text=text, type=type_, uses_names=inner.reads_any())
 
 
-def cpp_condition(expr: Expr, names: Mapping[str, Spelling]) -> str:
+def cpp_condition(expr: Expr, names: Mapping[str, Spelling]) -> Printed:
     """The truth of an expression over names. Raises UnportableError."""
+    inner = _Names(spellings=names)
+    term = _term(expr, inner)
     try:
-        return condition(lowered(expr, names)).text
+        text = condition(term).text
     except UnportableError as error:
-        raise _told(expr, error) from error
+        raise _located(expr, error) from error
+    return Printed(text=text, type=BOOL, uses_names=inner.reads_any())
 
 
 def lowered(expr: Expr, names: Mapping[str, Spelling]) -> Term:
     """An expression over names as a term (see terms.py). Raises UnportableError."""
-    return _term(expr, _Scope(names=names))
+    return _term(expr, _Names(spellings=names))
 
 
 PORTABLE = "docs/cpp.md lists the expressions it knows; for other code write a class"
@@ -125,7 +134,7 @@ def cpp_function(code: str, keys: Mapping[str, Spelling]) -> tuple[Expr, dict[st
     return tree, {f"{p}.{key}": spelling for p in parameters for key, spelling in keys.items()}
 
 
-def _told(expr: Expr, error: UnportableError) -> UnportableError:
+def _located(expr: Expr, error: UnportableError) -> UnportableError:
     """A reason with the part of the expression that it is about."""
     if error.told:
         return error
@@ -135,74 +144,98 @@ def _told(expr: Expr, error: UnportableError) -> UnportableError:
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
-class _Scope:
-    """The names known, and numbers for the names that C++ needs of its own."""
+class _Names:
+    """The names known in a part of an expression, and the state of one translation.
 
-    names: Mapping[str, Spelling]
+    `numbers` are for the variables that only C++ needs. `read` holds the spellings of the names
+    that stand in the text made so far.
+    """
+
+    spellings: Mapping[str, Spelling]
     numbers: Iterator[int] = field(default_factory=lambda: itertools.count(1))
+    read: set[str] = field(default_factory=set)
 
-    def with_parameter(self, name: str, spelling: Spelling) -> _Scope:
-        """The names inside a lambda; what its parameter hides is gone."""
-        others = {key: each for key, each in self.names.items() if key.partition(".")[0] != name}
-        return replace(self, names={**others, name: spelling})
+    def with_parameter(self, name: str, spelling: Spelling) -> _Names:
+        """The names inside a lambda: its parameter hides names of the same root."""
+        others = {
+            key: each for key, each in self.spellings.items() if key.partition(".")[0] != name
+        }
+        return replace(self, spellings={**others, name: spelling})
+
+    def reads_any(self) -> bool:
+        return any(each.text in self.read for each in self.spellings.values())
+
+    def term(self, name: str) -> Term:
+        """A name as a term; it counts as read where its text is made."""
+        spelling = self.spellings[name]
+        type_ = plain(spelling.type)
+
+        def spell(wanted: Type) -> CppText:
+            self.read.add(spelling.text)
+            return converted(CppText(spelling.text), type_, wanted)
+
+        return Term(type=type_, spell=spell, simple=True)
 
 
-def _term(expr: Expr, scope: _Scope) -> Term:
-    """An expression as a term; a reason that C++ cannot say it names the innermost part."""
+def _term(expr: Expr, names: _Names) -> Term:
+    """An expression as a term; a reason that C++ cannot express it names the innermost part."""
+    before = set(names.read)
     try:
-        found = _form(expr, scope)
+        found = _form(expr, names)
     except UnportableError as error:
-        raise _told(expr, error) from error
+        raise _located(expr, error) from error
     if has(found.type, "any"):
-        raise _told(expr, UnportableError("of this no type is known: declare that of its key"))
+        raise _located(expr, UnportableError("of this no type is known: declare that of its key"))
+    if found.constant is not None:
+        # A constant does not contain the text that it was computed from.
+        names.read.intersection_update(before)
     return found
 
 
-def _form(expr: Expr, scope: _Scope) -> Term:
+def _form(expr: Expr, names: _Names) -> Term:
     match expr:
         case Constant(value):
             return literal(value)
         case Name() | Attribute():
-            return _name(expr, scope)
+            return _name(expr, names)
         case Index(value, index):
-            return _index(value, index, scope)
+            return _index(value, index, names)
         case Call(function, arguments, keywords):
-            return _call(function, arguments, keywords, scope)
+            return _call(function, arguments, keywords, names)
         case Lambda():
             raise UnportableError("a function is no value in C++")
         case Conditional(test, then, otherwise):
-            return _conditional(*(_term(part, scope) for part in (test, then, otherwise)))
+            return _conditional(*(_term(part, names) for part in (test, then, otherwise)))
         case ListDisplay(items):
-            return literals.listed([_term(item, scope) for item in items], "array")
+            return literals.listed([_term(item, names) for item in items], "array")
         case TupleDisplay(items):
-            return literals.listed([_term(item, scope) for item in items], "tuple")
+            return literals.listed([_term(item, names) for item in items], "tuple")
         case DictDisplay(entries):
-            return literals.mapped([(_term(k, scope), _term(v, scope)) for k, v in entries])
+            return literals.mapped([(_term(k, names), _term(v, names)) for k, v in entries])
         case Unary("-", Constant(int() | float() as value)):
             return literal(-value)
         case Unary("not", operand):
-            text = Text(f"!{condition(_term(operand, scope)).at(SIGNED)}", SIGNED)
+            text = CppText(f"!{condition(_term(operand, names)).at(SIGNED)}", SIGNED)
             return fixed(BOOL, text)
         case Unary(sign, operand):
-            return operators.signed(sign, _term(operand, scope))
+            return operators.signed(sign, _term(operand, names))
         case Binary(word, left, right):
-            return operators.binary(word, _term(left, scope), _term(right, scope))
+            return operators.binary(word, _term(left, names), _term(right, names))
         case Compare(first, rest):
-            operands = [(word, _term(operand, scope)) for word, operand in rest]
-            return fixed(BOOL, _chain(_term(first, scope), operands, scope))
+            operands = [(word, _term(operand, names)) for word, operand in rest]
+            return fixed(BOOL, _chain(_term(first, names), operands, names))
         case Boolean(word, operands):
-            return _boolean(word, [_term(operand, scope) for operand in operands], scope)
+            return _boolean(word, [_term(operand, names) for operand in operands], names)
     return assert_never(expr)
 
 
-def _name(expr: Name | Attribute, scope: _Scope) -> Term:
+def _name(expr: Name | Attribute, names: _Names) -> Term:
     text = dotted(expr)
-    if text is not None and text in scope.names:
-        spelling = scope.names[text]
-        return fixed(plain(spelling.type), Text(spelling.text), simple=True)
+    if text is not None and text in names.spellings:
+        return names.term(text)
     match expr:
-        case Attribute(value, name) if not isinstance(value, Name) or value.name in scope.names:
-            owner = _term(value, scope)
+        case Attribute(value, name) if not isinstance(value, Name) or value.name in names.spellings:
+            owner = _term(value, names)
             return _member(owner, name)
     raise UnportableError("this is not known here")
 
@@ -212,15 +245,19 @@ def _member(owner: Term, name: str) -> Term:
     if name not in fields:
         raise UnportableError(f"a `{shown(owner.type)}` has no `{name}`")
     value = owner.spell(present(owner.type)).at(POSTFIX)
-    return fixed(fields[name], Text(f"{value}.{name}"), simple=owner.simple)
+    return fixed(fields[name], CppText(f"{value}.{name}"), simple=owner.simple)
 
 
-def _index(value: Expr, index: Expr, scope: _Scope) -> Term:
-    if isinstance(value, Name) and value.name not in scope.names and isinstance(index, Constant):
+def _index(value: Expr, index: Expr, names: _Names) -> Term:
+    if (
+        isinstance(value, Name)
+        and value.name not in names.spellings
+        and isinstance(index, Constant)
+    ):
         key = f"{value.name}.{index.value}"
-        if isinstance(index.value, str) and key in scope.names:
-            return _name(Attribute(value, index.value), scope)
-    owner, place = _term(value, scope), _term(index, scope)
+        if isinstance(index.value, str) and key in names.spellings:
+            return _name(Attribute(value, index.value), names)
+    owner, place = _term(value, names), _term(index, names)
     kind = present(owner.type)
     fields = list(FIELDS.get(kind.name, {}))
     match kind.name, place.constant:
@@ -237,123 +274,127 @@ def _call(
     function: Expr,
     arguments: tuple[Expr, ...],
     keywords: tuple[tuple[str, Expr], ...],
-    scope: _Scope,
+    names: _Names,
 ) -> Term:
     name = dotted(function)
-    if name is None or name not in builtin_functions.FUNCTIONS or name in scope.names:
+    if name is None or name not in builtin_functions.FUNCTIONS or name in names.spellings:
         known = ", ".join(builtin_functions.FUNCTIONS)
         error = UnportableError("C++ knows no such function")
         error.help = f"it knows {known}"
         raise error
-    given = [_term(argument, scope) for argument in arguments]
+    given = [_term(argument, names) for argument in arguments]
     named: dict[str, Term] = {}
     for key, value in keywords:
         if isinstance(value, Lambda):
             item = builtin_functions.item_of(given)
-            named[key] = _function(value, item, scope)
+            named[key] = _function(value, item, names)
         else:
-            named[key] = _term(value, scope)
+            named[key] = _term(value, names)
     return builtin_functions.FUNCTIONS[name](given, named)
 
 
-def _function(function: Lambda, item: Type, scope: _Scope) -> Term:
+def _function(function: Lambda, item: Type, names: _Names) -> Term:
     """A function of one item of a list."""
     if function.parameter is None:
         raise UnportableError("a key is a function of an item")
-    name = f"item_{next(scope.numbers)}"
-    inner = scope.with_parameter(function.parameter, Spelling(text=name, type=item))
+    name = f"item_{next(names.numbers)}"
+    inner = names.with_parameter(function.parameter, Spelling(text=name, type=item))
     body = _term(function.body, inner)
     value = body.text()
-    unused = "" if re.search(rf"\b{name}\b", value) else "[[maybe_unused]] "
+    unused = "" if name in names.read else "[[maybe_unused]] "
     text = f"[&]({unused}const auto &{name}) {{ return {value}; }}"
-    return Term(type=Type("function", (body.type,)), spell=lambda wanted: Text(text))
+    return Term(type=Type("function", (body.type,)), spell=lambda wanted: CppText(text))
 
 
 # Truth and choice
 
 
-def condition(term: Term) -> Text:
+def condition(term: Term) -> CppText:
     """The text of a term's truth."""
     if term.test is not None:
         return term.test
     if term.type == BOOL:
         return term.spell(BOOL)
     if isinstance(term.constant, int | float | str) or term.type == NONE:
-        return Text("true" if term.constant else "false")
+        return CppText("true" if term.constant else "false")
     if term.simple and term.type in (INT, FLOAT):
-        return Text(f"{term.text(EQUALITY + 1)} != {'0' if term.type == INT else '0.0'}", EQUALITY)
+        return CppText(
+            f"{term.text(EQUALITY + 1)} != {'0' if term.type == INT else '0.0'}", EQUALITY
+        )
     return call("truth", term.text())
 
 
 def _conditional(test: Term, then: Term, otherwise: Term) -> Term:
     chosen = condition(test)
 
-    def spell(wanted: Type) -> Text:
+    def spell(wanted: Type) -> CppText:
         return _choice(chosen, then.spell(wanted), otherwise.spell(wanted))
 
     return Term(type=join(then.type, otherwise.type), spell=spell)
 
 
-def _choice(test: Text, one: Text, other: Text) -> Text:
+def _choice(test: CppText, one: CppText, other: CppText) -> CppText:
     first, second = one.at(OR), other.at(OR)
-    if first.lstrip("-").isdigit() and second.lstrip("-").isdigit():
+    if one.digits and other.digits:
         # Two literals would make it an int, and not a whole number of 64 bits.
         first = f"std::int64_t{{{first}}}"
-    return Text(f"{test.at(OR)} ? {first} : {second}", TERNARY)
+    return CppText(f"{test.at(OR)} ? {first} : {second}", TERNARY)
 
 
-def _both(one: Text, other: Text) -> Text:
-    return Text(f"{one.at(AND)} && {other.at(AND)}", AND)
+def _both(one: CppText, other: CppText) -> CppText:
+    return CppText(f"{one.at(AND)} && {other.at(AND)}", AND)
 
 
-def _boolean(word: str, operands: list[Term], scope: _Scope) -> Term:
+def _boolean(word: str, operands: list[Term], names: _Names) -> Term:
     """`and`, `or`: of truth values their junction, else the operand that settles it."""
     sign, own = ("||", OR) if word == "or" else ("&&", AND)
     # g++ warns of `&&` in `||` without brackets.
-    test = Text(f" {sign} ".join(condition(each).at(AND + (own == OR)) for each in operands), own)
+    test = CppText(
+        f" {sign} ".join(condition(each).at(AND + (own == OR)) for each in operands), own
+    )
     *first, last = operands
     type_ = joined([*(present(e.type) if word == "or" else e.type for e in first), last.type])
-    names = [f"value_{next(scope.numbers)}" for _ in first]
+    variables = [f"value_{next(names.numbers)}" for _ in first]
 
-    def spell(wanted: Type) -> Text:
+    def spell(wanted: Type) -> CppText:
         if type_ == BOOL:
             return converted_bool(test, wanted)
         text = last.spell(wanted)
-        for term, name in zip(reversed(first), reversed(names), strict=True):
+        for term, name in zip(reversed(first), reversed(variables), strict=True):
             text = _settled(word, term, name, text, wanted)
         return text
 
     return Term(type=type_, spell=spell, test=test)
 
 
-def converted_bool(test: Text, wanted: Type) -> Text:
+def converted_bool(test: CppText, wanted: Type) -> CppText:
     return fixed(BOOL, test).spell(wanted)
 
 
-def _settled(word: str, term: Term, name: str, rest: Text, wanted: Type) -> Text:
+def _settled(word: str, term: Term, name: str, rest: CppText, wanted: Type) -> CppText:
     """The term where it settles an `and` or `or`, else the rest."""
     if word == "or" and term.type == NONE:
         return rest
-    bound = term if term.simple else fixed(term.type, Text(name), simple=True)
+    bound = term if term.simple else fixed(term.type, CppText(name), simple=True)
     taken = bound.spell(wanted)
     one, other = (taken, rest) if word == "or" else (rest, taken)
     text = _choice(condition(bound), one, other)
     return text if term.simple else bind(term, name, text)
 
 
-def bind(term: Term, name: str, text: Text) -> Text:
+def bind(term: Term, name: str, text: CppText) -> CppText:
     """A text in which a name stands for a term that is computed once."""
     return call("with", term.text(), f"[&](const auto &{name}) {{ return {text.text}; }}")
 
 
-def _chain(left: Term, rest: list[tuple[str, Term]], scope: _Scope) -> Text:
+def _chain(left: Term, rest: list[tuple[str, Term]], names: _Names) -> CppText:
     """`a < b < c`: `b` is computed once, `c` where `a < b`."""
     (word, right), *others = rest
     if not others:
         return operators.compare(word, left, right)
     if right.simple:
-        return _both(operators.compare(word, left, right), _chain(right, others, scope))
-    name = f"value_{next(scope.numbers)}"
-    bound = fixed(right.type, Text(name), simple=True)
-    text = _both(operators.compare(word, left, bound), _chain(bound, others, scope))
+        return _both(operators.compare(word, left, right), _chain(right, others, names))
+    name = f"value_{next(names.numbers)}"
+    bound = fixed(right.type, CppText(name), simple=True)
+    text = _both(operators.compare(word, left, bound), _chain(bound, others, names))
     return bind(right, name, text)

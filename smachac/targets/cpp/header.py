@@ -12,16 +12,13 @@ from smachac.frontend.state_types import find_state_type
 from smachac.ir.nodes import Iterator, Leaf, Machine
 from smachac.ir.traversal import walk
 from smachac.targets import made_by
-from smachac.targets.cpp.builtin_states import LeafCode, builtin_behaviour, enumeration
-from smachac.targets.cpp.containers import Inside, execute, results
-from smachac.targets.cpp.containers import parts as parts_of
+from smachac.targets.cpp.builtin_states import LeafCode, built_in, enumeration
+from smachac.targets.cpp.containers import ContainerPlan, Lines, execute, parts, results
 from smachac.targets.cpp.identifiers import identifier
-from smachac.targets.cpp.plan import Plan, Scope, member, place, scope_name
+from smachac.targets.cpp.plan import ContainerScope, Plan, member, place, scope_name
 from smachac.targets.cpp.types import UnportableError, cpp_literal, cpp_type, cpp_value
 from smachac.targets.cpp.user_classes import ClassCode, argument, assertions, class_code, class_leaf
 from smachac.targets.errors import no_code_for_target
-
-Lines = list[str]
 
 STRICT = """// A class with more outcomes than its interface is an error, whatever the warnings are.
 #if defined(__GNUC__)
@@ -77,7 +74,7 @@ class _Printing:
     stopping: set[str] = field(default_factory=set)
     missing: set[str] = field(default_factory=set)
 
-    def code_of(self, leaf: Leaf, scope: Scope) -> LeafCode | None:
+    def code_of(self, leaf: Leaf, scope: ContainerScope) -> LeafCode | None:
         """The code of a leaf; None where it has none. Raises UnportableError."""
         if leaf.type not in self.classes:
             type_ = find_state_type(leaf.type, self.library, [])
@@ -85,7 +82,7 @@ class _Printing:
         code = self.classes[leaf.type]
         if code is not None:
             return class_leaf(code, leaf, scope)
-        return builtin_behaviour(leaf, scope, self.plan.refuse)
+        return built_in(leaf, scope, self.plan.refuse)
 
 
 def _refuse_missing(plan: Plan, types: AbstractSet[str]) -> None:
@@ -99,12 +96,12 @@ def _refuse_missing(plan: Plan, types: AbstractSet[str]) -> None:
         plan.report.append(no_code_for_target(place, "C++", "cpp", name, len(states)))
 
 
-def _container(printing: _Printing, scope: Scope) -> Lines:
+def _container(printing: _Printing, scope: ContainerScope) -> Lines:
     plan, node, name = printing.plan, scope.node, scope_name(scope.path)
     leaves = _leaves(printing, scope)
     if leaves is None:
         return []
-    parts = [
+    blocks = [
         enumeration(results(node)),
         _names(results(node)),
         _userdata(plan, scope),
@@ -113,28 +110,28 @@ def _container(printing: _Printing, scope: Scope) -> Lines:
         _places(scope),
     ]
     names = frozenset(child.name for child in node.children)
-    inside = Inside(
+    container = ContainerPlan(
         scope=scope,
         leaves=leaves,
         names=names,
         scopes=plan.scopes,
         stopping=printing.stopping,
     )
-    if isinstance(node, Iterator) or any(inside.hears(child) for child in node.children):
+    if isinstance(node, Iterator) or any(map(container.receives_stop, node.children)):
         printing.stopping.add(scope.path)
     try:
-        parts += [parts_of(inside), execute(inside)]
+        blocks += [parts(container), execute(container)]
     except UnportableError as error:
         plan.refuse(node.span, error)
     if node is plan.machine.root:
-        parts.append(_root(plan.machine))
-    inner = "\n\n".join("\n".join(part) for part in parts if part)
+        blocks.append(_root(plan.machine))
+    inner = "\n\n".join("\n".join(block) for block in blocks if block)
     where = f" // {place(node)}" if place(node) else ""
     doc = [f"// {line}" for line in node.doc.splitlines()]
     return [*doc, f"namespace {name} {{{where}", "", inner, "", f"}} // namespace {name}"]
 
 
-def _leaves(printing: _Printing, scope: Scope) -> Mapping[str, LeafCode] | None:
+def _leaves(printing: _Printing, scope: ContainerScope) -> Mapping[str, LeafCode] | None:
     """The code of the leaves by name; None where some have none."""
     plan = printing.plan
     found: dict[str, LeafCode] = {}
@@ -165,7 +162,7 @@ def _names(outcomes: tuple[str, ...]) -> Lines:
     ]
 
 
-def _userdata(plan: Plan, scope: Scope) -> Lines:
+def _userdata(plan: Plan, scope: ContainerScope) -> Lines:
     presets = {preset.key: preset for preset in scope.node.userdata}
     lines = []
     for key, type_ in scope.keys.items():
@@ -192,7 +189,7 @@ def _types(leaves: Mapping[str, LeafCode]) -> Lines:
     return ["namespace types {", "", "\n\n".join(found), "", "} // namespace types"]
 
 
-def _states(printing: _Printing, scope: Scope, leaves: Mapping[str, LeafCode]) -> Lines:
+def _states(printing: _Printing, scope: ContainerScope, leaves: Mapping[str, LeafCode]) -> Lines:
     """The objects of the states; what they are made with is handed to all that want it."""
     lines, made = [], []
     parameters: dict[str, None] = {}
@@ -218,7 +215,7 @@ def _states(printing: _Printing, scope: Scope, leaves: Mapping[str, LeafCode]) -
     return ["struct States {", head, f"      : {initial} {{}}", "", *lines, "};"]
 
 
-def _places(scope: Scope) -> Lines:
+def _places(scope: ContainerScope) -> Lines:
     children = scope.node.children
     return [
         "enum class State : std::size_t {",

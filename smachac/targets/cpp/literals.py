@@ -5,8 +5,8 @@ from __future__ import annotations
 from smachac.ir.types import Type
 from smachac.targets.cpp.terms import (
     NEVER,
+    CppText,
     Term,
-    Text,
     converted,
     cpp,
     ground,
@@ -28,22 +28,23 @@ def listed(items: list[Term], kind: str) -> Term:
     else:
         own = Type("list" if kind == "array" else kind, (NEVER,))
 
-    def spell(wanted: Type) -> Text:
+    def spell(wanted: Type) -> CppText:
         if wanted.name == "optional":
             return converted(spell(inside(wanted)), inside(wanted), wanted)
         if wanted.name in LISTED:
             return _struct(wanted, items)
         if wanted.name not in ("list", "array", "tuple"):
-            return converted(Text(""), own, wanted)
+            return converted(CppText(""), own, wanted)
         size = size_of(wanted)
         if size is not None and size != len(items):
             raise UnportableError(f"this has {len(items)} items, and {size} are wanted")
-        return Text(braced(cpp(wanted), [each.spell(inside(wanted)).text for each in items]))
+        texts = [each.spell(inside(wanted)).text for each in items]
+        return CppText(braced(cpp(wanted), texts, array=size is not None))
 
     return Term(type=own, spell=spell)
 
 
-def _struct(wanted: Type, items: list[Term]) -> Text:
+def _struct(wanted: Type, items: list[Term]) -> CppText:
     """A struct that scripts write as a list."""
     fields = FIELDS[wanted.name].values()
     parts = [item.spell(part).text for item, part in zip(items, fields, strict=False)]
@@ -53,7 +54,7 @@ def _struct(wanted: Type, items: list[Term]) -> Text:
         parts = [f"smachac::Point{{{point}}}", "smachac::Quaternion{}"]
     elif len(items) != len(fields):
         raise UnportableError(f"a `{wanted}` has {len(fields)} parts, and not {len(items)}")
-    return Text(f"{cpp(wanted)}{{{', '.join(parts)}}}")
+    return CppText(f"{cpp(wanted)}{{{', '.join(parts)}}}")
 
 
 def mapped(entries: list[tuple[Term, Term]]) -> Term:
@@ -66,20 +67,20 @@ def mapped(entries: list[tuple[Term, Term]]) -> Term:
     keys = [key.constant for key, _ in entries]
     apart = None not in keys and len(set(keys)) == len(keys)
 
-    def spell(wanted: Type) -> Text:
+    def spell(wanted: Type) -> CppText:
         if wanted.name == "optional":
             return converted(spell(inside(wanted)), inside(wanted), wanted)
         if wanted.name in ("PoseStamped", "JointState"):
             return _record(wanted, {str(key.constant): value for key, value in entries})
         if wanted.name != "dict":
-            return converted(Text(""), own, wanted)
+            return converted(CppText(""), own, wanted)
         pairs = [f"{{{k.text()}, {v.spell(inside(wanted)).text}}}" for k, v in entries]
-        return Text(braced(cpp(wanted), pairs if apart else pairs[::-1]))
+        return CppText(braced(cpp(wanted), pairs if apart else pairs[::-1]))
 
     return Term(type=own, spell=spell)
 
 
-def _record(wanted: Type, given: dict[str, Term]) -> Text:
+def _record(wanted: Type, given: dict[str, Term]) -> CppText:
     """A struct that scripts write as a mapping."""
     fields = FIELDS[wanted.name]
     unknown = [key for key in given if key not in fields]
@@ -89,4 +90,4 @@ def _record(wanted: Type, given: dict[str, Term]) -> Text:
         given[key].spell(part).text if key in given else f"{cpp(ground(part))}{{}}"
         for key, part in fields.items()
     ]
-    return Text(f"{cpp(wanted)}{{{', '.join(parts)}}}")
+    return CppText(f"{cpp(wanted)}{{{', '.join(parts)}}}")

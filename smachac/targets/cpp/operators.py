@@ -12,8 +12,8 @@ from smachac.targets.cpp.terms import (
     SEQUENCES,
     SIGNED,
     SUM,
+    CppText,
     Term,
-    Text,
     call,
     cpp,
     fixed,
@@ -58,15 +58,15 @@ def signed(sign: str, operand: Term) -> Term:
         return fixed(
             INT, call("negate", value.text) if sign == "-" else call("add", "0", value.text)
         )
-    return fixed(kind, Text(f"-{value.at(SIGNED + 1)}", SIGNED) if sign == "-" else value)
+    return fixed(kind, CppText(f"-{value.at(SIGNED + 1)}", SIGNED) if sign == "-" else value)
 
 
-def whole(term: Term) -> Text:
+def whole(term: Term) -> CppText:
     """A whole number, or a truth value, as an argument that is a whole number."""
     return term.spell(present(term.type))
 
 
-def real(term: Term) -> Text:
+def real(term: Term) -> CppText:
     """A number as a float, rounded where it has to be."""
     kind = present(term.type)
     if term.constant is not None and kind == INT:
@@ -104,7 +104,7 @@ def _numbers(word: str, one: Type, other: Type, left: Term, right: Term) -> Term
     first, second = real(left), real(right)
     if word in BINDING:
         own = BINDING[word]
-        return fixed(type_, Text(f"{first.at(own)} {word} {second.at(own + 1)}", own))
+        return fixed(type_, CppText(f"{first.at(own)} {word} {second.at(own + 1)}", own))
     return fixed(type_, call(CHECKED[word], first.text, second.text))
 
 
@@ -135,7 +135,7 @@ def _joined_texts(left: Term, right: Term) -> Term:
         second = cpp_literal(right.constant)
     elif isinstance(left.constant, str) and "\0" not in left.constant:
         first = cpp_literal(left.constant)
-    return fixed(STR, Text(f"{first} + {second}", SUM))
+    return fixed(STR, CppText(f"{first} + {second}", SUM))
 
 
 def _joined_lists(kind: str, left: Term, right: Term) -> Term:
@@ -159,25 +159,23 @@ def _repeated(items: Term, times: Term) -> Term:
 DIRECT = (INT, FLOAT, NUMBER, STR)
 """The types whose operators in C++ are those of Python."""
 
+EQUAL = ("==", "!=")
+"""The comparisons that values of every type have."""
 
-def compare(word: str, left: Term, right: Term) -> Text:
+
+def compare(word: str, left: Term, right: Term) -> CppText:
     """One comparison. Raises UnportableError where Python would raise TypeError."""
     match word:
-        case "==":
-            return _equal(left, right)
-        case "!=":
-            found = _equal(left, right)
-            if found.binding == EQUALITY:
-                return Text(found.text.replace(" == ", " != ", 1), EQUALITY)
-            return Text(f"!{found.at(SIGNED)}", SIGNED)
+        case "==" | "!=":
+            return _equal(word, left, right)
         case "in":
             return _contains(left, right)
         case "not in":
-            return Text(f"!{_contains(left, right).at(SIGNED)}", SIGNED)
+            return CppText(f"!{_contains(left, right).at(SIGNED)}", SIGNED)
     return _ordered(word, left, right)
 
 
-def _direct(word: str, left: Term, right: Term) -> Text | None:
+def _direct(word: str, left: Term, right: Term) -> CppText | None:
     """The operator of C++ itself, where it means the same and no compiler warns of it."""
     kinds = {left.type, right.type}
     if left.constant is not None and right.constant is not None:
@@ -188,13 +186,13 @@ def _direct(word: str, left: Term, right: Term) -> Text | None:
         if not isinstance(whole.constant, int) or abs(whole.constant) > EXACT:
             return None
         one, other = (_side(each, FLOAT if each is whole else each.type) for each in (left, right))
-    elif len(floats) == 1 and (kinds <= set(DIRECT) or (kinds == {BOOL} and word == "==")):
+    elif len(floats) == 1 and (kinds <= set(DIRECT) or (kinds == {BOOL} and word in EQUAL)):
         one, other = _side(left, left.type), _side(right, right.type)
     else:
         return None
     if one == other:
         return None
-    return Text(f"{one} {word} {other}", EQUALITY if word == "==" else RELATION)
+    return CppText(f"{one} {word} {other}", EQUALITY if word in EQUAL else RELATION)
 
 
 def _side(term: Term, as_: Type) -> str:
@@ -203,7 +201,7 @@ def _side(term: Term, as_: Type) -> str:
     return term.spell(as_).at(SUM)
 
 
-def _ordered(word: str, left: Term, right: Term) -> Text:
+def _ordered(word: str, left: Term, right: Term) -> CppText:
     direct = _direct(word, left, right)
     if direct is not None:
         return direct
@@ -222,7 +220,7 @@ def there(term: Term) -> Term:
     """What is there of a term; an error where nothing is."""
     if term.type.name != "optional":
         return term
-    return fixed(present(term.type), Text(term.present()))
+    return fixed(present(term.type), CppText(term.present()))
 
 
 def _have_order(one: Type, other: Type) -> bool:
@@ -242,19 +240,25 @@ def orderable(type_: Type) -> bool:
     return _have_order(type_, type_)
 
 
-def _equal(left: Term, right: Term) -> Text:
-    direct = _direct("==", left, right)
+def _equal(word: str, left: Term, right: Term) -> CppText:
+    """`==` or `!=`: an operator of C++, or the function `equal` and its negation."""
+    direct = _direct(word, left, right)
     if direct is not None:
         return direct
     for one, other in ((left, right), (right, left)):
         if other.type == NONE and one.type.name == "optional" and other.simple:
-            return Text(f"{one.text(SUM)} == std::nullopt", EQUALITY)
+            return CppText(f"{one.text(SUM)} {word} std::nullopt", EQUALITY)
         if one.type.name in LISTED and present(other.type).name in SEQUENCES:
             if size_of(other.type) != len(FIELDS[one.type.name]):
                 raise UnportableError(f"a `{one.type}` is compared with a list of as many items")
-            return call("equal", one.text(), other.spell(one.type).text)
+            return _equality(word, one.text(), other.spell(one.type).text)
     _refuse_kinds(left.type, right.type)
-    return call("equal", _side_of(left, right), _side_of(right, left))
+    return _equality(word, _side_of(left, right), _side_of(right, left))
+
+
+def _equality(word: str, one: str, other: str) -> CppText:
+    found = call("equal", one, other)
+    return CppText(f"!{found.at(SIGNED)}", SIGNED) if word == "!=" else found
 
 
 def _side_of(term: Term, other: Term) -> str:
@@ -276,7 +280,7 @@ def _refuse_kinds(one: Type, other: Type) -> None:
         _refuse_kinds(inside(one), inside(other))
 
 
-def _contains(left: Term, right: Term) -> Text:
+def _contains(left: Term, right: Term) -> CppText:
     kind = present(right.type)
     if kind == STR or kind.name == "dict":
         if present(left.type) != STR:

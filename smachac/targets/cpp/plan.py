@@ -19,7 +19,7 @@ from smachac.targets.errors import unsupported_by_target
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
-class Scope:
+class ContainerScope:
     """A container and its userdata: the types of its keys by name, and those keys that surely hold
     a value whenever a state of it starts, whatever its states do."""
 
@@ -52,7 +52,7 @@ class Plan:
     """A machine with its scopes by path, parents before children; `report` gathers refusals."""
 
     machine: Machine
-    scopes: Mapping[str, Scope]
+    scopes: Mapping[str, ContainerScope]
     report: Report = field(default_factory=list)
 
     def refuse(self, span: Span, error: UnportableError) -> None:
@@ -66,17 +66,19 @@ def plan(machine: Machine) -> Plan:
     keys: dict[str, dict[str, Type]] = {}
     for (path, key), type_ in sorted(types.items(), key=lambda item: item[0]):
         keys.setdefault(path, {})[key] = plain(type_)
-    scopes: dict[str, Scope] = {}
+    scopes: dict[str, ContainerScope] = {}
     found = Plan(machine=machine, scopes=scopes)
     for path, node in containers(machine.root):
         around = scopes.get(path.rpartition("/")[0])
-        scope = Scope(path=path, node=node, keys=keys.get(path, {}), sure=_sure(node, around))
+        scope = ContainerScope(
+            path=path, node=node, keys=keys.get(path, {}), sure=_sure(node, around)
+        )
         scopes[path] = scope
         _check(found, scope, around)
     return found
 
 
-def _sure(node: Container, around: Scope | None) -> frozenset[str]:
+def _sure(node: Container, around: ContainerScope | None) -> frozenset[str]:
     held = {preset.key for preset in node.userdata}
     if isinstance(node, Iterator):
         held.add(node.item_key)
@@ -86,7 +88,7 @@ def _sure(node: Container, around: Scope | None) -> frozenset[str]:
     return frozenset(held)
 
 
-def _check(plan: Plan, scope: Scope, around: Scope | None) -> None:
+def _check(plan: Plan, scope: ContainerScope, around: ContainerScope | None) -> None:
     node = scope.node
     for key, type_ in scope.keys.items():
         try:
@@ -114,7 +116,7 @@ def _check(plan: Plan, scope: Scope, around: Scope | None) -> None:
         _check_borders(plan, scope, around)
 
 
-def _check_borders(plan: Plan, scope: Scope, around: Scope) -> None:
+def _check_borders(plan: Plan, scope: ContainerScope, around: ContainerScope) -> None:
     """What is copied in and out has to convert."""
     names = around.names(scope.node)
     pairs = [(key, around, scope) for key in scope.node.inputs]

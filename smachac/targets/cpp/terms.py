@@ -36,11 +36,13 @@ TERNARY, OR, AND, EQUALITY, RELATION, SUM, PRODUCT, SIGNED, POSTFIX = range(9)
 """How tightly a form of C++ binds."""
 
 
-class Text(NamedTuple):
-    """C++ text, and how tightly it binds."""
+class CppText(NamedTuple):
+    """C++ text, and how tightly it binds. `digits`: a literal that C++ gives the smallest type that
+    holds it, which may be `int`."""
 
     text: str
     binding: int = POSTFIX
+    digits: bool = False
 
     def at(self, binding: int) -> str:
         """The text where something that binds so tightly is due."""
@@ -56,10 +58,10 @@ class Term:
     """
 
     type: Type
-    spell: Callable[[Type], Text]
+    spell: Callable[[Type], CppText]
     simple: bool = False
     constant: bool | int | float | str | None = None
-    test: Text | None = None
+    test: CppText | None = None
 
     def text(self, binding: int = TERNARY) -> str:
         """The text as a value of its own type."""
@@ -70,12 +72,12 @@ class Term:
         return self.spell(present(self.type)).at(TERNARY)
 
 
-def call(name: str, *arguments: str) -> Text:
+def call(name: str, *arguments: str) -> CppText:
     """A call of a function of Python's."""
-    return Text(f"{PY}{name}({', '.join(arguments)})")
+    return CppText(f"{PY}{name}({', '.join(arguments)})")
 
 
-def fixed(type_: Type, text: Text, *, simple: bool = False) -> Term:
+def fixed(type_: Type, text: CppText, *, simple: bool = False) -> Term:
     """A term with one text, which is converted where another type is wanted."""
     return Term(type=type_, spell=lambda wanted: converted(text, type_, wanted), simple=simple)
 
@@ -85,17 +87,17 @@ def literal(value: bool | int | float | str | None) -> Term:
     kinds = {bool: BOOL, int: INT, float: FLOAT, str: STR}
     own = kinds.get(type(value), NONE)
 
-    def spell(wanted: Type) -> Text:
+    def spell(wanted: Type) -> CppText:
         match value:
             case None:
-                return converted(Text("smachac::None{}"), NONE, wanted)
+                return converted(CppText("smachac::None{}"), NONE, wanted)
             case bool():
-                return converted(Text(cpp_bool(value)), BOOL, wanted)
+                return converted(CppText(cpp_bool(value)), BOOL, wanted)
             case str():
-                return converted(Text(cpp_string(value)), STR, wanted)
-        float_ = isinstance(value, float) or present(wanted).name in ("float", "number")
-        text = cpp_float(value) if float_ else cpp_int(int(value))
-        return converted(Text(text, SIGNED), FLOAT if float_ else own, wanted)
+                return converted(CppText(cpp_string(value)), STR, wanted)
+        if isinstance(value, float) or present(wanted).name in ("float", "number"):
+            return converted(CppText(cpp_float(value), SIGNED), FLOAT, wanted)
+        return converted(CppText(cpp_int(value), SIGNED, digits=True), own, wanted)
 
     return Term(type=own, spell=spell, simple=True, constant=value)
 
@@ -239,7 +241,7 @@ def convertible(own: Type, wanted: Type) -> bool:
     return False
 
 
-def converted(text: Text, own: Type, wanted: Type) -> Text:
+def converted(text: CppText, own: Type, wanted: Type) -> CppText:
     """The text of a value as one of another type. Raises UnportableError where it can be none."""
     if own.name == "mixed" or wanted.name == "mixed":
         ground(own if own.name == "mixed" else wanted)
@@ -248,11 +250,11 @@ def converted(text: Text, own: Type, wanted: Type) -> Text:
     if cpp(own) == cpp(wanted):
         return text
     if own == NONE:
-        return Text(f"{cpp(wanted)}{{}}")
+        return CppText(f"{cpp(wanted)}{{}}")
     if wanted.name == "optional" and cpp(own) == cpp(inside(wanted)):
-        return Text(f"{cpp(wanted)}({text.text})")
+        return CppText(f"{cpp(wanted)}({text.text})")
     if own.name == "optional" and cpp(inside(own)) == cpp(wanted):
         return call("present", text.text)
     if own == INT and wanted.name in ("float", "number"):
         return call("widen", text.text)
-    return Text(f"smachac::convert<{cpp(wanted)}>({text.text})")
+    return CppText(f"smachac::convert<{cpp(wanted)}>({text.text})")

@@ -179,21 +179,18 @@ def _items(data: tuple[Data, ...] | Struct, type_: Type) -> str:
                 f"{_shown(data)} has {len(data)} items, and not {size} as `{type_}`"
             )
         case _, tuple() if type_.name != "dict":
-            return braced(cpp_type(type_), [_value(item, inner) for item in data])
+            items = [_value(item, inner) for item in data]
+            return braced(cpp_type(type_), items, array=type_.name == "array")
         case _, Struct(entries=entries) if type_.name == "dict":
             pairs = [f"{{{cpp_string(key)}, {_value(item, inner)}}}" for key, item in entries]
             return braced(cpp_type(type_), pairs)
     raise UnportableError(f"{_shown(data)} is no `{type_}`")
 
 
-def braced(name: str, items: list[str]) -> str:
-    """A value of a container; a std::array has one in it with braces of its own."""
+def braced(name: str, items: list[str], *, array: bool = False) -> str:
+    """A value of a container. `array`: of a std::array, whose items have braces of their own."""
     inner = ", ".join(items)
-    return (
-        f"{name}{{{{{inner}}}}}"
-        if name.startswith("std::array") and items
-        else f"{name}{{{inner}}}"
-    )
+    return f"{name}{{{{{inner}}}}}" if array and items else f"{name}{{{inner}}}"
 
 
 def _members(data: tuple[Data, ...] | Struct, name: str) -> list[str]:

@@ -12,7 +12,7 @@ from smachac.ir.traversal import PREEMPTED
 from smachac.ir.types import Type
 from smachac.targets.cpp.builtin_states import STOP, LeafCode
 from smachac.targets.cpp.identifiers import identifier
-from smachac.targets.cpp.plan import Scope, converts
+from smachac.targets.cpp.plan import ContainerScope, converts
 from smachac.targets.cpp.types import UnportableError, cpp_literal, cpp_type, cpp_value, plain
 
 BY_VALUE = ("bool", "int", "float")
@@ -54,7 +54,7 @@ def left_to_scripts(type_: StateType) -> list[str]:
     return sorted(type_.given - {"variables"})
 
 
-def class_leaf(code: ClassCode, leaf: Leaf, scope: Scope) -> LeafCode:
+def class_leaf(code: ClassCode, leaf: Leaf, scope: ContainerScope) -> LeafCode:
     """A leaf that is an object of a class. Raises UnportableError."""
     type_ = code.type
     left = left_to_scripts(type_)
@@ -78,7 +78,14 @@ def class_leaf(code: ClassCode, leaf: Leaf, scope: Scope) -> LeafCode:
         ]
         call = f"run.wrote({call}, {', '.join(told)})"
     made = [*([argument(code.parameter)] if code.parameter else []), *_variables(type_, leaf)]
-    return LeafCode(type=code.name, call=call, made_with=", ".join(made), parameter=code.parameter)
+    return LeafCode(
+        type=code.name,
+        call=call,
+        made_with=", ".join(made),
+        parameter=code.parameter,
+        uses_userdata=bool(inputs or outs),
+        uses_stop=stops(type_),
+    )
 
 
 def stops(type_: StateType) -> bool:
@@ -86,7 +93,7 @@ def stops(type_: StateType) -> bool:
     return type_.blocking or any(each.name == PREEMPTED for each in type_.outcomes)
 
 
-def _input(scope: Scope, key: Key, outer: str) -> str:
+def _input(scope: ContainerScope, key: Key, outer: str) -> str:
     given, wanted = scope.key(outer), plain(key.type)
     if not converts(given, wanted):
         raise UnportableError(f"its input `{key.name}` is `{wanted}`, `{outer}` is `{given}`")
@@ -96,7 +103,7 @@ def _input(scope: Scope, key: Key, outer: str) -> str:
     return spelt if given == wanted else f"smachac::convert<{cpp_type(wanted)}>({spelt})"
 
 
-def _output(scope: Scope, key: Key, outer: str) -> str:
+def _output(scope: ContainerScope, key: Key, outer: str) -> str:
     given, wanted = plain(key.type), scope.key(outer)
     if given != wanted:
         raise UnportableError(f"its output `{key.name}` is `{given}`, `{outer}` is `{wanted}`")

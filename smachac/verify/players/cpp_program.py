@@ -23,7 +23,7 @@ from smachac.ir.types import Type
 from smachac.targets.cpp.builtin_states import enumeration
 from smachac.targets.cpp.header import header_of
 from smachac.targets.cpp.identifiers import identifier
-from smachac.targets.cpp.plan import Plan, Scope, place, scope_name
+from smachac.targets.cpp.plan import ContainerScope, Plan, place, scope_name
 from smachac.targets.cpp.types import cpp_literal, cpp_type, cpp_value, plain, script_data
 from smachac.targets.cpp.user_classes import interface_hash, parameter_type
 from smachac.verify.guidance import possible_leaf_outcomes
@@ -144,7 +144,7 @@ class CppLeaf:
     number: int
     path: str
     leaf: Leaf
-    scope: Scope
+    scope: ContainerScope
     cases: dict[str, int] = field(default_factory=dict)
     rows: list[PlainStep] = field(default_factory=list)
 
