@@ -68,7 +68,7 @@ def build(
     """
     from smachac import driver
     from smachac.diagnostics.diagnostic import has_errors
-    from smachac.targets import load_target
+    from smachac.targets import BuildContext, load_target
     from smachac.targets.runtime_files import runtime_files
 
     found = load_target(target)
@@ -81,7 +81,8 @@ def build(
     files = driver.build(analysis.checked, found, library, report, options)
     if has_errors(report):
         raise ScriptError(driver.together(analysis.report, report))
-    return {**files, **runtime_files(found.runtime(files))}
+    context = BuildContext(library=library, options=options or {})
+    return {**files, **runtime_files(found.runtime(analysis.checked, context))}
 
 
 def run(

@@ -23,7 +23,7 @@ from smachac.frontend.suppressions import Allowance, allowances, heeded
 from smachac.ir.nodes import Checked, Machine
 from smachac.ir.recursion import deep_recursion
 from smachac.ir.traversal import remapping
-from smachac.targets import Context, Files, Target, errors, load_target
+from smachac.targets import BuildContext, Files, Target, errors, load_target
 from smachac.targets.interface_check import code_faults, target_faults
 from smachac.targets.undefined_names import undefined_names
 
@@ -194,7 +194,7 @@ def build(
     options: Mapping[str, str] | None = None,
 ) -> Files:
     """The files a target prints; none if templates or classes of the user are at fault."""
-    context = Context(library=library, options=options or {})
+    context = BuildContext(library=library, options=options or {})
     with deep_recursion():
         found = [*target_faults(machine, library, target)]
         files = target.emit(machine, context, found)

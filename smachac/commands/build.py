@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import argparse
 import sys
+from collections.abc import Mapping
 from pathlib import Path
 from typing import TYPE_CHECKING
 
@@ -13,11 +14,12 @@ from smachac.driver import analyse_file
 if TYPE_CHECKING:
     from smachac.diagnostics.diagnostic import Report
     from smachac.driver import Analysis
+    from smachac.frontend.loader import Library
     from smachac.targets import Target
 
 
 def build(arguments: argparse.Namespace) -> int:
-    from smachac.targets import OptionError, load_target, target_names
+    from smachac.targets import BuildContext, OptionError, load_target, target_names
 
     target = load_target(arguments.target)
     if target is None:
@@ -32,15 +34,18 @@ def build(arguments: argparse.Namespace) -> int:
             return usage(message, name, list(target.options))
         options[name] = value
     try:
-        _, files = generate(arguments, target, options)
+        analysis, library, files = generate(arguments, target, options)
     except OptionError as error:
         return usage(f"--option {error}")
-    return FINDINGS if files is None else _put(files, target, arguments)
+    if files is None or analysis.checked is None or library is None:
+        return FINDINGS
+    context = BuildContext(library=library, options=options)
+    return _put(files, target.runtime(analysis.checked, context), arguments)
 
 
 def generate(
     arguments: argparse.Namespace, target: Target, options: dict[str, str]
-) -> tuple[Analysis, dict[str, str] | None]:
+) -> tuple[Analysis, Library | None, dict[str, str] | None]:
     """The files of a target; none, with a report on stderr, where the script has errors."""
     from smachac.diagnostics.diagnostic import has_errors
     from smachac.driver import build, together
@@ -54,10 +59,10 @@ def generate(
         report = together(report, found)
         files = None if has_errors(found) else files
     print_report(shown(report), arguments, sys.stderr)
-    return analysis, files
+    return analysis, library, files
 
 
-def _put(files: dict[str, str], target: Target, arguments: argparse.Namespace) -> int:
+def _put(files: dict[str, str], runtime: Mapping[str, str], arguments: argparse.Namespace) -> int:
     from smachac.commands.files import changed_files, foreign_files, write_files
     from smachac.targets.runtime_files import runtime_files
 
@@ -65,7 +70,7 @@ def _put(files: dict[str, str], target: Target, arguments: argparse.Namespace) -
     if str(folder) == "-":
         sys.stdout.write(next(iter(files.values())))
         return OK
-    files = {**files, **runtime_files(target.runtime(files))}
+    files = {**files, **runtime_files(runtime)}
     if arguments.check:
         changed = changed_files(folder, files)
         for path in changed:

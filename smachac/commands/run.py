@@ -23,6 +23,7 @@ from smachac.frontend.errors.script import wrong_shape
 if TYPE_CHECKING:
     from smachac.diagnostics.diagnostic import Report
     from smachac.diagnostics.source import Span
+    from smachac.frontend.loader import Library
     from smachac.frontend.yaml_tree import Tree
     from smachac.interpreter.result import RunResult
     from smachac.interpreter.scenario import Scenario
@@ -38,16 +39,16 @@ def run(arguments: argparse.Namespace) -> int:
     target = load_target("python")
     assert target is not None
     if arguments.mock is not None:
-        analysis, _ = analyse_file(arguments.script, arguments.scripts, arguments.templates)
+        analysis, library = analyse_file(arguments.script, arguments.scripts, arguments.templates)
         files = {}
         print_report(shown(analysis.report), arguments, sys.stderr)
     else:
-        analysis, made = generate(arguments, target, {})
+        analysis, library, made = generate(arguments, target, {})
         files = made or {}
     machine = analysis.checked
     if machine is None or not (files or arguments.mock):
         return FINDINGS
-    wrong = _wrong_film(arguments, "".join(files.values()))
+    wrong = _wrong_film(arguments, machine, library if files else None)
     if wrong:
         return usage(wrong)
     scenario = None
@@ -83,11 +84,14 @@ def run(arguments: argparse.Namespace) -> int:
     return OK
 
 
-def _wrong_film(arguments: argparse.Namespace, text: str) -> str:
-    """What is wrong with `--record` and `--gui`, if anything."""
+def _wrong_film(arguments: argparse.Namespace, machine: Machine, library: Library | None) -> str:
+    """What is wrong with `--record` and `--gui`, if anything. `library` is that of the program;
+    None where no program runs."""
+    from smachac.targets.python.template_sources import uses_simulation
+
     if arguments.record is None and not arguments.gui:
         return ""
-    if "from smachac import sim" not in text:
+    if library is None or not uses_simulation(machine, library):
         return "--record and --gui need a program for the simulated arm; this run has no arm"
     if arguments.record is not None and arguments.record.suffix.lower() not in (".gif", ".mp4"):
         return f"--record makes .gif and .mp4, not `{arguments.record}`"

@@ -1,7 +1,7 @@
-"""Targets: each prints a checked machine as files.
+"""Targets: each turns a checked machine into files of one language or format.
 
-A target is one folder with a `TARGET` value, registered under the entry-point group
-`smachac.targets`; ours and anybody's come in through the same door.
+A target is a folder with a value `TARGET` of the class Target, registered as an entry point of the
+group `smachac.targets`. The targets of smachac and those of other packages are found the same way.
 """
 
 from __future__ import annotations
@@ -21,12 +21,12 @@ from smachac.version import __version__
 GROUP = "smachac.targets"
 
 Files = dict[str, str]
-"""What a target makes: relative file name to text. Somebody else writes it."""
+"""The output of a target: relative file name to text. The caller writes the files."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
-class Context:
-    """What a target gets beside the machine.
+class BuildContext:
+    """The input of a target beside the machine.
 
     `library` finds templates and interfaces. `options` are the `--option NAME=VALUE` of the
     command line.
@@ -37,13 +37,13 @@ class Context:
 
 
 class OptionError(ValueError):
-    """An option has a value that makes no sense."""
+    """The value of an option is not valid."""
 
 
-Emit = Callable[[Checked, Context, Report], Files]
+Emit = Callable[[Checked, BuildContext, Report], Files]
 
 
-def _nothing(_: Files) -> Mapping[str, str]:
+def _no_runtime(_machine: Checked, _context: BuildContext) -> Mapping[str, str]:
     return {}
 
 
@@ -51,37 +51,40 @@ def _no_code(_type: StateType, _library: Library) -> bool:
     return False
 
 
-def _unread(_type: StateType, _library: Library) -> Declared | None:
+def _nothing_declared(_type: StateType, _library: Library) -> Declared | None:
     return None
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Target:
-    """A target: its name, a line about it, and the function that prints.
+    """A target: a name, a description in one line, and five parts with these contracts.
 
-    `options` names the options it knows, each with a line of help. An emitter reports what is
-    wrong in templates of the user and what its language cannot say; then it returns no files. It
-    raises OptionError; the first file it returns is the main one. `runtime` tells what such files
-    stand on: file names beside them, with their paths under smachac/runtime. `has_code` tells
-    whether states of a type can be printed, `declared` what a class of the user says of itself.
+    `emit(machine, context, report)` returns the files, the main file first. It appends to `report`
+    what the language cannot express and the faults of the user's templates, and returns no files
+    if there is an error among them. It raises OptionError, and nothing else that the user can
+    cause. `options` maps the name of each option to a line of help. `runtime(machine, context)` is
+    the support code that the files need beside them: file name to path under smachac/runtime.
+    `has_code(type, library)` is whether the target can emit states of a type.
+    `declared(type, library)` is the interface that the user's class for a type declares; None if it
+    cannot be read.
     """
 
     name: str
     description: str
     emit: Emit
     options: Mapping[str, str] = field(default_factory=dict)
-    runtime: Callable[[Files], Mapping[str, str]] = _nothing
+    runtime: Callable[[Checked, BuildContext], Mapping[str, str]] = _no_runtime
     has_code: Callable[[StateType, Library], bool] = _no_code
-    declared: Callable[[StateType, Library], Declared | None] = _unread
+    declared: Callable[[StateType, Library], Declared | None] = _nothing_declared
 
 
 def made_by(machine: Machine) -> str:
-    """The line by which files of ours are known: who made them, from what."""
+    """The line that marks a file as generated: the version of smachac and the script."""
     return f"Made by smachac {__version__} from {machine.source} (sha256 {machine.digest[:16]})."
 
 
 def stem(machine: Machine) -> str:
-    """The machine's name as a file name without suffix; also a name that Python can import."""
+    """The name of the machine as a file name without suffix, and as a module name of Python."""
     word = re.sub(r"\W+", "_", machine.root.name).strip("_") or "machine"
     return f"_{word}" if word[0].isdigit() or iskeyword(word) else word
 
@@ -94,7 +97,7 @@ def target_names() -> list[str]:
 
 
 def load_target(name: str) -> Target | None:
-    """The target of that name, imported now, or None."""
+    """The target of a name, imported by this call; None if there is none."""
     from importlib.metadata import entry_points
 
     for entry in entry_points(group=GROUP, name=name):

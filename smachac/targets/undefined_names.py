@@ -17,7 +17,6 @@ from smachac.analysis.accesses import callbacks
 from smachac.diagnostics.diagnostic import Diagnostic
 from smachac.frontend.errors.script import undefined_name
 from smachac.frontend.loader import Library
-from smachac.frontend.state_types import TEMPLATE_FILES, find_state_type
 from smachac.ir.expressions import looks_like_expression
 from smachac.ir.nodes import Expression, Leaf, Machine, Node
 from smachac.ir.traversal import expressions, walk
@@ -26,7 +25,6 @@ USERDATA = ("ud", "userdata")
 """What code that is no function calls the userdata."""
 
 _MAKES_NAMES = re.compile(r"import \*|[\"']\*[\"']|\w\{\{|\}\}\w")
-_OTHERS = re.compile(r"\{%[-+]?\s*(?:extends|include|import|from)\s+[\"']([^\"']+)[\"']")
 _BLOCK = re.compile(r"\{%[-+]?\s*(?:end)?block\b[^%]*%\}")
 _WORDS = re.compile(r"[^\W\d]\w*")
 _DEFINED = re.compile(r"^\s*(?:def|class|import|from \S+ import)\s+(\w+)|^\s*(\w+) = ", re.M)
@@ -81,28 +79,14 @@ def _known(machine: Machine, library: Library) -> set[str] | None:
     """The words of all templates of a script, and what is imported for them; None where these
     make names."""
     from smachac.targets.python.imports import importable
+    from smachac.targets.python.template_sources import template_sources
 
-    types = {machine.base, *(node.type for _, node in walk(machine.root))}
-    known, seen = importable(), set[str]()
-    todo = [file for name in sorted(types) for file in _files(name, library)]
-    while todo:
-        file = todo.pop()
-        source = library.template(file) if file not in seen else None
-        seen.add(file)
-        if source is None:
-            continue
+    known = importable()
+    for file, source in template_sources(machine, library):
         if library.own_template(file) is None:
             known.update(word for pair in _DEFINED.findall(source.text) for word in pair if word)
         elif _MAKES_NAMES.search(source.text):
             return None
         else:
             known.update(_WORDS.findall(_BLOCK.sub("", source.text)))
-        todo += _OTHERS.findall(source.text)
     return known
-
-
-def _files(name: str, library: Library) -> list[str]:
-    """Where the code of a state type may be."""
-    type_ = find_state_type(name, library, []) if name else None
-    code = [type_.code["python"]] if type_ is not None and "python" in type_.code else []
-    return [*code, *(pattern.format(name) for pattern in TEMPLATE_FILES)]

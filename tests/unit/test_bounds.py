@@ -155,9 +155,9 @@ def test_all_faulty_templates_are_told_at_once(tmp_path: Path) -> None:
 
 
 def _context(library: object) -> object:
-    from smachac.targets import Context
+    from smachac.targets import BuildContext
 
-    return Context(library=library)  # type: ignore[arg-type]
+    return BuildContext(library=library)  # type: ignore[arg-type]
 
 
 def test_what_templates_may_do(tmp_path: Path) -> None:

@@ -29,7 +29,7 @@ from smachac.ir.nodes import (
     Transition,
     Value,
 )
-from smachac.targets import Context, stem
+from smachac.targets import BuildContext, stem
 from smachac.targets.dot import TARGET
 from smachac.targets.dot.style import TONES, identifier, tone
 from smachac.version import __version__
@@ -68,7 +68,7 @@ def machine_of(name: str, ends: tuple[str, ...], *children: Node, **to: str) -> 
 
 def drawn(root: StateMachine, **options: str) -> str:
     machine = Checked(Machine(root=root, source="main.yml", digest="0123456789abcdef" * 4))
-    files = TARGET.emit(machine, Context(library=NO_FILES, options=options), [])
+    files = TARGET.emit(machine, BuildContext(library=NO_FILES, options=options), [])
     assert list(files) == [f"{stem(machine)}.dot"]
     return files[f"{stem(machine)}.dot"]
 

@@ -8,7 +8,7 @@ from smachac.diagnostics.source import NOWHERE
 from smachac.frontend.files import disk_library
 from smachac.ir.nodes import Checked, Leaf, Machine, Outcome, StateMachine
 from smachac.ir.printer import print_machine
-from smachac.targets import Context, made_by
+from smachac.targets import BuildContext, made_by
 from smachac.targets.ir import TARGET
 
 LEAF = Leaf(name="GO", type="T", outcomes=(Outcome(name="done", span=NOWHERE),), span=NOWHERE)
@@ -19,6 +19,8 @@ MACHINE = Machine(
 
 
 def test_one_file_with_the_text_of_the_machine() -> None:
-    files = TARGET.emit(Checked(MACHINE), Context(library=disk_library(Path("main.yml"), [])), [])
+    files = TARGET.emit(
+        Checked(MACHINE), BuildContext(library=disk_library(Path("main.yml"), [])), []
+    )
     assert files == {"sm.smir": f"# {made_by(MACHINE)}\n{print_machine(MACHINE)}"}
     assert "GO" in files["sm.smir"]

@@ -29,7 +29,7 @@ from smachac.ir.nodes import (
 )
 from smachac.ir.traversal import walk
 from smachac.ir.types import Type
-from smachac.targets import Context
+from smachac.targets import BuildContext
 from smachac.targets.json import TARGET, to_json
 
 SCHEMA = load_schema("machine")
@@ -117,7 +117,7 @@ def test_a_leaf_in_full() -> None:
 
 
 def test_one_file_with_the_mark_of_its_maker(no_library: Any) -> None:
-    context = Context(library=no_library)
+    context = BuildContext(library=no_library)
     files = TARGET.emit(Checked(machine()), context, [])
     assert list(files) == ["sm.json"]
     assert json.loads(files["sm.json"]) == to_json(machine())

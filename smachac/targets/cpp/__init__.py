@@ -11,7 +11,7 @@ from smachac.diagnostics.diagnostic import Report, in_order
 from smachac.frontend.loader import Library
 from smachac.frontend.state_types import StateType
 from smachac.ir.nodes import Checked
-from smachac.targets import Context, Files, Target, stem
+from smachac.targets import BuildContext, Files, Target, stem
 from smachac.targets.cpp.builtin_states import is_built_in
 from smachac.targets.cpp.class_reader import declared
 from smachac.targets.cpp.header import header_of
@@ -20,7 +20,7 @@ from smachac.targets.cpp.project import OPTIONS, project, project_files, runtime
 from smachac.targets.cpp.user_classes import class_code, left_to_scripts
 
 
-def emit(machine: Checked, context: Context, report: Report) -> Files:
+def emit(machine: Checked, context: BuildContext, report: Report) -> Files:
     """The header of a machine, `<name>.hpp`, and what options add."""
     wanted = project(context.options)
     planned = plan(machine)

@@ -6,10 +6,13 @@ import re
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 
-from smachac.ir.nodes import Machine
-from smachac.targets import Files, OptionError, made_by, stem
+from smachac.frontend.state_types import find_state_type
+from smachac.ir.nodes import Leaf, Machine
+from smachac.ir.traversal import walk
+from smachac.targets import BuildContext, Files, OptionError, made_by, stem
 from smachac.targets.cpp.header import Header
 from smachac.targets.cpp.plan import scope_name
+from smachac.targets.cpp.user_classes import class_code
 
 OPTIONS = {
     "main": "true: also main.cpp, a program that runs the machine once",
@@ -17,10 +20,13 @@ OPTIONS = {
     "package": "NAME: a package for colcon (ament_cmake), the header in include/NAME",
 }
 
-RUNTIME = ("values.hpp", "smachac.hpp")
+PROGRAM = "smachac/program.hpp"
+
+HEADERS = ("smachac/values.hpp", "smachac/smachac.hpp")
 """The headers of smachac that every machine includes."""
-RUNTIME_PARTS = ("arm.hpp", "program.hpp")
-"""Those that some do; each includes only RUNTIME."""
+
+OTHER_HEADERS = ("smachac/arm.hpp", PROGRAM)
+"""The headers of smachac that some machines include; each includes only HEADERS."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -51,12 +57,20 @@ def _truth(options: Mapping[str, str], name: str) -> bool:
     return value == "true"
 
 
-def runtime(files: Files) -> dict[str, str]:
-    """The headers of smachac that files include, as paths under smachac/runtime."""
-    root = "include/" if any(name.startswith("include/") for name in files) else ""
-    text = "".join(files.values())
-    parts = [part for part in RUNTIME_PARTS if f'#include "smachac/{part}"' in text]
-    return {f"{root}smachac/{name}": f"cpp/smachac/{name}" for name in (*RUNTIME, *parts)}
+def runtime(machine: Machine, context: BuildContext) -> dict[str, str]:
+    """The headers of smachac that the files of a machine include: file names beside these, with
+    their paths under smachac/runtime."""
+    wanted = project(context.options)
+    types = {node.type: None for _, node in walk(machine.root) if isinstance(node, Leaf)}
+    included = {PROGRAM} if wanted.main else set()
+    for name in types:
+        type_ = find_state_type(name, context.library, [])
+        code = class_code(type_) if type_ is not None else None
+        if code is not None:
+            included.add(code.header)
+    root = "include/" if wanted.package else ""
+    headers = [*HEADERS, *(header for header in OTHER_HEADERS if header in included)]
+    return {f"{root}{header}": f"cpp/{header}" for header in headers}
 
 
 def project_files(machine: Machine, wanted: Project, header: Header) -> Files:
@@ -85,7 +99,7 @@ def _main(machine: Machine, folder: str) -> str:
     return f"""\
 // {made_by(machine)}
 #include "{folder}{stem(machine)}.hpp"
-#include "smachac/program.hpp"
+#include "{PROGRAM}"
 
 int main(int count, char **arguments) {{
   smachac::Program program(count, arguments);

@@ -4,13 +4,13 @@ from __future__ import annotations
 
 from smachac.diagnostics.diagnostic import Report
 from smachac.ir.nodes import Checked
-from smachac.targets import Context, Files, OptionError, Target, made_by, stem
+from smachac.targets import BuildContext, Files, OptionError, Target, made_by, stem
 from smachac.targets.dot.graph import picture
 
 DIRECTIONS = ("TB", "LR", "BT", "RL")
 
 
-def emit(machine: Checked, context: Context, report: Report) -> Files:
+def emit(machine: Checked, context: BuildContext, report: Report) -> Files:
     """One DOT file, named after the machine.
 
     Raises OptionError for an option whose value makes no sense.

@@ -4,10 +4,10 @@ from __future__ import annotations
 
 from smachac.diagnostics.diagnostic import Report
 from smachac.ir.nodes import Checked
-from smachac.targets import Context, Files, Target, made_by, stem
+from smachac.targets import BuildContext, Files, Target, made_by, stem
 
 
-def emit(machine: Checked, context: Context, report: Report) -> Files:
+def emit(machine: Checked, context: BuildContext, report: Report) -> Files:
     """One text in the notation of grammars/ir.lark, named after the machine."""
     from smachac.analysis.type_inference import infer
     from smachac.ir.printer import print_machine

@@ -13,13 +13,13 @@ from smachac.diagnostics.source import NOWHERE, Span
 from smachac.ir.nodes import Checked, Expression, Machine, Node, Struct, Value
 from smachac.ir.traversal import walk
 from smachac.ir.types import Type
-from smachac.targets import Context, Files, Target, made_by, stem
+from smachac.targets import BuildContext, Files, Target, made_by, stem
 
 VERSION = 2
 """Of the schema; it grows with every change."""
 
 
-def emit(machine: Checked, context: Context, report: Report) -> Files:
+def emit(machine: Checked, context: BuildContext, report: Report) -> Files:
     """One JSON file, named after the machine. It is ASCII, and equal machines give equal bytes."""
     return {f"{stem(machine)}.json": json.dumps(to_json(machine), indent=2) + "\n"}
 

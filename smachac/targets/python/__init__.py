@@ -11,7 +11,7 @@ from smachac.diagnostics.diagnostic import Report
 from smachac.frontend.loader import Library
 from smachac.frontend.state_types import StateType
 from smachac.ir.nodes import Checked
-from smachac.targets import Context, Files, OptionError, Target, stem
+from smachac.targets import BuildContext, Files, OptionError, Target, stem
 from smachac.targets.python.class_reader import declared
 
 OPTIONS = {
@@ -20,7 +20,7 @@ OPTIONS = {
 }
 
 
-def emit(machine: Checked, context: Context, report: Report) -> Files:
+def emit(machine: Checked, context: BuildContext, report: Report) -> Files:
     """The module of a machine: `<name>.py`."""
     from smachac.targets.python.module import module_text
 

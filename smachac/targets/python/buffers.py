@@ -11,7 +11,7 @@ from smachac.diagnostics.source import Span
 from smachac.frontend.errors.references import template_error
 from smachac.frontend.state_types import StateType
 from smachac.ir.nodes import Node
-from smachac.targets import Context
+from smachac.targets import BuildContext
 from smachac.targets.errors import defined_twice, python_2_code
 from smachac.targets.python import structure
 from smachac.targets.python.python2 import modern
@@ -57,7 +57,7 @@ class Gathered:
     """
 
     blocks: Blocks
-    context: Context
+    context: BuildContext
     fresh: Callable[[str, bool], str] = field(default_factory=structure.variable_names)
     buffers: Buffers = field(default_factory=buffers)
     used: dict[str, Used] = field(default_factory=dict)

@@ -11,7 +11,7 @@ from smachac.frontend.errors.references import template_error
 from smachac.frontend.state_types import find_state_type
 from smachac.ir.nodes import Machine
 from smachac.ir.traversal import walk
-from smachac.targets import Context, made_by
+from smachac.targets import BuildContext, made_by
 from smachac.targets.errors import python_2_code
 from smachac.targets.python.buffers import PREPENDED, Gathered
 from smachac.targets.python.imports import (
@@ -59,7 +59,7 @@ CATCHING = '''def error_as_outcome(state, outcome):
 a scenario replaces."""
 
 
-def module_text(machine: Machine, context: Context, report: Report) -> str | None:
+def module_text(machine: Machine, context: BuildContext, report: Report) -> str | None:
     """The text of the module; None where templates are at fault, which is reported."""
     shown = frozenset(
         name
@@ -81,7 +81,7 @@ def module_text(machine: Machine, context: Context, report: Report) -> str | Non
     return text
 
 
-def _text(machine: Machine, context: Context, gathered: Gathered) -> str | None:
+def _text(machine: Machine, context: BuildContext, gathered: Gathered) -> str | None:
     template = _base_template(machine, context, gathered)
     root = gathered.fresh(machine.root.name, True)
     inside = Inside(node=machine.root, variable=root, path=machine.root.name, depth=1)
@@ -162,7 +162,7 @@ def _title(machine: Machine) -> str:
     return doc.replace("\\", "\\\\").replace('"""', "'''").rstrip('"')
 
 
-def _base_template(machine: Machine, context: Context, gathered: Gathered) -> str:
+def _base_template(machine: Machine, context: BuildContext, gathered: Gathered) -> str:
     type_ = find_state_type(machine.base, context.library, [])
     file = type_.code.get("python", "") if type_ is not None else ""
     if not file or gathered.blocks.source(file) is None:

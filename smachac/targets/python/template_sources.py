@@ -1,0 +1,46 @@
+"""The templates that the program of a machine is made of, and what their text alone tells."""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Iterator
+
+from smachac.diagnostics.source import Source
+from smachac.frontend.loader import Library
+from smachac.frontend.state_types import TEMPLATE_FILES, find_state_type
+from smachac.ir.nodes import Machine
+from smachac.ir.traversal import walk
+
+_OTHERS = re.compile(r"\{%[-+]?\s*(?:extends|include|import|from)\s+[\"']([^\"']+)[\"']")
+_SIMULATION = re.compile(
+    r"^\s*(?:from\s+smachac\s+import\s[^#\n]*\bsim\b|from\s+smachac\.sim\b|import\s+smachac\.sim\b)",
+    re.M,
+)
+
+
+def template_sources(machine: Machine, library: Library) -> Iterator[tuple[str, Source]]:
+    """The templates of the base and the state types of a machine, and those that they extend,
+    include or import: each once, with its file name."""
+    types = {machine.base, *(node.type for _, node in walk(machine.root))}
+    seen = set[str]()
+    todo = [file for name in sorted(types) for file in _files(name, library)]
+    while todo:
+        file = todo.pop()
+        source = library.template(file) if file not in seen else None
+        seen.add(file)
+        if source is not None:
+            yield file, source
+            todo += _OTHERS.findall(source.text)
+
+
+def _files(name: str, library: Library) -> list[str]:
+    """The file names that the template of a state type may have."""
+    type_ = find_state_type(name, library, []) if name else None
+    code = [type_.code["python"]] if type_ is not None and "python" in type_.code else []
+    return [*code, *(pattern.format(name) for pattern in TEMPLATE_FILES)]
+
+
+def uses_simulation(machine: Machine, library: Library) -> bool:
+    """Whether a template of the machine imports the simulation, `smachac.sim`."""
+    sources = (source for _, source in template_sources(machine, library))
+    return any(_SIMULATION.search(source.text) for source in sources)
