@@ -558,7 +558,8 @@ states:
     assert ran(text) == "good"
 
 
-def test_a_container_that_its_template_adds_catches(built: Built) -> None:
+@pytest.mark.parametrize("inner", ["", ", error: done"], ids=["alone", "and a state in it"])
+def test_a_container_that_its_template_adds_catches(built: Built, inner: str) -> None:
     box = (
         "{% from 'Utils.tpl.py' import render_outcomes, render_transitions %}"
         "{% block body %}\nsm_box = smach.StateMachine({{ render_outcomes(outcomes) }})\n"
@@ -572,9 +573,11 @@ def test_a_container_that_its_template_adds_catches(built: Built) -> None:
     )
     script = script.replace(
         "template: T, transitions: {done: done}",
-        "template: T, transitions: {done: done, aborted: done}",
+        f"template: T, transitions: {{done: done, aborted: done{inner}}}",
     )
-    assert ran(built(script, T=META + RAISES + FAILING + ADDED, StateMachine=box)) == "done"
+    text = built(script, T=META + RAISES + FAILING + ADDED, StateMachine=box)
+    assert "error_as_outcome(sm_box, " in text
+    assert inner or ran(text) == "done"
 
 
 @pytest.mark.parametrize(

@@ -1,5 +1,7 @@
-"""The line by which a template of the user's adds its state, found in what it prints: there a state
-comes to catch its exceptions, and to stand in an Iterator, for which SMACH has no `add`.
+"""The call that adds a state to its container, in the text that a template of the user prints.
+
+Such a template knows neither `error_as_outcome`, for a state that catches its exceptions, nor
+`set_contained_state`, which an Iterator has in place of `add`: both are put into the text here.
 """
 
 from __future__ import annotations
@@ -13,40 +15,44 @@ from smachac.targets.python.formatter import flat
 
 
 class NotAddedError(Exception):
-    """The line is not to be found, or does not do what it has to; the words say what is missing."""
+    """The call is not in the text, or lacks an argument; the message completes a sentence about the
+    template."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
-class _Added:
-    """Where the line stands in the text, and the state in it."""
+class _AddCall:
+    """The places of the call and of its argument for the state. `complete`: it was printed by a
+    template of smachac, so that nothing is missing in it."""
 
-    line: slice
+    call: slice
     state: slice
+    complete: bool
 
 
 def adapted(text: str, node: Node, parent: Container, depth: int) -> str:
-    """What a template prints for a state, with what it cannot know of. Raises NotAddedError."""
-    inside = isinstance(parent, Iterator)
-    if not inside and not node.catches:
+    """The text that a template prints for a state, completed for an Iterator and for a state that
+    catches its exceptions. Raises NotAddedError."""
+    in_iterator = isinstance(parent, Iterator)
+    if not in_iterator and not node.catches:
         return text
-    if "error_as_outcome(" in text or "set_contained_state(" in text:
-        return text  # printed by `State.tpl.py`, which has it from us
     found = _find(text, node.name)
+    if found.complete:
+        return text
     made = structure.made(node, text[found.state])
-    if inside:
+    if in_iterator:
         line = structure.add(node, parent, made, depth)
-        return f"{text[: found.line.start]}{line}{text[found.line.stop :]}"
-    led = [edge.outcome for edge in node.transitions]
-    if not isinstance(parent, Concurrence) and node.catches in led:
+        return f"{text[: found.call.start]}{line}{text[found.call.stop :]}"
+    outcomes = [edge.outcome for edge in node.transitions]
+    if not isinstance(parent, Concurrence) and node.catches in outcomes:
         quoted = (f"'{node.catches}'", f'"{node.catches}"')
-        if not any(each in text[found.line] for each in quoted):
+        if not any(each in text[found.call] for each in quoted):
             raise NotAddedError(f"does not print the transition of `{node.catches}`")
     start, end = found.state.start, found.state.stop
     return f"{text[:start]}{flat(made)}{text[end:]}"
 
 
-def _find(text: str, name: str) -> _Added:
-    """The call of `add` with the name of the state."""
+def _find(text: str, name: str) -> _AddCall:
+    """The call that adds the state of a name."""
     starts = [0]
     for line in text.splitlines(keepends=True):
         starts.append(starts[-1] + len(line))
@@ -68,12 +74,14 @@ def _find(text: str, name: str) -> _Added:
     if len(found) != 1:
         raise NotAddedError("prints no line `smach.{{ parent_type }}.add('{{ name }}', ...)`")
     call, state = found[0]
-    return _Added(line=span(call), state=span(state))
+    return _AddCall(call=span(call), state=span(state), complete=_is_complete(call, state))
 
 
 def _state_of(call: ast.Call, name: str) -> ast.expr | None:
-    """The state that a call adds under a name."""
-    if not isinstance(call.func, ast.Attribute) or call.func.attr != "add":
+    """The argument for the state of a call that adds a state under a name; None for other calls."""
+    if not isinstance(call.func, ast.Attribute):
+        return None
+    if call.func.attr not in ("add", "set_contained_state"):
         return None
     given = dict(zip(("label", "state"), call.args, strict=False))
     given |= {each.arg: each.value for each in call.keywords if each.arg}
@@ -81,3 +89,13 @@ def _state_of(call: ast.Call, name: str) -> ast.expr | None:
         case ast.Constant(value=value) if value == name:
             return given.get("state")
     return None
+
+
+def _is_complete(call: ast.Call, state: ast.expr) -> bool:
+    """Whether `structure.add` has printed the call, as `State.tpl.py` does."""
+    match call.func, state:
+        case ast.Attribute(attr="set_contained_state"), _:
+            return True
+        case _, ast.Call(func=ast.Name(id="error_as_outcome")):
+            return True
+    return False
