@@ -1,4 +1,5 @@
-"""The faults of building for a language: what it cannot express, what has no code in it."""
+"""The findings of targets: what a language cannot express, missing code, faults of templates and
+classes of the user."""
 
 from __future__ import annotations
 

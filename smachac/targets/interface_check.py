@@ -1,7 +1,7 @@
-"""Classes of the user held against the interfaces of their state types.
+"""The interface check: the declared interfaces of the user's classes against their state types.
 
-A target reads what a class in its language declares, without running anything (`Declared`); what
-cannot be read is not judged. `code_faults` says where that is not what the interface says.
+A target reads the interface that a class in its language declares (`Declared`), without running the
+class. Parts that cannot be read are not checked.
 """
 
 from __future__ import annotations
@@ -23,11 +23,10 @@ Words = tuple[Word, ...]
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Declared:
-    """What a class says its interface is, in the words of the interface where those fit.
+    """The interface that a class declares, with the names of the state type where they correspond.
 
-    A part that could not be read is None. `others` are more faults, each with its place; `stale`
-    is the number of the interface that the class was written for, where there is another now:
-    its place, and the new number.
+    A part that could not be read is None. `others` are further differences, each with its place.
+    `stale` is the place of an outdated interface hash in the class, with the present hash.
     """
 
     name: str
@@ -52,9 +51,8 @@ Load = Callable[[str], Language | None]
 
 
 def code_faults(machine: Machine, library: Library, load: Load) -> Iterator[Diagnostic]:
-    """Where code of the user is not what its interface says, at the first state of each type.
-
-    These are warnings: only what is built for the language of the code fails.
+    """The differences between classes and interfaces, at the first state of each type, as warnings:
+    only a build for the language of the class fails.
     """
     targets: dict[str, Language | None] = {}
     for leaf, type_ in own_types(machine, library):
@@ -67,7 +65,7 @@ def code_faults(machine: Machine, library: Library, load: Load) -> Iterator[Diag
 
 
 def target_faults(machine: Machine, library: Library, target: Language) -> Iterator[Diagnostic]:
-    """What `code_faults` says of one language, as errors."""
+    """The same differences for the language of one target, as errors."""
     for leaf, type_ in own_types(machine, library):
         if target.name in languages(type_):
             yield from type_faults(leaf, type_, target, library)
@@ -79,7 +77,7 @@ def languages(type_: StateType) -> tuple[str, ...]:
 
 
 def own_types(machine: Machine, library: Library) -> Iterator[tuple[Leaf, StateType]]:
-    """The state types with an interface of the user's, each with the first state of it."""
+    """The state types with an interface of the user, each with its first state."""
     seen: set[str] = set()
     for _, node in walk(machine.root):
         if isinstance(node, Leaf) and node.type not in seen:

@@ -1,4 +1,4 @@
-"""The files of `runtime/` that generated code is compiled against."""
+"""The files of `runtime/` that generated code needs beside it."""
 
 from __future__ import annotations
 
@@ -7,7 +7,7 @@ from importlib import resources
 
 
 def runtime_files(paths: Mapping[str, str]) -> dict[str, str]:
-    """The texts of the files that generated code needs beside it, by their names there.
+    """The texts of support files, by their file names in the output.
 
     `paths` maps each name to the path of its file below `runtime/`.
     """

@@ -1,7 +1,7 @@
-"""Names that code of a script uses, and that nothing in its program defines (SM019).
+"""Undefined names: names that code in a script uses and its Python program does not define (SM019).
 
-What templates define is told by their text alone: a name that stands anywhere in those of the
-script is defined for all we know, and nothing is said where they make names or import all there is.
+The definitions of templates are approximated by their text: every word in a template of the user
+counts as defined, and there are no findings if a template computes names or has `import *`.
 """
 
 from __future__ import annotations
@@ -22,7 +22,7 @@ from smachac.ir.nodes import Expression, Leaf, Machine, Node
 from smachac.ir.traversal import expressions, walk
 
 USERDATA = ("ud", "userdata")
-"""What code that is no function calls the userdata."""
+"""The names of the userdata in code that is no function."""
 
 _MAKES_NAMES = re.compile(r"import \*|[\"']\*[\"']|\w\{\{|\}\}\w")
 _BLOCK = re.compile(r"\{%[-+]?\s*(?:end)?block\b[^%]*%\}")
@@ -31,11 +31,11 @@ _DEFINED = re.compile(r"^\s*(?:def|class|import|from \S+ import)\s+(\w+)|^\s*(\w
 
 
 def undefined_names(machine: Machine, library: Library) -> Iterator[Diagnostic]:
-    """Each name that is defined nowhere, at the code that uses it."""
+    """The undefined names, each at the code that uses it."""
     used = [
         (node, expression, name)
         for _, node in walk(machine.root)
-        if not (isinstance(node, Leaf) and node.written)  # its template prints it as it likes
+        if not (isinstance(node, Leaf) and node.written)  # its template decides how it is printed
         for expression in expressions(node)
         for name in _free(expression.text)
     ]
@@ -47,7 +47,7 @@ def undefined_names(machine: Machine, library: Library) -> Iterator[Diagnostic]:
 
 
 def _by_look(node: Node, expression: Expression) -> bool:
-    """Whether nothing but its look makes a text of the script code."""
+    """Whether a string of the script counts as code only because of its form."""
     if isinstance(node, Leaf) and expression in (callbacks(node) or {}).values():
         return False
     written = expression.span.text
@@ -56,7 +56,7 @@ def _by_look(node: Node, expression: Expression) -> bool:
 
 
 def _free(text: str) -> list[str]:
-    """The names that code takes from its module, but for those that every module has."""
+    """The names that code uses from its module, except names that every module has."""
     try:
         with warnings.catch_warnings():
             warnings.simplefilter("ignore", SyntaxWarning)
@@ -76,8 +76,8 @@ def _free(text: str) -> list[str]:
 
 
 def _known(machine: Machine, library: Library) -> set[str] | None:
-    """The words of all templates of a script, and what is imported for them; None where these
-    make names."""
+    """The defined names: the words of all templates and the names that are imported for them; None
+    if a template computes names."""
     from smachac.targets.python.imports import importable
     from smachac.targets.python.template_sources import template_sources
 

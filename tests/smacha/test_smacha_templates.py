@@ -17,7 +17,7 @@ import pytest
 import smachac
 from smachac.frontend.files import disk_library
 from smachac.frontend.state_types import StateType, find_state_type
-from smachac.targets.python.smacha_context import FILTERS, TESTS, Text, is_not_string
+from smachac.targets.python.smacha_context import FILTERS, TESTS, ScriptText, is_not_string
 from smachac.targets.templates.engine import Blocks
 
 Built = Callable[..., str]
@@ -417,7 +417,7 @@ def test_the_macros_of_utils(call: str, tmp_path: Path) -> None:
 )
 def test_not_string_tells_what_is_printed_as_it_is(value: str, answer: bool) -> None:
     assert is_not_string(value) is answer
-    assert not is_not_string(Text(value))
+    assert not is_not_string(ScriptText(value))
     assert is_not_string([1])
     assert is_not_string({"a": 1})
 

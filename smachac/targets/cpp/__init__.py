@@ -1,8 +1,10 @@
-"""C++: one header of C++17 over the headers of smachac, as typed as the script is.
+"""C++: one C++17 header for a machine, with typed userdata, over the headers in runtime/cpp.
 
-The containers become functions with a switch over their states (containers.py), their userdata
-structs (header.py); what C++ cannot say is refused at its place in the script (plan.py). Options
-add what builds and runs the header (project.py).
+plan.py resolves the types of all keys and refuses what C++ cannot express, at its place in the
+script. header.py makes the header: each container is a namespace with its outcomes, its userdata,
+its states and the function that runs it (containers.py). Leaves are structs made from the script
+(builtin_states.py) or classes of the user (user_classes.py). project.py makes the files of the
+options.
 """
 
 from __future__ import annotations
@@ -21,7 +23,7 @@ from smachac.targets.cpp.user_classes import class_code, left_to_scripts
 
 
 def emit(machine: Checked, context: BuildContext, report: Report) -> Files:
-    """The header of a machine, `<name>.hpp`, and what options add."""
+    """The header of a machine, `<name>.hpp`, and the files of the options."""
     wanted = project(context.options)
     planned = plan(machine)
     header = header_of(planned, context.library)
@@ -33,7 +35,7 @@ def emit(machine: Checked, context: BuildContext, report: Report) -> Files:
 
 
 def has_code(type_: StateType, _: Library) -> bool:
-    """Whether a header can have states of a type; containers are printed whatever they hold."""
+    """Whether a header can contain states of a type; it can contain every container."""
     if type_.kind != "state":
         return type_.kind == "container"
     if is_built_in(type_.name):

@@ -1,4 +1,4 @@
-"""The functions that every expression may call, as C++, and what stands at a place of a list."""
+"""The built-in functions of expressions in C++, and the subscript operator."""
 
 from __future__ import annotations
 
@@ -45,14 +45,15 @@ def item(owner: Term, place: Term) -> Term:
 
 
 def item_of(given: list[Term]) -> Type:
-    """The type of the items that a function goes through."""
+    """The type of the items that a function iterates over."""
     if len(given) == 1:
         return inside(items(given[0]).type)
     return joined([each.type for each in given])
 
 
 def items(term: Term) -> Term:
-    """What a function goes through, as a list: of a text its characters, of a mapping its keys."""
+    """The items that a function iterates over, as a list: the characters of a string, the keys of a
+    mapping."""
     kind = present(term.type)
     if kind == STR:
         return fixed(Type("list", (STR,)), call("characters", term.present()))
@@ -235,7 +236,7 @@ def _str(given: list[Term], named: Named) -> Term:
 
 
 def _prints_alike(type_: Type) -> bool:
-    """Whether `repr` is the same: texts need tables of Unicode, mappings their order."""
+    """Whether C++ prints the same `repr`: strings would need Unicode tables, mappings an order."""
     if type_.name in ("list", "array", "optional"):
         return _prints_alike(inside(type_))
     return type_.name in ("bool", "int", "float", "none", "never")
@@ -282,4 +283,4 @@ FUNCTIONS: Mapping[str, Callable[[list[Term], Named], Term]] = {
     "sum": _sum,
     "tuple": lambda given, named: _list(given, named, "tuple"),
 }
-"""As evaluate.py has them."""
+"""The same functions as in interpreter/evaluator.py."""

@@ -1,7 +1,7 @@
-"""What a class of C++ says of itself: its outcomes, the fields of `In` and `Out`, its number.
+"""The declared interface of a C++ class: its outcomes, the fields of `In` and `Out`, its hash.
 
-This is no parser of C++: it knows classes as `smachac new state` begins them and people go on. What
-looks otherwise (macros, fields with values, inherited parts) is not judged; the compiler does.
+This is not a parser of C++. It reads classes in the form that `smachac new state` writes. A class
+in another form (macros, fields with values, inherited members) is left to the compiler.
 """
 
 from __future__ import annotations
@@ -20,7 +20,7 @@ from smachac.targets.cpp.user_classes import class_code, field_type, interface_h
 from smachac.targets.interface_check import Declared, Words
 
 LONGEST = 200_000
-"""Characters of the longest header that is read."""
+"""The length of the longest header that is read, in characters."""
 
 _NO_CODE = re.compile(
     r"""(?P<kept>\b\d[\w.']*)|//[^\n]*|/\*.*?(?:\*/|\Z)|"(?:\\.|[^"\\\n])*"|'(?:\\.|[^'\\\n])*'""",
@@ -34,15 +34,15 @@ _ENUMERATOR = re.compile(r"\s*(?P<name>[A-Za-z_]\w*)\s*(?:=[^,]*)?")
 _LAST_WORD = re.compile(r"\b[A-Za-z_]\w*$")
 _ARGUMENTS = re.compile(r"<[^<>]*>")
 _ODD = re.compile(r"[#(){}\[\]=]|\b(?:using|static|template|typedef|mutable)\b")
-"""What fields of `In` and `Out` do not have."""
+"""Tokens that a simple list of fields does not contain."""
 
 KNOWN = {"bool", "double", "float", "int", "std::int64_t", "std::string"}
-"""Types that are surely others where they are spelt otherwise, beside those of `smachac::`."""
+"""Types, beside those of `smachac::`, whose spelling decides whether two of them are the same."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class _Part:
-    """A stretch of a header, without comments and texts; `start` is where it begins."""
+    """A part of a header, without comments and string literals; `start` is its offset."""
 
     source: Source
     text: str
@@ -52,18 +52,18 @@ class _Part:
         return Word(text, Span(self.source, self.start + at, self.start + end))
 
     def only(self, pattern: str) -> re.Match[str] | None:
-        """What fits a pattern, if there is just one."""
+        """The match of a pattern, if there is exactly one."""
         found = list(re.finditer(pattern, self.text))
         return found[0] if len(found) == 1 else None
 
     def member(self, pattern: str) -> re.Match[str] | None:
-        """The same outside braces."""
+        """The match of a pattern outside braces, if the pattern has exactly one match."""
         found = self.only(pattern)
         before = self.text[: found.start()] if found is not None else ""
         return found if before.count("{") == before.count("}") else None
 
     def inside(self, head: re.Match[str] | None) -> _Part | None:
-        """What stands between the brace that a head ends with and the one that closes it."""
+        """The part between the brace at the end of a head and the matching closing brace."""
         depth = 1
         for found in re.finditer(r"[{}]", self.text[head.end() :]) if head is not None else ():
             depth += 1 if found.group() == "{" else -1
@@ -73,7 +73,7 @@ class _Part:
         return None
 
     def split(self, mark: str) -> Iterator[tuple[int, str]]:
-        """The pieces between marks, each with its offset, but for those that are blank."""
+        """The pieces between marks that are not blank, each with its offset."""
         at = 0
         for piece in self.text.split(mark):
             if piece.strip():
@@ -90,7 +90,7 @@ class _Field:
 
 
 def declared(type_: StateType, library: Library) -> Declared | None:
-    """What the class of a state type declares; None where that cannot be read."""
+    """The interface that the class of a state type declares; None where it cannot be read."""
     code = class_code(type_)
     source = library.code(code.header) if code is not None else None
     if code is None or source is None or len(source.text) > LONGEST:
@@ -121,7 +121,8 @@ def _blank(found: re.Match[str]) -> str:
 
 
 def _stale(body: _Part, wanted: str) -> Word | None:
-    """The place of the number of another interface, and the number of the one there is."""
+    """The place of an outdated interface hash, with the present hash as its text; None if the class
+    has the present one or none."""
     found = body.member(_NUMBER)
     number = _number(found[1]) if found is not None else None
     if found is None or number is None or number == _number(wanted.rstrip("U")):
@@ -130,7 +131,7 @@ def _stale(body: _Part, wanted: str) -> Word | None:
 
 
 def _number(text: str) -> int | None:
-    """A whole number as C++ reads it."""
+    """The value of an integer literal of C++; None for others."""
     digits = text.lower().replace("'", "")
     base = 16 if digits.startswith("0x") else 8 if digits.startswith("0") else 10
     try:
@@ -155,7 +156,7 @@ def _outcomes(body: _Part, names: Iterable[str]) -> Words | None:
 
 
 def _fields(body: _Part, name: str, *, derived: bool) -> list[_Field] | None:
-    """The fields of a struct; none where nothing is called so, unless it may be inherited."""
+    """The fields of a struct; empty if the class does not mention it; None if it cannot be read."""
     if not derived and not re.search(rf"\b{name}\b", body.text):
         return []
     part = body.inside(body.member(_STRUCT.format(name)))
@@ -174,14 +175,14 @@ def _fields(body: _Part, name: str, *, derived: bool) -> list[_Field] | None:
 
 
 def _without_arguments(type_: str) -> str:
-    """A type without what stands in angle brackets, as far as those are nested in types."""
+    """A type without its template arguments."""
     for _ in range(10):
         type_ = _ARGUMENTS.sub("", type_)
     return type_
 
 
 def _names(fields: Sequence[_Field] | None, keys: Iterable[Key]) -> Words | None:
-    """The fields in the words of the interface."""
+    """The fields under the key names of the interface."""
     if fields is None:
         return None
     own = {identifier(key.name): key.name for key in keys}
@@ -212,13 +213,13 @@ def _other_fields(
 
 
 def _surely_other(text: str, wanted: str) -> bool:
-    """Whether two spellings of types name two types, whatever `using` says."""
+    """Whether two spellings are certainly two types, whatever aliases there are."""
     one, other = _plain(text), _plain(wanted)
     return one != other and one in KNOWN and (other in KNOWN or other.startswith("smachac::"))
 
 
 def _plain(text: str) -> str:
-    """A type without `const`, reference and `Key`, its name in full where it is known."""
+    """A type without `const`, reference and `Key`; known short names get their namespace."""
     text = re.sub(r"\bconst\b|[&\s]", " ", text).strip()
     key = re.fullmatch(r"(?:smachac ?:: ?)?Key ?<(.*)>", text)
     text = (key[1] if key else text).replace(" ", "")

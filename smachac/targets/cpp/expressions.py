@@ -1,7 +1,8 @@
-"""Portable expressions as C++17, with the value that Python gives them, or the reason why not.
+"""Portable expressions in C++17, with the values that they have in Python.
 
-What Python raises an exception for is a `smachac::Error` in C++, and so are whole numbers beyond 64
-bits. The functions of Python are those of smachac/values.hpp.
+Where Python raises an exception, C++ throws a `smachac::Error`; so does an integer beyond 64 bits.
+The operations and functions of Python are in smachac/values.hpp. An expression that C++ cannot
+express raises UnportableError.
 """
 
 from __future__ import annotations
@@ -59,7 +60,7 @@ from smachac.targets.cpp.types import FIELDS, FLOAT, INT, NONE, UnportableError,
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Spelling:
-    """How C++ spells a name of an expression, and the type of what it stands for."""
+    """The C++ text for a name of an expression, and the type of its value."""
 
     text: str
     type: Type
@@ -135,7 +136,7 @@ def cpp_function(code: str, keys: Mapping[str, Spelling]) -> tuple[Expr, dict[st
 
 
 def _located(expr: Expr, error: UnportableError) -> UnportableError:
-    """A reason with the part of the expression that it is about."""
+    """An error whose message names the part of the expression; the innermost part is kept."""
     if error.told:
         return error
     told = UnportableError(f"`{print_expression(expr)}`: {error}")
@@ -306,7 +307,7 @@ def _function(function: Lambda, item: Type, names: _Names) -> Term:
     return Term(type=Type("function", (body.type,)), spell=lambda wanted: CppText(text))
 
 
-# Truth and choice
+# Truth values and choices
 
 
 def condition(term: Term) -> CppText:
@@ -346,7 +347,7 @@ def _both(one: CppText, other: CppText) -> CppText:
 
 
 def _boolean(word: str, operands: list[Term], names: _Names) -> Term:
-    """`and`, `or`: of truth values their junction, else the operand that settles it."""
+    """`and`, `or`: of truth values a truth value, else the operand that decides the result."""
     sign, own = ("||", OR) if word == "or" else ("&&", AND)
     # g++ warns of `&&` in `||` without brackets.
     test = CppText(
@@ -372,7 +373,7 @@ def converted_bool(test: CppText, wanted: Type) -> CppText:
 
 
 def _settled(word: str, term: Term, name: str, rest: CppText, wanted: Type) -> CppText:
-    """The term where it settles an `and` or `or`, else the rest."""
+    """The term where it decides an `and` or `or`, else the rest."""
     if word == "or" and term.type == NONE:
         return rest
     bound = term if term.simple else fixed(term.type, CppText(name), simple=True)
@@ -383,12 +384,12 @@ def _settled(word: str, term: Term, name: str, rest: CppText, wanted: Type) -> C
 
 
 def bind(term: Term, name: str, text: CppText) -> CppText:
-    """A text in which a name stands for a term that is computed once."""
+    """A text that uses a name for a term, which is evaluated once."""
     return call("with", term.text(), f"[&](const auto &{name}) {{ return {text.text}; }}")
 
 
 def _chain(left: Term, rest: list[tuple[str, Term]], names: _Names) -> CppText:
-    """`a < b < c`: `b` is computed once, `c` where `a < b`."""
+    """`a < b < c`: `b` is evaluated once, `c` only if `a < b`."""
     (word, right), *others = rest
     if not others:
         return operators.compare(word, left, right)

@@ -1,4 +1,8 @@
-"""The header of a machine: for each container its outcomes, userdata, states and function."""
+"""The header of a machine: a namespace for each container, inner containers first.
+
+A namespace has the outcomes, the userdata, the types and objects of the states, their places and
+the function that runs the container.
+"""
 
 from __future__ import annotations
 
@@ -28,12 +32,12 @@ STRICT = """// A class with more outcomes than its interface is an error, whatev
 LENIENT = """#if defined(__GNUC__)
 #pragma GCC diagnostic pop
 #endif"""
-"""What stands around containers with classes of the user."""
+"""The pragmas before and after containers with classes of the user."""
 
 
 class Header(NamedTuple):
-    """The text of a header, the parameters that the States of the machine are made with, and the
-    headers of the user's classes that it includes."""
+    """The text of a header, the constructor parameters of the machine's States, and the headers of
+    the user's classes that it includes."""
 
     text: str
     parameters: tuple[str, ...]
@@ -41,8 +45,7 @@ class Header(NamedTuple):
 
 
 def header_of(plan: Plan, library: Library) -> Header:
-    """The header of a machine. What C++ cannot say is in the plan's report afterwards, all of
-    it."""
+    """The header of a machine. Everything that C++ cannot express is added to the plan's report."""
     printing = _Printing(plan=plan, library=library)
     blocks = [
         "\n".join(_container(printing, scope)) for scope in reversed(list(plan.scopes.values()))
@@ -62,10 +65,12 @@ def header_of(plan: Plan, library: Library) -> Header:
 
 @dataclass(slots=True, kw_only=True)
 class _Printing:
-    """What the containers of one header share: the classes of state types by name, and the
-    parameters that the `States` of each container printed so far are made with, by path. `stopping`
-    are the containers in which something hears of requests to stop, `missing` the state types that
-    have no code."""
+    """The state that the containers of one header share.
+
+    `classes` are the classes of state types by name. `parameters` are those of the constructor of
+    `States`, by path of each container printed so far. `stopping` are the containers in which a
+    state receives requests to stop. `missing` are the state types without code.
+    """
 
     plan: Plan
     library: Library
@@ -75,7 +80,7 @@ class _Printing:
     missing: set[str] = field(default_factory=set)
 
     def code_of(self, leaf: Leaf, scope: ContainerScope) -> LeafCode | None:
-        """The code of a leaf; None where it has none. Raises UnportableError."""
+        """The code of a leaf; None if its type has no code for C++. Raises UnportableError."""
         if leaf.type not in self.classes:
             type_ = find_state_type(leaf.type, self.library, [])
             self.classes[leaf.type] = class_code(type_) if type_ is not None else None
@@ -86,7 +91,7 @@ class _Printing:
 
 
 def _refuse_missing(plan: Plan, types: AbstractSet[str]) -> None:
-    """State types without code, each once, at the first of its states."""
+    """Reports each state type without code, at the first of its states."""
     leaves: dict[str, list[Leaf]] = {}
     for _, node in walk(plan.machine.root):
         if isinstance(node, Leaf) and node.type in types:
@@ -132,7 +137,7 @@ def _container(printing: _Printing, scope: ContainerScope) -> Lines:
 
 
 def _leaves(printing: _Printing, scope: ContainerScope) -> Mapping[str, LeafCode] | None:
-    """The code of the leaves by name; None where some have none."""
+    """The code of the leaves by name; None if one of them has no code."""
     plan = printing.plan
     found: dict[str, LeafCode] = {}
     leaves = [child for child in scope.node.children if isinstance(child, Leaf)]
@@ -175,7 +180,7 @@ def _userdata(plan: Plan, scope: ContainerScope) -> Lines:
         try:
             lines.append(f"  smachac::Key<{cpp_type(type_)}> {identifier(key)}{value};")
         except UnportableError:
-            continue  # told already
+            continue  # reported by plan
     for child in scope.node.children:
         if not isinstance(child, Leaf):
             lines.append(f"  {identifier(child.name)}::Userdata {member(child)};")
@@ -190,7 +195,7 @@ def _types(leaves: Mapping[str, LeafCode]) -> Lines:
 
 
 def _states(printing: _Printing, scope: ContainerScope, leaves: Mapping[str, LeafCode]) -> Lines:
-    """The objects of the states; what they are made with is handed to all that want it."""
+    """The struct of the states, with a constructor if the classes of some states need arguments."""
     lines, made = [], []
     parameters: dict[str, None] = {}
     for child in scope.node.children:

@@ -27,7 +27,7 @@ MACROS = re.compile(
     r"|EACCES|EFAULT|EPIPE|ETIME|ETIMEDOUT|ECANCELED|EDEADLK|EALREADY|EINPROGRESS|ECONNREFUSED"
     r"|(U?(CHAR|SHRT|INT|LONG|LLONG)|SIZE|PTRDIFF|INTMAX|WCHAR|FLT|DBL|LDBL)_(MIN|MAX|EPSILON)"
 )
-"""Names that are macros where the headers of ours are included, so far as anybody may use them."""
+"""Macros of the system headers that smachac's headers include, as far as scripts may use them."""
 
 _SYSTEM = """
     abort abs accept access acct alarm basename bind brk canonicalize ceil clock clone close connect
@@ -37,19 +37,19 @@ _SYSTEM = """
     significand sin sleep socket stat swab sync system tan time times timezone tm trunc truncate
     uint ulong umount unlink unshare ushort wait write"""
 SYSTEM = frozenset(_SYSTEM.split())
-"""Names that the headers of C and POSIX give to functions and variables outside any namespace, as
-far as a machine may be called so."""
+"""Functions and variables of C and POSIX in the global namespace, as far as machines may have the
+names."""
 
 _OURS = "Userdata States Outcome State In Out Run execute run name places types main std smachac"
 OURS = frozenset(_OURS.split())
-"""What the header itself calls things that stand beside names of the script."""
+"""The header's own names in the namespaces that hold names of the script."""
 
 
 def identifier(name: str) -> str:
-    """A name as near to that of the script as C++ allows: letters, digits, single underscores.
+    """The identifier for a name: ASCII letters, digits and single underscores.
 
-    Letters lose their accents; those of other scripts are numbers of Unicode. Two names may become
-    one; `clashes` finds them.
+    Letters lose their accents; other letters become their Unicode numbers. Two names may get one
+    identifier; `clashes` finds them.
     """
     text = name if name.isascii() else "".join(map(_ascii, name))
     word = re.sub(r"[^0-9A-Za-z]+", "_", text)
@@ -70,13 +70,13 @@ def _ascii(letter: str) -> str:
 
 
 def outermost(name: str) -> str:
-    """The name of a machine as that of a namespace in no other one."""
+    """The identifier of a machine as a namespace at global scope."""
     word = identifier(name)
     return f"{word}_" if word in SYSTEM else word
 
 
 def clashes(names: Iterable[str]) -> list[tuple[str, str]]:
-    """The names, with the earlier one, that become the same identifier as an earlier one."""
+    """Each name whose identifier an earlier name has, with that earlier name."""
     first: dict[str, str] = {}
     found = []
     for name in dict.fromkeys(names):

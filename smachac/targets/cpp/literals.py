@@ -1,4 +1,4 @@
-"""Lists, tuples and mappings that an expression writes out, as C++."""
+"""Displays of lists, tuples and mappings in C++."""
 
 from __future__ import annotations
 
@@ -58,7 +58,7 @@ def _struct(wanted: Type, items: list[Term]) -> CppText:
 
 
 def mapped(entries: list[tuple[Term, Term]]) -> Term:
-    """`{a: b}`. Of equal keys Python takes the last, and C++ the first."""
+    """`{a: b}`. Among equal keys Python keeps the last one and C++ the first."""
     item = joined([value.type for _, value in entries])
     own = item if item.name == "mixed" else Type("dict", (item,))
     for key, _ in entries:

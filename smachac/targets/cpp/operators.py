@@ -1,4 +1,7 @@
-"""`+ - * / // % **` as C++: whole numbers are checked, floats are not."""
+"""Operators of Python in C++: arithmetic, comparison and membership.
+
+Integer arithmetic is checked for overflow; arithmetic of floats uses the operators of C++.
+"""
 
 from __future__ import annotations
 
@@ -62,12 +65,12 @@ def signed(sign: str, operand: Term) -> Term:
 
 
 def whole(term: Term) -> CppText:
-    """A whole number, or a truth value, as an argument that is a whole number."""
+    """An integer or a truth value as an integer argument."""
     return term.spell(present(term.type))
 
 
 def real(term: Term) -> CppText:
-    """A number as a float, rounded where it has to be."""
+    """A number as a float, rounded if necessary."""
     kind = present(term.type)
     if term.constant is not None and kind == INT:
         return term.spell(FLOAT)
@@ -76,7 +79,7 @@ def real(term: Term) -> CppText:
 
 
 def binary(word: str, left: Term, right: Term) -> Term:
-    """An operation. Raises UnportableError where Python would raise TypeError."""
+    """A binary operation. Raises UnportableError where Python would raise TypeError."""
     one, other = number(left.type), number(right.type)
     if one is not None and other is not None:
         return _numbers(word, one, other, left, right)
@@ -109,7 +112,7 @@ def _numbers(word: str, one: Type, other: Type, left: Term, right: Term) -> Term
 
 
 def _wholes(left: Term, right: Term) -> tuple[str, str]:
-    """Two whole numbers for a function that takes two floats as well: one says which is meant."""
+    """Two integers as arguments of a function with an overload for floats: one of them is typed."""
     first, second = whole(left).text, whole(right).text
     if any(present(each.type) == INT and each.constant is None for each in (left, right)):
         return first, second
@@ -157,7 +160,7 @@ def _repeated(items: Term, times: Term) -> Term:
 
 
 DIRECT = (INT, FLOAT, NUMBER, STR)
-"""The types whose operators in C++ are those of Python."""
+"""The types whose comparisons are the same in C++ and Python."""
 
 EQUAL = ("==", "!=")
 """The comparisons that values of every type have."""
@@ -176,7 +179,7 @@ def compare(word: str, left: Term, right: Term) -> CppText:
 
 
 def _direct(word: str, left: Term, right: Term) -> CppText | None:
-    """The operator of C++ itself, where it means the same and no compiler warns of it."""
+    """The comparison by an operator of C++, where it has the same meaning and causes no warning."""
     kinds = {left.type, right.type}
     if left.constant is not None and right.constant is not None:
         return None
@@ -217,14 +220,14 @@ def _ordered(word: str, left: Term, right: Term) -> CppText:
 
 
 def there(term: Term) -> Term:
-    """What is there of a term; an error where nothing is."""
+    """The value of an optional term; in C++ an error if there is none."""
     if term.type.name != "optional":
         return term
     return fixed(present(term.type), CppText(term.present()))
 
 
 def _have_order(one: Type, other: Type) -> bool:
-    """Whether values of two types have an order in Python, whatever they are."""
+    """Whether Python can order any two values of two types."""
     if "never" in (one.name, other.name):
         return True
     if number(one) is not None and number(other) is not None:
@@ -262,14 +265,15 @@ def _equality(word: str, one: str, other: str) -> CppText:
 
 
 def _side_of(term: Term, other: Term) -> str:
-    """A side of a comparison; an empty list is one of whatever the other side has."""
+    """A side of a comparison; an empty list gets the item type of the other side."""
     common = join(term.type, other.type)
     known = has(term.type, "never") and common.name != "mixed"
     return term.spell(common if known else term.type).text
 
 
 def _refuse_kinds(one: Type, other: Type) -> None:
-    """Lists, tuples and ranges never equal each other in Python; in C++ they are alike."""
+    """Refuses comparisons of lists, tuples and ranges with each other: in Python they are never
+    equal, in C++ they may be."""
     one, other = present(one), present(other)
     if one.name in SEQUENCES and other.name in SEQUENCES:
         kinds = {"list" if each.name == "array" else each.name for each in (one, other)}

@@ -1,4 +1,4 @@
-"""What the header is printed from: the containers with their keys in C++, and what is refused."""
+"""The plan of a header: the containers, the types of their keys, and what C++ cannot express."""
 
 from __future__ import annotations
 
@@ -20,8 +20,11 @@ from smachac.targets.errors import unsupported_by_target
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class ContainerScope:
-    """A container and its userdata: the types of its keys by name, and those keys that surely hold
-    a value whenever a state of it starts, whatever its states do."""
+    """A container and its userdata.
+
+    `keys` are the types of its keys by name. `sure` are the keys that hold a value whenever one of
+    its states starts.
+    """
 
     path: str
     node: Container
@@ -42,14 +45,14 @@ class ContainerScope:
         return Spelling(text=f"smachac::need({spelt}, {cpp_literal(called)})", type=self.key(name))
 
     def names(self, child: Node) -> dict[str, str]:
-        """The container's keys by those of a child, where they differ. The child of an iterator
-        sees them as they are (smach-semantics I7)."""
+        """The keys of the container by those of a child, where they differ. The child of an
+        iterator has no remapping."""
         return {} if isinstance(self.node, Iterator) else remapping(child)
 
 
 @dataclass(slots=True, kw_only=True)
 class Plan:
-    """A machine with its scopes by path, parents before children; `report` gathers refusals."""
+    """A machine with its scopes by path, parents before children; `report` holds the refusals."""
 
     machine: Machine
     scopes: Mapping[str, ContainerScope]
@@ -61,7 +64,7 @@ class Plan:
 
 
 def plan(machine: Machine) -> Plan:
-    """The scopes of a machine; names and types that C++ cannot have are refused."""
+    """The plan of a machine; names and types that C++ cannot express are refused."""
     types = infer(machine).keys
     keys: dict[str, dict[str, Type]] = {}
     for (path, key), type_ in sorted(types.items(), key=lambda item: item[0]):
@@ -117,7 +120,7 @@ def _check(plan: Plan, scope: ContainerScope, around: ContainerScope | None) -> 
 
 
 def _check_borders(plan: Plan, scope: ContainerScope, around: ContainerScope) -> None:
-    """What is copied in and out has to convert."""
+    """Refuses keys that are copied into or out of a container but cannot be converted."""
     names = around.names(scope.node)
     pairs = [(key, around, scope) for key in scope.node.inputs]
     pairs += [(key, scope, around) for key in scope.node.outputs]
@@ -133,7 +136,7 @@ def _check_borders(plan: Plan, scope: ContainerScope, around: ContainerScope) ->
 
 
 def converts(given: Type, wanted: Type) -> bool:
-    """Whether `smachac::convert` makes one type of the other, both plain."""
+    """Whether `smachac::convert` converts one plain type to the other."""
     if given == wanted or wanted == ANY:
         return True
     inner, outer = _inside(given), _inside(wanted)
@@ -174,7 +177,7 @@ def _named(node: Container, name: str) -> Span:
 
 
 def place(node: Node) -> str:
-    """Where a state stands in the script: file name without folder, and line."""
+    """The place of a state in the script, file name and line; empty if it has none."""
     if node.span.source is NOWHERE.source:
         return ""
     return f"{PurePath(node.span.source.name).name}:{node.span.line}"
@@ -187,6 +190,6 @@ def scope_name(path: str) -> str:
 
 
 def member(child: Node) -> str:
-    """What the States and Userdata of a container call a child."""
+    """The name of a child as a member of the States and the Userdata of its container."""
     name = identifier(child.name)
     return name if isinstance(child, Leaf) else f"{name.rstrip('_')}_"

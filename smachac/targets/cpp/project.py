@@ -1,4 +1,4 @@
-"""What is printed beside a header by option: main.cpp, a CMake project, a package of ROS 2."""
+"""The files of the options beside a header: main.cpp, a CMake project, a package of ROS 2."""
 
 from __future__ import annotations
 
@@ -31,19 +31,19 @@ OTHER_HEADERS = ("smachac/arm.hpp", PROGRAM)
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Project:
-    """What is wanted beside a header; `package` is the name of an ament package, or empty."""
+    """The files to make beside a header; `package` is the name of an ament package, or empty."""
 
     main: bool = False
     cmake: bool = False
     package: str = ""
 
     def path(self, file: str) -> str:
-        """Where the header goes."""
+        """The path of the header."""
         return f"include/{self.package}/{file}" if self.package else file
 
 
 def project(options: Mapping[str, str]) -> Project:
-    """What options ask for. Raises OptionError."""
+    """The project of the options. Raises OptionError."""
     package = options.get("package", "")
     if package and not re.fullmatch(r"[a-z][a-z0-9_]*", package):
         raise OptionError(f"package is a name in lower case, letters first, not `{package}`")
@@ -76,7 +76,7 @@ def runtime(machine: Machine, context: BuildContext) -> dict[str, str]:
 def project_files(machine: Machine, wanted: Project, header: Header) -> Files:
     """The files beside the header.
 
-    Raises OptionError where no program can be printed.
+    Raises OptionError if `main` is set and the states need arguments.
     """
     files: Files = {}
     name = stem(machine)
@@ -154,8 +154,8 @@ install(FILES ${{CMAKE_CURRENT_BINARY_DIR}}/{name}Config.cmake
 
 
 def _classes(name: str, headers: Sequence[str]) -> str:
-    """Where a build finds the classes of the user. They are not installed: who uses the installed
-    header has them."""
+    """The CMake code that finds the classes of the user. They are not installed: a user of the
+    installed header has them."""
     if not headers:
         return ""
     listed = "".join(f"\n    {header}" for header in headers)
@@ -235,5 +235,5 @@ def _escaped(text: str) -> str:
 
 
 CLANG_FORMAT = "BasedOnStyle: LLVM\nColumnLimit: 0\n"
-"""The `.clang-format` that leaves generated code as it is: LLVM's, where the printer breaks lines
-and long expressions stay on one. The headers of the runtime hold to LLVM's with 100 columns."""
+"""The `.clang-format` that does not change generated code: the style of LLVM without a line length.
+The headers of the runtime have the style of LLVM with 100 columns."""

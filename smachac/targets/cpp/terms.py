@@ -1,8 +1,8 @@
-"""Parts of an expression as C++: what each is, and its text wherever it is wanted.
+"""Terms: the parts of an expression with their types, and their C++ text for a wanted type.
 
-Beside the types of the script there are `number`, a float that may be whole in Python, where `1`
-and `1.0` are equal but print differently; `tuple`, a list of another kind; `range`; `never`, of the
-items of an empty list; and `mixed`, that has no type in C++, with the reason.
+Terms have more types than scripts: `number` is a float that may be an `int` in Python, where `1`
+and `1.0` are equal but print differently; `tuple` is a kind of list; `range`; `never` is the type
+of the items of an empty list; `mixed` has no type in C++, and its argument is the reason.
 """
 
 from __future__ import annotations
@@ -33,28 +33,29 @@ SEQUENCES = ("list", "array", "tuple", "range")
 PY = "smachac::py::"
 
 TERNARY, OR, AND, EQUALITY, RELATION, SUM, PRODUCT, SIGNED, POSTFIX = range(9)
-"""How tightly a form of C++ binds."""
+"""The precedences of the operators of C++, lowest first."""
 
 
 class CppText(NamedTuple):
-    """C++ text, and how tightly it binds. `digits`: a literal that C++ gives the smallest type that
-    holds it, which may be `int`."""
+    """C++ text and the precedence of its outermost operator. `digits`: it is an integer literal,
+    whose type in C++ may be `int`."""
 
     text: str
     binding: int = POSTFIX
     digits: bool = False
 
     def at(self, binding: int) -> str:
-        """The text where something that binds so tightly is due."""
+        """The text as an operand: in brackets if its precedence is lower than `binding`."""
         return self.text if self.binding >= binding else f"({self.text})"
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Term:
-    """A part of an expression. `spell` gives its text as a value of a type, or raises.
+    """A part of an expression. `spell` returns its text as a value of a type, or raises
+    UnportableError.
 
-    `simple`: a name or a constant, that can be said twice. `constant` is the value of a literal.
-    `test` is the text of its truth, where that is shorter than its value.
+    `simple`: it is a name or a constant, which may be evaluated twice. `constant` is the value of a
+    literal. `test` is the text of its truth value, if that is shorter than `spell`.
     """
 
     type: Type
@@ -68,17 +69,17 @@ class Term:
         return self.spell(self.type).at(binding)
 
     def present(self) -> str:
-        """The text of what is there; an error where nothing is."""
+        """The text of the value of an optional; in C++ an error if there is none."""
         return self.spell(present(self.type)).at(TERNARY)
 
 
 def call(name: str, *arguments: str) -> CppText:
-    """A call of a function of Python's."""
+    """A call of a function in the namespace for operations of Python."""
     return CppText(f"{PY}{name}({', '.join(arguments)})")
 
 
 def fixed(type_: Type, text: CppText, *, simple: bool = False) -> Term:
-    """A term with one text, which is converted where another type is wanted."""
+    """A term with one text, which is converted to other types."""
     return Term(type=type_, spell=lambda wanted: converted(text, type_, wanted), simple=simple)
 
 
@@ -102,7 +103,7 @@ def literal(value: bool | int | float | str | None) -> Term:
     return Term(type=own, spell=spell, simple=True, constant=value)
 
 
-# What is known of a type
+# Properties of types
 
 
 def inside(type_: Type) -> Type:
@@ -127,13 +128,13 @@ def present(type_: Type) -> Type:
 
 
 def number(type_: Type) -> Type | None:
-    """The type that arithmetic takes a value for; None where it is no number."""
+    """The type of a value in arithmetic, where a bool is an `int`; None if it is no number."""
     type_ = present(type_)
     return INT if type_ == BOOL else type_ if type_.name in NUMBERS else None
 
 
 def ground(type_: Type) -> Type:
-    """The type as C++ holds it."""
+    """The script type that represents a type of terms in C++."""
     match type_.name, type_.args:
         case "number", _:
             return FLOAT
@@ -156,7 +157,7 @@ def cpp(type_: Type) -> str:
 
 
 def shown(type_: Type) -> str:
-    """A type in a message. Of a value that has none, the reason why is all there is to say."""
+    """A type in a message. Raises UnportableError for `mixed`, with its reason."""
     match type_.name, type_.args:
         case "number", _:
             return "float"
@@ -174,7 +175,7 @@ def has(type_: Type, name: str) -> bool:
     return type_.name == name or any(has(a, name) for a in type_.args if isinstance(a, Type))
 
 
-# What fits what
+# Joins and conversions of types
 
 
 def mixed(one: Type, other: Type) -> Type:
@@ -221,7 +222,7 @@ def joined(types: list[Type]) -> Type:
 
 
 def convertible(own: Type, wanted: Type) -> bool:
-    """Whether a value can become one of another type, or say at run time why it cannot."""
+    """Whether a value of one type converts to another, possibly with an error at run time."""
     if own in (wanted, NEVER):
         return True
     if wanted.name == "optional":
@@ -242,7 +243,7 @@ def convertible(own: Type, wanted: Type) -> bool:
 
 
 def converted(text: CppText, own: Type, wanted: Type) -> CppText:
-    """The text of a value as one of another type. Raises UnportableError where it can be none."""
+    """The text of a value, converted to a type. Raises UnportableError if it does not convert."""
     if own.name == "mixed" or wanted.name == "mixed":
         ground(own if own.name == "mixed" else wanted)
     if not convertible(own, wanted):

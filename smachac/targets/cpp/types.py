@@ -11,8 +11,9 @@
 | `any`                 | `std::any`                    |
 | `none`                | `smachac::None`               |
 
-An enumeration is a string, not an enum class: it is compared with, joined to and printed as texts
-in expressions, fits a `str` key, and its choices need not be names of C++. Units are dropped.
+An enumeration is a string, not an enum class: expressions compare it with strings, join it to
+strings and print it, it fits a `str` key, and its choices need not be identifiers. Units have no
+equivalent.
 """
 
 from __future__ import annotations
@@ -25,10 +26,10 @@ from smachac.ir.nodes import Data, Expression, Struct
 from smachac.ir.types import STRUCTS, Type
 
 SMALLEST, LARGEST = -(2**63), 2**63 - 1
-"""The whole numbers of `std::int64_t`."""
+"""The range of `std::int64_t`."""
 
 EXACT = 2**53
-"""Up to this size every whole number is a float."""
+"""Up to this size a `double` represents every integer."""
 
 NONE, INT, FLOAT, STR, ANY = map(Type, ("none", "int", "float", "str", "any"))
 POINT, QUATERNION = Type("Point"), Type("Quaternion")
@@ -47,8 +48,8 @@ FIELDS: Mapping[str, Mapping[str, Type]] = {
         "effort": FLOATS,
     },
 }
-"""The members of the structs, in their order. The first four are written as lists in scripts, the
-others as mappings."""
+"""The members of the structs, in their order. Scripts write the first four as lists, the others as
+mappings."""
 
 LISTED = ("Point", "Quaternion", "Pose", "Transform")
 
@@ -63,9 +64,9 @@ SCALARS = {
 
 
 class UnportableError(Exception):
-    """Something of the script that C++ cannot say; the message says what, and why.
+    """Something in the script that C++ cannot express; the message is the reason.
 
-    `told`: it names the part of an expression that it is about. `help`: what to do about it.
+    `told`: the message names the part of the expression. `help`: what the user can do.
     """
 
     told = False
@@ -73,7 +74,7 @@ class UnportableError(Exception):
 
 
 def cpp_type(type_: Type) -> str:
-    """The C++ type of values of a type. Raises UnportableError where C++ cannot know one."""
+    """The C++ type for a type. Raises UnportableError if there is none."""
     type_ = plain(type_)
     match type_.name, type_.args:
         case name, () if name in STRUCTS:
@@ -94,7 +95,7 @@ def cpp_type(type_: Type) -> str:
 
 
 def plain(type_: Type) -> Type:
-    """A type without what C++ does not tell apart: units, choices, words that name no type."""
+    """A type without units and choices, which C++ lacks; unknown names become `any`."""
     match type_.name, type_.args:
         case "int" | "float", _:
             return Type(type_.name)
@@ -117,7 +118,7 @@ def plain(type_: Type) -> Type:
 
 
 def cpp_value(data: Data, type_: Type) -> str:
-    """C++ text of a constant as a value of a type. Raises UnportableError where it is none."""
+    """C++ text of a constant as a value of a type. Raises UnportableError if it is none."""
     return _value(data, plain(type_))
 
 
@@ -216,7 +217,7 @@ def _members(data: tuple[Data, ...] | Struct, name: str) -> list[str]:
 
 
 def _computed(expression: Expression) -> Data:
-    """The value of an expression over nothing. Raises UnportableError where it has none."""
+    """The value of an expression without names. Raises UnportableError if it has none."""
     from smachac.interpreter.evaluator import EvaluationError, evaluate
     from smachac.ir.expressions import parse_expression
 
@@ -230,7 +231,7 @@ def _computed(expression: Expression) -> Data:
 
 
 def script_data(value: object) -> Data:
-    """A value of Python as the script would write it. Raises UnportableError where it could not."""
+    """A value of Python as data of a script. Raises UnportableError if a script cannot have it."""
     match value:
         case None | bool() | int() | float() | str():
             return value
@@ -256,14 +257,14 @@ def cpp_bool(value: bool) -> str:
 
 
 def cpp_int(value: int) -> str:
-    """C++ text of a whole number. Raises UnportableError beyond 64 bits, where Python goes on."""
+    """C++ text of an integer. Raises UnportableError beyond 64 bits."""
     if not SMALLEST <= value <= LARGEST:
         raise UnportableError(f"{value} is too large for the 64 bits of a whole number in C++")
     return str(value) if value != SMALLEST else f"({SMALLEST + 1} - 1)"
 
 
 def cpp_float(value: float) -> str:
-    """C++ text that reads back as the same float. Raises UnportableError where there is none."""
+    """C++ text of a float. Raises UnportableError for an integer that no float equals."""
     if isinstance(value, int):
         if abs(value) > EXACT and not (abs(value) < 2**1000 and float(value) == value):
             raise UnportableError(f"no float is the whole number {value}")
@@ -281,7 +282,7 @@ _ESCAPES = {"\\": "\\\\", '"': '\\"', "\n": "\\n", "\r": "\\r", "\t": "\\t"}
 def cpp_literal(value: str) -> str:
     """A string literal of C++ in ASCII, its bytes those of UTF-8.
 
-    Raises UnportableError for halves of code points, which Python has and UTF-8 has not.
+    Raises UnportableError for a surrogate, which UTF-8 cannot encode.
     """
     try:
         data = value.encode("utf-8")

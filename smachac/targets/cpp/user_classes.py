@@ -1,4 +1,4 @@
-"""Leaves whose code is a class of C++ that the user wrote: how it is called, made and checked."""
+"""Leaves that are C++ classes of the user: their construction, their call and their checks."""
 
 from __future__ import annotations
 
@@ -16,7 +16,7 @@ from smachac.targets.cpp.plan import ContainerScope, converts
 from smachac.targets.cpp.types import UnportableError, cpp_literal, cpp_type, cpp_value, plain
 
 BY_VALUE = ("bool", "int", "float")
-"""Types that a class gets as values: copying them is cheaper than to refer to them."""
+"""Types that are passed by value, because a copy is cheaper than a reference."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -50,7 +50,7 @@ def class_code(type_: StateType) -> ClassCode | None:
 
 
 def left_to_scripts(type_: StateType) -> list[str]:
-    """What a type leaves to the script though a class cannot."""
+    """The parts of an interface that a script supplies, which a class cannot have."""
     return sorted(type_.given - {"variables"})
 
 
@@ -89,7 +89,7 @@ def class_leaf(code: ClassCode, leaf: Leaf, scope: ContainerScope) -> LeafCode:
 
 
 def stops(type_: StateType) -> bool:
-    """Whether `execute` is given the requests to stop."""
+    """Whether `execute` has a parameter for requests to stop."""
     return type_.blocking or any(each.name == PREEMPTED for each in type_.outcomes)
 
 
@@ -125,7 +125,7 @@ def _variables(type_: StateType, leaf: Leaf) -> list[str]:
 
 
 def parameter_type(type_: Type) -> str:
-    """How a class takes a value of a type."""
+    """The type of a parameter for a value of a type."""
     text = cpp_type(type_)
     return text if plain(type_).name in BY_VALUE else f"const {text} &"
 
@@ -136,7 +136,7 @@ def field_type(part: str, type_: Type) -> str:
 
 
 def interface_hash(type_: StateType) -> str:
-    """A number that changes with everything of an interface that its class depends on."""
+    """A hash of all parts of an interface that its class depends on."""
     told = [
         type_.name,
         *(f"var {name} {plain(each.type)}" for name, each in type_.variables.items()),
@@ -149,7 +149,7 @@ def interface_hash(type_: StateType) -> str:
 
 
 def assertions(code: ClassCode) -> list[str]:
-    """What the compiler checks of a class, with messages that say what is to be mended."""
+    """The static assertions for a class; their messages are instructions to the user."""
     type_, name = code.type, code.name
     short, file = name.removeprefix("::"), f"{code.type.name}.yml"
     lines = [

@@ -1,4 +1,4 @@
-"""The picture of a machine for Graphviz."""
+"""DOT: the graph of a machine for Graphviz."""
 
 from __future__ import annotations
 
@@ -13,7 +13,7 @@ DIRECTIONS = ("TB", "LR", "BT", "RL")
 def emit(machine: Checked, context: BuildContext, report: Report) -> Files:
     """One DOT file, named after the machine.
 
-    Raises OptionError for an option whose value makes no sense.
+    Raises OptionError for an invalid value of an option.
     """
     depth = context.options.get("depth")
     if depth is not None and not (depth.isdecimal() and int(depth) > 0):

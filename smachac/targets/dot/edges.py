@@ -1,4 +1,4 @@
-"""What is drawn between the parts of a container: marks, joins and edges."""
+"""The edges in a container, with the nodes that only edges need: start marks and joins of rules."""
 
 from __future__ import annotations
 
@@ -24,16 +24,16 @@ from smachac.targets.dot.style import (
 
 
 class Spot(NamedTuple):
-    """A node of the picture that edges may touch; `cluster` is the frame that they end at."""
+    """An end of edges: a DOT node; `cluster` is the cluster at whose border edges end."""
 
     id: str
     cluster: str = ""
 
 
 class Piece(NamedTuple):
-    """A state as it is drawn: where edges enter, and from where each outcome leaves.
+    """A drawn state: the end of its incoming edges and the nodes of its outgoing edges.
 
-    `ports` (by outcome) is empty where the whole state is one box.
+    `ports` maps outcomes to nodes; it is empty for a state that is one box.
     """
 
     entry: Spot
@@ -41,10 +41,11 @@ class Piece(NamedTuple):
 
 
 class Edge(NamedTuple):
-    """An arrow that an outcome takes, empty for the start.
+    """The edge of an outcome; the outcome is empty for the edge from the start.
 
-    `tacit`: what it touches already says the outcome. `main`: on the way that is hoped for, so it
-    is drawn straight. `back`: to something earlier in the script. `hidden`: holds things apart.
+    `tacit`: it needs no label, because a node at its end has the name of the outcome. `main`: it
+    belongs to the successful path and is drawn straight. `back`: it leads to an earlier state.
+    `hidden`: it is not drawn and affects only the layout.
     """
 
     tail: str
@@ -62,9 +63,9 @@ Drawn = dict[str, Piece]
 
 
 def entry_mark(container: Container, id: str, *, sideways: bool) -> str:
-    """The mark at which a container begins: a bar that forks, a loop, or the usual dot.
+    """The start node of a container: a bar for a concurrence, a label for an iterator, else a dot.
 
-    `sideways`: the picture runs to a side, so bars stand upright.
+    `sideways`: the graph runs horizontally, so that bars are vertical.
     """
     if isinstance(container, Concurrence):
         return _bar(id, INK, "all at once", "1.2", sideways=sideways)
@@ -85,7 +86,7 @@ def _bar(id: str, colour: str, tooltip: str, length: str, *, sideways: bool) -> 
 
 
 def items(container: nodes.Iterator) -> str:
-    """What an iterator runs over, in a few words."""
+    """The items of an iterator as a short text."""
     if container.items is None:
         return f"in {container.items_key}"
     text = _short(container.items.data)
@@ -107,7 +108,7 @@ def _short(data: Data) -> str:
 
 
 def edges(container: Container, start: str, exits: dict[str, str], drawn: Drawn) -> Iterator[Edge]:
-    """The arrows between the children of a container, from its start and to its exits."""
+    """The edges of a container: from its start, between its children and to its outcomes."""
     match container:
         case StateMachine() | Sequence():
             found = list(_transitions(container, start, exits, drawn))
@@ -126,7 +127,7 @@ def edges(container: Container, start: str, exits: dict[str, str], drawn: Drawn)
 
 
 def _hidden(found: list[Edge], exit: Spot, drawn: Drawn) -> Iterator[Edge]:
-    """Keeps exits below the children that lead back only."""
+    """Hidden edges that keep outcomes below children whose edges all lead back."""
     onward = {edge.tail for edge in found if not edge.back}
     for piece in drawn.values():
         tails = [*piece.ports.values()] or [piece.entry.id]
@@ -135,9 +136,9 @@ def _hidden(found: list[Edge], exit: Spot, drawn: Drawn) -> Iterator[Edge]:
 
 
 def _leave(piece: Piece, outcome: str, head: Spot, exit: str = "") -> Edge:
-    """The arrow on which an outcome leaves a child: from its port, or from its box.
+    """The edge of an outcome of a child: from its port, or from its box.
 
-    `exit` is the name that the head bears, if it is an exit.
+    `exit` is the name of the head, if that is an outcome of the container.
     """
     port = piece.ports.get(outcome)
     tacit = port is not None or outcome == exit
@@ -188,7 +189,7 @@ def _rules(
 
 
 def _otherwise(container: Concurrence, exits: dict[str, str], drawn: Drawn) -> Iterator[Edge]:
-    """From children that no rule looks at to the outcome that then remains."""
+    """The edges from children without a rule to the default outcome."""
     if container.default_outcome not in exits:
         return
     exit = Spot(exits[container.default_outcome])
@@ -200,7 +201,7 @@ def _otherwise(container: Concurrence, exits: dict[str, str], drawn: Drawn) -> I
 
 
 def join_id(start: str, number: int) -> str:
-    """The name of the bar at which the conditions of a rule come together."""
+    """The node name of the bar that joins the conditions of a rule."""
     return f"{start}+{number}"
 
 
@@ -236,7 +237,7 @@ def _loop(
 
 
 def merged(edges: Iterable[Edge]) -> Iterator[str]:
-    """Statements for the arrows, one for all between the same two nodes."""
+    """The DOT statements of edges; all edges between the same two nodes are one."""
     bundles: dict[tuple[str, str], list[Edge]] = {}
     for edge in edges:
         bundles.setdefault((edge.tail, edge.head.id), []).append(edge)
@@ -267,7 +268,7 @@ def _arrow(bundle: list[Edge]) -> str:
 
 
 def _common(tones: list[str]) -> str:
-    """The tone of an arrow on which several outcomes leave."""
+    """The tone of an edge for several outcomes."""
     if len(set(tones)) == 1:
         return tones[0]
     return "failure" if set(tones) == {"failure", "warning"} else "neutral"

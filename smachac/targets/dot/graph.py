@@ -1,4 +1,4 @@
-"""The picture of a machine: containers as frames, states as boxes, outcomes as exits."""
+"""The DOT text of a machine: containers are clusters, states boxes, their outcomes ellipses."""
 
 from __future__ import annotations
 
@@ -31,33 +31,33 @@ from smachac.targets.dot.style import (
 )
 
 
-class Place(NamedTuple):
-    """Where in the machine: the path, the same as the name of a node, and how deep it is."""
+class Position(NamedTuple):
+    """The position of a state: its path, its node name in DOT and its depth."""
 
     path: str
     id: str
     level: int
 
-    def below(self, name: str) -> Place:
-        return Place(f"{self.path}/{name}", f"{self.id}/{identifier(name)}", self.level + 1)
+    def below(self, name: str) -> Position:
+        return Position(f"{self.path}/{name}", f"{self.id}/{identifier(name)}", self.level + 1)
 
     @property
     def start(self) -> str:
         return f"{self.id}#start"
 
     def exits(self, node: Node) -> dict[str, str]:
-        """The nodes of the outcomes of the container that is here."""
+        """The node names of the outcomes of a container at this position."""
         return {name: f"{self.id}={identifier(name)}" for name in outcome_names(node)}
 
 
 def picture(machine: Machine, *, depth: int | None, rankdir: str) -> Iterator[str]:
-    """The lines of a DOT file. Containers more than `depth` levels down are drawn closed."""
+    """The lines of a DOT file. Containers below `depth` levels are drawn as closed boxes."""
     root = machine.root
     yield f"digraph {quoted(root.name)} {{"
     for line in _settings(machine, rankdir):
         yield f"  {line}"
-    todo: list[str | tuple[Place, Container]] = ["}"]
-    todo.append((Place(root.name, identifier(root.name), 1), root))
+    todo: list[str | tuple[Position, Container]] = ["}"]
+    todo.append((Position(root.name, identifier(root.name), 1), root))
     while todo:
         item = todo.pop()
         if isinstance(item, str):
@@ -101,7 +101,7 @@ def _settings(machine: Machine, rankdir: str) -> Iterator[str]:
     yield f"edge{attributes(edge)}"
 
 
-def _frame(container: Container, place: Place) -> Iterator[str]:
+def _frame(container: Container, place: Position) -> Iterator[str]:
     """The opening lines of a container's cluster."""
     kind = html(container.type)
     fill, border, style = FILLS[place.level % 2], BORDER, "rounded,filled"
@@ -119,7 +119,7 @@ def _frame(container: Container, place: Place) -> Iterator[str]:
     yield f"  graph{attributes(look | colours | tip, title)}"
 
 
-def _box(node: Node, place: Place) -> str:
+def _box(node: Node, place: Position) -> str:
     """A leaf, or a container that is drawn closed."""
     rows = [f"<B>{html(node.name)}</B>"]
     kind = html(node.type) if isinstance(node, Leaf) else f"{html(node.type)} <B>+</B>"
@@ -144,7 +144,7 @@ def _exit(container: Container, outcome: nodes.Outcome, id: str, *, final: bool)
     return f'"{id}"{attributes(look | tip, label)}'
 
 
-def _marks(place: Place, container: Container, *, sideways: bool) -> Iterator[str]:
+def _marks(place: Position, container: Container, *, sideways: bool) -> Iterator[str]:
     """The start and the exits of a container, at its top and bottom."""
     yield entry_mark(container, place.start, sideways=sideways)
     yield from joins(container, place.start, sideways=sideways)
@@ -156,7 +156,7 @@ def _marks(place: Place, container: Container, *, sideways: bool) -> Iterator[st
         yield f"{{ rank=same; {'; '.join(drawn)} }}"
 
 
-def _arrows(place: Place, container: Container, depth: int | None) -> Iterator[str]:
+def _arrows(place: Position, container: Container, depth: int | None) -> Iterator[str]:
     closed = place.level == depth
     drawn = {c.name: _piece(c, place.below(c.name), closed=closed) for c in container.children}
     if isinstance(container, Concurrence) and drawn:
@@ -165,7 +165,7 @@ def _arrows(place: Place, container: Container, depth: int | None) -> Iterator[s
     yield from merged(edges(container, place.start, place.exits(container), drawn))
 
 
-def _piece(node: Node, place: Place, *, closed: bool) -> Piece:
+def _piece(node: Node, place: Position, *, closed: bool) -> Piece:
     if closed or isinstance(node, Leaf):
         return Piece(Spot(place.id), {})
     return Piece(Spot(place.start, place.id), place.exits(node))

@@ -1,4 +1,4 @@
-"""How pictures look: colours, names and labels in the DOT language."""
+"""The style of graphs: colours and fonts, and names and labels in the DOT language."""
 
 from __future__ import annotations
 
@@ -14,7 +14,7 @@ FAINT = "#6e7781"
 BORDER = "#8c959f"
 STATE_FILL = "#ffffff"
 FILLS = ("#f6f8fa", "#eaeef2")
-"""Of containers, by turns with the depth."""
+"""The fill colours of containers, alternating with the depth."""
 
 PARALLEL_FILL, PARALLEL_BORDER = "#f0f6ff", "#54aeff"
 LOOP_FILL, LOOP_BORDER = "#fff8e5", "#d4a72c"
@@ -25,7 +25,7 @@ TONES = {
     "warning": ("#bc4c00", "#fff1e5"),
     "neutral": (LINE, "#ffffff"),
 }
-"""Line and fill of what an outcome's name promises."""
+"""The line and fill colours by tone of an outcome."""
 
 _WORDS = {
     "success": "succeeded success successful done ok finished completed complete reached true yes",
@@ -37,11 +37,11 @@ _WORDS = {
 _TONE = {word: tone for tone, words in _WORDS.items() for word in words.split()}
 
 _ODD = re.compile("[\x00-\x08\x0b\x0c\x0e-\x1f\ud800-\udfff\ufffe\uffff]")
-"""What XML 1.0 has no way to say."""
+"""Characters that XML 1.0 cannot represent."""
 
 
 def tone(outcome: str) -> str:
-    """What the name of an outcome promises: a key of `TONES`."""
+    """The tone that the name of an outcome suggests: a key of `TONES`."""
     word = outcome.casefold()
     before, _, last = word.rpartition("_")
     found = _TONE.get(word) or _TONE.get(last) or "neutral"
@@ -51,21 +51,21 @@ def tone(outcome: str) -> str:
 
 
 def identifier(name: str) -> str:
-    """A name without the characters that mean something in names of nodes; no two give the same."""
+    """A name with the special characters of DOT escaped; different names stay different."""
     return re.sub(r"[^\w.-]", lambda odd: f"~{ord(odd[0]):X}.", name)
 
 
 def quoted(text: str) -> str:
-    """A DOT string that shows the text as it is.
+    """A DOT string that shows a text.
 
-    For a backslash stands its double U+2216: Graphviz resolves escapes in tooltips twice.
+    A backslash is replaced by U+2216: Graphviz resolves escapes in tooltips twice.
     """
     text = _ODD.sub("\ufffd", text).replace("\\", "\u2216")
     return '"' + text.replace('"', '\\"').replace("\n", "\\n") + '"'
 
 
 def html(text: str) -> str:
-    """Text within an HTML label, on one line and never empty, which Graphviz refuses."""
+    """Text for an HTML label, on one line and never empty: Graphviz rejects empty labels."""
     return escape(_ODD.sub("\ufffd", " ".join(text.split()))) or "&#160;"
 
 

@@ -1,4 +1,4 @@
-"""The state graph as text, complete and readable."""
+"""IR: the complete state graph as text."""
 
 from __future__ import annotations
 

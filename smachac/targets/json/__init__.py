@@ -1,4 +1,4 @@
-"""The state graph for other programs, as grammars/machine.schema.json describes it."""
+"""JSON: the state graph for other programs, in the format of grammars/machine.schema.json."""
 
 from __future__ import annotations
 
@@ -16,7 +16,7 @@ from smachac.ir.types import Type
 from smachac.targets import BuildContext, Files, Target, made_by, stem
 
 VERSION = 2
-"""Of the schema; it grows with every change."""
+"""The version of the format; it increases with every change of the schema."""
 
 
 def emit(machine: Checked, context: BuildContext, report: Report) -> Files:
@@ -27,7 +27,7 @@ def emit(machine: Checked, context: BuildContext, report: Report) -> Files:
 def to_json(machine: Machine) -> dict[str, Any]:
     """A machine as JSON data: its states in a flat list, parents before children.
 
-    Flat, so that no depth of nesting is too much for a reader.
+    The list is flat, so that deep nesting is no problem for a reader.
     """
     return {
         "made_by": made_by(machine),
@@ -48,7 +48,7 @@ def _entries(value: Any) -> Iterator[tuple[str, Any]]:
     """The fields of a value of the IR; spans are places, children are names."""
     for field in fields(value):
         if field.name in ("body", "given", "written"):
-            # Not of the graph, but for rules and templates.
+            # These fields are for rules and templates, not part of the state graph.
             continue
         content = getattr(value, field.name)
         if isinstance(content, Span):
@@ -80,7 +80,7 @@ def _plain(value: Any) -> Any:
 
 
 def _place(span: Span) -> str | None:
-    """`file:line:column` without the file's folder, which differs from machine to machine."""
+    """`file:line:column`, without the folder, which differs between computers."""
     if span.source is NOWHERE.source:
         return None
     line, column = span.source.position(span.start)

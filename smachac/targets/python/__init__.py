@@ -1,8 +1,9 @@
-"""Python: one module that a SMACH user would have written by hand.
+"""Python: one module for SMACH, with or without ROS.
 
-The structure is printed from the IR (body.py, layout.py, containers.py); the classes of the states
-and the frame of the module come from templates, which users may replace or add to (module.py).
-Templates of SMACHA's kind print states, containers and the frame themselves (smacha.py).
+The containers and transitions come from the state graph (structure.py). The classes of the states
+and the rest of the module come from templates, which users can replace or extend (module.py,
+states.py). SMACHA's templates print states and containers themselves; smacha_context.py has their
+variables.
 """
 
 from __future__ import annotations
@@ -32,7 +33,7 @@ def emit(machine: Checked, context: BuildContext, report: Report) -> Files:
 
 
 def has_code(type_: StateType, library: Library) -> bool:
-    """Whether a module can have states of a type: by a class of the user's, or a template."""
+    """Whether a module can contain states of a type: there is a class of the user or a template."""
     code = type_.code.get("python", f"{type_.name}.tpl.py")
     in_language = type_.kind == "container" and "python" not in type_.code
     return in_language or ":" in code or library.template(code) is not None

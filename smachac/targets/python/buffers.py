@@ -1,4 +1,4 @@
-"""What the templates of a machine's states bring, by block, and where each block goes."""
+"""The parts of a generated module that the templates of its states contribute, by block."""
 
 from __future__ import annotations
 
@@ -19,16 +19,16 @@ from smachac.targets.python.smacha_context import Headers
 from smachac.targets.templates.engine import BlockError, Blocks, Page
 
 APPENDED = ("base_header", "imports", "defs", "class_defs", "cb_defs", "main_def")
-"""Blocks that come out in the order of the states."""
+"""Blocks that are printed in the order of the states."""
 
 PREPENDED = ("footer", "execute", "base_footer", "main")
-"""Blocks that come out in reverse order, so that what was opened last is closed first."""
+"""Blocks that are printed in reverse order: what is opened last is closed first."""
 
 KEYED = ("header", "header_userdata")
-"""Blocks that go to the container around the state, before its states."""
+"""Blocks that belong to the container of the state and precede its states."""
 
 Buffers = dict[str, dict[str, None]]
-"""Texts by block, each once, in the order of the states."""
+"""Texts by block, without duplicates, in the order of the states."""
 
 
 def buffers() -> Buffers:
@@ -36,11 +36,11 @@ def buffers() -> Buffers:
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
-class Used:
-    """A state type as this module uses it: its class, and the template that brings it.
+class UsedType:
+    """A state type in this module: its class and the template that defines it.
 
-    `whole`: the template prints its own `body`, as SMACHA's do, so all of it is rendered for each
-    state; else the class is brought once.
+    `whole`: the template has a block `body`, as SMACHA's have, so that it is rendered for each
+    state; other templates are rendered once.
     """
 
     type: StateType
@@ -50,24 +50,24 @@ class Used:
 
 
 @dataclass(slots=True)
-class Gathered:
-    """What the states bring, by name of block, and what they share while they are printed.
+class ModuleParts:
+    """The contributions of the states to a module, by block, and the state of its generation.
 
-    `faults` are the templates' errors, each once, and what was changed in their code.
+    `faults` are the findings about templates, without duplicates.
     """
 
     blocks: Blocks
     context: BuildContext
     fresh: Callable[[str, bool], str] = field(default_factory=structure.variable_names)
     buffers: Buffers = field(default_factory=buffers)
-    used: dict[str, Used] = field(default_factory=dict)
+    used: dict[str, UsedType] = field(default_factory=dict)
     defined_headers: Headers = field(default_factory=Headers)
     functions: list[str] = field(default_factory=list)
     faults: Report = field(default_factory=list)
     defined: dict[str, tuple[str, Node]] = field(default_factory=dict)
 
     def fault(self, error: BlockError, node: Node) -> None:
-        """Note an error, with the first state that it was met for."""
+        """Add an error, related to the first state that it was found for."""
         found = error.diagnostic
         if found.span.source is not node.span.source:
             place = Related(span=node.span, message=f"printed here for `{node.name}`")
@@ -81,7 +81,7 @@ class Gathered:
             self.faults.append(found)
 
     def gather(self, page: Page, node: Node) -> None:
-        """Put the blocks of a template to those of the same name, those it includes before it."""
+        """Add the blocks of a template to the buffers, after those of the templates it includes."""
         for inner in page.inner:
             self.gather(inner, node)
         for name in (*APPENDED, *PREPENDED):
@@ -95,7 +95,7 @@ class Gathered:
                     self.define(text, page, name, node)
 
     def define(self, text: str, page: Page, block: str, node: Node) -> None:
-        """Tell of what is defined a second time and otherwise: the program has the last alone."""
+        """Report a class or function with two different definitions: only the last one counts."""
         try:
             tree = ast.parse(text)
         except (SyntaxError, ValueError, RecursionError, MemoryError):
@@ -112,7 +112,7 @@ class Gathered:
                     self.note(defined_twice(span, what, each.name, states))
 
     def code(self, page: Page, block: str, node: Node, *, alone: bool = False) -> str:
-        """A block that holds Python, as Python 3; `alone`: without what the template includes."""
+        """A block of Python as Python 3; `alone`: without the blocks of included templates."""
         text, changes = modern(page.render(block, alone=alone))
         for line, change in changes:
             self.note(python_2_code(self._place(page, block, line) or node.span, change))
@@ -130,7 +130,7 @@ class Gathered:
         return text
 
     def _place(self, page: Page, block: str, line: str) -> Span | None:
-        """Where a printed line comes from; if it is not to be found, the block."""
+        """The place of a printed line in a template; if it is not found, the place of the block."""
         for each in walk_pages(page):
             found = self.blocks.line_span(each.file, line)
             if found is not None:

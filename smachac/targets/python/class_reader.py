@@ -1,4 +1,7 @@
-"""What a class of SMACH says of itself: the lists that its `__init__` hands to `smach.State`."""
+"""The declared interface of a SMACH class: the lists that `__init__` passes to `smach.State`.
+
+The class is read as a syntax tree and never run.
+"""
 
 from __future__ import annotations
 
@@ -12,14 +15,14 @@ from smachac.frontend.state_types import StateType
 from smachac.targets.interface_check import Declared, Words
 
 PARAMETERS = ("outcomes", "input_keys", "output_keys", "io_keys")
-"""Of `smach.State.__init__`, in their order (smach.state)."""
+"""The parameters of `smach.State.__init__` with lists of names, in their order."""
 
 REGISTERS = re.compile(r"\.(register)?_(outcomes|(io|input|output)_keys)\b")
-"""What else changes what a state declares."""
+"""Methods and attributes that change the declared interface; a class that has one is not read."""
 
 
 def declared(type_: StateType, library: Library) -> Declared | None:
-    """What the class of a state type declares; None where that cannot be read."""
+    """The interface that the class of a state type declares; None where it cannot be read."""
     code = type_.code.get("python", "")
     module, colon, name = code.partition(":")
     if colon:
@@ -38,7 +41,7 @@ def declared(type_: StateType, library: Library) -> Declared | None:
 
 
 def _class(text: PythonText, type_: str, name: str) -> ast.ClassDef | None:
-    """The class of a name; in a template the one that the program will call so, or the only one."""
+    """The class of a name; in a template the class with the name of the type, or the only class."""
     found = [node for node in text.tree.body if isinstance(node, ast.ClassDef)]
     named = [node for node in found if node.name == (name or re.sub(r"\W+", "_", type_))]
     some = named if named or name else found
@@ -46,7 +49,7 @@ def _class(text: PythonText, type_: str, name: str) -> ast.ClassDef | None:
 
 
 def _of_class(text: PythonText, node: ast.ClassDef, name: str) -> Declared | None:
-    """None where more than one `__init__` of a plain state has a say."""
+    """The interface of a class; None if it is more than one `__init__` of a plain `smach.State`."""
     bases = [ast.unparse(base) for base in node.bases]
     makers = [each for each in node.body if getattr(each, "name", "") == "__init__"]
     plain = bases in (["smach.State"], ["State"]) and not node.keywords and not node.decorator_list
@@ -78,7 +81,7 @@ def _of_class(text: PythonText, node: ast.ClassDef, name: str) -> Declared | Non
 
 
 def _is_super(call: ast.Call) -> bool:
-    """Whether it calls the `__init__` of the class above."""
+    """Whether a call is that of the `__init__` of the base class."""
     match call.func:
         case ast.Attribute(value=ast.Call(func=ast.Name(id="super")), attr="__init__"):
             return True
@@ -88,7 +91,7 @@ def _is_super(call: ast.Call) -> bool:
 
 
 def _given(call: ast.Call) -> dict[str, ast.expr] | None:
-    """The arguments by name; None where not all are told."""
+    """The arguments by name; None where some are in `*args` or `**kwargs`."""
     arguments = list(call.args)
     if isinstance(call.func, ast.Attribute) and not isinstance(call.func.value, ast.Call):
         arguments = arguments[1:]  # the first one is `self`
@@ -103,7 +106,7 @@ def _given(call: ast.Call) -> dict[str, ast.expr] | None:
 
 
 def _words(text: PythonText, value: ast.expr) -> Words | None:
-    """The names of a list that is written out."""
+    """The names in a list of string literals; None for other expressions."""
     if not isinstance(value, ast.List | ast.Tuple | ast.Set):
         return None
     found = []

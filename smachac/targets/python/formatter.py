@@ -1,4 +1,4 @@
-"""Python source as a formatter would lay it out: literals, and calls that break when too long."""
+"""Python source in the layout of a formatter: literals and calls, broken into lines if too long."""
 
 from __future__ import annotations
 
@@ -21,7 +21,7 @@ WIDTH = 88
 
 @dataclass(frozen=True, slots=True)
 class Group:
-    """Items between brackets: on one line where they fit, else one a line with a last comma."""
+    """Items in brackets: on one line if they fit, else one item a line with a trailing comma."""
 
     opening: str
     items: tuple[tuple[str, Doc], ...]
@@ -41,8 +41,8 @@ def flat(doc: Doc) -> str:
 
 
 def laid_out(doc: Doc, width: int, before: int = 0, after: int = 0) -> str:
-    """The text within a width, after `before` characters on its first line and with `after` more
-    behind its last. Lines but the first are indented by what they need beyond the first's."""
+    """The text in lines of a width. `before` characters precede its first line, `after` characters
+    follow its last line. The indentation of its lines is relative to that of the first."""
     line = flat(doc)
     if isinstance(doc, str) or not doc.items or before + len(line) + after <= width:
         return line
@@ -70,7 +70,7 @@ def mapping(pairs: Iterable[tuple[str, Doc]]) -> Group:
 
 
 def string(text: str) -> str:
-    """A string literal in double quotes, in single ones where that saves escapes."""
+    """A string literal in double quotes, or in single quotes where that needs fewer escapes."""
     literal = repr(text)
     if literal[0] == '"' or '"' in text:
         return literal
@@ -78,7 +78,7 @@ def string(text: str) -> str:
 
 
 def expression(text: str) -> Doc:
-    """Code of the script: laid out where it is portable, else as it was written."""
+    """Code of the script: in layout if it is a portable expression, else unchanged."""
     from smachac.ir.expressions import parse_expression
 
     tree = parse_expression(text)
@@ -86,7 +86,7 @@ def expression(text: str) -> Doc:
 
 
 def _one_line(text: str) -> str:
-    """Code on one line: a comment in it would swallow what is printed behind."""
+    """Code on one line, without comments, which would hide the text that follows on the line."""
     if "#" not in text and "\n" not in text:
         return text
     try:
@@ -96,7 +96,7 @@ def _one_line(text: str) -> str:
 
 
 def _expression(tree: Expr) -> Doc:
-    """Lists break into lines where they are too long; so do those that a lambda returns."""
+    """The layout of an expression: long lists, also as the result of a lambda, break into lines."""
     from smachac.ir.expressions import Lambda, ListDisplay, print_expression
 
     match tree:

@@ -1,4 +1,4 @@
-"""The imports of a generated module: those that templates bring, and those that the code needs."""
+"""The imports of a generated module: those of its templates, and those that its code needs."""
 
 from __future__ import annotations
 
@@ -11,7 +11,7 @@ from smachac.ir.traversal import expressions, walk
 from smachac.targets.python.formatter import WIDTH
 
 ROS_MODULES = ("rospy", "roslib", "rospkg", "rostopic", "actionlib", "tf2_ros")
-"""Modules that SMACHA's bases imported for everybody."""
+"""Modules that SMACHA's bases imported in every program."""
 
 MESSAGES = {
     "geometry_msgs.msg": (
@@ -32,8 +32,8 @@ MESSAGES = {
     "actionlib_msgs.msg": "GoalID GoalStatus",
     "actionlib": "ActionClient ActionServer SimpleActionClient SimpleActionServer",
 }
-"""The messages of ROS's common packages, by module: names that scripts call to make one. SMACHA's
-template for actions imported all of actionlib for everybody."""
+"""The messages of the common packages of ROS, by module. Scripts call these names to make messages.
+SMACHA's template for actions imported all names of actionlib."""
 
 _MODULE_OF = {name: module for module, names in MESSAGES.items() for name in names.split()}
 
@@ -48,7 +48,8 @@ except ImportError:  # it is not on this machine: the same names without it
 
 
 def with_fallback(text: str, tree: ast.Module) -> str:
-    """A module whose own imports of SMACH, as bases of SMACHA's kind have them, do without it."""
+    """The module with a fallback for its own imports of SMACH, as templates of SMACHA's bases have
+    them: without SMACH they import the bundled runtime."""
     lines = text.splitlines(keepends=True)
     for node in tree.body:
         match node:
@@ -64,7 +65,7 @@ def importable() -> set[str]:
 
 
 def import_lines(texts: Iterable[str]) -> str:
-    """Imports, each once: modules first, then names out of modules, then what is more than that."""
+    """Imports without duplicates: modules, then names of modules, then other statements."""
     modules: set[str] = set()
     names: dict[str, set[str]] = {}
     others: dict[str, None] = {}
@@ -96,9 +97,9 @@ def _from_import(module: str, names: list[str]) -> str:
 
 
 def unbound_names(parts: Iterable[str], also: Iterable[str] = ()) -> list[str]:
-    """Imports for what code uses and nothing binds: modules by their attributes (`rospy.loginfo`),
-    messages by their names (`Point()`); `also` are further modules. `import *` binds what its
-    module is known to have; out of other modules it may bind any message."""
+    """Imports for names that code uses and does not bind: modules by their attributes
+    (`rospy.loginfo`), messages by their names (`Point()`); `also` are further modules. `import *`
+    binds the names in MESSAGES; from a module that is not listed there it may bind any message."""
     used: set[str] = set()
     named: set[str] = set()
     bound: set[str] = set()
@@ -135,7 +136,7 @@ def unbound_names(parts: Iterable[str], also: Iterable[str] = ()) -> list[str]:
 
 
 def standard_imports(machine: Machine) -> list[str]:
-    """Imports of the modules of the standard library that expressions name: `math.pi`."""
+    """Imports of the modules of the standard library that expressions use: `math.pi`."""
     found = {
         name
         for _, node in walk(machine.root)
@@ -146,7 +147,7 @@ def standard_imports(machine: Machine) -> list[str]:
 
 
 def _modules(text: str) -> set[str]:
-    """The modules at the roots of dotted names; arguments of a lambda are none."""
+    """The standard modules at the roots of dotted names, except arguments of a lambda."""
     try:
         tree = ast.parse(text.strip(), mode="eval")
     except (SyntaxError, ValueError, RecursionError, MemoryError):

@@ -1,4 +1,4 @@
-"""The module around a machine: what its states' templates bring, gathered into the base's."""
+"""The generated module: the template of the base, filled with the code of the machine."""
 
 from __future__ import annotations
 
@@ -13,7 +13,7 @@ from smachac.ir.nodes import Machine
 from smachac.ir.traversal import walk
 from smachac.targets import BuildContext, made_by
 from smachac.targets.errors import python_2_code
-from smachac.targets.python.buffers import PREPENDED, Gathered
+from smachac.targets.python.buffers import PREPENDED, ModuleParts
 from smachac.targets.python.imports import (
     import_lines,
     standard_imports,
@@ -24,7 +24,7 @@ from smachac.targets.python.python2 import modern
 from smachac.targets.python.smacha_context import FILTERS, TESTS, container_variables, plain
 from smachac.targets.python.states import (
     NO_BODY,
-    Inside,
+    EmittedContainer,
     children,
     container_block,
     headers,
@@ -34,11 +34,11 @@ from smachac.targets.python.states import (
 from smachac.targets.templates.engine import BlockError, Blocks
 
 ONE_FUNCTION = {"Program.tpl.py": "Base.tpl.py", "ROSProgram.tpl.py": "ROSBase.tpl.py"}
-"""What prints a program whose states bring code around its run: all of it in one function, where
-such code sees its own names, as in SMACHA."""
+"""The template for a program whose states add code around its run, by the usual template: the whole
+program is one function, in which that code sees the names of the states, as in SMACHA."""
 
 NODE_IMPORTS = [f"import {name}" for name in ("os", "rospy", "signal", "threading", "time")]
-"""What ROSNode.tpl.py uses."""
+"""The imports of ROSNode.tpl.py."""
 
 CATCHING = '''def error_as_outcome(state, outcome):
     """Let a state end with an outcome where it would raise an exception, which is logged."""
@@ -55,12 +55,12 @@ CATCHING = '''def error_as_outcome(state, outcome):
     state.caught = None
     state.register_outcomes([outcome])
     return state'''
-"""What stands in a module in which a state catches. Traces look at `caught`; `attempted` is what
-a scenario replaces."""
+"""The function that a module contains if a state catches its exceptions. A trace reads `caught`;
+a scenario replaces `attempted`."""
 
 
 def module_text(machine: Machine, context: BuildContext, report: Report) -> str | None:
-    """The text of the module; None where templates are at fault, which is reported."""
+    """The text of the module; None if templates have errors, which are reported."""
     shown = frozenset(
         name
         for option, names in (
@@ -71,37 +71,35 @@ def module_text(machine: Machine, context: BuildContext, report: Report) -> str 
         for name in names
     )
     blocks = Blocks(context.library.template, filters=FILTERS, tests=TESTS, shown=shown)
-    gathered = Gathered(blocks, context)
+    module = ModuleParts(blocks, context)
     text = None
     try:
-        text = _text(machine, context, gathered)
+        text = _text(machine, context, module)
     except BlockError as error:
-        gathered.fault(error, machine.root)
-    report.extend(gathered.faults)
+        module.fault(error, machine.root)
+    report.extend(module.faults)
     return text
 
 
-def _text(machine: Machine, context: BuildContext, gathered: Gathered) -> str | None:
-    template = _base_template(machine, context, gathered)
-    root = gathered.fresh(machine.root.name, True)
-    inside = Inside(node=machine.root, variable=root, path=machine.root.name, depth=1)
-    states = children(inside, gathered)
-    if has_errors(gathered.faults):
+def _text(machine: Machine, context: BuildContext, module: ModuleParts) -> str | None:
+    template = _base_template(machine, context, module)
+    root = module.fresh(machine.root.name, True)
+    inside = EmittedContainer(node=machine.root, variable=root, path=machine.root.name, depth=1)
+    states = children(inside, module)
+    if has_errors(module.faults):
         return None
     if any(node.catches for _, node in walk(machine.root)):
-        gathered.buffers["imports"]["import traceback"] = None
-        gathered.buffers["defs"][CATCHING] = None
-    lines = gathered.blocks.render(
-        "Container.tpl.py", "body", container_block(inside, None, states)
-    )
-    texts = joined(gathered.buffers)
-    parts = [*texts.values(), lines, *gathered.functions]
+        module.buffers["imports"]["import traceback"] = None
+        module.buffers["defs"][CATCHING] = None
+    lines = module.blocks.render("Container.tpl.py", "body", container_block(inside, None, states))
+    texts = joined(module.buffers)
+    parts = [*texts.values(), lines, *module.functions]
     if template == "Program.tpl.py" and any(map(_NEEDS_NODE.search, parts)):
         template = "ROSProgram.tpl.py"
     if template in ONE_FUNCTION and any(texts[name] for name in PREPENDED):
         template = ONE_FUNCTION[template]
     modules = unbound_names(parts)
-    imports = [*gathered.buffers["imports"], *standard_imports(machine), *modules]
+    imports = [*module.buffers["imports"], *standard_imports(machine), *modules]
     if template in ("ROSProgram.tpl.py", "ROSBase.tpl.py"):
         imports += NODE_IMPORTS
     variables: dict[str, object] = {
@@ -111,37 +109,37 @@ def _text(machine: Machine, context: BuildContext, gathered: Gathered) -> str | 
         **texts,
         "imports": import_lines(imports),
         "definitions": [
-            "\n\n\n".join(gathered.buffers[name])
+            "\n\n\n".join(module.buffers[name])
             for name in ("defs", "class_defs", "cb_defs")
-            if gathered.buffers[name]
+            if module.buffers[name]
         ],
         "sm_name": root,
         "title": _title(machine),
         "made_by": f"# {made_by(machine)}",
         "body": states,
         "machine": indent(lines, "    "),
-        "functions": "\n\n\n".join(gathered.functions),
-        "defined_headers": gathered.defined_headers,
+        "functions": "\n\n\n".join(module.functions),
+        "defined_headers": module.defined_headers,
         "smach_ros": any("smach_ros." in part for part in parts),
         "introspection": context.options.get("introspection", "no") == "yes",
     }
-    text = _rendered(template, variables, imports, gathered) + "\n"
+    text = _rendered(template, variables, imports, module) + "\n"
     if lost(states, text):
-        span = gathered.blocks.block_span(template, "body") or machine.root.span
+        span = module.blocks.block_span(template, "body") or machine.root.span
         raise BlockError(template_error(span, *NO_BODY))
-    return _checked(text, template, machine, gathered)
+    return _checked(text, template, machine, module)
 
 
 def _rendered(
-    template: str, variables: dict[str, object], imports: list[str], gathered: Gathered
+    template: str, variables: dict[str, object], imports: list[str], module: ModuleParts
 ) -> str:
-    """The base's template as a whole; once more where its own code, known only now, lacks imports
-    or works in a node alone."""
-    printed = gathered.defined_headers.copy()
-    text = gathered.blocks.render_whole(template, variables)
+    """The whole template of the base. It is rendered a second time if its own code, which is known
+    only after the first, needs imports or a ROS node."""
+    printed = module.defined_headers.copy()
+    text = module.blocks.render_whole(template, variables)
     if template in ONE_FUNCTION:
         return text
-    can_be = "node" in gathered.blocks.names(template) and "init_node" not in text
+    can_be = "node" in module.blocks.names(template) and "init_node" not in text
     is_node = can_be and _NEEDS_NODE.search(text) is not None
     more = NODE_IMPORTS if is_node else []
     lacking = unbound_names([modern(text)[0], *more], ["smach", "smach_ros"])
@@ -153,30 +151,31 @@ def _rendered(
         "is_node": is_node,
         "defined_headers": printed,
     }
-    return gathered.blocks.render_whole(template, again)
+    return module.blocks.render_whole(template, again)
 
 
 def _title(machine: Machine) -> str:
-    """The first line of the docstring: it must not end the string it stands in."""
+    """The first line of the docstring, escaped so that it does not end the string."""
     doc = machine.root.doc or f"The state machine `{machine.root.name}`."
     return doc.replace("\\", "\\\\").replace('"""', "'''").rstrip('"')
 
 
-def _base_template(machine: Machine, context: BuildContext, gathered: Gathered) -> str:
+def _base_template(machine: Machine, context: BuildContext, module: ModuleParts) -> str:
     type_ = find_state_type(machine.base, context.library, [])
     file = type_.code.get("python", "") if type_ is not None else ""
-    if not file or gathered.blocks.source(file) is None:
+    if not file or module.blocks.source(file) is None:
         message = f"the base `{machine.base}` has no template for Python"
         raise BlockError(template_error(machine.root.span, message))
     return file
 
 
-def _checked(text: str, template: str, machine: Machine, gathered: Gathered) -> str | None:
-    """The module, tidied where its base is in SMACHA's style; None where it is no Python."""
+def _checked(text: str, template: str, machine: Machine, module: ModuleParts) -> str | None:
+    """The module, without surplus blank lines and trailing spaces. Raises BlockError if it is no
+    Python."""
     text, changes = modern(text)
     for line, change in changes:
-        place = gathered.blocks.line_span(template, line) or machine.root.span
-        gathered.note(python_2_code(place, change))
+        place = module.blocks.line_span(template, line) or machine.root.span
+        module.note(python_2_code(place, change))
     try:
         tree = ast.parse(text)
     except (SyntaxError, ValueError, RecursionError, MemoryError) as error:
@@ -184,7 +183,7 @@ def _checked(text: str, template: str, machine: Machine, gathered: Gathered) -> 
         number = min(getattr(error, "lineno", None) or 1, len(lines))
         words = getattr(error, "msg", None) or str(error) or "it is nested too deep"
         line = lines[number - 1]
-        place = gathered.blocks.line_span(template, line) or machine.root.span
+        place = module.blocks.line_span(template, line) or machine.root.span
         message = f"the base `{machine.base}` makes no Python: {words}"
         help = f"the line it prints is `{line.strip()}`"
         raise BlockError(template_error(place, message, help)) from error
@@ -204,7 +203,7 @@ _NEEDS_NODE = re.compile(
     r"\brospy\.(?:Publisher|Subscriber|Service|ServiceProxy|Timer|Rate|sleep|spin|on_shutdown"
     r"|get_param|wait_for_\w+)\b|\bsmach_ros\.|\bTF2ListenerSingleton\b"
 )
-"""Code that works in a node alone. SMACHA's first base made one for every program."""
+"""Code of templates that needs a ROS node. SMACHA's first base made every program a node."""
 
 _BLANKS = re.compile(r"\n(?:[ \t]*\n){3,}")
 _TRAILING = re.compile(r"[ \t]+$", re.M)

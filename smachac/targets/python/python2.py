@@ -1,4 +1,4 @@
-"""Python 2 in the templates of SMACHA's time: what can be told for sure is written as Python 3."""
+"""Python 2 in templates for SMACHA: what is certainly Python 2 is translated to Python 3."""
 
 from __future__ import annotations
 
@@ -6,7 +6,7 @@ import ast
 import re
 
 Change = tuple[str, str]
-"""A line as it was, and what was done about it."""
+"""A line before its change, and a description of the change."""
 
 _EXCEPT = re.compile(r"^(\s*except\s+(?:\([^()]*\)|[\w.]+))\s*,\s*(\w+)\s*:(.*)$")
 _PRINT = re.compile(r"^(\s*)print(?:\s+(?!\()|(?=[\"']))([^>\s].*?)(,?)\s*$")
@@ -17,10 +17,10 @@ _UNEQUAL = re.compile(r"^([^\"'#]*?)<>(.*)$")
 
 
 def modern(text: str) -> tuple[str, list[Change]]:
-    """Text as Python 3, and each line that was changed.
+    """Text as Python 3, and its changes.
 
-    Text that is Python 3 stays as it is, but for `except A, e:`, which new Pythons read as two
-    exceptions.
+    Text that is Python 3 is unchanged except for `except A, e:`, which new versions of Python read
+    as two exceptions.
     """
     changes: list[Change] = []
     lines = text.split("\n")
@@ -42,13 +42,13 @@ def modern(text: str) -> tuple[str, list[Change]]:
 
 
 def translated(line: str) -> str | None:
-    """A line as Python 3, if it is Python 2 of a kind that can be told."""
+    """A line as Python 3; None unless it is certainly Python 2."""
     found = _EXCEPT.match(line)
     return f"{found[1]} as {found[2]}:{found[3]}" if found else _line(line)
 
 
 def _line(line: str) -> str | None:
-    """A line of Python 2 as Python 3, if it is one of those that can be told."""
+    """A line with `print`, `raise` or `<>` of Python 2 as Python 3; None for other lines."""
     if found := _PRINT_NOTHING.match(line):
         return f"{found[1]}print()"
     if found := _PRINT_FORMAT.match(line) or _PRINT.match(line):

@@ -1,4 +1,4 @@
-"""Runs a generated Python program here and now, watched and stoppable."""
+"""Runs a generated Python program in this process, with a trace and with preemption by Ctrl-C."""
 
 from __future__ import annotations
 
@@ -20,7 +20,7 @@ Event = dict[str, Any]
 
 
 def places(machine: Machine) -> dict[str, str]:
-    """Path of each state to its place in the script, `pick_block.yml:12`."""
+    """The place of each state in the script (`pick_block.yml:12`), by the path of the state."""
     return {
         path: f"{Path(node.span.source.name).name}:{node.span.line}"
         for path, node in walk(machine.root)
@@ -42,8 +42,8 @@ def execute(
     """Run the module `text` and return the outcome of its machine.
 
     `folder` is where the program may import modules of the user from: that of the script.
-    `observe` gets every event of the trace. Ctrl-C asks the machine to preempt (`on_preempt` is
-    called), a second one raises KeyboardInterrupt. What the program raises passes through.
+    `observe` gets every event of the trace. Ctrl-C requests the machine to preempt and calls
+    `on_preempt`; a second one raises KeyboardInterrupt. Exceptions of the program are not caught.
     """
     from smachac.runtime.tracing import trace
 
@@ -71,11 +71,11 @@ def execute(
 
 @contextmanager
 def _watching(module: dict[str, Any], watch: Callable[[Any], None]) -> Iterator[list[str | None]]:
-    """Show the machine to `watch` before it runs.
+    """Calls `watch` with the machine before it runs.
 
-    A program with `build` shows what that makes, and its main function returns the outcome; of one
-    that is all one function, as SMACHA's are, the first machine that runs is the whole, and its
-    outcome is what the list gets.
+    A program with a function `build` returns the machine from it, and the outcome from its main
+    function. In a program that is one function, as SMACHA's are, the first machine that runs is the
+    root; its outcome is put into the list.
     """
     outcomes: list[str | None] = []
     build = module.get("build")
@@ -108,8 +108,8 @@ def _watching(module: dict[str, Any], watch: Callable[[Any], None]) -> Iterator[
 
 @contextmanager
 def loaded(name: str, text: str, folder: Path) -> Iterator[dict[str, Any]]:
-    """The names of the module `text`; while it is used it may import modules of the user from
-    `folder`. What loading it raises passes through."""
+    """The namespace of the module `text`. Inside the context it can import modules of the user from
+    `folder`. Exceptions of the module are not caught."""
     module = ModuleType(name.removesuffix(".py"))
     module.__file__ = name
     linecache.cache[name] = (len(text), None, text.splitlines(keepends=True), name)
@@ -122,7 +122,7 @@ def loaded(name: str, text: str, folder: Path) -> Iterator[dict[str, Any]]:
 
 
 def hidden(message: str, *arguments: object) -> None:
-    """What SMACH logs, and nobody is to read."""
+    """A logger that drops its messages."""
 
 
 def _told(message: str, *arguments: object) -> None:
@@ -131,7 +131,7 @@ def _told(message: str, *arguments: object) -> None:
 
 @contextmanager
 def quiet(smach: Any, log: Callable[..., None]) -> Iterator[None]:
-    """Progress is shown from the trace; of what SMACH logs, warnings and errors go to `log`."""
+    """Passes only warnings and errors of SMACH to `log`: progress comes from the trace."""
     before = smach.loginfo, smach.logwarn, smach.logdebug, smach.logerr
     smach.set_loggers(hidden, log, hidden, log)
     try:
@@ -150,7 +150,7 @@ def main_function(machine: Machine) -> str:
 
 @contextmanager
 def _preempting(built: list[Any], on_preempt: Callable[[], None]) -> Iterator[None]:
-    """Ctrl-C as a preempt request; the second one as ever."""
+    """The first Ctrl-C is a preempt request; the second raises KeyboardInterrupt."""
 
     def preempt(number: int, frame: FrameType | None) -> None:
         signal.signal(signal.SIGINT, signal.default_int_handler)

@@ -1,6 +1,4 @@
-"""What SMACHA gave to the templates of its users: plain data under the names they expect, and the
-tests and filters by which they tell code from text.
-"""
+"""The template context of SMACHA: the variables, tests and filters that its templates expect."""
 
 from __future__ import annotations
 
@@ -15,8 +13,8 @@ from smachac.targets.python import structure
 from smachac.targets.python.formatter import call, flat, literal, string
 
 
-class Code(str):
-    """Text that is code: printed as it is, also inside a list."""
+class CodeText(str):
+    """A string that is code: it is printed without quotes, also inside a list."""
 
     __slots__ = ()
 
@@ -24,21 +22,21 @@ class Code(str):
         return str(self)
 
 
-class Text(str):
-    """Text of the script that is no code, whatever it looks like."""
+class ScriptText(str):
+    """A string of the script that is text, even if it has the form of code."""
 
     __slots__ = ()
 
 
 class Headers(list[str]):
-    """`defined_headers`: what has been printed once. Asking is as quick with thousands of them."""
+    """`defined_headers`: a list of the definitions printed so far, with fast look-up."""
 
     def __init__(self, names: Iterable[str] = ()) -> None:
         super().__init__(names)
         self._known = set(self)
 
     def copy(self) -> Headers:
-        """Another that knows the same."""
+        """An independent list of the same names."""
         return Headers(self)
 
     def append(self, name: str) -> None:
@@ -54,20 +52,20 @@ _DOTTED_OR_CALL = re.compile(r"\D+[.]\D+|.*\(.*\)")
 
 
 def is_expression(value: object) -> bool:
-    """SMACHA's test `expression`: a string in backticks. Code of a script is one without."""
-    if isinstance(value, Code):
+    """SMACHA's test `expression`: a string in backticks, or code of a script."""
+    if isinstance(value, CodeText):
         return True
     return isinstance(value, str) and _TICKED.fullmatch(value) is not None
 
 
 def is_not_string(value: object) -> bool:
-    """SMACHA's test `not_string`: what is printed without quotes.
+    """SMACHA's test `not_string`: a value that is printed without quotes.
 
-    Strings that come from a script are known to be text or code; others are judged by their look.
+    A string of a script is marked as text or code; another string is judged by its form.
     """
-    if not isinstance(value, str) or isinstance(value, Code):
+    if not isinstance(value, str) or isinstance(value, CodeText):
         return value is not None
-    if isinstance(value, Text) or value.startswith("'"):
+    if isinstance(value, ScriptText) or value.startswith("'"):
         return False
     try:
         float(value)
@@ -80,7 +78,7 @@ def without_ticks(value: object) -> object:
     """SMACHA's filter `exptostr`: the expression in backticks."""
     if not isinstance(value, str):
         return value
-    return Code(_TICKED.sub(r"\1", value))
+    return CodeText(_TICKED.sub(r"\1", value))
 
 
 def as_literal(value: object) -> str:
@@ -93,12 +91,13 @@ def _data(value: object) -> Data:
         return Struct(entries=tuple((str(key), _data(each)) for key, each in value.items()))
     if isinstance(value, list | tuple):
         return tuple(_data(each) for each in value)
-    if isinstance(value, Code) or (isinstance(value, str) and is_not_string(value)):
+    if isinstance(value, CodeText) or (isinstance(value, str) and is_not_string(value)):
         from smachac.diagnostics.source import NOWHERE
 
         return Expression(text=str(value), span=NOWHERE)
     if isinstance(value, str):
-        quoted = len(value) > 1 and value[0] == value[-1] == "'" and not isinstance(value, Text)
+        quoted = len(value) > 1 and value[0] == value[-1] == "'"
+        quoted = quoted and not isinstance(value, ScriptText)
         return value[1:-1] if quoted else str(value)
     return value if isinstance(value, int | float) or value is None else str(value)
 
@@ -109,17 +108,17 @@ TESTS: Mapping[str, Callable[..., Any]] = {
 }
 
 
-def ros_class(value: object) -> Code:
+def ros_class(value: object) -> CodeText:
     """The class that a ROS type names: `Trigger` of `std_srvs/Trigger`, `std_srvs.srv.Trigger`."""
-    return Code(re.split(r"[/.]", str(value))[-1])
+    return CodeText(re.split(r"[/.]", str(value))[-1])
 
 
 def ros_import(
     value: object, part: str, ending: str = "", other: str = "", code: object = ""
 ) -> str:
-    """The import of a ROS type that names its package; of others the module's code is to know.
+    """The import of a ROS type with a package name; empty for other types.
 
-    Code may name a class beside it: `TestGoal` beside `TestAction`, with `other` for `ending`.
+    `code` may use a related class, such as `TestGoal` of `TestAction`: `other` replaces `ending`.
     """
     words = re.split(r"[/.]", str(value))
     if len(words) < 2 or not all(word.isidentifier() for word in words):
@@ -134,40 +133,39 @@ FILTERS: Mapping[str, Callable[..., Any]] = {
     "ros_import": ros_import,
     "exptostr": without_ticks,
     "literal": as_literal,
-    "code": lambda value: Code(value) if isinstance(value, str) else value,
+    "code": lambda value: CodeText(value) if isinstance(value, str) else value,
     "quoted": lambda value: string(str(value)),
 }
 
 
 def plain(data: Data) -> object:
-    """A value as Python data; expressions and strings remain told apart."""
+    """A value as Python data, with expressions and strings marked as CodeText and ScriptText."""
     match data:
         case Expression(text=text):
-            return Code(text)
+            return CodeText(text)
         case Struct(entries=entries):
             return {key: plain(value) for key, value in entries}
         case tuple():
             return [plain(item) for item in data]
         case str():
-            return Text(data)
+            return ScriptText(data)
     return data
 
 
 def written(variables: Iterable[Variable]) -> dict[str, object]:
-    """Variables as a script has them."""
+    """The values of variables by name."""
     return {variable.name: plain(variable.value.data) for variable in variables}
 
 
 def stable_id(path: str) -> str:
-    """`uuid`: 32 hexadecimal digits, the same in each build for the same state."""
+    """The variable `uuid`: 32 hexadecimal digits that depend on the path of the state only."""
     return hashlib.sha256(path.encode("utf-8", "surrogatepass")).hexdigest()[:32]
 
 
 def adding(node: Node, parent: Container, depth: int, callbacks: Data = None) -> Callable[..., str]:
-    """A function for templates: the line that adds the state that a class makes.
+    """The function `add` of templates: it returns the statement that adds an object of a class.
 
-    `callbacks` are called before it. Named arguments that are missing are left out; strings are
-    printed as text, code as it is.
+    `callbacks` are called before the state. Undefined named arguments are omitted.
     """
 
     def add(class_name: object, *values: object, **named: object) -> str:
@@ -186,7 +184,7 @@ def adding(node: Node, parent: Container, depth: int, callbacks: Data = None) ->
 
 
 def place_variables(parent: Container, parent_sm_name: str, path: str) -> dict[str, object]:
-    """Where a state stands."""
+    """The variables for the position of a state in its machine."""
     return {
         "uuid": stable_id(path),
         "parent_name": parent.name,
@@ -197,8 +195,8 @@ def place_variables(parent: Container, parent_sm_name: str, path: str) -> dict[s
 
 
 def edges(node: Node, parent: Container | None) -> dict[str, object]:
-    """The `transitions` and `remapping` of a state, where it has any. In a Concurrence there are no
-    transitions: its `add` takes none."""
+    """The variables `transitions` and `remapping`, unless empty. In a Concurrence there are no
+    transitions: its `add` has no such parameter."""
     steps = {edge.outcome: edge.target for edge in node.transitions if edge.origin == "written"}
     remaps = remapping(node)
     found = {"transitions": {} if isinstance(parent, Concurrence) else steps, "remapping": remaps}
@@ -208,9 +206,9 @@ def edges(node: Node, parent: Container | None) -> dict[str, object]:
 def state_variables(
     leaf: Leaf, parent: Container, parent_sm_name: str, path: str
 ) -> dict[str, object]:
-    """The variables of a leaf's template: those that its script writes, and where it stands."""
+    """The variables of a leaf's template: those of the script, and its position."""
     variables = written(leaf.written)
-    # What a script says of both stands at the container that sugar makes around a state.
+    # With sugar these two belong to the container that was made around the state.
     variables.pop("transitions", None)
     variables.pop("remapping", None)
     return {
@@ -225,7 +223,7 @@ def state_variables(
 def container_variables(
     node: Container, parent: Container | None, parent_sm_name: str, path: str
 ) -> dict[str, object]:
-    """The variables of a container's template, or with no parent of the base's."""
+    """The variables of a container's template; without a parent, those of the base's template."""
     variables: dict[str, object] = {
         "outcomes": list(own_outcomes(node)),
         "input_keys": [key.name for key in node.inputs],

@@ -1,4 +1,4 @@
-"""The structure of a machine in Python: each container, its states and their transitions."""
+"""The Python statements that build a machine: containers, the calls that add states, userdata."""
 
 from __future__ import annotations
 
@@ -35,7 +35,7 @@ OURS = (
     *("smach", "build", "main", "error_as_outcome", "with_callbacks"),
     *("rospy", "smach_ros", "start_node", "preempt_at_shutdown", "server", "sis"),
 )
-"""Names of the module that containers must not take."""
+"""Names of the module that variables of containers must not have."""
 
 MOST_NESTED = 12
 """Containers nested deeper get a function of their own: Python allows 20 nested blocks."""
@@ -67,7 +67,7 @@ def construct(node: Container, variable: str, depth: int) -> str:
         case Sequence():
             arguments.append(("connector_outcome=", string(node.connector_outcome)))
         case Concurrence():
-            # SMACH insists on a default; rules that leave nothing out never come to it.
+            # SMACH requires a default outcome; rules that cover every case never use it.
             default = node.default_outcome or node.rules[-1].outcome
             arguments.append(("default_outcome=", string(default)))
         case IteratorNode():
@@ -97,7 +97,7 @@ def kind(node: Container) -> str:
 
 
 def width(depth: int) -> int:
-    """What is left of a line inside `depth` blocks."""
+    """The length of a line inside `depth` blocks."""
     return max(40, WIDTH - 4 * depth)
 
 
@@ -108,8 +108,8 @@ def key_arguments(inputs: tuple[Key, ...], outputs: tuple[Key, ...]) -> Iterator
 
 
 def _outcome_map(node: Concurrence) -> Group:
-    """Rules from fewer to more children: so both branches of SMACH agree on several matches
-    (smach-semantics N6)."""
+    """The rules, from fewer to more conditions: in that order all versions of SMACH choose the same
+    rule where several hold."""
     rules = sorted(node.rules, key=lambda rule: len(rule.when))
     return mapping(
         (rule.outcome, mapping((one.child, string(one.outcome)) for one in rule.when))
@@ -118,7 +118,7 @@ def _outcome_map(node: Concurrence) -> Group:
 
 
 def _outcome_function(node: Concurrence) -> str:
-    """The rules as a function, where an outcome has several: a map has room for one."""
+    """The rules as a function, for an outcome with several rules: a map holds one rule each."""
     text = "None"
     for rule in sorted(node.rules, key=lambda rule: len(rule.when)):
         holds = " and ".join(
@@ -129,7 +129,7 @@ def _outcome_function(node: Concurrence) -> str:
 
 
 def userdata(node: Container, variable: str, depth: int) -> list[str]:
-    """The lines that give a container its userdata before the run."""
+    """The statements that set the userdata of a container before the run."""
     lines = []
     for preset in node.userdata:
         key = preset.key
@@ -141,7 +141,7 @@ def userdata(node: Container, variable: str, depth: int) -> list[str]:
 
 
 def initial(node: Container, variable: str) -> list[str]:
-    """The line that sets another initial state than the first, if there is one."""
+    """The statement that sets the initial state, if that is not the first state."""
     if not isinstance(node, (StateMachine, Sequence)) or not node.children:
         return []
     if node.initial == node.children[0].name:
@@ -150,8 +150,7 @@ def initial(node: Container, variable: str) -> list[str]:
 
 
 def made(node: Node, state: Doc, callbacks: Data = None) -> Doc:
-    """What makes a state, which calls functions first and catches its exceptions where the script
-    says so."""
+    """The expression for a state, wrapped for `callbacks` and for exceptions that it catches."""
     if callbacks is not None:
         state = call("with_callbacks", [("", state), ("", literal(callbacks))])
     if not node.catches:
@@ -160,7 +159,7 @@ def made(node: Node, state: Doc, callbacks: Data = None) -> Doc:
 
 
 def add(node: Node, parent: Container, made: Doc, depth: int) -> str:
-    """The line that puts a state, made by `made`, into its container."""
+    """The statement that adds a state, made by the expression `made`, to its container."""
     arguments: Arguments = [("", string(node.name)), ("", made)]
     if isinstance(parent, IteratorNode):
         arguments.append(("loop_outcomes=", names(parent.loop_outcomes)))
@@ -183,8 +182,8 @@ def add(node: Node, parent: Container, made: Doc, depth: int) -> str:
 
 
 def _never_taken(node: Node) -> Iterator[Transition]:
-    """SMACH's Iterator registers its exhausted outcome even where the final map renames it, and
-    its container insists on a transition for it (smach-semantics I1, M3)."""
+    """The transition for an exhausted outcome that the final map renames: SMACH's Iterator still
+    registers the outcome, and its container requires a transition for each outcome."""
     if not isinstance(node, IteratorNode):
         return
     renamed = dict(node.final_map).get(node.exhausted_outcome)
@@ -196,8 +195,8 @@ def _never_taken(node: Node) -> Iterator[Transition]:
 
 
 def children(node: Container) -> Iterator[Node]:
-    """The states of a container, without the implicit exits that share their name with a state:
-    written out they would lead to that state, left out they do not (smach-semantics M7)."""
+    """The states of a container, without implicit transitions to an outcome that has the name of a
+    state: written out, SMACH would take them as transitions to that state."""
     names = frozenset(child.name for child in node.children)
     for child in node.children:
         kept = [
@@ -210,6 +209,6 @@ def children(node: Container) -> Iterator[Node]:
 
 
 def place(node: Node) -> str:
-    """Where a state stands in its script: `pick_block.yml:12`, without folders."""
+    """The place of a state in its script, without folders: `pick_block.yml:12`."""
     name = node.span.source.name.replace("\\", "/").rsplit("/", 1)[-1]
     return f"{name}:{node.span.line}"

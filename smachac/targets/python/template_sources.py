@@ -1,4 +1,4 @@
-"""The templates that the program of a machine is made of, and what their text alone tells."""
+"""The templates that the Python program of a machine is made of, as source texts."""
 
 from __future__ import annotations
 

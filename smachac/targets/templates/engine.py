@@ -1,7 +1,7 @@
-"""Templates whose blocks are rendered one by one and gathered, as SMACHA did.
+"""The template engine: it renders the blocks of Jinja templates one by one, as SMACHA does.
 
-The text of a block goes where the target puts blocks of that name. Templates are Jinja, sandboxed
-and bounded; they may extend and include one another.
+The target decides where the text of a block goes. Templates run in a sandbox with a budget; they
+may extend and include one another.
 """
 
 from __future__ import annotations
@@ -21,11 +21,11 @@ if TYPE_CHECKING:
 Find = Callable[[str], Source | None]
 
 SKIPPED = ("meta", "upper_comments", "lower_comments", "introspection_server", "spin")
-"""Blocks that are not printed unless they are asked for."""
+"""Blocks that are printed only on request."""
 
 
 class BlockError(Exception):
-    """A template does not parse or render; `diagnostic` says where and why."""
+    """A template cannot be parsed or rendered; `diagnostic` has the place and the reason."""
 
     def __init__(self, diagnostic: Diagnostic) -> None:
         super().__init__(diagnostic.finding.message)
@@ -174,7 +174,7 @@ class Blocks:
         return self._names[file]
 
     def _include(self, names: Any, context: JinjaContext, may_be_missing: bool) -> str:
-        """What `{% include %}` prints: the block that is being rendered, out of the template."""
+        """The text of `{% include %}`: the present block of the included template."""
         from jinja2 import TemplateNotFound
 
         files = [names] if isinstance(names, str) else [str(name) for name in names]
@@ -238,8 +238,8 @@ class Page:
             return self.text(block, alone=alone).strip("\n").rstrip()
 
     def text(self, block: str, *, alone: bool = False) -> str:
-        """What templates included at the top level have in the block, then what this one has; of
-        `body`, which adds the state, there is one."""
+        """The block in the templates included at the top level, then in this template; of `body`,
+        which adds the state, only one."""
         parts = []
         if not alone and (block != "body" or block not in self.own):
             parts = [page.text(block) for page in self.inner if block in page.names]
@@ -280,7 +280,7 @@ def _included(tree: nodes.Template) -> Iterator[str]:
 
 
 class _Located:
-    """Turns what Jinja raises into a BlockError with the line of the template."""
+    """Converts exceptions of Jinja to a BlockError with the line of the template."""
 
     def __init__(self, blocks: Blocks, file: str) -> None:
         self.blocks = blocks
@@ -317,7 +317,7 @@ class _Located:
 
 
 def _words(error: Exception) -> tuple[str, str | None]:
-    """What is wrong, in our words where Jinja's are not for the reader."""
+    """Message and help for an exception; some messages of Jinja are replaced by clearer ones."""
     from jinja2 import TemplateNotFound
     from jinja2.exceptions import SecurityError
 

@@ -1,9 +1,9 @@
-"""Jinja that cannot run away: what a template does is counted, and has an end.
+"""The sandbox of templates: Jinja's sandbox with a budget for each rendering.
 
-The sandbox keeps a template from Python's internals; here it is kept from loops without end and
-from texts without bound. Everything that costs is paid for in characters: each turn of a loop, each
-call, what filters and operators take in and give back, what is printed. When all is spent, the
-rendering fails. No clock is asked and no signal sent: the same template fails at the same place.
+Jinja's sandbox denies access to Python internals. The budget bounds loops and the size of texts.
+It is counted in characters: each turn of a loop, each call, the arguments and results of filters
+and operators and the output are charged. When the budget is used up, the rendering fails. It does
+not depend on time: the same template always fails at the same place.
 """
 
 from __future__ import annotations
@@ -24,47 +24,47 @@ if TYPE_CHECKING:
 Made = TypeVar("Made", bound=nodes.Node)
 
 BUDGET = 1_000_000
-"""Characters' worth of work for one rendering, beside ten times what it is given. A state takes
-some thousands."""
+"""The budget of one rendering in characters, beside ten times the size of its variables. A state
+needs some thousands."""
 
 CALL = 20
-"""What a call costs, in characters."""
+"""The charge for a call, in characters."""
 
 MOST_CALLS_DEEP = 200
-"""Macros, blocks and includes inside one another."""
+"""The maximal nesting of macros, blocks and includes."""
 
 DROPPED_FILTERS = ("random",)
-"""Filters that would give another program each time."""
+"""Filters that would make the output random."""
 
 KEPT_GLOBALS = ("range", "dict", "cycler", "joiner", "namespace")
 
 _NUMBER = re.compile(r"\d+")
 _CHEAP = frozenset(["append", "get", "items", "keys", "values", "pop", "setdefault", "add"])
-"""Methods whose cost does not grow with what they are called on."""
+"""Methods whose cost does not grow with the size of their object."""
 
 PYTHON_2_METHODS = {"iteritems": "items", "itervalues": "values", "iterkeys": "keys"}
 
 
 class TooMuchError(TemplateRuntimeError):
-    """A template does more than a template may; the words say what."""
+    """A template exceeds its budget; the message has the reason."""
 
 
 class Missing(Undefined):
-    """A name that is not there: it may be asked for, as in `{% if x %}`, but not printed."""
+    """An undefined name: it may be tested, as in `{% if x %}`, but not printed."""
 
     __slots__ = ()
     __str__ = Undefined._fail_with_undefined_error
 
 
 class Meter:
-    """What one rendering may still spend."""
+    """The remaining budget of one rendering."""
 
     def __init__(self) -> None:
         self.left = BUDGET
         self.depth = 0
 
     def begin(self, given: object) -> None:
-        """A new rendering with these variables."""
+        """Starts a rendering with these variables."""
         self.left = BUDGET
         self.left += 10 * self.size(given)
         self.depth = 0
@@ -75,10 +75,10 @@ class Meter:
             raise TooMuchError("this template has no end, or makes more text than it may")
 
     def size(self, value: object) -> int:
-        """The characters of a value, counted no further than the meter goes."""
+        """The size of a value in characters; counting stops when the budget is exceeded."""
         if isinstance(value, str):
             return len(value)
-        if type(value) not in (list, tuple, dict):  # what we pass of our own is not weighed
+        if type(value) not in (list, tuple, dict):  # objects of the engine have no size
             return value.bit_length() // 3 + 1 if isinstance(value, int) else 1
         total, todo = 0, [value]
         while todo and total <= self.left:
@@ -95,7 +95,7 @@ class Meter:
 
 
 class _Counted:
-    """What a loop runs over; each turn is charged."""
+    """The items of a loop; each turn is charged."""
 
     def __init__(self, meter: Meter, items: Any, text: int) -> None:
         self.meter = meter
@@ -112,9 +112,9 @@ class _Counted:
 
 
 class BoundedEnvironment(SandboxedEnvironment):
-    """The sandbox, with a meter on all that a template does.
+    """Jinja's sandbox with a meter for everything that a template does.
 
-    `include` is what an `{% include %}` makes: file names, context, whether one may be missing.
+    `include` renders an `{% include %}`: file names, context, whether the file may be missing.
     """
 
     intercepted_binops = frozenset(["+", "*", "**", "%"])
@@ -139,10 +139,10 @@ class BoundedEnvironment(SandboxedEnvironment):
         self.meter.charge(self.meter.size(value))
         return value
 
-    # What _Counting puts into templates.
+    # Methods that _Counting inserts calls of into templates.
 
     def counted(self, items: Any, text: int) -> _Counted:
-        """What a loop runs over, with `text` characters printed at each turn."""
+        """The items of a loop that prints `text` characters in each turn."""
         return _Counted(self.meter, items, text)
 
     def joined(self, *parts: object) -> str:
@@ -151,7 +151,7 @@ class BoundedEnvironment(SandboxedEnvironment):
         return "".join(str(part) for part in parts)
 
     def weighed(self, value: Any) -> Any:
-        """A value that is about to be searched, compared or copied."""
+        """A value that is going to be searched, compared or copied; its size is charged."""
         if type(value) in (list, tuple, str):
             self.meter.charge(self.meter.size(value))
         return value
@@ -159,7 +159,7 @@ class BoundedEnvironment(SandboxedEnvironment):
     def included(self, names: Any, context: Context, may_be_missing: bool) -> str:
         return self.include(names, context, may_be_missing)
 
-    # What the sandbox asks.
+    # Methods of the sandbox.
 
     def getattr(self, obj: Any, attribute: str) -> Any:
         if attribute in PYTHON_2_METHODS and isinstance(obj, dict):
@@ -221,7 +221,7 @@ class BoundedEnvironment(SandboxedEnvironment):
 
 
 def _lines(value: object) -> int:
-    """How often a width may count in what a filter makes of a value."""
+    """How often a filter may apply a width to a value: once a line or item."""
     if isinstance(value, str):
         return 1 + value.count("\n")
     return 1 + len(value) if isinstance(value, Sized) else 1
@@ -236,14 +236,14 @@ def _product(left: object, right: object) -> int:
 
 
 def _widths(text: str, values: object) -> int:
-    """What the widths in a format may add."""
+    """The characters that the widths in a format string may add."""
     many = values if isinstance(values, tuple) else (values,)
     stars = sum(abs(value) for value in many if type(value) is int) if "*" in text else 0
     return stars + sum(int(found[:12]) for found in _NUMBER.findall(text))
 
 
 def _cost_of_method(function: object, values: tuple[Any, ...], meter: Meter) -> int:
-    """What a method of a string or list may cost beyond its arguments."""
+    """The charge for a method of a string, list or dictionary, beyond its arguments."""
     name = getattr(function, "__name__", "")
     # The sandbox puts a function of its own before `str.format`.
     owner = getattr(getattr(function, "__wrapped__", function), "__self__", None)
@@ -263,10 +263,10 @@ def _cost_of_method(function: object, values: tuple[Any, ...], meter: Meter) -> 
 
 
 class _Counting(NodeTransformer):
-    """Puts the counting into a template: around loops, joins, comparisons, slices, includes.
+    """Inserts the counting into a template: into loops, joins, comparisons, slices and includes.
 
-    At the top level of a template that extends another, an include prints nothing, but is called:
-    its blocks are gathered.
+    At the top level of a template that extends another, an include prints nothing, but runs: its
+    blocks are collected.
     """
 
     def __init__(self) -> None:
