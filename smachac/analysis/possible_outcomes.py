@@ -192,8 +192,12 @@ class Judged(NamedTuple):
 def judged(containers: Iterable[tuple[str, Container]], known: Endings) -> list[Judged]:
     """The concurrences of a machine whose rules can be judged, without those made for sugar."""
     found: list[Judged] = []
+    seen: set[str] = set()
     for path, container in containers:
-        if not isinstance(container, Concurrence) or container.sugar:
+        # Of two containers with one path (SM106) the first counts: outcomes are known by path.
+        is_first = path not in seen
+        seen.add(path)
+        if not is_first or not isinstance(container, Concurrence) or container.sugar:
             continue
         read = study(path, container)
         if read is not None:
