@@ -8,7 +8,7 @@ SMACHAC := .venv/bin/smachac
 DEMO := examples/08_pick_and_place/main.yml
 
 .DEFAULT_GOAL := help
-.PHONY: help demo test test-ros check golden docs bench build clean
+.PHONY: help demo test test-all test-ros check golden docs bench build clean
 
 help: ## Print this list
 	@awk -F ':.*## ' '/^[a-z-]+:.*## / {printf "  make %-8s %s\n", $$1, $$2}' Makefile
@@ -22,11 +22,16 @@ demo: ## From YAML to a robot that moves: compile, check, simulate, draw; everyt
 	@if command -v dot >/dev/null; then for graph in out/*.dot; do dot -Tsvg "$$graph" -o "$${graph%.dot}.svg" || exit; done; fi
 	@ls -l out/
 
-test: ## Run all tests but those of live ROS; ARGS="-k trace" narrows them
+test: ## Run the tests that a change is likely to break; ARGS="-k trace" selects some of them
+	@scripts/setup.sh dev
+	$(RUN) pytest -n auto --maxprocesses 8 -m "not slow and not ros" $(ARGS)
+
+test-all: ## Run every test: also the slow ones, and those with live ROS
 	@scripts/setup.sh dev
 	$(RUN) pytest -n auto --maxprocesses 8 -m "not ros" $(ARGS)
+	@$(MAKE) --no-print-directory test-ros
 
-test-ros: ## Install ROS from Debian and run the tests that need it live
+test-ros: ## Install ROS from Debian and run the tests with live nodes
 	@scripts/setup.sh dev
 	@scripts/setup.sh ros || test -z "$$SMACHAC_REQUIRE_ROS"
 	$(RUN) pytest -n 4 -m ros -rs $(ARGS)
@@ -38,7 +43,7 @@ check: ## Lint, formatting and types; a warning fails
 	$(RUN) mypy
 	$(RUN) pyright --warnings
 
-golden: ## Rewrite what the tests expect under tests/cases and docs; review it with git diff
+golden: ## Rewrite the expected output of the tests and in docs; review it with git diff
 	@scripts/setup.sh dev
 	SMACHAC_GOLDEN=rewrite $(RUN) pytest -q -k golden
 

@@ -13,9 +13,9 @@ import time
 from concurrent.futures import ProcessPoolExecutor
 from pathlib import Path
 
-sys.path.insert(0, str(Path(__file__).parents[1] / "tests"))
+sys.path.insert(0, str(Path(__file__).parents[1]))
 
-from arm import PICK_AND_PLACE, STACKING, Run, run
+from tests.support.arm_examples import PICK_AND_PLACE, STACKING, Run, run
 
 LIMIT = 0.002
 

@@ -11,9 +11,9 @@ import time
 from collections import Counter
 from pathlib import Path
 
-sys.path[:0] = [str(Path(__file__).parents[1] / "tests" / "trust")]
+sys.path.insert(0, str(Path(__file__).parents[1]))
 
-from mutation import mutants, ratio, tallied, victims_of  # noqa: E402
+from tests.trust.mutation_score import mutants, ratio, subjects_of, tallied
 
 EACH, PROJECTS = 20, 100
 
@@ -21,8 +21,8 @@ EACH, PROJECTS = 20, 100
 def main(each: int = EACH, projects: int = PROJECTS) -> int:
     """Print the table as Markdown, then each mutant that was missed."""
     begun = time.process_time()
-    victims = victims_of(projects)
-    tallies = tallied(mutants(victims, each))
+    subjects = subjects_of(projects)
+    tallies = tallied(mutants(subjects, each))
     print("| damage | caught | missed | no fault | reason why it is none |")
     print("| --- | --- | --- | --- | --- |")
     for name, tally in tallies.items():
@@ -33,7 +33,7 @@ def main(each: int = EACH, projects: int = PROJECTS) -> int:
     for tally in tallies.values():
         total.update(tally.counts)
     took = time.process_time() - begun
-    print(f"\n{len(tallies)} kinds, {len(victims)} projects: {dict(sorted(total.items()))};")
+    print(f"\n{len(tallies)} kinds, {len(subjects)} projects: {dict(sorted(total.items()))};")
     print(f"{ratio(tallies):.2%} of the mutants with a fault caught; {took:.0f} s of CPU")
     for name, tally in tallies.items():
         for origin, verdict in tally.missed:

@@ -9,7 +9,9 @@ from pathlib import Path
 
 import pytest
 from hypothesis import settings
-from live import Graph, missing
+
+from tests.ros.ros_graph import Graph, missing
+from tests.support.silent_smach import silent_smach
 
 # A shell starts what it puts in the background deaf to Ctrl-C, which tests send and raise.
 if signal.getsignal(signal.SIGINT) is signal.SIG_IGN:
@@ -49,6 +51,13 @@ def pytest_make_collect_report() -> Generator[None, pytest.CollectReport, pytest
     report = yield
     _fail_if_skipped(report)
     return report
+
+
+@pytest.fixture(name="silent_smach")
+def _silent_smach() -> Iterator[None]:
+    """The bundled SMACH prints no log during the test."""
+    with silent_smach():
+        yield
 
 
 @pytest.fixture

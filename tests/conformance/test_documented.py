@@ -9,10 +9,10 @@ from pathlib import Path
 from typing import Any
 
 import pytest
-from vector_deviations import DEVIATIONS
-from vector_replay import replay
 
 from smachac.runtime import smach
+from tests.conformance.vector_deviations import DEVIATIONS
+from tests.conformance.vector_replay import replay
 
 ROOT = Path(__file__).parents[2]
 CASES: dict[str, Any] = {
@@ -71,10 +71,7 @@ DEPENDED_ON = {
 """Odd, but kept (of M9 and N10 the classes of the errors)."""
 
 
-@pytest.fixture(autouse=True)
-def _quiet(monkeypatch: pytest.MonkeyPatch) -> None:
-    for name in ("loginfo", "logwarn", "logdebug", "logerr"):
-        monkeypatch.setattr(smach, name, smach.log.quiet)
+pytestmark = pytest.mark.usefixtures("silent_smach")
 
 
 def table() -> list[tuple[list[str], list[str], bool]]:

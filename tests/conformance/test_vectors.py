@@ -7,10 +7,9 @@ from pathlib import Path
 from typing import Any
 
 import pytest
-from vector_deviations import DEVIATIONS, NOETIC
-from vector_replay import replay
 
-from smachac.runtime import smach
+from tests.conformance.vector_deviations import DEVIATIONS, NOETIC
+from tests.conformance.vector_replay import replay
 
 Json = Any
 CASES: dict[str, Json] = {
@@ -23,10 +22,7 @@ CASES: dict[str, Json] = {
 AS_RECORDED = [name for name in CASES if name not in DEVIATIONS]
 
 
-@pytest.fixture(autouse=True)
-def _quiet(monkeypatch: pytest.MonkeyPatch) -> None:
-    for name in ("loginfo", "logwarn", "logdebug", "logerr"):
-        monkeypatch.setattr(smach, name, smach.log.quiet)
+pytestmark = pytest.mark.usefixtures("silent_smach")
 
 
 @pytest.mark.parametrize("name", AS_RECORDED)

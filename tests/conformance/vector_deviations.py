@@ -1,4 +1,4 @@
-"""Where the bundled runtime does on purpose something else than SMACH (branch ros2) did."""
+"""Recorded machines for which the bundled runtime deviates from SMACH (branch ros2) on purpose."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Build a machine from its JSON description on the bundled runtime, run it, say what it did.
+"""Recorded machines, built from JSON with the bundled runtime and run.
 
 A case holds a tree of nodes (`leaf`, `state_machine`, `sequence`, `concurrence`, `iterator`)
 whose leaves follow a script. The result has the form of the recorded expectations: for each run
@@ -12,9 +12,8 @@ import threading
 from collections.abc import Callable, Mapping
 from typing import Any
 
-from vector_leaf import PATIENCE, Json, Leaf, Recording, Script, join, scripted
-
 from smachac.runtime import smach
+from tests.conformance.vector_leaf import PATIENCE, Json, Leaf, Recording, Script, join, scripted
 
 
 class BuildError(Exception):

@@ -1,6 +1,6 @@
-"""A recorded SMACH machine as generated Python: compiled from its state graph, built and run.
+"""Recorded SMACH machines as generated Python: compiled from the state graph, built and run.
 
-The leaves are of a state type that a library of the user brings, as any other.
+The leaves have a state type from a library, as the state types of users do.
 """
 
 from __future__ import annotations
@@ -14,20 +14,15 @@ from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
-from ir_vectors import data_of, leaves_of, machine_of
-from quiet import quiet
-
 from smachac.diagnostics.source import NOWHERE
 from smachac.driver import build
 from smachac.frontend.files import disk_library
 from smachac.frontend.loader import memory_library
 from smachac.ir.nodes import Checked, Leaf, Node, Value, Variable
 from smachac.targets.python import TARGET
-
-CONFORMANCE = Path(__file__).parents[1] / "conformance"
-sys.path.insert(0, str(CONFORMANCE))
-vector_replay: Any = importlib.import_module("vector_replay")
-vector_leaf: Any = importlib.import_module("vector_leaf")
+from tests.conformance import vector_leaf, vector_replay
+from tests.conformance_ir.ir_vectors import data_of, leaves_of, machine_of
+from tests.support.silent_smach import silent_smach
 
 Json = Any
 
@@ -41,7 +36,7 @@ outcomes: {"*": {}}
 
 TEMPLATE = """
 {% block imports %}
-from vector_leaf import Follower
+from tests.conformance.vector_leaf import Follower
 {% endblock %}
 {% block class_defs %}
 class Vector(Follower, smach.State):
@@ -74,7 +69,7 @@ def replay(case: Json, runtime: str = RUNTIMES[0]) -> Json:
         return root
 
     library = importlib.import_module(runtime)
-    with quiet(library):
+    with silent_smach(library):
         return vector_replay.replay(case, make, library)
 
 

@@ -1,4 +1,4 @@
-"""A recorded SMACH machine as state graph and behaviour, and what the interpreter does with it."""
+"""Recorded SMACH machines as state graphs, and their runs in the interpreter."""
 
 from __future__ import annotations
 

@@ -1,5 +1,5 @@
-"""The data flow against the recorded machines: what it calls always set is there in every run, and
-what it calls unreachable is never entered."""
+"""The data flow against the recorded runs: a key that is always set is set in every run, and an
+unreachable state is never entered."""
 
 from __future__ import annotations
 
@@ -9,14 +9,14 @@ from dataclasses import replace
 from typing import Any, cast
 
 import pytest
-from ir_vectors import Replay, leaves_of, machine_of
-from test_ir_vectors import CASES, RUN
 
 from smachac.analysis.def_use import key_status
 from smachac.analysis.definite_assignment import data_flow
 from smachac.interpreter.result import Event
 from smachac.ir.nodes import Leaf, Machine, Node, StateMachine
 from smachac.ir.traversal import containers, outcome_names
+from tests.conformance_ir.ir_vectors import Replay, leaves_of, machine_of
+from tests.conformance_ir.test_ir_vectors import CASES, RUN
 
 Json = Any
 

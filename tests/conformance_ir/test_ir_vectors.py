@@ -1,9 +1,8 @@
-"""Interpreter and generated code against what SMACH itself did, machine by recorded machine.
+"""The interpreter and generated Python against the recorded runs of SMACH.
 
-Compared are the outcome or the kind of error, the userdata of every container, and what each leaf
-did in which order; of generated code also what containers told their callbacks. Nothing is passed
-over in silence: what the graph cannot express is named with the reason, and so is every place
-where something else happens on purpose.
+Compared are the outcome or the kind of error, the userdata of every container, and the actions of
+each leaf in their order; for generated code also the arguments of container callbacks. Machines
+that the graph cannot express and deliberate deviations are listed with the reason.
 """
 
 from __future__ import annotations
@@ -15,13 +14,13 @@ from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
-import generated_vectors
 import pytest
-from ir_vectors import Replay, machine_of, nodes_of
 
 from smachac.checks import check_machine
 from smachac.diagnostics.diagnostic import has_errors
 from smachac.interpreter.result import Event, RunResult
+from tests.conformance_ir import generated_vectors
+from tests.conformance_ir.ir_vectors import Replay, machine_of, nodes_of
 
 Json = Any
 

@@ -3,7 +3,8 @@
 from __future__ import annotations
 
 import pytest
-from live import Graph
+
+from tests.ros.ros_graph import Graph
 
 pytestmark = pytest.mark.ros
 

@@ -6,9 +6,9 @@ import signal
 from pathlib import Path
 
 import pytest
-from live import ROOT, Graph
 
 import smachac
+from tests.ros.ros_graph import ROOT, Graph
 
 pytestmark = pytest.mark.ros
 

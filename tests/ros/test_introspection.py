@@ -5,7 +5,8 @@ from __future__ import annotations
 from pathlib import Path
 
 import pytest
-from live import Graph, Program
+
+from tests.ros.ros_graph import Graph, Program
 
 pytestmark = pytest.mark.ros
 

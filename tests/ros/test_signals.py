@@ -6,9 +6,9 @@ import signal
 from pathlib import Path
 
 import pytest
-from live import Graph, wait_for
 
 import smachac
+from tests.ros.ros_graph import Graph, wait_for
 
 pytestmark = pytest.mark.ros
 

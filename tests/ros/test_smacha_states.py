@@ -5,9 +5,9 @@ from __future__ import annotations
 from pathlib import Path
 
 import pytest
-from live import Graph
 
 import smachac
+from tests.ros.ros_graph import Graph
 
 pytestmark = pytest.mark.ros
 

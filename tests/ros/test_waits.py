@@ -6,8 +6,9 @@ import signal
 from pathlib import Path
 
 import pytest
-from live import Graph
-from test_generated import built, outcome
+
+from tests.ros.ros_graph import Graph
+from tests.ros.test_generated import built, outcome
 
 pytestmark = pytest.mark.ros
 

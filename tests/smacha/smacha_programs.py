@@ -1,4 +1,4 @@
-"""Programs made of scripts and templates of SMACHA's kind, built and walked without ROS."""
+"""Programs generated from SMACHA scripts and templates, built without ROS, and their outlines."""
 
 from __future__ import annotations
 

@@ -16,7 +16,6 @@ from types import ModuleType
 from unittest.mock import patch
 
 import pytest
-from smacha_programs import FOLDER, TEMPLATES, machine_of, outline, stand_ins, text_of
 
 import smachac
 from smachac import driver
@@ -28,6 +27,8 @@ from smachac.interpreter.behaviours import builtin_behaviour
 from smachac.interpreter.interpreter import run
 from smachac.runtime import smach
 from smachac.targets import load_target
+from tests.smacha.smacha_programs import FOLDER, TEMPLATES, machine_of, outline, stand_ins, text_of
+from tests.support.golden import compare_file
 
 SCRIPTS = [
     *(
@@ -44,25 +45,20 @@ SCRIPTS = [
     ),
     "whole",
 ]
-REWRITE = os.environ.get("SMACHAC_GOLDEN") == "rewrite"
 
 
 @pytest.mark.parametrize("script", SCRIPTS)
 def test_golden_outline(script: str) -> None:
     found = outline(machine_of(text_of(script))) + "\n"
-    path = FOLDER / "expected" / f"{script}.txt"
-    if REWRITE:
-        path.parent.mkdir(exist_ok=True)
-        path.write_text(found, "utf-8")
-    assert found == path.read_text("utf-8")
+    compare_file(found, FOLDER / "expected" / f"{script}.txt")
 
 
 def test_the_same_texts_each_time() -> None:
     code = (
-        "import sys; from smacha_programs import text_of; "
+        "import sys; from tests.smacha.smacha_programs import text_of; "
         f"sys.stdout.write('====='.join(map(text_of, {SCRIPTS})))"
     )
-    path = os.pathsep.join([str(FOLDER.parents[1]), str(FOLDER)])
+    path = str(FOLDER.parents[1])
     texts = {
         subprocess.run(
             [sys.executable, "-c", code], check=True, capture_output=True, text=True,

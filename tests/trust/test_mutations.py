@@ -1,13 +1,13 @@
-"""Damage is found: the right code at the right line. `python bench/mutants.py` does more of it."""
+"""Mutants bring the right code at the right line. `python bench/mutants.py` runs more of them."""
 
 from __future__ import annotations
 
 from dataclasses import replace
 
-from correct import correct_project
-from damage import Victim, judge
-from damage_kinds import KINDS
-from mutation import mutants, ratio, tallied, victims_of
+from tests.trust.mutants import Subject, judge
+from tests.trust.mutation_score import mutants, ratio, subjects_of, tallied
+from tests.trust.mutations import MUTATIONS
+from tests.trust.random_projects import correct_project
 
 PROJECTS = 30
 EACH = 5
@@ -19,7 +19,7 @@ LEAST_OF_A_KIND = 0.8
 
 def test_nearly_all_damage_is_caught() -> None:
     """All in one test, as all have one run in common."""
-    tallies = tallied(mutants(victims_of(PROJECTS), EACH))
+    tallies = tallied(mutants(subjects_of(PROJECTS), EACH))
     assert len(tallies) >= 25
     told = "\n".join(
         f"{name} ({origin}): wanted {verdict.wanted}; said {', '.join(verdict.said)}"
@@ -38,12 +38,12 @@ def test_nearly_all_damage_is_caught() -> None:
 
 def test_a_finding_elsewhere_or_of_another_code_would_not_do() -> None:
     """What is judged: the place and the code, not that something is said."""
-    victim = Victim.of(correct_project(0))
-    assert victim is not None
-    damaged = victim.copied("elsewhere")
-    mutant = KINDS["rename a target"](damaged)
+    subject = Subject.of(correct_project(0))
+    assert subject is not None
+    damaged = subject.copied("elsewhere")
+    mutant = MUTATIONS["rename a target"](damaged)
     assert mutant is not None
     assert judge(damaged, mutant).judgement == "caught"
     assert judge(damaged, replace(mutant, codes=("SM104",))).judgement == "missed"
     assert judge(damaged, replace(mutant, places=(("main.yml", ()),))).judgement == "missed"
-    assert judge(victim.copied("whole"), mutant).judgement == "equivalent"
+    assert judge(subject.copied("whole"), mutant).judgement == "equivalent"

@@ -1,4 +1,4 @@
-"""What is called clean does not fail when it runs, whatever its leaves do within their interfaces.
+"""Soundness: a machine without an error does not fail, whatever its leaves do by their interfaces.
 
 The machines are random: projects that are correct or slightly damaged, and small graphs over a few
 keys of which most are wrong. Those without an error are run many times, with leaves, turns of
@@ -10,17 +10,8 @@ from __future__ import annotations
 from dataclasses import replace
 from typing import cast
 
-import damage_kinds
 import pytest
-from busy_strategies import busy_machines
-from correct import correct_project
-from damage import Victim
-from data_machines import data_machines
 from hypothesis import HealthCheck, Phase, event, given, settings
-from ir_vectors import machine_of
-from plain import judged
-from stand_in import contradictions, runs
-from test_ir_vectors import CASES
 
 from smachac.analysis.accesses import scripted_steps
 from smachac.checks import check_machine
@@ -30,8 +21,17 @@ from smachac.interpreter.behaviours import builtin_behaviour
 from smachac.interpreter.interpreter import run
 from smachac.interpreter.result import Event, RunResult
 from smachac.ir.nodes import Key, Leaf, Machine, Node, StateMachine
+from tests.conformance_ir.ir_vectors import machine_of
+from tests.conformance_ir.test_ir_vectors import CASES
+from tests.strategies.full_machines import busy_machines
+from tests.strategies.userdata_machines import data_machines
+from tests.trust.mutants import Subject
+from tests.trust.mutations import MUTATIONS
+from tests.trust.project_text import judged
+from tests.trust.random_projects import correct_project
+from tests.trust.random_runs import contradictions, runs
 
-PROJECTS = 24
+PROJECTS = [*range(6), *(pytest.param(seed, marks=pytest.mark.slow) for seed in range(6, 24))]
 DAMAGED = 6
 RUNS = 9
 
@@ -74,16 +74,16 @@ def told_wrong(machine: Machine, report: Report, count: int = RUNS) -> list[str]
     ]
 
 
-@pytest.mark.parametrize("seed", range(PROJECTS))
+@pytest.mark.parametrize("seed", PROJECTS)
 def test_projects_without_an_error_run_without_a_fault(seed: int) -> None:
-    victim = Victim.of(correct_project(seed))
-    assert victim is not None
-    assert failures(victim.machine, [], RUNS) == []
-    names = sorted(damage_kinds.KINDS)
+    subject = Subject.of(correct_project(seed))
+    assert subject is not None
+    assert failures(subject.machine, [], RUNS) == []
+    names = sorted(MUTATIONS)
     for number in range(DAMAGED):
-        damaged = victim.copied(f"sound/{seed}/{number}")
+        damaged = subject.copied(f"sound/{seed}/{number}")
         for name in damaged.draw.sample(names, 2):
-            damage_kinds.KINDS[name](damaged)
+            MUTATIONS[name](damaged)
         analysis = judged(damaged.project)
         if analysis.machine is not None and analysis.checked is not None:
             found = failures(analysis.machine, analysis.report, RUNS)
@@ -163,11 +163,11 @@ def test_a_fault_would_be_found() -> None:
     """Each kind of fault that is looked for, in a machine that is not clean."""
     kinds = set()
     for seed in range(40):
-        victim = Victim.of(correct_project(seed))
-        assert victim is not None
+        subject = Subject.of(correct_project(seed))
+        assert subject is not None
         for name in ("drop a preset", "drop a transition", "rename a target"):
-            damaged = victim.copied(f"fault/{seed}/{name}")
-            damage_kinds.KINDS[name](damaged)
+            damaged = subject.copied(f"fault/{seed}/{name}")
+            MUTATIONS[name](damaged)
             machine = judged(damaged.project).machine
             if machine is not None:
                 kinds |= {each.split(":")[0] for each in failures(machine, [], 3)}

@@ -1,0 +1,1 @@
+"""Tests: one folder for each room of smachac, and families of scripts with expected output."""

@@ -1,0 +1,1 @@
+"""What is computed from a machine: data flow, types, outcomes, failures."""

@@ -1,0 +1,107 @@
+"""Unbounded loops in machines made by hand, and the loops that are fine."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+import pytest
+
+from smachac.diagnostics.diagnostic import Severity
+from smachac.ir.nodes import Leaf, Node, StateMachine
+from tests.support.ir_machines import iterator, leaf, machine
+from tests.support.rule_findings import blocking, found, looping, one, report
+
+RETRY = {"ok": "done", "failed": "A"}
+
+
+@pytest.mark.parametrize(
+    "children",
+    [
+        [leaf("A", RETRY)],
+        [blocking(leaf("A", RETRY))],
+        [leaf("A", {**RETRY, "preempted": "done"})],
+        [leaf("A", {"ok": "done", "failed": "B"}), leaf("B", {"ok": "A", "preempted": "done"})],
+        [leaf("A", {"ok": "done", "failed": "B"}), leaf("B", {"ok": "A", "failed": "A"})],
+        [leaf("A", {"ok": "B", "failed": "A"}), leaf("B", {"again": "A", "ok": "done"})],
+        [leaf("A", {"done": "done", "failed": "A"}, open=True)],
+    ],
+    ids=["self", "blocking", "preempted", "recovery", "recovery fails", "in a bigger loop", "open"],
+)
+def test_tries_without_a_bound(children: list[Node]) -> None:
+    assert found(machine("sm", "done", *children), "SM204") == ["SM204 sm/A"]
+
+
+@pytest.mark.parametrize(
+    "children",
+    [
+        [leaf("A", {**RETRY, "error": "done"})],
+        [leaf("A", {"ok": "done", "failed": "B"}), leaf("B", {"go": "A", "enough": "done"})],
+        [leaf("A", {"ok": "done", "failed": "B"}), leaf("B", {"ok": "A", "failed": "done"})],
+        [leaf("A", {"no": "A", "yes": "done"})],
+        [leaf("A", {"ok": "B"}), leaf("B", {"below": "A", "enough": "done"})],
+        [leaf("A", {"ok": "done", "failed": "B"}), leaf("B", {"ok": "done"})],
+        [leaf("A", {"ok": "A", "failed": "done"})],
+        [leaf("A", {"failed": "A"}, outcomes="failed", open=True)],
+    ],
+    ids=[
+        "another failure leaves", "counter", "recovery gives up", "poll", "count up", "no loop",
+        "success loops", "open, with unknown outcomes",
+    ],
+)  # fmt: skip
+def test_loops_that_are_bounded_or_not_known(children: list[Node]) -> None:
+    assert found(machine("sm", "done", *children), "SM204") == []
+
+
+def test_the_witness_of_a_retry_leads_round() -> None:
+    root = machine("sm", "done", leaf("GO", {"x": "A"}), leaf("B", {"x": "A"}),
+                   leaf("A", {"ok": "done", "failed": "B"}))  # fmt: skip
+    item = one(root, "SM204")
+    assert item.finding.path_labels == ("A", "(failed)", "B", "(x)", "A")
+    assert item.severity is Severity.WARNING
+
+
+def test_the_last_to_be_tried_again_is_named() -> None:
+    ask = blocking(leaf("ASK", {"yes": "A", "no": "done", "timeout": "ASK"}))
+    root = machine("sm", "done", leaf("A", {"ok": "done", "failed": "ASK"}), ask)
+    assert found(root, "SM204") == ["SM204 sm/ASK"]
+
+
+def test_a_machine_that_goes_on_must_wait_somewhere() -> None:
+    def pair(first: Leaf, second: Node) -> StateMachine:
+        return looping(machine("sm", "", first, second))
+
+    a, b = leaf("A", {"x": "B"}), leaf("B", {"x": "A"})
+    assert found(pair(a, b), "SM204") == ["SM204 sm/A"]
+    assert one(pair(a, b), "SM204").finding.path_labels == ("A", "(x)", "B", "(x)", "A")
+    assert found(pair(a, blocking(b)), "SM204") == []
+    assert found(pair(a, replace(b, open=True)), "SM204") == []
+    assert found(pair(a, replace(b, type="SleepState")), "SM204") == []
+    inside = machine("B", "x", blocking(leaf("C", {"x": "x"})), to={"x": "A"})
+    assert found(pair(a, inside), "SM204") == []
+    assert found(pair(leaf("A", {"x": "B", "y": "A"}), blocking(b)), "SM204") == ["SM204 sm/A"]
+
+
+def test_starting_over_is_what_a_machine_that_goes_on_does() -> None:
+    a = blocking(leaf("A", {"ok": "B", "failed": "A"}))
+    root = looping(machine("sm", "", a, leaf("B", {"x": "A"})))
+    assert found(root, "SM204") == []
+
+
+def test_what_runs_until_it_is_preempted_must_wait() -> None:
+    monitor = leaf("A", {"x": "A", "preempted": "done"})
+    assert found(machine("sm", "done", monitor), "SM204") == ["SM204 sm/A"]
+    assert found(machine("sm", "done", blocking(monitor)), "SM204") == []
+    tries = blocking(leaf("A", {"ok": "B", "failed": "A", "preempted": "done"}))
+    assert found(machine("sm", "done", tries, leaf("B", {"x": "A"})), "SM204") == []
+
+
+def test_a_trap_is_not_a_loop_as_well() -> None:
+    root = machine("sm", "done", leaf("A", {"ok": "done", "x": "B"}), leaf("B", {"failed": "B"}))
+    assert found(root) == ["SM202 sm/B"]
+
+
+def test_an_iterator_bounds_its_tries() -> None:
+    node = iterator("TRY", "exhausted ok", leaf("A", outcomes="ok failed"), loop="failed",
+                    items=[1, 2, 3], final={"failed": "exhausted"},
+                    to={"ok": "done", "exhausted": "lost"})  # fmt: skip
+    assert report(machine("sm", "done lost", node)) == []

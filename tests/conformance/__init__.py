@@ -1,0 +1,1 @@
+"""The bundled SMACH runtime against recorded runs of SMACH itself."""

@@ -1,0 +1,1 @@
+"""The interpreter and the generated Python against recorded runs of SMACH itself."""

@@ -1,0 +1,1 @@
+"""The C++ target: generated headers are compiled and run."""

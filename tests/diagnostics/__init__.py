@@ -1,0 +1,1 @@
+"""Findings, spans and the spelling of names."""

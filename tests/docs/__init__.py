@@ -1,0 +1,1 @@
+"""The pages in docs/: their examples are run, their links are followed."""

@@ -1,0 +1,202 @@
+"""Scenarios: read from plain data, and scenario_behaviour out."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import pytest
+
+from smachac.interpreter.behaviours import builtin_behaviour
+from smachac.interpreter.scenario import (
+    PlainStep,
+    Scenario,
+    Step,
+    plain_steps_by_path,
+    read_scenario,
+    scenario_behaviour,
+)
+from smachac.ir.nodes import Machine
+from tests.support.ir_machines import concurrence, iterator, leaf, machine, ran, short
+
+
+def picking() -> Machine:
+    """Two containers that both hold a GRASP, a CHECK between them, and an iterator."""
+    pick = machine(
+        "PICK",
+        "ok failed",
+        leaf("GRASP", {"succeeded": "ok", "aborted": "failed"}, outs="width"),
+        to={"ok": "CHECK", "failed": "PICK"},
+        outs="width",
+    )
+    check = leaf("CHECK", {"true": "PLACE", "false": "PICK"})
+    place = machine("PLACE", "ok", leaf("GRASP", {"succeeded": "ok"}), to={"ok": "EACH"})
+    each = iterator("EACH", "exhausted", leaf("LOOK", outcomes="seen"), to={"exhausted": "done"})
+    return Machine(root=machine("sm", "done", pick, check, place, each))
+
+
+def read(states: Any) -> tuple[Scenario, list[str]]:
+    return read_scenario({"states": states}, picking())
+
+
+def test_the_forms_of_a_scenario() -> None:
+    scenario, problems = read(
+        {
+            "sm/PICK/GRASP": [
+                {"outcome": "aborted"},
+                {"outcome": "succeeded", "set": {"width": 1}},
+            ],
+            "CHECK": False,
+            "PLACE/GRASP": ["succeeded"],
+            "LOOK": {"set": {"anything": [1]}},
+        }
+    )
+    assert problems == []
+    assert scenario.steps == {
+        "sm/PICK/GRASP": (
+            Step(outcome="aborted"),
+            Step(outcome="succeeded", writes=(("width", 1),)),
+        ),
+        "sm/CHECK": (Step(outcome="false"),),
+        "sm/PLACE/GRASP": (Step(outcome="succeeded"),),
+        "sm/EACH/LOOK": (Step(writes=(("anything", [1]),)),),
+    }
+
+
+@pytest.mark.parametrize(
+    ("states", "problem"),
+    [
+        ({"GRASP": "succeeded"}, "`GRASP` may be any of `sm/PICK/GRASP`, `sm/PLACE/GRASP`"),
+        ({"PICK": "ok"}, "`PICK` is a container: it ends as its states make it end"),
+        ({"CHEKC": True}, "there is no state `CHEKC`; did you mean `CHECK`?"),
+        (
+            {"sm/PICK/GRAPS": "x"},
+            "there is no state `sm/PICK/GRAPS`; did you mean `sm/PICK/GRASP`?",
+        ),
+        (
+            {"PICK/GRASP": "suceeded"},
+            "sm/PICK/GRASP, step 1: `suceeded` is not one of its outcomes; did you mean"
+            " `succeeded`?",
+        ),
+        (
+            {"PICK/GRASP": ["aborted", {"outcome": "succeeded", "set": {"widht": 1}}]},
+            "sm/PICK/GRASP, step 2: `widht` is not one of its output keys; did you mean `width`?",
+        ),
+        (
+            {"CHECK": {"outcom": "true"}},
+            "sm/CHECK, step 1: unknown key `outcom`; did you mean `outcome`?",
+        ),
+        (
+            {"CHECK": 3},
+            "sm/CHECK, step 1: a step is an outcome, or a mapping with `outcome` and `set`",
+        ),
+        ({"CHECK": {"set": 3}}, "sm/CHECK, step 1: `set` is a mapping of userdata keys to values"),
+        ({"CHECK": {"wait": 1}}, "sm/CHECK, step 1: `wait` is true or false"),
+        ({"CHECK": {"stop": "yes"}}, "sm/CHECK, step 1: `stop` is true or false"),
+        ({"CHECK": []}, "`CHECK` has no steps"),
+        (
+            {"CHECK": True, "sm/CHECK": True},
+            "`sm/CHECK` is given twice, the second time as `sm/CHECK`",
+        ),
+    ],
+)
+def test_what_is_wrong_is_told(states: Any, problem: str) -> None:
+    assert read(states)[1] == [problem]
+
+
+@pytest.mark.parametrize("given", [None, [], {"states": []}, {"steps": {}}])
+def test_a_scenario_is_a_mapping_of_states(given: Any) -> None:
+    scenario, problems = read_scenario(given, picking())
+    assert scenario.steps == {}
+    assert problems == ["a scenario is a mapping with `states`: a mapping of paths"]
+
+
+def test_other_keys_beside_states_are_told() -> None:
+    assert read_scenario({"states": {}, "state": {}}, picking())[1] == [
+        "unknown key `state`; a scenario has only `states`"
+    ]
+
+
+def test_a_scenario_is_acted_out_and_the_rest_acts_itself() -> None:
+    scenario = Scenario(
+        steps={
+            "PICK/GRASP": (
+                Step(outcome="aborted"),
+                Step(outcome="succeeded", writes=(("width", [5]),)),
+            ),
+            "CHECK": (Step(outcome="false"), Step(outcome="true")),
+        }
+    )
+    given = picking()
+    result, events = ran(given.root, scenario_behaviour(scenario, given, builtin_behaviour()))
+    assert [line for line in short(events) if "exit" in line and line.count("/") > 1] == [
+        "exit sm/PICK/GRASP aborted",
+        "exit sm/PICK/GRASP succeeded",
+        "exit sm/PICK/GRASP succeeded",
+        "exit sm/PLACE/GRASP succeeded",
+    ]
+    assert short(events).count("write sm/PICK/GRASP width [5]") == 2
+    assert result.userdata == {"width": [5]}
+
+
+def stoppable() -> Machine:
+    """A race between a leaf that can be stopped and one that ends, and a leaf behind it."""
+    slow = leaf("SLOW", outcomes="done preempted")
+    race = concurrence(
+        "RACE",
+        "won over",
+        slow,
+        leaf("FAST", outcomes="done"),
+        default="over",
+        rules=(("won", {"SLOW": "preempted"}),),
+        join="any",
+        to={"won": "LAST", "over": "over"},
+    )
+    last = leaf("LAST", {"done": "done", "preempted": "stopped"})
+    return Machine(root=machine("sm", "done over stopped", race, last))
+
+
+@pytest.mark.parametrize(
+    ("states", "outcome"),
+    [
+        ({"SLOW": {"wait": True}}, "done"),
+        ({"SLOW": "done", "FAST": {"wait": True}}, "over"),
+        ({"SLOW": {"wait": True}, "LAST": {"stop": True}}, "stopped"),
+        ({"SLOW": {"wait": True}, "LAST": {"error": "no power"}}, None),
+    ],
+)
+def test_steps_that_wait_stop_the_machine_or_fail(states: Any, outcome: str | None) -> None:
+    given = stoppable()
+    scenario, problems = read_scenario({"states": states}, given)
+    assert problems == []
+    result, _ = ran(given.root, scenario_behaviour(scenario, given, builtin_behaviour()))
+    assert result.outcome == outcome
+    told = result.error.message if result.error is not None else None
+    assert told == (None if outcome else "no power")
+
+
+def test_a_step_without_outcome_ends_as_usual() -> None:
+    given = picking()
+    scenario = Scenario(steps={"sm/PICK/GRASP": (Step(writes=(("width", 1),)),)})
+    result, _ = ran(
+        given.root, scenario_behaviour(scenario, given, builtin_behaviour()), max_steps=4
+    )
+    assert result.scopes["sm/PICK"] == {"width": 1}
+
+
+def test_a_scenario_as_plain_rows() -> None:
+    scenario = Scenario(
+        steps={"PICK/GRASP": (Step(writes=(("width", 5),)), Step(outcome="aborted")), "CHECK": ()}
+    )
+    assert plain_steps_by_path(scenario, picking()) == {
+        "sm/PICK/GRASP": [
+            PlainStep("succeeded", {"width": 5}, False, "", False),
+            PlainStep("aborted", {}, False, "", False),
+        ],
+        "sm/CHECK": [],
+    }
+
+
+def test_a_scenario_for_no_leaf_is_refused() -> None:
+    scenario = Scenario(steps={"GRASP": (Step(outcome="x"),)})
+    with pytest.raises(ValueError, match="may be any of"):
+        scenario_behaviour(scenario, picking(), builtin_behaviour())

@@ -1,0 +1,1 @@
+"""The state graph: types, expressions, its text and its graph."""

@@ -1,0 +1,1 @@
+"""The formatter, the refactorings and the automatic fixes."""

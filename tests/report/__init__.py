@@ -1,0 +1,1 @@
+"""Findings and explanations as text, JSON and the formats of other tools."""

@@ -1,0 +1,1 @@
+"""The repository itself: imports, layout, files for continuous integration."""

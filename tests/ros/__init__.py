@@ -1,0 +1,1 @@
+"""The runtime and generated programs against live ROS nodes."""

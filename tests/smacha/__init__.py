@@ -1,0 +1,1 @@
+"""Scripts and templates written for SMACHA."""

@@ -1,0 +1,88 @@
+"""Runs of the arm examples, with the state of the simulated world at their end."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass, field
+from functools import cache
+from pathlib import Path
+from typing import Any
+
+from smachac import sim
+from smachac.driver import analyse, build
+from smachac.frontend.files import disk_library, read_source
+from smachac.runtime.tracing import trace
+from smachac.targets.python import TARGET
+from tests.support.silent_smach import silent_smach
+
+EXAMPLES = Path(__file__).parents[2] / "examples"
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Run:
+    """What came of a run: the outcome, placing errors (m) and rest of the blocks by name, the
+    trace without times, the hash of the world."""
+
+    outcome: str | None
+    errors: Mapping[str, float]
+    at_rest: bool
+    events: list[dict[str, Any]] = field(repr=False)
+    hash: str
+
+
+@cache
+def program(example: str, replaced: tuple[tuple[str, str], ...] = ()) -> Callable[[], Any]:
+    """The `build` function of an example's generated module, its script changed by `replaced`."""
+    path = EXAMPLES / example / "main.yml"
+    report: list[Any] = []
+    source = read_source(path, report)
+    assert source is not None
+    text = source.text
+    for old, new in replaced:
+        assert old in text
+        text = text.replace(old, new)
+    library = disk_library(path, report)
+    analysis = analyse(type(source)(source.name, text), library, report)
+    assert analysis.checked is not None, analysis.report
+    ((name, code),) = build(analysis.checked, TARGET, library, report).items()
+    module: dict[str, Any] = {"__name__": "generated"}
+    exec(compile(code, name, "exec"), module)
+    made: Callable[[], Any] = module["build"]
+    return made
+
+
+def run(
+    example: str,
+    goals: Mapping[str, str],
+    seed: int,
+    *,
+    faults: tuple[Any, ...] = (),
+    replaced: tuple[tuple[str, str], ...] = (),
+) -> Run:
+    """Run an example; `goals` are the blocks to be judged and the keys of where they belong."""
+    events: list[dict[str, Any]] = []
+
+    def observe(event: dict[str, Any]) -> None:
+        events.append({key: value for key, value in event.items() if key != "t"})
+
+    with silent_smach(), sim.World(seed=seed, faults=faults) as world:
+        machine = program(example, replaced)()
+        trace.attach(machine, "sm", observe)
+        world.attach(machine, "sm")
+        outcome = machine.execute()
+        poses = machine.userdata
+        return Run(
+            outcome=outcome,
+            errors={
+                name: world.error(name, poses[key])
+                for name, key in goals.items()
+                if name in world.bodies and key in poses
+            },
+            at_rest=all(world.at_rest(name) for name in goals if name in world.bodies),
+            events=events,
+            hash=world.hash(),
+        )
+
+
+PICK_AND_PLACE = ("08_pick_and_place", {"block": "goal_pose"})
+STACKING = ("09_stacking", {"first": "goal_pose", "second": "top_pose"})

@@ -1,0 +1,1 @@
+"""The targets json, ir, dot and Python; templates and interfaces."""

@@ -1,0 +1,1 @@
+"""Soundness: random correct projects, mutants of them, and their runs."""

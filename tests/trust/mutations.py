@@ -1,0 +1,14 @@
+"""All mutations: importing the modules that define them enters them in `MUTATIONS`."""
+
+from __future__ import annotations
+
+from tests.trust import mutate_concurrences, mutate_data, mutate_graph, mutate_names
+from tests.trust.mutants import MUTATIONS
+
+__all__ = [
+    "MUTATIONS",
+    "mutate_concurrences",
+    "mutate_data",
+    "mutate_graph",
+    "mutate_names",
+]
