@@ -20,9 +20,8 @@ from smachac.frontend.discovery import scripts_of
 from smachac.frontend.files import Disk, disk_library
 from smachac.frontend.loader import Library
 from smachac.frontend.smacha_meta import keys_in_code
-from smachac.frontend.state_types import find_state_type
 from smachac.frontend.yaml_tree import Map
-from smachac.ir.nodes import Leaf, Machine, Node, StateMachine
+from smachac.ir.nodes import Leaf, Machine, Node, StateMachine, StateType
 from smachac.ir.recursion import deep_recursion
 from smachac.ir.traversal import walk
 from smachac.refactor.contain import contain, equal_after_contain, plan_container, preset_keys
@@ -266,7 +265,8 @@ def run_contain(arguments: Namespace) -> int:
         _, parent = find_state(before, above)
         assert not isinstance(parent, Leaf)
         if isinstance(parent, StateMachine):
-            parent = with_inferred_interfaces(parent, partial(_told, desk.library()))
+            told = partial(_told, before.state_types, desk.library())
+            parent = with_inferred_interfaces(parent, told)
         known = {child.name: child for child in parent.children}
         names = [each.rpartition("/")[2] for each in arguments.states]
         for name in names:
@@ -283,9 +283,9 @@ def run_contain(arguments: Namespace) -> int:
     return perform(arguments, "contain", change)
 
 
-def _told(library: Library, leaf: Leaf) -> TemplateFacts:
-    """What the template of a state without an interface tells."""
-    type_ = find_state_type(leaf.type, library, [])
+def _told(types: Mapping[str, StateType], library: Library, leaf: Leaf) -> TemplateFacts:
+    """The keys in the template of a state without an interface."""
+    type_ = types.get(leaf.type)
     template = library.template(type_.code.get("python", "")) if type_ is not None else None
     if type_ is None or template is None:
         return TemplateFacts()

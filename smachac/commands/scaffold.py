@@ -8,7 +8,7 @@ from dataclasses import dataclass
 from keyword import iskeyword
 
 from smachac.diagnostics.diagnostic import did_you_mean
-from smachac.frontend.state_types import StateType
+from smachac.ir.nodes import StateType
 from smachac.ir.types import WORDS, Type, parse_type, unknown_words
 
 LANGUAGES = ("python", "cpp")

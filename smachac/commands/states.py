@@ -10,7 +10,8 @@ from pathlib import Path
 from smachac.commands.output import OK, usage
 from smachac.diagnostics.diagnostic import Report
 from smachac.frontend.files import disk_library
-from smachac.frontend.state_types import StateType, find_state_type
+from smachac.frontend.state_types import find_state_type
+from smachac.ir.nodes import StateType
 from smachac.report import state_types as shown_types
 from smachac.report.state_types import CONTAINERS, Known, container_type
 from smachac.targets import load_target, target_names

@@ -57,7 +57,7 @@ def _players(
     for name in dict.fromkeys(arguments.targets):
         found: Report = []
         if name == "cpp":
-            player = cpp.player(machine, library, found)
+            player = cpp.player(machine, found)
         else:
             target = load_target(name)
             assert target is not None

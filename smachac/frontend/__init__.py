@@ -1,1 +1,1 @@
-"""From text to the state graph: parse, resolve, lower; files, configuration and suppressions."""
+"""The frontend: parse, resolve and lower scripts; read state types, files and settings."""

@@ -18,13 +18,13 @@ LEVELS: Mapping[str, Severity | None] = {
     **{severity.value: severity for severity in Severity},
     "off": None,
 }
-"""What a severity in a project file may be."""
+"""The severities that a project file may set."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Project:
-    """Settings of a project file: search folders, each absolute or as seen from here; patterns
-    of what is not looked at when a folder is checked, relative to `folder`; severities."""
+    """The settings of a project file: search folders, absolute or relative to the working folder;
+    patterns of files to exclude when a folder is checked, relative to `folder`; severities."""
 
     folder: Path = Path()
     scripts: tuple[Path, ...] = ()
@@ -37,10 +37,10 @@ class Project:
 def read_project(
     source: Source, path: Path, report: Report, codes: Mapping[str, Code] | None = None
 ) -> Project | None:
-    """The project that a file describes; None where it is not about smachac.
+    """The project that a file describes; None if the file has no settings of smachac.
 
-    What is wrong in it is SM007, and left out. `codes` are those whose severity can
-    be set; without them the codes in the file are not checked.
+    Wrong settings are reported (SM007) and left out. `codes` are those whose severity can be set;
+    without them the codes in the file are not checked.
     """
     try:
         import tomllib as toml
@@ -108,7 +108,7 @@ def _near(word: str, known: Iterable[str], lead: str) -> str:
 
 
 def _wrong(source: Source, key: str, message: str, help: str | None, report: Report) -> None:
-    """SM007 at the place of a key, as far as it can be found: TOML parsers tell none."""
+    """SM007 at the key, if a search finds it: TOML parsers give no positions."""
     found = re.search(
         rf"^[ \t]*(?:\[[^\]\n]*?)?([\"']?{re.escape(key)}\b[\"']?)", source.text, re.M
     )

@@ -1,7 +1,7 @@
-"""Time limits, retries and loops as the containers that a SMACH user would write for them.
+"""Desugaring: time limits, retries and loops become containers, as a SMACH user would write them.
 
 A time limit is a concurrence with a timer; retries and `for_each` are iterators. The container has
-the state's name, interface and transitions, and the state stands in it under the same name.
+the state's name, interface and transitions; the state is inside, under the same name.
 """
 
 from __future__ import annotations
@@ -10,8 +10,15 @@ from dataclasses import replace
 from typing import Any
 
 from smachac.diagnostics.source import Span
-from smachac.frontend.sugar import EXHAUSTED, TIMEOUT, ForEach, Retry, Sugar, Timeout
-from smachac.frontend.values import as_value
+from smachac.frontend.script import (
+    EXHAUSTED,
+    TIMEOUT,
+    TIMER,
+    ForEach,
+    Retry,
+    Sugar,
+    Timeout,
+)
 from smachac.ir.nodes import (
     Concurrence,
     Condition,
@@ -31,13 +38,10 @@ from smachac.ir.nodes import (
 from smachac.ir.outcome_names import GOOD_OUTCOMES
 from smachac.ir.traversal import PREEMPTED, outcome_names, remapping
 
-TIMER = "SleepState"
-"""The state type that lets time pass."""
-
 
 def desugared(node: Node, sugar: Sugar) -> Node:
-    """A state inside the containers that its sugar asks for: the limit counts for each try, and
-    the tries for each item."""
+    """A state inside the containers of its sugar: the time limit is for each try, and the number of
+    tries is for each item."""
     if sugar.timeout is not None:
         node = _limited(node, sugar.timeout)
     if sugar.retry is not None:
@@ -48,18 +52,18 @@ def desugared(node: Node, sugar: Sugar) -> Node:
 
 
 def _inside(node: Node) -> Node:
-    """The state as it stands in the container, which has its name and its edges."""
+    """The state as a child of the container: without the transitions, which the container has."""
     return replace(node, transitions=(), remaps=(), doc="")
 
 
 def _around(node: Node) -> dict[str, Any]:
-    """What the container takes over from the state."""
+    """The fields of the container that are those of the state."""
     fields = ("name", "doc", "inputs", "outputs", "transitions", "remaps", "span", "via")
     return {name: getattr(node, name) for name in fields}
 
 
 def _fresh(wanted: str, taken: tuple[str, ...]) -> str:
-    """A name that is not taken yet."""
+    """A name that is not in `taken`: the wanted one, or that with a number."""
     number, name = 1, wanted
     while name in taken:
         number += 1
@@ -68,7 +72,7 @@ def _fresh(wanted: str, taken: tuple[str, ...]) -> str:
 
 
 def _pause(name: str, seconds: Value, node: Node, reads: tuple[Key, ...] = ()) -> Leaf:
-    """A state that lets time pass beside or before another one."""
+    """A timer: a state that waits, beside another state or before it."""
     return Leaf(
         name=name,
         type=TIMER,
@@ -141,7 +145,7 @@ def _retried(node: Node, retry: Retry) -> Iterator:
 
 
 def _after_pause(node: Node, key: str, on: tuple[str, ...]) -> StateMachine:
-    """A state with a pause before it, which the userdata `key` gives in seconds."""
+    """A state after a pause, whose seconds are the userdata `key`."""
     own = outcome_names(node)
     name = _fresh("PAUSE", (node.name,))
     reads = Key(name=key, span=node.span)
@@ -176,7 +180,7 @@ def _repeated(node: Node, loop: ForEach) -> Iterator:
     good = tuple(name for name in own if name in GOOD_OUTCOMES)[:1]
     on = tuple(word.text for word in loop.on) or good or own[:1]
     stopped = PREEMPTED if PREEMPTED in own else on[0] if on else EXHAUSTED
-    items = as_value(loop.items)
+    items = loop.items
     fields = _around(node)
     remaps = remapping(node)
     item = next((key for key, to in remaps.items() if to == loop.item), loop.item)
@@ -202,8 +206,8 @@ def _repeated(node: Node, loop: ForEach) -> Iterator:
 
 
 def _with_input(fields: dict[str, Any], outer: str, span: Span) -> str:
-    """The key under which a container reads a key of the container around it, declared in
-    `fields` if it was not yet."""
+    """The key by which a container reads the key `outer` of its parent; added to `fields` if the
+    container has none."""
     remaps = {remap.key: remap.to for remap in fields["remaps"]}
     names: list[str] = [key.name for key in fields["inputs"]]
     for name in names:

@@ -1,4 +1,4 @@
-"""Which scripts a run is about: files, folders and patterns as given; what git says has changed."""
+"""The scripts of a run: files, folders, patterns; optionally only those that git finds changed."""
 
 from __future__ import annotations
 
@@ -15,7 +15,7 @@ from smachac.frontend.files import Disk, find_project
 
 SUFFIXES = (".yml", ".yaml")
 SKIPPED = ("__pycache__", "node_modules")
-"""Folders without scripts of the user, beside those whose name begins with a dot."""
+"""Folders that are not searched; nor are those whose name begins with a dot."""
 
 _KEY = re.compile(r"^([\"']?)(\w+)\1[ \t]*:", re.M)
 _ITEM = re.compile(r"^[ \t]*(?:#[^\n]*|---[^\n]*)?$", re.M)
@@ -24,14 +24,14 @@ _NAMED = {"name", "template", "outcomes", "n", "T", "o"}
 
 
 class NothingFoundError(Exception):
-    """An argument of the user leads to no script; the words say which."""
+    """An argument matches no script; the message names it."""
 
 
 def scripts_of(arguments: Sequence[Path], disk: Disk) -> list[Path]:
-    """The scripts that files, folders and patterns stand for, each once, in order.
+    """The scripts that files, folders and patterns match, each once, in order.
 
-    A file that is named is taken as it is. Of a folder all YAML files are taken that look like
-    scripts, but for what the project file excludes. Raises NothingFoundError.
+    A named file is always included. A folder stands for all YAML files in it that look like scripts
+    and that the project file does not exclude. Raises NothingFoundError.
     """
     found: dict[str, Path] = {}
     for argument in arguments:
@@ -50,7 +50,7 @@ def scripts_of(arguments: Sequence[Path], disk: Disk) -> list[Path]:
 
 
 def yaml_files(arguments: Sequence[Path]) -> Iterator[Path]:
-    """The YAML files in folders, sorted, but for what their project file excludes."""
+    """The YAML files in folders, sorted, without those that their project file excludes."""
     for argument in arguments:
         if argument.is_dir():
             project = find_project(argument / "script.yml", [])
@@ -73,9 +73,9 @@ def _excluded(path: Path, project: Project) -> bool:
 
 
 def _is_script(path: Path, disk: Disk) -> bool:
-    """Whether a YAML file looks like a script or sub-script, even if it is not quite YAML.
+    """Whether a YAML file looks like a script or sub-script, even if it has syntax errors.
 
-    What cannot be read is taken for one: better a word too many than a script passed over.
+    A file that cannot be read counts as a script, so that it is reported.
     """
     report: Report = []
     source = disk.read(path, report)
@@ -83,7 +83,7 @@ def _is_script(path: Path, disk: Disk) -> bool:
 
 
 def looks_like_a_script(text: str) -> bool:
-    """By its first column: `states:` with a name, template or outcomes, or a list of states."""
+    """Whether the first column has `states:` and another field of scripts, or a list of states."""
     keys = {found[2] for found in _KEY.finditer(text)}
     if keys & {"states", "s"}:
         return bool(keys & _NAMED)
@@ -92,13 +92,13 @@ def looks_like_a_script(text: str) -> bool:
 
 
 class GitError(Exception):
-    """Git could not say what has changed; the words are its own."""
+    """Git failed to list the changed files; the message is its own."""
 
 
 def changed_since(revision: str) -> set[str]:
-    """The real paths of files that differ from where this branch left `revision`.
+    """The real paths of files that differ from the merge base of this branch and `revision`.
 
-    Changes that are not committed count, so do new and removed files. Raises GitError.
+    Uncommitted changes count, also new and removed files. Raises GitError.
     """
     commit = f"{revision}^{{commit}}"
     commit = _git("rev-parse", "--verify", "--quiet", "--end-of-options", commit).strip()
@@ -112,7 +112,7 @@ def changed_since(revision: str) -> set[str]:
 
 
 def _git(*arguments: str) -> str:
-    """What a command of git prints; nothing where it fails for want of an answer."""
+    """The output of a git command; empty if git reports that there is no result."""
     import subprocess
 
     try:

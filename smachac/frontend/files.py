@@ -1,4 +1,4 @@
-"""The disk: the only module of the compiler that reads scripts and templates or writes outputs."""
+"""File access: scripts, templates and project files from disk, each read once."""
 
 from __future__ import annotations
 
@@ -16,14 +16,14 @@ from smachac.frontend.yaml_tree import Tree, parse
 
 PACKAGE = Path(__file__).parent.parent
 BUILT_IN = (PACKAGE / "stdlib", PACKAGE / "targets" / "python" / "templates")
-"""The folders of the built-in state types, and of the templates of containers."""
+"""The folders of the built-in state types and of the templates of containers."""
 
 SUFFIXES = ("", ".yml", ".yaml")
 MAX_BYTES = 50_000_000
 
 
 def read_source(path: Path, report: Report) -> Source | None:
-    """A text file as a source under the path as given; SM007 where it cannot be read."""
+    """A text file as a source, named by the path as given; SM007 if it cannot be read."""
     try:
         if path.stat().st_size > MAX_BYTES:
             place = Span(Source(str(path), ""), 0, 0)
@@ -44,7 +44,7 @@ def read_source(path: Path, report: Report) -> Source | None:
 
 
 def _names_beside(path: Path) -> list[str]:
-    """The names of files in the folder of a path; none where there is no such folder."""
+    """The names of the files beside a path; none if there is no such folder."""
     with contextlib.suppress(OSError):
         return sorted(other.name for other in path.parent.iterdir() if other.is_file())
     return []
@@ -58,11 +58,11 @@ def _decoded(data: bytes) -> str:
 
 
 class Disk:
-    """What one run reads: each file once, each text parsed once, whoever asks for it.
+    """The files of one run: each file is read once, each text is parsed once.
 
-    `texts` stand for the files at their (real) paths. `asked` collects the real paths of all that
-    was looked for, whether it was there or not; whoever wants to know empties it before. `plain`:
-    lines end with a line feed alone, whatever the files say.
+    `texts` replace the files at their (real) paths. `asked` collects the real paths of all files
+    that were searched, found or not; the caller may empty it. `plain`: all line ends become line
+    feeds.
     """
 
     def __init__(self, texts: Mapping[str, str] | None = None, *, plain: bool = False) -> None:
@@ -88,7 +88,7 @@ class Disk:
         return source
 
     def parse(self, source: Source, report: Report) -> Tree | None:
-        """As `syntax.parse`."""
+        """As `yaml_tree.parse`."""
         if source not in self._trees:
             found: Report = []
             self._trees[source] = (parse(source, found), found)
@@ -114,7 +114,7 @@ def find_project(
 ) -> Project:
     """The settings of the nearest `smachac.toml`, or `[tool.smachac]` of a `pyproject.toml`.
 
-    Looked for from the script's folder upwards, as far as the root of the git repository.
+    The search goes from the script's folder upwards to the root of the git repository.
     """
     disk = disk or Disk()
     for folder in (main.parent, *_parents(main.parent)):
@@ -133,7 +133,7 @@ def find_project(
 
 
 def _parents(folder: Path) -> list[Path]:
-    """The folders above, in the user's terms: `..` where the path is relative."""
+    """The parent folders; for a relative path they are relative too, with `..`."""
     if folder.is_absolute():
         return list(folder.parents)
     named = [parent for parent in folder.parents if str(parent) != "."]
@@ -153,10 +153,10 @@ def disk_library(
 ) -> Library:
     """The library of a script on disk.
 
-    Scripts are looked for in the folder of the calling file, then in `scripts`, then in the
-    project file's; templates in `templates`, the project file's, `templates/` beside the main
-    script, and the built-in ones; modules and headers of the user in the project file's `code`, in
-    the folder of the main script and its `include/`. Nothing outside these folders is read.
+    Scripts are searched in the folder of the calling file, then in `scripts`, then in the project's
+    `scripts`; templates in `templates`, the project's `templates`, `templates/` beside the main
+    script, and the built-in folders; modules and headers of the user in the project's `code`, the
+    folder of the main script and its `include/`. No file outside these folders is read.
     `codes`: see `read_project`.
     """
     disk = disk or Disk()
@@ -195,13 +195,13 @@ def disk_library(
 
 
 def _found(name: str, folders: Sequence[Path], suffixes: Sequence[str], disk: Disk) -> Path | None:
-    """The first file of that name that lies inside one of the folders."""
+    """The first file of that name inside one of the folders; no link leads out of them."""
     if "\0" in name:
         return None
     for folder in folders:
         for suffix in suffixes:
             path = folder / f"{name}{suffix}"
-            with contextlib.suppress(OSError):  # a name too long for the file system is not there
+            with contextlib.suppress(OSError):  # a name may be too long for the file system
                 if disk.is_file(path) and path.resolve().is_relative_to(folder.resolve()):
                     return path
     return None
@@ -220,7 +220,7 @@ def _stems(folders: Sequence[Path], suffixes: Sequence[str]) -> list[str]:
 
 
 def stamps(paths: Iterable[str]) -> dict[str, tuple[int, int] | None]:
-    """What tells that files have changed: time of writing (ns) and size; None for what is not."""
+    """Time of modification (ns) and size of each file; None if it does not exist."""
     found: dict[str, tuple[int, int] | None] = {}
     for path in paths:
         try:

@@ -1,4 +1,4 @@
-"""The library of a script: functions that find sub-scripts, templates and code of the user."""
+"""The library of a script: functions that find sub-scripts, templates and the user's code."""
 
 from __future__ import annotations
 
@@ -15,14 +15,13 @@ from smachac.frontend.yaml_tree import Tree, parse
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Library:
-    """How the compiler reaches files: by functions, so that it never touches a disk itself.
+    """Access to files by functions, so that resolving works without a disk.
 
-    `script(name, caller)` is the text of a sub-script named in the source `caller`;
-    `template(file)` that of an interface or template by file name (`MoveTo.yml`,
-    `MoveTo.tpl.py`), `own_template` the same where it is the user's, not one of ours; `code(file)`
-    that of a module or header of the user's by path (`my_robot/grasp.hpp`). The folders and names
-    serve messages. `policy` is that of the project; `parse` may remember the trees of
-    texts that several scripts share.
+    `script(name, caller)` returns the text of a sub-script that the source `caller` names;
+    `template(file)` an interface or a template by file name (`MoveTo.yml`, `MoveTo.tpl.py`);
+    `own_template(file)` the same, but no built-in one; `code(file)` a module or header of the user
+    by path (`my_robot/grasp.hpp`). The lists of folders and names are for messages. `policy` has
+    the severities of the project. `parse` may return one tree for all scripts that share a text.
     """
 
     script: Callable[[str, str], Source | None]
@@ -37,8 +36,8 @@ class Library:
     policy: Policy = field(default_factory=Policy)
 
 
-def memory_library(files: Mapping[str, str], builtin_behaviour: Library) -> Library:
-    """A library over texts in memory; templates not among them come from `builtin_behaviour`."""
+def memory_library(files: Mapping[str, str], built_in: Library) -> Library:
+    """A library of texts in memory; other templates come from `built_in`."""
     sources = {name: Source(name, text) for name, text in files.items()}
 
     def script(name: str, caller: str) -> Source | None:
@@ -46,18 +45,18 @@ def memory_library(files: Mapping[str, str], builtin_behaviour: Library) -> Libr
         return next((sources[name] for name in names if name in sources), None)
 
     def own_template(name: str) -> Source | None:
-        return sources.get(f"templates/{name}") or builtin_behaviour.own_template(name)
+        return sources.get(f"templates/{name}") or built_in.own_template(name)
 
     return Library(
         script=script,
-        template=lambda name: own_template(name) or builtin_behaviour.template(name),
+        template=lambda name: own_template(name) or built_in.template(name),
         own_template=own_template,
-        code=lambda name: sources.get(name) or builtin_behaviour.code(name),
+        code=lambda name: sources.get(name) or built_in.code(name),
         script_folders=lambda caller: ["."],
-        template_folders=lambda: ["templates", *builtin_behaviour.template_folders()],
+        template_folders=lambda: ["templates", *built_in.template_folders()],
         script_names=lambda caller: [name.removesuffix(".yml") for name in sources],
         template_names=lambda: [
             *(name.removeprefix("templates/").split(".")[0] for name in sources),
-            *builtin_behaviour.template_names(),
+            *built_in.template_names(),
         ],
     )

@@ -1,22 +1,18 @@
-"""A script to the state graph. Total: whatever the script holds has a graph; rules judge it."""
+"""Lowering: from a resolved script to the state graph. Every script has a graph; rules judge it."""
 
 from __future__ import annotations
 
 import hashlib
 import re
-from collections.abc import Iterable, Iterator
+from collections.abc import Iterable
 from dataclasses import replace
 from pathlib import PurePath
-from typing import Any, cast
+from typing import Any
 
 from smachac.diagnostics.source import Span, Word
-from smachac.frontend import field_shapes, schema
+from smachac.frontend import schema
 from smachac.frontend.desugar import desugared
-from smachac.frontend.resolve import Script, State
-from smachac.frontend.sugar import ERROR, NAMES, has_sugar, is_own, read_sugar
-from smachac.frontend.type_annotations import is_long_form
-from smachac.frontend.values import as_value, as_written
-from smachac.frontend.yaml_tree import Map, Scalar, Tree
+from smachac.frontend.script import ERROR, Keys, Script, State
 from smachac.ir import nodes
 from smachac.ir.graph import is_unread
 from smachac.ir.nodes import (
@@ -41,15 +37,10 @@ from smachac.ir.nodes import (
     Variable,
 )
 from smachac.ir.traversal import outcome_names
-from smachac.ir.types import ANY, parse_type
-
-_NOT_VARIABLES = frozenset(schema.names_for("state")) | {"script"}
-"""What of a leaf's fields belongs to the language; the rest are variables of its state type."""
+from smachac.ir.types import ANY
 
 _VARIABLE = re.compile(r"(\.?)\{(\w+)\}")
-"""A part of a claim that is filled in."""
-
-_BASE_VARIABLES = ("node_name", "function_name", "manifest")
+"""A part of a claim that the value of a variable replaces."""
 
 
 def lower(script: Script) -> Machine:
@@ -61,66 +52,29 @@ def lower(script: Script) -> Machine:
     for source in script.sources:
         digest.update(source.text.encode("utf-8", "surrogatepass"))
         digest.update(b"\0")
-    names = [*_BASE_VARIABLES, *base.type.variables]
     return Machine(
         root=replace(root, type="StateMachine"),
         base=base.type.name or "Base",
-        variables=tuple(_variable(base, name) for name in names if name in base.fields),
+        variables=base.variables,
         source=PurePath(script.sources[0].name).name,
         digest=digest.hexdigest(),
         robot=script.robot,
         unused=script.unused,
+        state_types=script.state_types,
     )
 
 
-def _tree(state: State, name: str) -> Tree | None:
-    entry = state.fields.get(name)
-    return entry.value if entry is not None else None
-
-
-def _words(state: State, name: str) -> tuple[Word, ...]:
-    if name in state.read:
-        return cast(tuple[Word, ...], state.read[name])
-    tree = _tree(state, name)
-    return field_shapes.as_names(tree, []) if tree is not None else ()
-
-
-def _pairs(state: State, name: str) -> tuple[tuple[Word, Word], ...]:
-    if name in state.read:
-        return cast(tuple[tuple[Word, Word], ...], state.read[name])
-    tree = _tree(state, name)
-    return field_shapes.as_pairs(tree, []) if tree is not None else ()
-
-
-def _word(state: State, name: str, default: str = "") -> Word:
-    tree = _tree(state, name)
-    word = field_shapes.as_name(tree, []) if tree is not None else None
-    return word or Word(default, state.name.span)
-
-
-def _variable(state: State, name: str) -> Variable:
-    entry = state.fields[name]
-    value = as_value(entry.value, code=name == "callbacks")
-    known = state.type.variables.get(name)
-    type_ = known.type if known is not None else ANY
-    return Variable(name=name, type=type_, value=value, span=entry.key.span)
-
-
-def _keys(state: State, name: str, known: tuple[Key, ...]) -> tuple[Key, ...]:
-    """The keys of an interface and those the script adds."""
-    part = name.removesuffix("_keys")
-    listed = [key for key, each in state.type.variables.items() if each.keys == part]
-    trees = [tree for key in (name, *listed) if (tree := _tree(state, key)) is not None]
-    if not trees:
+def _keys(listed: Keys, known: tuple[Key, ...]) -> tuple[Key, ...]:
+    """The keys of an interface and those that the script lists."""
+    if not listed:
         return known
     keys = {key.name: key for key in known}
-    for word, type_ in (pair for tree in trees for pair in field_shapes.as_keys(tree, [])):
-        found = parse_type(type_.text) if type_ is not None else None
-        below = keys.get(word.text)
+    for word, type_ in listed:
+        declared = keys.get(word.text)
         keys[word.text] = Key(
             name=word.text,
-            type=found or (below.type if below else ANY),
-            doc=below.doc if below else "",
+            type=type_ or (declared.type if declared else ANY),
+            doc=declared.doc if declared else "",
             span=word.span,
         )
     return tuple(keys.values())
@@ -128,95 +82,62 @@ def _keys(state: State, name: str, known: tuple[Key, ...]) -> tuple[Key, ...]:
 
 def _interface(state: State) -> dict[str, Any]:
     """The fields that every node has, without outcomes."""
-    doc = _tree(state, "doc")
     type_ = state.type
     return {
         "name": state.name.text,
         "type": type_.name,
-        "doc": field_shapes.as_text(doc, []).strip() if doc is not None else "",
-        "inputs": _keys(state, "input_keys", type_.input_keys),
-        "outputs": _keys(state, "output_keys", type_.output_keys),
+        "doc": state.doc.strip(),
+        "inputs": _keys(state.input_keys, type_.input_keys),
+        "outputs": _keys(state.output_keys, type_.output_keys),
         "transitions": tuple(
             Transition(outcome=key.text, target=target.text, span=key.span, target_span=target.span)
-            for key, target in _pairs(state, "transitions")
+            for key, target in state.transitions
         ),
         "remaps": tuple(
-            Remap(key=key.text, to=to.text, span=key.span) for key, to in _pairs(state, "remapping")
+            Remap(key=key.text, to=to.text, span=key.span) for key, to in state.remapping
         ),
         "claims": tuple(
             dict.fromkeys(
                 _VARIABLE.sub(lambda found: _part(state, found), claim)
-                for claim in (*type_.claims, *(word.text for word in _words(state, "claims")))
+                for claim in (*type_.claims, *(word.text for word in state.claims))
             )
         ),
         "span": state.name.span,
         "via": state.via,
-        "written": tuple(_written(state)) if type_.prints_itself else (),
+        "written": state.written,
     }
 
 
-def _written(state: State) -> Iterable[Variable]:
-    """What the script says of a state; params are those in scope."""
-    for name, entry in state.fields.items():
-        if name not in ("template", "states", "params"):
-            yield Variable(name=name, value=as_written(entry.value), span=entry.key.span)
-    if state.params:
-        entries = ((name, as_written(tree).data) for name, tree in state.params.items())
-        value = Value(data=Struct(entries=tuple(entries)), span=state.name.span)
-        yield Variable(name="params", value=value, span=state.name.span)
-
-
 def _part(state: State, found: re.Match[str]) -> str:
-    """A part of a claim in braces: what a variable holds, without its dot where that is nothing.
-    What is no constant, and a key, stays in braces."""
+    """The part of a claim for `{name}`: the value of that variable, or nothing, without the dot
+    before it, if the value is null. A variable without a constant value, and a key, stay in braces.
+    """
     dot, name = found.groups()
-    entry = state.fields.get(name)
-    known = state.type.variables.get(name)
-    tree = entry.value if entry is not None else known.default if known is not None else None
-    if tree is None or name in schema.VARIABLES:
+    if name in schema.VARIABLES:
         return found[0]
-    match as_value(tree).data:
-        case None:
+    value = next((each.value for each in state.variables if each.name == name), None)
+    known = state.type.variables.get(name)
+    if value is None and known is not None:
+        value = known.default
+    match value:
+        case Value(data=None):
             return ""
-        case bool():
+        case Value(data=bool()):
             return found[0]
-        case str() | int() as value:
-            return f"{dot}{value}"
+        case Value(data=str() | int() as constant):
+            return f"{dot}{constant}"
     return found[0]
 
 
 def _leaf(state: State) -> Leaf:
     type_ = state.type
-    fields = _interface(state)
     outcomes = {outcome.name: outcome for outcome in type_.outcomes}
-    if type_.open or "outcomes" in type_.given:
-        given = [*_words(state, "outcomes")]
-        if "default_outcome" in state.fields:
-            given.append(_word(state, "default_outcome"))
-        elif "default_outcome" in type_.variables:
-            default = type_.variables["default_outcome"].default
-            given += (
-                [Word(str(default.value), state.name.span)] if isinstance(default, Scalar) else []
-            )
-        if type_.open and not given:
-            given += [key for key, _ in _pairs(state, "transitions")]
-    else:
-        # What the type does not have was told; its transition is no second fault.
-        led = {key.text for key, _ in _pairs(state, "transitions")}
-        given = [word for word in _words(state, "outcomes") if word.text in led]
-    for word in given:
+    for word in _given_outcomes(state):
         outcomes.setdefault(word.text, Outcome(name=word.text, span=word.span))
     leaf = Leaf(
-        **fields,
+        **_interface(state),
         outcomes=tuple(outcomes.values()),
-        variables=(
-            *(
-                _variable(state, name)
-                for name in state.fields
-                if name not in _NOT_VARIABLES or (name in NAMES and is_own(name, type_))
-            ),
-            *_defaults(state),
-        ),
+        variables=(*state.variables, *_defaults(state)),
         writes=type_.writes,
         open=type_.open,
         blocking=type_.blocking,
@@ -225,16 +146,38 @@ def _leaf(state: State) -> Leaf:
     return with_conditions(leaf) if leaf.type == "ConditionalOutcomeState" else leaf
 
 
+def _given_outcomes(state: State) -> list[Word]:
+    """The outcomes that a script adds to those of the state type."""
+    type_, led = state.type, [key for key, _ in state.transitions]
+    if not type_.open and "outcomes" not in type_.given:
+        # An outcome that the type lacks was reported; its transition is no second fault.
+        names = {word.text for word in led}
+        return [word for word in state.outcomes if word.text in names]
+    given = [*state.outcomes]
+    if state.default_outcome is not None:
+        given.append(state.default_outcome)
+    else:
+        default = type_.variables.get("default_outcome")
+        if default is not None and default.default is not None:
+            match default.default.data:
+                case tuple() | Struct() | Expression():
+                    pass
+                case data:
+                    given.append(Word(str(data), state.name.span))
+    return led if type_.open and not given else given
+
+
 def _defaults(state: State) -> Iterable[Variable]:
-    """The default outcome of a state, where the script leaves it to the interface."""
+    """The default outcome of a state, if the script leaves it to the interface."""
     known = state.type.variables.get("default_outcome")
-    if known is not None and known.default is not None and known.name not in state.fields:
-        value = as_value(known.default)
-        yield Variable(name=known.name, type=known.type, value=value, span=state.name.span)
+    if known is None or known.default is None:
+        return
+    if all(variable.name != known.name for variable in state.variables):
+        yield Variable(name=known.name, type=known.type, value=known.default, span=state.name.span)
 
 
 def _without_optional(child: Node, state: State, outcomes: frozenset[str]) -> Node:
-    """A state without those outcomes that its type can do without, and that nobody speaks of."""
+    """A state without the optional outcomes of its type that nothing in the script names."""
     if not isinstance(child, Leaf) or not state.type.optional:
         return child
     led = {edge.outcome for edge in child.transitions} | outcomes
@@ -246,9 +189,7 @@ def _without_optional(child: Node, state: State, outcomes: frozenset[str]) -> No
 def _container(state: State, owner: str) -> Container:
     children = tuple([_node(child) for child in state.states])
     fields = _interface(state)
-    fields["outcomes"] = tuple(
-        Outcome(name=word.text, span=word.span) for word in _words(state, "outcomes")
-    )
+    fields["outcomes"] = tuple(Outcome(name=word.text, span=word.span) for word in state.outcomes)
     fields["userdata"] = presets(state)
     outcomes = frozenset(outcome.name for outcome in fields["outcomes"])
     match owner:
@@ -257,34 +198,33 @@ def _container(state: State, owner: str) -> Container:
         case "Iterator":
             return _iterator(state, fields, children)
         case "Sequence":
-            connector = _word(state, "connector_outcome")
-            children = _linked(children, connector.text)
-            fields["connector_outcome"] = connector.text
-    if "on_error" in state.fields:
-        target = _word(state, "on_error")
-        children = tuple([with_way_out(child, target) for child in children])
+            connector = _text(state.connector_outcome)
+            children = _linked(children, connector)
+            fields["connector_outcome"] = connector
+    if state.on_error is not None:
+        target = state.on_error
+        children = tuple([_with_error_transition(child, target) for child in children])
     children = tuple(map(_without_optional, children, state.states, [outcomes] * len(children)))
     fields["children"] = tuple(_with_implicit(child, outcomes) for child in children)
     first = children[0].name if children else ""
-    initial = _word(state, "initial", first)
+    initial = state.initial or Word(first, state.name.span)
     fields["initial"] = initial.text
     fields["initial_span"] = initial.span
     if owner == "Sequence":
         return Sequence(**fields)
-    forever = _tree(state, "forever")
-    fields["forever"] = isinstance(forever, Scalar) and forever.value is True
-    return StateMachine(**fields)
+    return StateMachine(**fields, forever=state.forever)
+
+
+def _text(word: Word | None, default: str = "") -> str:
+    return word.text if word is not None else default
 
 
 def _node(state: State) -> Node:
     node = _leaf(state) if state.owner == "state" else _container(state, state.owner)
-    words = [key for key, _ in _pairs(state, "transitions")]
-    if not has_sugar(state.fields, state.type):
-        return if_asked(node, words)
-    sugar = read_sugar(state.fields, state.type, [])
-    for part in (sugar.retry, sugar.for_each):
+    words = [key for key, _ in state.transitions]
+    for part in (state.sugar.retry, state.sugar.for_each):
         words += part.on if part is not None else ()
-    return desugared(if_asked(node, words), sugar)
+    return desugared(_with_error(node, words), state.sugar)
 
 
 def _linked(children: tuple[Node, ...], connector: str) -> tuple[Node, ...]:
@@ -316,12 +256,10 @@ def _with_implicit(child: Node, outcomes: frozenset[str]) -> Node:
 
 
 def _concurrence(state: State, fields: dict[str, Any], children: tuple[Node, ...]) -> Concurrence:
-    default = _word(state, "default_outcome")
-    tree = _tree(state, "outcome_map")
-    rules = field_shapes.as_rules(tree, []) if tree is not None else ()
-    pairs = [pair for _, conditions in rules for pair in conditions]
+    default = state.default_outcome or Word("", state.name.span)
+    pairs = [pair for _, conditions in state.outcome_map for pair in conditions]
     children = tuple(
-        if_asked(child, [ending for name, ending in pairs if name.text == child.name])
+        _with_error(child, [ending for name, ending in pairs if name.text == child.name])
         for child in children
     )
     return Concurrence(
@@ -338,26 +276,24 @@ def _concurrence(state: State, fields: dict[str, Any], children: tuple[Node, ...
                     for child, ending in conditions
                 ),
             )
-            for outcome, conditions in rules
+            for outcome, conditions in state.outcome_map
         ),
-        join="any" if _word(state, "join").text == "any" else "all",
+        join="any" if _text(state.join) == "any" else "all",
     )
 
 
 def _iterator(state: State, fields: dict[str, Any], children: tuple[Node, ...]) -> nodes.Iterator:
-    """An iterator with its looping outcomes spelt out (smach-semantics I1, I3)."""
-    items, items_key = _items(_tree(state, "it"))
-    lists = (_words(state, name) for name in ("loop_outcomes", "break_outcomes"))
-    words = [word for words in lists for word in words]
-    words += [key for key, _ in _pairs(state, "final_outcome_map")]
-    children = tuple(if_asked(child, words) for child in children)
+    """An iterator with all its looping outcomes (smach-semantics I1, I3)."""
+    words = [*state.loop_outcomes, *state.break_outcomes]
+    words += [key for key, _ in state.final_outcome_map]
+    children = tuple(_with_error(child, words) for child in children)
     own = [outcome.name for child in children[:1] for outcome in child.outcomes]
-    breaks = [word.text for word in _words(state, "break_outcomes")]
-    loops = [word.text for word in _words(state, "loop_outcomes")]
+    breaks = [word.text for word in state.break_outcomes]
+    loops = [word.text for word in state.loop_outcomes]
     if breaks:
         loops = [name for name in own if name not in breaks]
-    exhausted = _word(state, "exhausted_outcome", "exhausted")
-    final = {key.text: to.text for key, to in _pairs(state, "final_outcome_map")}
+    exhausted = state.exhausted_outcome or Word("exhausted", state.name.span)
+    final = {key.text: to.text for key, to in state.final_outcome_map}
     declared: tuple[Outcome, ...] = fields["outcomes"]
     results = [final.get(exhausted.text, exhausted.text)]
     if not declared:
@@ -368,32 +304,28 @@ def _iterator(state: State, fields: dict[str, Any], children: tuple[Node, ...]) 
         for name in dict.fromkeys(results)
         if name not in known
     )
+    items, items_key = state.it, ""
+    match state.it:
+        case Value(data=str() as items_key):  # the name of a key of the userdata
+            items = None
     return nodes.Iterator(
         **fields,
         children=children,
         items=items,
         items_key=items_key,
-        item_key=_word(state, "it_label", "it_data").text,
+        item_key=_text(state.it_label, "it_data"),
         exhausted_outcome=exhausted.text,
         loop_outcomes=tuple(loops),
         final_map=tuple(final.items()),
     )
 
 
-def _items(tree: Tree | None) -> tuple[Value | None, str]:
-    """What an iterator runs over: a value, or the name of a key of its userdata."""
-    if tree is None:
-        return None, ""
-    value = as_value(tree)
-    return (None, value.data) if isinstance(value.data, str) else (value, "")
-
-
 def presets(state: State) -> tuple[Preset, ...]:
-    """The userdata of a container. Of several values for a key the last one counts."""
+    """The userdata of a container, its own and that of its leaves: the last value of each key."""
     found: dict[str, Preset] = {}
     given: dict[str, list[Given]] = {}
     for each in (state, *(child for child in state.states if child.owner == "state")):
-        for preset in _own(each):
+        for preset in each.userdata:
             found[preset.key] = preset
             given.setdefault(preset.key, []).append(
                 Given(each.name, preset.value, preset.span, each is state)
@@ -404,22 +336,8 @@ def presets(state: State) -> tuple[Preset, ...]:
     )
 
 
-def _own(state: State) -> Iterator[Preset]:
-    """Userdata in the short form `key: value` or the long one `key: {type: T, value: V}`."""
-    entry = state.fields.get("userdata")
-    for each in field_shapes.as_map(entry.value, []) if entry is not None else ():
-        value, type_ = each.value, ANY
-        if isinstance(value, Map) and is_long_form(value):
-            inner = {item.key.value: item.value for item in value.entries}
-            named = inner.get("type")
-            if isinstance(named, Scalar) and isinstance(named.value, str):
-                type_ = parse_type(named.value) or ANY
-            value = inner["value"]
-        yield Preset(key=str(each.key.value), value=as_value(value), type=type_, span=each.key.span)
-
-
-def catching(node: Node, span: Span) -> Node:
-    """The state, with one outcome more for its exceptions. `span` is where the script asks."""
+def _catching(node: Node, span: Span) -> Node:
+    """The state with one more outcome, for its exceptions; `span` is the place that names it."""
     if node.catches:
         return node
     own, name = outcome_names(node), ERROR
@@ -428,21 +346,21 @@ def catching(node: Node, span: Span) -> Node:
     return replace(node, catches=name, outcomes=(*node.outcomes, Outcome(name=name, span=span)))
 
 
-def if_asked(node: Node, words: Iterable[Word]) -> Node:
-    """The state as the script speaks of its outcomes: it catches if `error` is among them and not
-    an outcome that it has, or may have, itself."""
+def _with_error(node: Node, words: Iterable[Word]) -> Node:
+    """The state with an outcome `error` for its exceptions, if `words` name one and the state
+    neither has such an outcome nor is open."""
     if ERROR in outcome_names(node) or (isinstance(node, Leaf) and node.open):
         return node
-    asked = next((word for word in words if word.text == ERROR), None)
-    return node if asked is None else catching(node, asked.span)
+    word = next((word for word in words if word.text == ERROR), None)
+    return node if word is None else _catching(node, word.span)
 
 
-def with_way_out(node: Node, target: Word) -> Node:
-    """A state of a container that has `on_error: target`: its exceptions lead there, unless it is
-    the target or says otherwise."""
+def _with_error_transition(node: Node, target: Word) -> Node:
+    """A state of a container that has `on_error: target`: its exceptions lead to the target, unless
+    it is the target itself or has a transition for them."""
     if node.name == target.text or is_unread(node):
         return node
-    node = catching(node, target.span)
+    node = _catching(node, target.span)
     if any(step.outcome == node.catches for step in node.transitions):
         return node
     step = Transition(
@@ -452,20 +370,20 @@ def with_way_out(node: Node, target: Word) -> Node:
 
 
 def with_conditions(leaf: Leaf) -> Leaf:
-    """A ConditionalOutcomeState whose outcomes without a condition are told by the key of their
-    name, where it is an input: so it was in SMACHA."""
+    """A ConditionalOutcomeState, in which the input key named like an outcome is its condition, if
+    it has no other: SMACHA's rule."""
     known = {each.name: each for each in leaf.variables}
     given = known["callbacks"].value.data if "callbacks" in known else Struct(entries=())
     if leaf.open or not isinstance(given, Struct):
         return leaf
     inputs = {key.name for key in leaf.inputs} - {name for name, _ in given.entries}
-    told = [each for each in leaf.outcomes if each.name in inputs and each.name.isidentifier()]
-    if not told and "callbacks" in known:
+    keyed = [each for each in leaf.outcomes if each.name in inputs and each.name.isidentifier()]
+    if not keyed and "callbacks" in known:
         return leaf
     code = [
-        (each.name, Expression(text=f"lambda ud: ud.{each.name}", span=each.span)) for each in told
+        (each.name, Expression(text=f"lambda ud: ud.{each.name}", span=each.span)) for each in keyed
     ]
-    span = told[0].span if told else leaf.span
+    span = keyed[0].span if keyed else leaf.span
     value = Value(data=Struct(entries=(*given.entries, *code)), span=span)
     made = Variable(name="callbacks", value=value, span=span)
     others = [each for each in leaf.variables if each.name != "callbacks"]

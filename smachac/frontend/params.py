@@ -1,6 +1,6 @@
 """Params, look-ups and string constructs: `[params, x]`, `[[x]]`, `['/', [params, arm]]`.
 
-They are found at any depth of a value. A quoted word is data: `['params', x]` is a plain list.
+They may be at any depth of a value. A quoted word is data: `['params', x]` is a plain list.
 """
 
 from __future__ import annotations
@@ -14,23 +14,23 @@ from smachac.frontend.errors.script import too_big
 from smachac.frontend.yaml_tree import Entry, Map, Scalar, Seq, Tree, known_wrong
 
 Scope = Mapping[str, Tree]
-"""The params that are seen from a state."""
+"""The params in scope of a state."""
 
 MAX_TEXT = 100_000
-"""The longest text that a string construct may make, in characters."""
+"""The longest result of a string construct, in characters."""
 
 MAX_NODES = 100_000
-"""The most nodes that a param may hold once its look-ups are filled in."""
+"""The most nodes of a param after substitution of its look-ups."""
 
 MAX_FILLED, MAX_FILLED_BY_STATE = 100_000, 100
-"""The most nodes that all look-ups of a script may stand for, and as many more for each state."""
+"""The most nodes that all look-ups of a script may add: a fixed part and a part for each state."""
 
 MAX_LEVELS = 100
-"""The most levels of a value: what reads Python or C++ allows about 200 brackets in brackets."""
+"""The most levels of a value: Python and C++ compilers accept about 200 nested brackets."""
 
 
 def is_flat(tree: Tree) -> bool:
-    """Whether nothing can be looked up in a value, nor is it nested: true of most values."""
+    """Whether a value has no look-ups and no nested collections, as most values."""
     if isinstance(tree, Map):
         return all(isinstance(entry.value, Scalar) for entry in tree.entries)
     return isinstance(tree, Scalar)
@@ -53,7 +53,7 @@ def is_too_deep(tree: Tree) -> bool:
 
 
 def look_up_word(tree: Tree) -> Word | None:
-    """The param that a tree asks for, or None when it is no look-up."""
+    """The param that a look-up names; None if the tree is no look-up."""
     match tree:
         case Seq(items=(Scalar(value="params", plain=True), Scalar(value=str(name), plain=True))):
             return Word(name, tree.items[1].span)
@@ -63,10 +63,10 @@ def look_up_word(tree: Tree) -> Word | None:
 
 
 def fill_in(tree: Tree, scope: Scope, report: Report, *, names: bool = False) -> Tree:
-    """The tree with every look-up and string construct replaced by what it means.
+    """The tree with every look-up and string construct replaced by its value.
 
-    `names`: the tree is a list of names, whose items are filled in one by one instead of being
-    joined to one string. A look-up that fails is reported (SM015) and becomes `known_wrong`.
+    `names`: the tree is a list of names, so that its items are not joined to one string. A look-up
+    that fails is reported (SM015) and becomes `known_wrong`.
     """
     if isinstance(tree, Scalar):
         return tree
@@ -98,7 +98,7 @@ def _found(word: Word, scope: Scope, report: Report) -> Tree:
 
 
 def _joined(items: tuple[Tree, ...], tree: Seq, report: Report) -> Tree | None:
-    """The text of a string construct, or None when a part is a collection: then it is a list."""
+    """The text of a string construct; None if a part is a collection: then the tree is a list."""
     parts = []
     for item in items:
         if not isinstance(item, Scalar):
@@ -110,13 +110,13 @@ def _joined(items: tuple[Tree, ...], tree: Seq, report: Report) -> Tree | None:
             too_big(tree.span, f"this string construct makes {len(text):,} characters", None)
         )
         return known_wrong(tree.span)
-    # Calls have characters that YAML wants in quotes; of a dotted word quotes say that it is text.
+    # A call may need quotes in YAML; quotes around a dotted word mean that it is text.
     quoted = any(isinstance(item, Scalar) and not item.plain for item in tree.items)
     return Scalar(text, text != "" and (text.endswith(")") or not quoted), tree.span)
 
 
 def child_scope(scope: Scope, own: Tree | None, report: Report) -> Scope:
-    """The params of a state: its own entries over those around it; later ones may use earlier."""
+    """The params of a state: its own ones hide outer ones; later ones may use earlier ones."""
     if not isinstance(own, Map):
         return scope
     inner = dict(scope)
@@ -134,7 +134,7 @@ def _size_beyond(tree: Tree, limit: int) -> bool:
 
 
 def size_up_to(tree: Tree, limit: int) -> int:
-    """The nodes of a tree, counted no further than one beyond a limit."""
+    """The number of nodes of a tree; counting stops at one more than the limit."""
     stack, seen = [tree], 0
     while stack and seen <= limit:
         seen += 1

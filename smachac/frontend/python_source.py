@@ -1,7 +1,7 @@
-"""Python as it stands in files of the user, parsed with `ast` and never run.
+"""Static analysis of the user's Python code: parsed with `ast`, never run.
 
-In a template, what Jinja fills in is a name of the same length here, so that places stay what they
-are, and nothing is said of what it touches. Code that cannot be read is not judged.
+In a template, each expression of Jinja is replaced by a name of the same length, so that positions
+stay the same; code that contains one is not analysed, nor is code that cannot be parsed.
 """
 
 from __future__ import annotations
@@ -16,7 +16,7 @@ from smachac.diagnostics.source import Source, Span, Word
 from smachac.ir.nodes import Body
 
 LONGEST = 200_000
-"""Characters of the longest text that is read."""
+"""The longest text that is read, in characters."""
 
 _JINJA = re.compile(r"\{#.*?#\}|\{%.*?%\}|\{\{.*?\}\}", re.DOTALL)
 _RAW = re.compile(r"\{%[-+]?\s*raw\b")
@@ -25,7 +25,7 @@ _NOT_PORTABLE_LINES = re.compile(r"\r(?!\n)|[\f\v]")
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class PythonText:
-    """A text with its tree; `filled` are the stretches that Jinja fills in."""
+    """A text with its tree; `filled` are the ranges that Jinja replaces."""
 
     source: Source
     tree: ast.Module
@@ -45,7 +45,7 @@ class PythonText:
         return bool(self.fillings(span))
 
     def fillings(self, span: Span) -> list[str]:
-        """The pieces of Jinja that touch a stretch."""
+        """The ranges of Jinja that overlap a range."""
         return [
             self.source.text[start:end]
             for start, end in self.filled
@@ -54,8 +54,8 @@ class PythonText:
 
 
 def python_text(source: Source, *, template: bool) -> PythonText | None:
-    """A text of Python, or None where it cannot be read. Raises RecursionError and MemoryError
-    for what is nested too deeply."""
+    """A text of Python; None if it cannot be parsed. Raises RecursionError and MemoryError if it
+    is nested too deeply."""
     text = source.text
     if len(text) > LONGEST or _NOT_PORTABLE_LINES.search(text):
         return None
@@ -74,30 +74,30 @@ def python_text(source: Source, *, template: bool) -> PythonText | None:
 
 
 def _stand_in(found: re.Match[str]) -> str:
-    """A name for a value, space for the rest; of the same length and number of lines."""
+    """A name in place of an expression, spaces in place of other tags, of the same length."""
     text = found.group()
     return re.sub(r"[^\n]", "_" if text.startswith("{{") else " ", text)
 
 
 METHODS = frozenset(["extract", "keys", "merge", "update"])
-"""What userdata has beside its keys (smach.user_data)."""
+"""The attributes of userdata that are no keys (smach.user_data)."""
 
 
 def python_body(source: Source, name: str) -> Body | None:
-    """What `execute` of a state type's class does; None where it cannot be told.
+    """The analysis of `execute` in the class of a state type; None if there is no such method.
 
-    The class is that of the type's name, or the only one with an `execute`.
+    The class has the name of the type, or is the only one with an `execute`.
     """
     try:
         text = python_text(source, template=True)
         function = _execute(text.tree, name) if text is not None else None
         return _Reader(text).body(function) if text is not None and function is not None else None
-    except (RecursionError, MemoryError, ValueError):  # a name in letters of another width
+    except (RecursionError, MemoryError, ValueError):  # ValueError: a name in full-width letters
         return None
 
 
 def _execute(tree: ast.Module, name: str) -> ast.FunctionDef | None:
-    """The method `execute` of the class of a state, if it is one as SMACH calls it."""
+    """The method `execute` of the class of a state, if SMACH can call it."""
     found: dict[str, ast.FunctionDef] = {}
     for node in tree.body:
         if not isinstance(node, ast.ClassDef):
@@ -116,7 +116,7 @@ def _execute(tree: ast.Module, name: str) -> ast.FunctionDef | None:
 
 
 class _Reader:
-    """Reads a function out of a text."""
+    """Analyses one function of a text."""
 
     def __init__(self, text: PythonText) -> None:
         self.text = text
@@ -141,7 +141,7 @@ class _Reader:
         )
 
     def constants(self, returns: list[ast.Return]) -> Iterator[Word]:
-        """The constants that are returned, with their places."""
+        """The returned constants, with their spans."""
         for each in returns:
             for value in _alternatives(each.value) if each.value is not None else (each,):
                 span = self.text.span(value)
@@ -154,8 +154,8 @@ class _Reader:
                     yield Word(text if isinstance(text, str) else repr(text), span)
 
     def accesses(self, function: ast.FunctionDef) -> tuple[tuple[Word, ...], tuple[Word, ...]]:
-        """The keys of the userdata that are read and written; not those that the code asks for
-        first, nor what it tries."""
+        """The keys of the userdata that are read and written; without keys whose presence the code
+        tests, and without code in `try`."""
         name = function.args.args[1].arg
         reads: list[Word] = []
         writes: list[Word] = []
@@ -185,15 +185,15 @@ class _Reader:
                 reads.append(Word(key, span))
             if not isinstance(node.ctx, ast.Load):
                 writes.append(Word(key, span))
-        return tuple(sorted(reads, key=_place)), tuple(sorted(writes, key=_place))
+        return tuple(sorted(reads, key=_start)), tuple(sorted(writes, key=_start))
 
 
-def _place(word: Word) -> int:
+def _start(word: Word) -> int:
     return word.span.start
 
 
 def _key(node: ast.AST, name: str) -> str | None:
-    """The key of the userdata that an expression stands for."""
+    """The key of the userdata that an expression accesses."""
     match node:
         case ast.Attribute(value=ast.Name(id=owner), attr=key) if owner == name:
             return None if key in METHODS or key.startswith("_") else key
@@ -211,7 +211,7 @@ def _alternatives(value: ast.expr) -> Iterator[ast.expr]:
 
 
 def _returns(body: list[ast.stmt]) -> Iterator[ast.Return]:
-    """The returns of a function, not those of functions in it."""
+    """The return statements of a function, without those of nested functions."""
     todo: list[ast.AST] = [*reversed(body)]
     while todo:
         node = todo.pop()
@@ -222,14 +222,14 @@ def _returns(body: list[ast.stmt]) -> Iterator[ast.Return]:
 
 
 def _ends(body: list[ast.stmt]) -> bool:
-    """Whether nothing gets past some statements but by `return`, an exception or for ever."""
+    """Whether control never reaches the end: statements return, raise or loop for ever."""
     return any(map(_is_end, body))
 
 
 def _is_end(statement: ast.stmt) -> bool:
     match statement:
         case ast.Return() | ast.Raise() | ast.Break() | ast.Continue():
-            # A loop with `break` is asked for it below; `continue` goes round.
+            # A loop with `break` is handled below; `continue` stays in the loop.
             return True
         case ast.If(body=body, orelse=orelse):
             return _ends(body) and _ends(orelse)
@@ -252,14 +252,14 @@ def _is_end(statement: ast.stmt) -> bool:
         case ast.Assert(test=ast.Constant(value=test)):
             return not test
         case ast.Expr(value=ast.Call(func=ast.Name() | ast.Attribute() as function)):
-            # What may never come back is not known: `sys.exit()`, `self.give_up()`.
+            # Whether a call returns is not known: `sys.exit()`, `self.give_up()`.
             word = function.id if isinstance(function, ast.Name) else function.attr
             return word in ("abort", "exit", "_exit", "fail", "quit")
     return False
 
 
 def _breaks(body: list[ast.stmt]) -> Iterator[bool]:
-    """For each `break` that leaves the loop with this body: True."""
+    """True for each `break` that leaves the loop with this body."""
     todo: list[ast.AST] = [*body]
     while todo:
         node = todo.pop()

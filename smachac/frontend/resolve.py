@@ -1,17 +1,17 @@
-"""A script as its author meant it: shorthand expanded, sub-scripts called, look-ups filled in,
-every state with its type; one self-contained tree that lowering only has to read.
+"""Resolving: from a tree to one self-contained script.
+
+Short field names are expanded, sub-scripts are included, look-ups are replaced by their values, and
+every state gets its typed fields and its state type. Lowering needs no tree and no library.
 """
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
-from dataclasses import dataclass, field
-from typing import Any
+from collections.abc import Sequence
+from dataclasses import dataclass, field, replace
 
 from smachac.diagnostics.diagnostic import Related, Report
 from smachac.diagnostics.source import Source, Span, Word
-from smachac.frontend import field_shapes, schema
-from smachac.frontend.check_fields import check_variables
+from smachac.frontend import schema
 from smachac.frontend.errors.references import (
     bad_sub_script,
     recursive_include,
@@ -19,6 +19,7 @@ from smachac.frontend.errors.references import (
     template_not_found,
 )
 from smachac.frontend.errors.script import duplicate_key, missing_variable, too_big, wrong_shape
+from smachac.frontend.fields import as_name, kind_of, pairs_of, wrong
 from smachac.frontend.loader import Library
 from smachac.frontend.params import (
     MAX_FILLED,
@@ -32,63 +33,36 @@ from smachac.frontend.params import (
     size_up_to,
 )
 from smachac.frontend.robots import robot_of
-from smachac.frontend.state_types import StateType, find_state_type
+from smachac.frontend.script import TIMER, Pairs, Script, State, Sugar
+from smachac.frontend.state_fields import Entries, read_fields
+from smachac.frontend.state_types import find_state_type
 from smachac.frontend.type_annotations import Aliases, read_aliases, typed
 from smachac.frontend.unused import Mark, Uses
 from smachac.frontend.yaml_tree import Entry, Map, Scalar, Seq, Tree, known_wrong
-from smachac.ir.nodes import Unused
-from smachac.ir.robot import Robot
+from smachac.ir.nodes import StateType
 
 MAX_STATES = 1_000_000
 MAX_NESTED = 1_000
-"""The most states a script may have once its sub-scripts are called, and the most containers
-inside one another."""
+"""The most states of a script with its sub-scripts, and the most levels of containers."""
 
 CALLED_HERE = "in the sub-script called here"
 
-Fields = Mapping[str, Entry]
-"""Variables by long name; the entry's key is where the name stands."""
-
-
-@dataclass(frozen=True, slots=True, kw_only=True)
-class State:
-    """A state or container of a script, or the script's base.
-
-    `owner` says which variables of the schema it may have: "base", a container type or "state".
-    `via`: the calls of sub-scripts that led here, outermost first. `params`: those in scope.
-    `read`: what some of its fields say, names or pairs of names.
-    """
-
-    name: Word
-    owner: str
-    type: StateType
-    fields: Fields
-    states: tuple[State, ...] = ()
-    via: tuple[Span, ...] = ()
-    params: Scope = field(default_factory=dict)
-    read: Mapping[str, Any] = field(default_factory=dict)
-
-
-@dataclass(frozen=True, slots=True, kw_only=True)
-class Script:
-    """A whole script. `sources`: its text and those of its sub-scripts, in the order of use."""
-
-    base: State
-    sources: tuple[Source, ...]
-    robot: Robot | None = None
-    unused: tuple[Unused, ...] = ()
-
 
 @dataclass(frozen=True, slots=True)
-class _Place:
-    """Where resolving stands: the source, the params in scope, the calls that led there."""
+class _Environment:
+    """What surrounds a state: its source, the params in scope, the calls of sub-scripts, outermost
+    first, and the number of containers.
+
+    `inner` is the name of the state in the sub-script, if one is called; `iterated`: it is the
+    state of an Iterator.
+    """
 
     source: Source
     scope: Scope = field(default_factory=dict)
     calls: tuple[tuple[str, Span], ...] = ()
     depth: int = 0
     inner: Word | None = None
-    """The state of the sub-script, where one is called."""
+    iterated: bool = False
 
     @property
     def via(self) -> tuple[Span, ...]:
@@ -96,7 +70,7 @@ class _Place:
 
 
 def resolve(source: Source, tree: Tree | None, library: Library, report: Report) -> Script | None:
-    """The script that a tree holds, as far as it can be read; None where it holds none."""
+    """The script that a tree describes, without its wrong parts; None if it is no script."""
     if tree is None:
         if not report:
             span = Span(source, 0, 0)
@@ -113,7 +87,7 @@ def resolve(source: Source, tree: Tree | None, library: Library, report: Report)
                 Span(source, tree.span.start, tree.span.start + 1),
                 "a script is a mapping; this is a sub-script"
                 if sub_script
-                else f"a script is a mapping, not {field_shapes.kind_of(tree)}",
+                else f"a script is a mapping, not {kind_of(tree)}",
                 "check or build the script that calls it" if sub_script else None,
             )
         )
@@ -122,14 +96,14 @@ def resolve(source: Source, tree: Tree | None, library: Library, report: Report)
 
 
 class _Resolver:
-    """What the functions of one run share: the library, the report, what was read before."""
+    """The state of one run: the library, the report, and all that was read so far."""
 
     def __init__(self, library: Library, report: Report) -> None:
         self.library = library
         self.report = report
         self.main = ""
         self.aliases: Aliases = {}
-        self.sources: dict[int, Source] = {}
+        self.sources: dict[Source, None] = {}
         self.types: dict[str, StateType | None] = {}
         self.sub_scripts: dict[tuple[str, str], tuple[Source, Tree | None, bool] | None] = {}
         self.templates: tuple[Sequence[str], Sequence[str]] | None = None
@@ -137,29 +111,31 @@ class _Resolver:
         self.uses = Uses()
 
     def script(self, source: Source, tree: Map) -> Script:
-        self.sources[id(source)] = source
+        self.sources[source] = None
         self.main = source.name
-        fields = self.expand(tree.entries)
-        if "types" in fields:
-            self.aliases = read_aliases(fields["types"].value, self.report)
-        name = field_shapes.as_name(fields["name"].value, []) if "name" in fields else None
+        begin = self.uses.mark(self.report)
+        entries = self.expand(tree.entries)
+        if "types" in entries:
+            self.aliases = read_aliases(entries["types"].value, self.report)
         start = tree.entries[0].key.span if tree.entries else tree.span
-        base = self.state(name or Word("sm", start), fields, _Place(source), "base")
-        robot = robot_of(base.fields, base.type, source, self.library, self.report)
-        if "types" in fields:
-            self.uses.aliases(fields["types"].value, self.report)
+        base = self.state(Word("sm", start), entries, _Environment(source), "base", begin)
+        is_read = base.robot is not None or "robot" not in entries
+        robot = robot_of(base, source, self.library, self.report) if is_read else None
+        if "types" in entries:
+            self.uses.aliases(entries["types"].value, self.report)
         return Script(
             base=base,
-            sources=tuple(self.sources.values()),
+            sources=tuple(self.sources),
             robot=robot,
-            unused=self.uses.judged(self.report),
+            unused=self.uses.unused(self.report),
+            state_types={name: type_ for name, type_ in self.types.items() if type_ is not None},
         )
 
     def expand(self, entries: tuple[Entry, ...]) -> dict[str, Entry]:
-        """Entries by long name."""
+        """The fields by long name; duplicates are reported (SM002)."""
         fields: dict[str, Entry] = {}
         for entry in entries:
-            word = field_shapes.as_name(entry.key, self.report)
+            word = as_name(entry.key, self.report)
             if word is None:
                 continue
             name = schema.LONG.get(word.text, word.text)
@@ -172,12 +148,12 @@ class _Resolver:
         self,
         name: Word,
         own: dict[str, Entry],
-        place: _Place,
+        around: _Environment,
         role: str = "",
         begin: Mark | None = None,
     ) -> State:
-        """A state from its variables; `role` is "base" for the script itself, `begin` where a
-        call of it was met."""
+        """The state with these fields. `role` is "base" for the script itself; `begin` is the mark
+        of the call, if the state is that of a sub-script."""
         if "params" in own:
             own["params"] = self.shallow(own["params"])
         params = own.get("params")
@@ -185,32 +161,36 @@ class _Resolver:
         for key, entry in own.items():
             if key != "states":
                 self.uses.value(key, entry.value)
-        scope = child_scope(place.scope, params.value if params else None, self.report)
-        called = place
-        place = _Place(place.source, scope, place.calls, place.depth + 1)
-        fields = {
+        scope = child_scope(around.scope, params.value if params else None, self.report)
+        entries = {
             key: entry if key in ("params", "states") else self.filled(key, entry, scope)
             for key, entry in own.items()
         }
-        type_, owner = self.type_of(name, fields, role, called)
+        type_, owner = self.type_of(name, entries, role, around)
         self.uses.type(type_)
         if role != "base":
             self.count += 1
-        read = check_variables(name, fields, owner, type_, called.inner, self.report)
+        fields = read_fields(
+            name, entries, owner, type_, self.report, scope=scope, inner=around.inner
+        )
+        sugar = fields.get("sugar", Sugar())
+        if sugar.timeout is not None or sugar.retry is not None:
+            self.state_type(TIMER)
         children: tuple[State, ...] = ()
-        if "states" in fields and place.depth > MAX_NESTED:
+        if "states" in entries and around.depth >= MAX_NESTED:
             message = f"more than {MAX_NESTED} containers stand inside one another here"
-            self.report.append(too_big(fields["states"].key.span, message))
-            return _unknown(name, fields, place)
-        if "states" in fields and owner != "state":
-            children = self.children(fields["states"].value, place)
-            if owner == "Iterator":
-                self.check_iterated(children)
-        self.uses.params(params, begin, self.report, place.via)
-        return State(
-            name=name, owner=owner, type=type_, fields=fields, states=children, via=place.via,
-            params=scope, read=read,
-        )  # fmt: skip
+            self.report.append(too_big(entries["states"].key.span, message))
+            return _unknown(name, fields.get("transitions", ()), around)
+        if "states" in entries and owner != "state":
+            inside = _Environment(around.source, scope, around.calls, around.depth + 1)
+            children = self.children(entries["states"].value, owner, inside)
+        self.uses.params(params, begin, self.report, around.via)
+        if around.iterated and "remapping" in entries:
+            span = entries["remapping"].key.span
+            message = "the state of an Iterator has no remapping: it sees the Iterator's keys"
+            help = "rename the keys, or put it into a StateMachine and remap there"
+            self.report.append(wrong_shape(span, message, help))
+        return State(owner=owner, type=type_, via=around.via, states=children, **fields)
 
     def filled(self, key: str, entry: Entry, scope: Scope) -> Entry:
         if is_flat(entry.value):
@@ -223,7 +203,7 @@ class _Resolver:
         return typed(key, filled, self.aliases, self.report)
 
     def small(self, entry: Entry, new: Tree) -> Entry:
-        """The entry with its look-ups filled in, unless all of them have become too much."""
+        """The entry with a new value, unless the limit of look-ups is exceeded."""
         room = MAX_FILLED + MAX_FILLED_BY_STATE * self.count - self.looked_up
         own = size_up_to(entry.value, room)
         grown = size_up_to(new, room + own) - own
@@ -235,7 +215,7 @@ class _Resolver:
         return Entry(entry.key, new)
 
     def shallow(self, entry: Entry) -> Entry:
-        """The entry, without a value that is nested too deep."""
+        """The entry; a value that is nested too deeply is reported and replaced."""
         if not is_too_deep(entry.value):
             return entry
         span = Span(entry.value.span.source, entry.value.span.start, entry.value.span.start + 1)
@@ -243,57 +223,47 @@ class _Resolver:
         self.report.append(too_big(span, message))
         return Entry(entry.key, known_wrong(span))
 
-    def children(self, tree: Tree, place: _Place) -> tuple[State, ...]:
+    def children(self, tree: Tree, owner: str, around: _Environment) -> tuple[State, ...]:
+        """The states of a list. An Iterator has one, which sees the Iterator's keys as they are."""
         if not isinstance(tree, Seq):
-            field_shapes.wrong(
-                tree, "a list of states", self.report, "write each as `- NAME: {...}`"
-            )
+            wrong(tree, "a list of states", self.report, "write each as `- NAME: {...}`")
             return ()
-        found = []
+        found: list[State] = []
         for item in tree.items:
             if self.count >= MAX_STATES:
                 message = f"the script has more than {MAX_STATES:,} states"
                 self.report.append(too_big(item.span, message))
                 break
-            state = self.item(item, place)
-            if state is not None:
-                found.append(state)
+            iterated = owner == "Iterator" and not found
+            state = self.item(item, replace(around, iterated=True) if iterated else around)
+            if state is None:
+                continue
+            if owner == "Iterator" and found:
+                message = "an Iterator holds one state; this is one more"
+                help = "put them into a StateMachine, and iterate over that"
+                self.report.append(wrong_shape(state.name.span, message, help))
+            found.append(state)
         return tuple(found)
 
-    def check_iterated(self, children: tuple[State, ...]) -> None:
-        """SMACH's Iterator has one state, which sees its userdata as it is."""
-        for child in children[1:]:
-            message = "an Iterator holds one state; this is one more"
-            help = "put them into a StateMachine, and iterate over that"
-            self.report.append(wrong_shape(child.name.span, message, help))
-        for child in children[:1]:
-            if "remapping" in child.fields:
-                span = child.fields["remapping"].key.span
-                message = "the state of an Iterator has no remapping: it sees the Iterator's keys"
-                help = "rename the keys, or put it into a StateMachine and remap there"
-                self.report.append(wrong_shape(span, message, help))
-
-    def item(self, tree: Tree, place: _Place) -> State | None:
-        """The state of one item of a list of states, in either layout."""
+    def item(self, tree: Tree, around: _Environment) -> State | None:
+        """The state of one item of a list: `- NAME: {...}`, or `- NAME:` with fields beside."""
         if not isinstance(tree, Map) or not tree.entries:
-            field_shapes.wrong(
-                tree, "a state", self.report, "write it as `- NAME: {template: ...}`"
-            )
+            wrong(tree, "a state", self.report, "write it as `- NAME: {template: ...}`")
             return None
         first, rest = tree.entries[0], tree.entries[1:]
-        name = field_shapes.as_name(first.key, self.report)
+        name = as_name(first.key, self.report)
         if name is None:
             return None
         nothing = isinstance(first.value, Scalar) and first.value.value is None
         if nothing and rest:
-            return self.called(name, self.expand(rest), place)
+            return self.called(name, self.expand(rest), around)
         if nothing or not isinstance(first.value, Map):
             message = f"`{name.text}` must be followed by the variables of the state"
             if not nothing:
-                message += f", not by {field_shapes.kind_of(first.value)}"
+                message += f", not by {kind_of(first.value)}"
             help = f"write `- {name.text}: {{template: ...}}`"
             self.report.append(wrong_shape(name.span, message, help))
-            return _unknown(name, {}, place)
+            return _unknown(name, (), around)
         if rest:
             other = rest[0].key
             self.report.append(
@@ -305,50 +275,53 @@ class _Resolver:
                     (Related(span=name.span, message="the first key"),),
                 )
             )
-        return self.called(name, self.expand(first.value.entries), place)
+        return self.called(name, self.expand(first.value.entries), around)
 
-    def called(self, name: Word, own: dict[str, Entry], place: _Place) -> State:
-        """The state itself or, when it calls a sub-script, what the sub-script makes of it."""
+    def called(self, name: Word, own: dict[str, Entry], around: _Environment) -> State:
+        """The state or, if it calls a sub-script, the state of that with the fields of the call."""
         begin = self.uses.mark(self.report)
         while "script" in own:
             entry = own.pop("script")
-            scope = child_scope(place.scope, own["params"].value if "params" in own else None, [])
+            params = own["params"].value if "params" in own else None
+            scope = child_scope(around.scope, params, [])
             self.uses.value("script", entry.value)
-            word = field_shapes.as_name(fill_in(entry.value, scope, self.report), self.report)
-            found = self.sub_script(word, place) if word is not None and word.text else None
+            word = as_name(fill_in(entry.value, scope, self.report), self.report)
+            found = self.sub_script(word, around) if word is not None and word.text else None
             if found is None:
-                return _unknown(name, own, place)
+                transitions = own.get("transitions")
+                pairs = pairs_of(transitions.value) if transitions is not None else ()
+                return _unknown(name, pairs, around)
             source, inner, entries = found
-            call = Span(place.source, entry.key.span.start, entry.value.span.end)
-            calls = (*place.calls, (source.name, call))
-            place = _Place(source, place.scope, calls, place.depth, inner)
+            call = Span(around.source, entry.key.span.start, entry.value.span.end)
+            calls = (*around.calls, (source.name, call))
+            around = replace(around, source=source, calls=calls, inner=inner)
             own = overridden(self.expand(entries), own)
-        return self.state(name, own, place, begin=begin)
+        return self.state(name, own, around, begin=begin)
 
     def sub_script(
-        self, word: Word, place: _Place
+        self, word: Word, around: _Environment
     ) -> tuple[Source, Word, tuple[Entry, ...]] | None:
-        """The file of a sub-script, the name of its state, and the variables of that."""
-        key = (word.text, place.source.name)
+        """The source of a sub-script, the name of its state, and that state's fields."""
+        key = (word.text, around.source.name)
         if key not in self.sub_scripts:
-            source = self.library.script(word.text, place.source.name)
-            told = len(self.report)
+            source = self.library.script(word.text, around.source.name)
+            before = len(self.report)
             tree = self.library.parse(source, self.report) if source else None
-            broken = len(self.report) > told
+            broken = len(self.report) > before
             self.sub_scripts[key] = (source, tree, broken) if source else None
         found = self.sub_scripts[key]
         if found is None:
-            caller = place.source.name
+            caller = around.source.name
             searched = self.library.script_folders(caller)
             known = self.library.script_names(caller)
             self.report.append(script_not_found(word, searched, known))
             return None
         source, tree, broken = found
-        chain = [*place.calls, (source.name, word.span)]
-        if source.name == self.main or source.name in [name for name, _ in place.calls]:
+        chain = [*around.calls, (source.name, word.span)]
+        if source.name == self.main or source.name in [name for name, _ in around.calls]:
             self.report.append(recursive_include(chain))
             return None
-        self.sources.setdefault(id(source), source)
+        self.sources.setdefault(source)
         if tree is None:
             if not broken:
                 message = "the sub-script is empty"
@@ -359,62 +332,64 @@ class _Resolver:
         return None if found_state is None else (source, *found_state)
 
     def known_templates(self) -> tuple[Sequence[str], Sequence[str]]:
-        """Where templates are searched, and the names that are there; looked up once."""
+        """The folders of templates and the names in them, for messages."""
         if self.templates is None:
             self.templates = self.library.template_folders(), self.library.template_names()
         return self.templates
 
+    def state_type(self, name: str) -> StateType | None:
+        """The state type of that name, read from the library at its first use."""
+        if name not in self.types:
+            self.types[name] = find_state_type(name, self.library, self.report)
+        return self.types[name]
+
     def type_of(
-        self, name: Word, fields: Fields, role: str, place: _Place
+        self, name: Word, entries: Entries, role: str, around: _Environment
     ) -> tuple[StateType, str]:
-        """The state type a state names, and which variables of the schema are its own."""
-        entry = fields.get("template")
-        word = field_shapes.as_name(entry.value, self.report) if entry else None
+        """The state type of a state, and its owner in the schema."""
+        entry = entries.get("template")
+        word = as_name(entry.value, self.report) if entry else None
         if entry is None and role == "base":
             word = Word("Base", name.span)
         if entry is None and role != "base":
-            held = place.inner or name
-            calls = place.via if place.inner is not None else ()
+            held = around.inner or name
+            calls = around.via if around.inner is not None else ()
             related = tuple(Related(span=each, message=CALLED_HERE) for each in calls)
             whose = f"`{held.text}`"
             self.report.append(missing_variable(held.span, "template", whose, related))
-        nested = "StateMachine" if "states" in fields else "state"
+        nested = "StateMachine" if "states" in entries else "state"
         if word is None or not word.text:
             return StateType(name="", open=True), role or nested
         if not role and word.text in schema.CONTAINERS:
             return StateType(name=word.text, kind="container"), word.text
-        if word.text not in self.types:
-            self.types[word.text] = find_state_type(word.text, self.library, self.report)
-        found = self.types[word.text]
+        found = self.state_type(word.text)
         if found is None:
             searched, names = self.known_templates()
             known = [*names, *([] if role else schema.CONTAINERS)]
             self.report.append(template_not_found(word, searched, known))
             return StateType(name=word.text, open=True), role or nested
-        # Some meta blocks call a state a container.
+        # Some meta blocks of SMACHA name the kind `container` for a state.
         is_container = found.kind == "container" and not found.prints_itself
         return found, role or ("StateMachine" if is_container else nested)
 
 
-def _unknown(name: Word, fields: Fields, place: _Place) -> State:
-    """What stands for a state that cannot be read: its name is a target, no more is known."""
-    kept = {key: entry for key, entry in fields.items() if key == "transitions"}
-    return State(
-        name=name, owner="state", type=StateType(name="", open=True), fields=kept, via=place.via
-    )
+def _unknown(name: Word, transitions: Pairs, around: _Environment) -> State:
+    """The state for one that cannot be read: only its name and its transitions are known."""
+    type_ = StateType(name="", open=True)
+    return State(name=name, owner="state", type=type_, transitions=transitions, via=around.via)
 
 
 def sub_script_state(
     tree: Tree, call: Word, report: Report
 ) -> tuple[Word, tuple[Entry, ...]] | None:
-    """The name and the variables of the one state that a sub-script holds, as written (SM014)."""
+    """The name and the fields of the one state of a sub-script; SM014 if it is not one state."""
     start = Span(tree.span.source, tree.span.start, tree.span.start + 1)
     if isinstance(tree, Map):
         message = "a sub-script is a list with one state; this is a mapping"
         report.append(bad_sub_script(start, message, call.span))
         return None
     if not isinstance(tree, Seq) or len(tree.items) != 1:
-        count = f"{len(tree.items)} states" if isinstance(tree, Seq) else field_shapes.kind_of(tree)
+        count = f"{len(tree.items)} states" if isinstance(tree, Seq) else kind_of(tree)
         message = f"a sub-script is a list with one state; this is {count}"
         report.append(bad_sub_script(start, message, call.span))
         return None
@@ -434,7 +409,7 @@ def sub_script_state(
 
 
 def overridden(inner: dict[str, Entry], call: dict[str, Entry]) -> dict[str, Entry]:
-    """The variables of a sub-script under those of its call: mappings merge, the rest replaces."""
+    """The fields of a sub-script and its call: mappings are merged, other fields replaced."""
     merged = dict(inner)
     for key, entry in call.items():
         below = merged.get(key)

@@ -2,38 +2,29 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
 from dataclasses import replace
 
 from smachac.diagnostics.diagnostic import Related, Report, did_you_mean
 from smachac.diagnostics.source import Source, Word
-from smachac.frontend import field_shapes
 from smachac.frontend.errors.references import bad_robot
 from smachac.frontend.loader import Library
-from smachac.frontend.state_types import StateType
+from smachac.frontend.script import State
 from smachac.frontend.urdf import XACRO, UrdfError, read_urdf
-from smachac.frontend.yaml_tree import Entry, Scalar
+from smachac.ir.nodes import StateType
 from smachac.ir.robot import BUILT_IN, DEFAULTS, Robot
 
 SUFFIXES = (".urdf", ".xml", ".xacro")
-"""What tells a file from a name."""
+"""The endings of files; any other text is the name of a robot."""
 
 
-def robot_of(
-    fields: Mapping[str, Entry], base: StateType, source: Source, library: Library, report: Report
-) -> Robot | None:
-    """The robot of a script; None where it names none, or a thing that only its base knows."""
-    frames = field_shapes.as_names(fields["frames"].value, []) if "frames" in fields else ()
-    found = BUILT_IN.get(DEFAULTS.get(base.name, ""))
-    value = fields["robot"].value if "robot" in fields else None
-    if value is not None:
-        given = value.value if isinstance(value, Scalar) else None
-        found = None
-        if isinstance(given, str):
-            found = _named(Word(given, value.span), base, source, library, report)
+def robot_of(base: State, source: Source, library: Library, report: Report) -> Robot | None:
+    """The robot of a script; None if it names none, or one that only its base type defines."""
+    found = BUILT_IN.get(DEFAULTS.get(base.type.name, ""))
+    if base.robot is not None:
+        found = _named(base.robot, base.type, source, library, report)
     if found is None:
         return None
-    return replace(found, added=frozenset(word.text for word in frames))
+    return replace(found, added=frozenset(word.text for word in base.frames))
 
 
 def _named(

@@ -1,18 +1,18 @@
-"""The variables of a script, as data: long name, short name, shape, and who may have them."""
+"""The schema of scripts: each field with its long name, short name, shape and owners."""
 
 from __future__ import annotations
 
 from typing import NamedTuple
 
 CONTAINERS = ("StateMachine", "Sequence", "Concurrence", "Iterator")
-"""The built-in container types, by the name of their template."""
+"""The names of the built-in container types."""
 
 _ALL = "base StateMachine Sequence Concurrence Iterator state"
 _CONTAINERS = " ".join(CONTAINERS)
 
 
-class Variable(NamedTuple):
-    """A variable of the schema; `shape` names a reader of shapes.py."""
+class Field(NamedTuple):
+    """A field of a script or state; `shape` names its reader in fields.py."""
 
     name: str
     short: str
@@ -20,11 +20,11 @@ class Variable(NamedTuple):
     owners: frozenset[str]
 
 
-def _row(name: str, short: str, shape: str, owners: str) -> Variable:
-    return Variable(name, short, shape, frozenset(owners.split()))
+def _row(name: str, short: str, shape: str, owners: str) -> Field:
+    return Field(name, short, shape, frozenset(owners.split()))
 
 
-VARIABLES: dict[str, Variable] = {
+VARIABLES: dict[str, Field] = {
     row.name: row
     for row in (
         _row("name", "n", "name", "base"),
@@ -37,7 +37,7 @@ VARIABLES: dict[str, Variable] = {
         _row("template", "T", "name", _ALL),
         _row("doc", "", "text", _ALL),
         _row("params", "p", "map", _ALL),
-        _row("userdata", "ud", "map", _ALL),
+        _row("userdata", "ud", "userdata", _ALL),
         _row("input_keys", "ik", "keys", _ALL),
         _row("output_keys", "ok", "keys", _ALL),
         _row("outcomes", "o", "names", _ALL),
@@ -65,9 +65,9 @@ VARIABLES: dict[str, Variable] = {
         _row("script", "S", "name", ""),
     )
 }
-"""By long name. `timeout`, `retry` and `for_each` are read by sugar.py; `callbacks` and
-`default_outcome` on a leaf are its state type's; `script` makes a state item a call, which may have
-every variable of what it calls."""
+"""The fields by long name. sugar.py reads `timeout`, `retry` and `for_each`. `callbacks`, and
+`default_outcome` of a leaf, are variables of the state type. A state with `script` is a call of a
+sub-script and may have each field that the called state may have."""
 
 LONG: dict[str, str] = {row.short: row.name for row in VARIABLES.values() if row.short}
 """Short name to long name."""
@@ -80,9 +80,9 @@ REQUIRED: dict[str, tuple[str, ...]] = {
     "Iterator": ("it", "states"),
     "state": (),
 }
-"""What each owner must have."""
+"""The required fields of each owner."""
 
 
 def names_for(owner: str) -> list[str]:
-    """The long names an owner may have, in the order of the schema."""
+    """The long names of the fields of an owner, in the order of the schema."""
     return [row.name for row in VARIABLES.values() if owner in row.owners]

@@ -1,6 +1,6 @@
-"""What a template of SMACHA's kind tells of its state type: its meta block, and its text.
+"""State types of SMACHA's templates, from the meta block and from the text of the template.
 
-Meta blocks served SMACHA's help only and many are loose; what cannot be read is left out.
+SMACHA uses meta blocks only for its help, and many are malformed; such parts are left out.
 """
 
 from __future__ import annotations
@@ -8,13 +8,10 @@ from __future__ import annotations
 import re
 from collections.abc import Callable
 from dataclasses import dataclass
-from typing import Literal
 
 from smachac.diagnostics.source import Source, Span, Word
 from smachac.frontend.yaml_tree import Map, Scalar, Seq, Tree, parse
-from smachac.ir.nodes import Outcome
-
-Kind = Literal["base", "container", "state"]
+from smachac.ir.nodes import Outcome, StateKind
 
 _META = re.compile(r"\{%-?\s*block\s+meta\s*-?%\}(.*?)\{%-?\s*endblock", re.DOTALL)
 _BODY = re.compile(r"\{%[-+]?\s*block\s+body\b")
@@ -32,9 +29,9 @@ _QUOTED = re.compile(r"([\"'])(\w+)\1")
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Meta:
-    """A meta block. Of keys it has those that are always there: others the script lists."""
+    """A meta block. Its keys are those that every such state has; scripts may add others."""
 
-    kind: Kind
+    kind: StateKind
     doc: str
     variables: tuple[str, ...]
     input_keys: tuple[Word, ...]
@@ -43,7 +40,7 @@ class Meta:
 
 
 def has_body(template: Source) -> bool:
-    """Whether a template prints its state itself."""
+    """Whether a template has a block `body`: it prints the code that adds the state."""
     return _BODY.search(template.text) is not None
 
 
@@ -54,7 +51,7 @@ def extended(template: Source) -> str:
 
 
 def read_meta(template: Source) -> Meta | None:
-    """The meta block of a template, where it has one that can be read."""
+    """The meta block of a template; None if there is none or it is no YAML."""
     found = _META.search(template.text)
     tree = parse(Source(template.name, found.group(1)), []) if found else None
     if not isinstance(tree, Map):
@@ -73,14 +70,14 @@ def read_meta(template: Source) -> Meta | None:
         outcomes=tuple(
             Outcome(name=word.text, span=word.span)
             for word in listed("outcomes", optional=True)
-            if re.fullmatch(r"\w+", word.text)  # some say in words that the script gives them
+            if re.fullmatch(r"\w+", word.text)  # some have a sentence in place of the names
         ),
     )
 
 
-def _kind(word: str, template: Source) -> Kind:
-    """The kind that a meta block names. SMACHA calls some of its states containers, though they do
-    not print what stands in them."""
+def _kind(word: str, template: Source) -> StateKind:
+    """The kind that a meta block names. Some states of SMACHA have the kind `container`, although
+    they print no children: their kind is `state`."""
     alone = has_body(template) and _AROUND.search(template.text) is None
     return (
         "base" if word == "Base" else "container" if word == "Container" and not alone else "state"
@@ -88,8 +85,8 @@ def _kind(word: str, template: Source) -> Kind:
 
 
 def outcomes_in_code(template: Source) -> tuple[Outcome, ...]:
-    """The outcomes of the one class of states in a template, where they are all written out, not as
-    what a parameter is by default."""
+    """The outcomes of the only class of states in a template, if they are constants and not the
+    default value of a parameter."""
     found = list(_OUTCOMES.finditer(template.text))
     if found and _DEFAULT.search(template.text, 0, found[0].start()) is not None:
         return ()
@@ -107,7 +104,7 @@ def outcomes_in_code(template: Source) -> tuple[Outcome, ...]:
 
 
 def keys_in_code(template: Source) -> tuple[tuple[str, ...], tuple[str, ...]]:
-    """The keys that the code of a template reads and writes, as far as it lists them."""
+    """The input and output keys that the code of a template lists."""
     found: dict[str, dict[str, None]] = {"input": {}, "output": {}}
     for keys in _KEYS.finditer(template.text):
         for word in _QUOTED.finditer(keys.group(2)):
@@ -116,8 +113,8 @@ def keys_in_code(template: Source) -> tuple[tuple[str, ...], tuple[str, ...]]:
 
 
 def words_used(file: str, find: Callable[[str], Source | None]) -> frozenset[str] | None:
-    """The words that the tags of a template use, and of all that it brings in; None where some of
-    it is not known."""
+    """The words in the tags of a template and of the templates that it includes; None if one of
+    these is not found."""
     words: set[str] = set()
     todo, seen = [file], {file}
     while todo:
@@ -145,8 +142,8 @@ def _text(tree: Map, name: str) -> str:
 
 
 def _names(tree: Tree, optional: bool) -> list[Word]:
-    """Names in a meta list: `- x: {...}` or `- x`; optional ones stand in a nested list, and under
-    the name of a group stands the list of its names."""
+    """The names in a meta list: `- x: {...}` or `- x`; a nested list has optional names, and the
+    value of a group's name is the list of its names."""
     if isinstance(tree, Scalar):
         return [Word(str(tree.value), tree.span)] if tree.value is not None else []
     if isinstance(tree, Map):

@@ -1,111 +1,56 @@
-"""State types: what is known of a state without looking into its code.
+"""Readers of state types: from an interface or a template to a StateType.
 
-An interface is one YAML file `Name.yml`, or the `{% block meta %}` of a template as SMACHA has it.
-A template without either makes an open type: anything goes, nothing is known.
+An interface is a YAML file `Name.yml`, or the `{% block meta %}` of a template of SMACHA's kind. A
+template without either is an open type: any field is accepted, and nothing is known of it.
 """
 
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import dataclass, field, replace
+from dataclasses import replace
 from keyword import iskeyword
+from typing import TypeAlias
 
 from smachac.diagnostics.diagnostic import Report, did_you_mean
 from smachac.diagnostics.source import Source, Span, Word
-from smachac.frontend import field_shapes, smacha_meta
+from smachac.frontend import smacha_meta
 from smachac.frontend.errors.script import unknown_variable, wrong_shape
+from smachac.frontend.fields import as_flag, as_map, as_name, as_names, as_text
 from smachac.frontend.loader import Library
 from smachac.frontend.python_source import python_body
 from smachac.frontend.type_annotations import read_type
-from smachac.frontend.yaml_tree import Map, Scalar, Tree
-from smachac.ir.nodes import Body, Key, Outcome
+from smachac.frontend.values import as_value
+from smachac.frontend.yaml_tree import Entry, Map, Scalar, Tree
+from smachac.ir.nodes import Body, Key, Outcome, StateKind, StateType, VariableType
 from smachac.ir.types import ANY, Type, optional
 
-Kind = smacha_meta.Kind
-
-
-@dataclass(frozen=True, slots=True, kw_only=True)
-class VariableType:
-    """A variable of a state type. Without a default it is required.
-
-    `keys` says that it lists keys of the userdata, "input" or "output" ones.
-    """
-
-    name: str
-    type: Type = ANY
-    required: bool = True
-    doc: str = ""
-    default: Tree | None = None
-    keys: str = ""
-
-
-@dataclass(frozen=True, slots=True, kw_only=True)
-class StateType:
-    """The interface of a state.
-
-    `given` names what the script itself supplies, beyond what stands here: any of
-    "variables", "input_keys", "output_keys", "outcomes" (`"*": {}` in the interface).
-    `code` maps a language to a template's file name or to a reference to code, `classes` a language
-    to a class of it, in words: `header`, `class`, `with`. `body` is what the template of Python
-    does. `open`: there is no interface. `prints_itself`: the template of Python adds the
-    state to its container, as those of SMACHA do. `optional` are outcomes that a state has only
-    where its container or a transition of it speaks of them. `used` are the words that a template
-    uses where any variable may be given; None where that is not known.
-    """
-
-    name: str
-    kind: Kind = "state"
-    doc: str = ""
-    variables: Mapping[str, VariableType] = field(default_factory=dict)
-    input_keys: tuple[Key, ...] = ()
-    output_keys: tuple[Key, ...] = ()
-    outcomes: tuple[Outcome, ...] = ()
-    writes: tuple[tuple[str, tuple[str, ...]], ...] = ()
-    given: frozenset[str] = frozenset()
-    claims: tuple[str, ...] = ()
-    blocking: bool = False
-    code: Mapping[str, str] = field(default_factory=dict)
-    classes: Mapping[str, Mapping[str, str]] = field(default_factory=dict)
-    body: Body | None = None
-    open: bool = False
-    prints_itself: bool = False
-    optional: frozenset[str] = frozenset()
-    used: frozenset[str] | None = None
-
-
 TEMPLATE_FILES = ("{}.tpl.py", "{}.tpl")
-"""Names under which the template of a state type may be found, for targets that print Python."""
+"""The file names that the Python template of a state type may have."""
 
 CLASS_FIELDS = ("header", "class", "with")
-"""What is said of code that is a class: where it is, its name, what it is made with."""
+"""The fields of code that is a class: its file, its name, the parameter of its constructor."""
 
 _ALL_GIVEN = frozenset(["variables", "input_keys", "output_keys", "outcomes"])
 
-_FIELDS: dict[str, str] = {
-    "name": "name",
-    "doc": "text",
-    "kind": "name",
-    "variables": "map",
-    "input_keys": "map",
-    "output_keys": "map",
-    "outcomes": "map",
-    "writes": "map",
-    "claims": "names",
-    "blocking": "flag",
-    "code": "map",
-}
+_SECTIONS = ("variables", "input_keys", "output_keys", "outcomes", "writes", "code")
+"""The fields of an interface that are mappings of names."""
+
+_FIELDS = ("name", "doc", "kind", *_SECTIONS[:5], "claims", "blocking", "code")
+"""All fields of an interface."""
+
+Section: TypeAlias = tuple[Entry, ...]
 
 
 def find_state_type(name: str, library: Library, report: Report) -> StateType | None:
-    """The state type of that name, or None where there is neither interface nor template.
+    """The state type of that name; None if there is neither interface nor template.
 
-    What the user has of that name, be it a template alone, comes before what we have.
+    The user's interface or template of that name hides a built-in one.
     """
     return _find(name, library, report, frozenset())
 
 
 def _find(name: str, library: Library, report: Report, below: frozenset[str]) -> StateType | None:
-    """`below`: the types whose templates extend this one."""
+    """As `find_state_type`; `below` are the types whose templates extend this one."""
     if name in below:
         return None
     for find in (library.own_template, library.template):
@@ -127,42 +72,40 @@ def _read_interface(name: str, source: Source, library: Library, report: Report)
         report.append(wrong_shape(span, f"the interface of `{name}` must be a mapping"))
         return StateType(name=name, open=True)
     fields: dict[str, Tree] = {}
-    for entry in field_shapes.as_map(tree, report):
+    for entry in as_map(tree, report):
         key = str(entry.key.value)
-        if key not in _FIELDS:
+        if key in _FIELDS:
+            fields[key] = entry.value
+        else:
             word = Word(key, entry.key.span)
             report.append(unknown_variable(word, "an interface", _FIELDS))
-            continue
-        field_shapes.READERS[_FIELDS[key]](entry.value, report)
-        fields[key] = entry.value
-    code = _code(fields.get("code"), report)
-    given = frozenset(
-        part
-        for part in ("variables", "input_keys", "output_keys", "outcomes")
-        if isinstance(tree := fields.get(part), Map) and tree.get("*") is not None
-    )
-    optional = _optional_outcomes(fields.get("outcomes"))
+    if "name" in fields:
+        as_name(fields["name"], report)
+    sections = {key: as_map(fields[key], report) if key in fields else () for key in _SECTIONS}
+    code = _code(sections["code"], report)
+    parts = ("variables", "input_keys", "output_keys", "outcomes")
+    given = frozenset(part for part in parts if _is_starred(sections[part]))
+    optional = _optional_outcomes(sections["outcomes"])
+    claims = as_names(fields["claims"], report) if "claims" in fields else ()
     return StateType(
         name=name,
         kind=_kind(fields.get("kind"), report),
-        doc=field_shapes.as_text(fields["doc"], []) if "doc" in fields else "",
+        doc=as_text(fields["doc"], report) if "doc" in fields else "",
         variables={
-            key: _variable(key, value, report) for key, value in _declared(fields.get("variables"))
+            key: _variable(key, value, report) for key, value in _declared(sections["variables"])
         },
-        input_keys=_keys(fields.get("input_keys"), report),
-        output_keys=_keys(fields.get("output_keys"), report),
+        input_keys=_keys(sections["input_keys"], report),
+        output_keys=_keys(sections["output_keys"], report),
         outcomes=tuple(
             Outcome(name=key, doc=_doc(value), span=value.span)
-            for key, value in _declared(fields.get("outcomes"))
+            for key, value in _declared(sections["outcomes"])
         ),
-        writes=_writes(fields, report),
+        writes=_writes(sections, report),
         given=given,
-        claims=tuple(word.text for word in field_shapes.as_names(fields["claims"], []))
-        if "claims" in fields
-        else (),
-        blocking="blocking" in fields and field_shapes.as_flag(fields["blocking"], []),
+        claims=tuple(word.text for word in claims),
+        blocking="blocking" in fields and as_flag(fields["blocking"], report),
         code=code,
-        classes=_classes(fields.get("code"), report),
+        classes=_classes(sections["code"], report),
         body=_body(
             name, code.get("python", ""), given | ({"optional"} if optional else set()), library
         ),
@@ -171,13 +114,13 @@ def _read_interface(name: str, source: Source, library: Library, report: Report)
     )
 
 
-def _optional_outcomes(tree: Tree | None) -> frozenset[str]:
+def _optional_outcomes(section: Section) -> frozenset[str]:
     """Outcomes with `optional: true`."""
-    return frozenset(key for key, value in _declared(tree) if _text(value, "optional") == "True")
+    return frozenset(key for key, value in _declared(section) if _text(value, "optional") == "True")
 
 
 def _body(name: str, file: str, given: frozenset[str], library: Library) -> Body | None:
-    """What the template of Python does, without what hangs on what the script declares."""
+    """The analysis of the Python template, without parts that depend on what a script declares."""
     template = library.template(file) if file and ":" not in file else None
     body = python_body(template, name) if template is not None else None
     if body is None:
@@ -190,10 +133,10 @@ def _body(name: str, file: str, given: frozenset[str], library: Library) -> Body
     )
 
 
-def _code(tree: Tree | None, report: Report) -> dict[str, str]:
-    """The code by language; what is to be imported has to have a name that can be."""
+def _code(section: Section, report: Report) -> dict[str, str]:
+    """The code by language; a reference to a class of Python must be importable."""
     found = {}
-    for language, value in _declared(tree):
+    for language, value in _declared(section):
         if isinstance(value, Scalar):
             found[language] = str(value.value)
             names = found[language].replace(":", ".", 1).split(".")
@@ -204,10 +147,10 @@ def _code(tree: Tree | None, report: Report) -> dict[str, str]:
     return found
 
 
-def _classes(tree: Tree | None, report: Report) -> dict[str, dict[str, str]]:
-    """The classes by language, where the code is said by a mapping."""
+def _classes(section: Section, report: Report) -> dict[str, dict[str, str]]:
+    """The classes by language, for code that is a mapping."""
     found = {}
-    for language, value in _declared(tree):
+    for language, value in _declared(section):
         if not isinstance(value, Map):
             continue
         given: dict[str, str] = {}
@@ -229,12 +172,12 @@ def _classes(tree: Tree | None, report: Report) -> dict[str, dict[str, str]]:
 
 
 def _is_name(word: str) -> bool:
-    """Whether programs can have such a name."""
+    """Whether a word is a name in Python."""
     return word.isidentifier() and not iskeyword(word)
 
 
-def _kind(tree: Tree | None, report: Report) -> Kind:
-    word = field_shapes.as_name(tree, []) if tree is not None else None
+def _kind(tree: Tree | None, report: Report) -> StateKind:
+    word = as_name(tree, report) if tree is not None else None
     match word.text if word is not None else "state":
         case "base":
             return "base"
@@ -247,11 +190,14 @@ def _kind(tree: Tree | None, report: Report) -> Kind:
     return "state"
 
 
-def _declared(tree: Tree | None) -> list[tuple[str, Tree]]:
-    """The named entries of an interface's mapping, without the star."""
-    if not isinstance(tree, Map):
-        return []
-    return [(str(entry.key.value), entry.value) for entry in tree.entries if entry.key.value != "*"]
+def _declared(section: Section) -> list[tuple[str, Tree]]:
+    """The named entries of a section, without `"*"`."""
+    return [(str(entry.key.value), entry.value) for entry in section if entry.key.value != "*"]
+
+
+def _is_starred(section: Section) -> bool:
+    """Whether a section has `"*"`: scripts add to it."""
+    return any(entry.key.value == "*" for entry in section)
 
 
 def _text(tree: Tree, name: str) -> str:
@@ -265,7 +211,7 @@ def _doc(tree: Tree) -> str:
 
 
 def _type(tree: Tree | None, report: Report) -> Type:
-    """The type an interface names: `{type: T}` or `T` alone. One it cannot read is `any`."""
+    """The type that an interface gives: `{type: T}` or `T`; `any` if it cannot be read."""
     if isinstance(tree, Map):
         entry = tree.get("type")
         tree = entry.value if entry else None
@@ -278,43 +224,44 @@ def _variable(name: str, tree: Tree, report: Report) -> VariableType:
     type_ = _type(tree, report)
     default = tree.get("default") if isinstance(tree, Map) else None
     if default is not None and isinstance(default.value, Scalar) and default.value.value is None:
-        # Whoever may leave it out may also write `null`.
+        # A variable that may be left out may also be `null`.
         type_ = optional(type_)
     return VariableType(
         name=name,
         type=type_,
         required=default is None,
         doc=_doc(tree),
-        default=default.value if default is not None else None,
+        default=as_value(default.value) if default is not None else None,
         keys=_text(tree, "keys"),
     )
 
 
-def _keys(tree: Tree | None, report: Report) -> tuple[Key, ...]:
+def _keys(section: Section, report: Report) -> tuple[Key, ...]:
     return tuple(
         Key(name=key, type=_type(value, report), doc=_doc(value), span=value.span)
-        for key, value in _declared(tree)
+        for key, value in _declared(section)
     )
 
 
-def _writes(fields: Mapping[str, Tree], report: Report) -> tuple[tuple[str, tuple[str, ...]], ...]:
-    """The outputs by the outcome they come with; what the interface does not declare is told."""
+def _writes(
+    sections: Mapping[str, Section], report: Report
+) -> tuple[tuple[str, tuple[str, ...]], ...]:
+    """The outputs of each outcome. Names that the interface does not declare are reported."""
     found = []
-    for entry in field_shapes.as_map(fields["writes"], []) if "writes" in fields else ():
+    for entry in sections["writes"]:
         outcome = Word(str(entry.key.value), entry.key.span)
-        keys = field_shapes.as_names(entry.value, report)
-        _declares(fields, "outcomes", "outcome", outcome, report)
+        keys = as_names(entry.value, report)
+        _check_declared(sections["outcomes"], "outcome", outcome, report)
         for word in keys:
-            _declares(fields, "output_keys", "output key", word, report)
+            _check_declared(sections["output_keys"], "output key", word, report)
         if keys:
             found.append((outcome.text, tuple(word.text for word in keys)))
     return tuple(found)
 
 
-def _declares(fields: Mapping[str, Tree], part: str, what: str, word: Word, report: Report) -> None:
-    tree = fields.get(part)
-    names = [name for name, _ in _declared(tree)]
-    if word.text in names or (isinstance(tree, Map) and tree.get("*") is not None):
+def _check_declared(section: Section, what: str, word: Word, report: Report) -> None:
+    names = [name for name, _ in _declared(section)]
+    if word.text in names or _is_starred(section):
         return
     message = f"`{word.text}` is no {what} of the interface"
     report.append(wrong_shape(word.span, message, did_you_mean(word.text, names)))
@@ -337,8 +284,8 @@ def _prints_itself(file: str, library: Library) -> bool:
 def _read_template(
     name: str, template: Source, file: str, library: Library, below: frozenset[str]
 ) -> StateType:
-    """The state type of a template in SMACHA's style: its meta block, else the type it extends,
-    else an open one. Outcomes that neither tells may stand in its code."""
+    """The state type of a template of SMACHA's kind: that of its meta block, else that of the type
+    it extends, else an open one. Outcomes that are in neither are taken from its code."""
     whole = _prints_itself(file, library)
     found = smacha_meta.read_meta(template)
     extended = smacha_meta.extended(template).partition(".")[0]

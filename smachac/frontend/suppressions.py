@@ -16,11 +16,11 @@ from smachac.frontend.errors.suppressions import (
     unknown_code,
     vain_allowance,
 )
-from smachac.frontend.yaml_tree import Entry, Map, Scalar, Seq, Tree, parse
+from smachac.frontend.yaml_tree import Map, Scalar, Seq, Tree, parse
 
 
 class Allowance(NamedTuple):
-    """One code of a comment `# smachac: allow SM201 reason`, and the line that it speaks of."""
+    """One code of a comment `# smachac: allow SM201 reason`, and the line that it applies to."""
 
     code: str
     span: Span
@@ -28,7 +28,7 @@ class Allowance(NamedTuple):
 
 
 Parser = Callable[[Source, Report], "Tree | None"]
-"""As `syntax.parse`, which may remember what it parsed."""
+"""`yaml_tree.parse`, or a function that returns a tree it made before."""
 
 MARK = "smachac:"
 _COMMENT = re.compile(
@@ -40,16 +40,16 @@ _CODE = re.compile(r"[^\S\n]*(?P<code>[A-Za-z]{2}\d+)\b[,:]?")
 def allowances(
     source: Source, report: Report, codes: Mapping[str, Code], parse: Parser = parse
 ) -> list[Allowance]:
-    """The allowances of a text, in its order. SM022 for a comment that does not say all it must, or
-    names a code that is not one of `codes`.
+    """The allowances of a text, in its order. SM022 for a comment that is incomplete or names a
+    code that is not in `codes`.
 
-    A comment behind something speaks of its own line, one alone of the next line that holds more
-    than a comment.
+    A comment at the end of a line applies to that line, a comment on a line of its own to the next
+    line that has more than a comment.
     """
     if MARK not in source.text:
         return []
     hidden = _scalars(source, parse)
-    speaks = _lines_spoken_of(source)
+    applied = _lines_applied_to(source)
     found: list[Allowance] = []
     for comment in _COMMENT.finditer(source.text):
         before = bisect_right(hidden, (comment.start(), len(source.text)))
@@ -60,24 +60,24 @@ def allowances(
             word = Word(comment["verb"], Span(source, *comment.span("verb")))
             report.append(bad_comment(word))
             continue
-        found += _codes(source, comment, span, speaks, report, codes)
+        found += _codes(source, comment, span, applied, report, codes)
     return found
 
 
 def _scalars(source: Source, parse: Parser) -> list[tuple[int, int]]:
-    """The stretches of a YAML text, in order, that hold values: `#` begins no comment there."""
+    """The ranges of a YAML text, in order, that are values: `#` starts no comment in them."""
     tree = parse(source, []) if not source.name.endswith(".py") else None
     return sorted((span.start, span.end) for span in _spans(tree)) if tree is not None else []
 
 
 def _spans(tree: Tree) -> Iterator[Span]:
-    todo: list[Tree | Entry] = [tree]
-    seen: set[int] = set()
+    todo: list[Tree] = [tree]
+    seen: set[tuple[type, Span]] = set()
     while todo:
         here = todo.pop()
-        if id(here) in seen:  # an alias stands for what was met before
+        if (type(here), here.span) in seen:  # an alias is the tree of its anchor
             continue
-        seen.add(id(here))
+        seen.add((type(here), here.span))
         match here:
             case Scalar():
                 if MARK in here.span.text:
@@ -92,13 +92,13 @@ def _codes(
     source: Source,
     comment: re.Match[str],
     span: Span,
-    speaks: Sequence[int],
+    applied: Sequence[int],
     report: Report,
     known: Mapping[str, Code],
 ) -> Iterator[Allowance]:
     line, column = source.position(comment.start())
     if not source.line(line)[: column - 1].strip():
-        line = speaks[line]
+        line = applied[line]
     at, end = comment.start("rest"), comment.end("rest")
     words = []
     while (word := _CODE.match(source.text, at, end)) is not None:
@@ -113,30 +113,30 @@ def _codes(
         report.append(unfounded_allowance(span, named=bool(words)))
 
 
-def _lines_spoken_of(source: Source) -> list[int]:
-    """For each line, counted from 1, the next one that holds more than a comment."""
+def _lines_applied_to(source: Source) -> list[int]:
+    """For each line, counted from 1, the next line that has more than a comment."""
     last = len(source.line_starts)
-    speaks = [last] * (last + 1)
+    applied = [last] * (last + 1)
     for number in range(last - 1, 0, -1):
         text = source.line(number + 1).strip()
-        speaks[number] = number + 1 if text and text[0] != "#" else speaks[number + 1]
-    return speaks
+        applied[number] = number + 1 if text and text[0] != "#" else applied[number + 1]
+    return applied
 
 
 def heeded(report: Report, given: Sequence[Allowance]) -> tuple[Report, set[Allowance]]:
-    """A report without what is allowed, and the allowances that were of use.
+    """Apply suppressions: the findings that are left, and the allowances that were used.
 
-    A firm finding stays; the allowance that was to silence it is reported (SM022).
+    A firm finding cannot be suppressed; an allowance for one is reported (SM022).
     """
     if not given:
         return report, set()
-    by_place: dict[tuple[int, int, str], Allowance] = {}
+    by_line: dict[tuple[Source, int, str], Allowance] = {}
     for allowance in given:
-        place = (id(allowance.span.source), allowance.line, allowance.code)
-        by_place.setdefault(place, allowance)
+        line = (allowance.span.source, allowance.line, allowance.code)
+        by_line.setdefault(line, allowance)
     kept, used = [], set()
     for item in report:
-        fit = by_place.get((id(item.span.source), item.span.line, item.code.code))
+        fit = by_line.get((item.span.source, item.span.line, item.code.code))
         if fit is not None and fit not in used and is_firm(item):
             kept.append(vain_allowance(Word(fit.code, fit.span)))
         if fit is not None:

@@ -1,4 +1,4 @@
-"""The types a script names: `types:` aliases filled in, mistakes told."""
+"""The types in a script: aliases of `types:` are replaced, and errors are reported (SM017)."""
 
 from __future__ import annotations
 
@@ -7,21 +7,21 @@ from collections.abc import Iterator, Mapping
 
 from smachac.diagnostics.diagnostic import Report
 from smachac.diagnostics.source import Word
-from smachac.frontend import field_shapes
 from smachac.frontend.errors.script import bad_type
+from smachac.frontend.fields import as_pairs, is_long_form
 from smachac.frontend.yaml_tree import Entry, Map, Scalar, Tree, is_known_wrong
 from smachac.ir.types import WORDS, Type, parse_type, unknown_words
 
 Aliases = Mapping[str, str]
-"""Name to the type it stands for, itself without aliases."""
+"""The type of each alias, itself without aliases."""
 
 _WORD = re.compile(r"[A-Za-z_]\w*")
 
 
 def read_aliases(tree: Tree, report: Report) -> Aliases:
-    """The `types:` of a script; an alias may use those above it."""
+    """The `types:` of a script; an alias may use earlier ones."""
     found: dict[str, str] = {}
-    for key, value in field_shapes.as_pairs(tree, report):
+    for key, value in as_pairs(tree, report):
         text = _filled(value.text, found)
         if read_type(text, value, report) is not None:
             found[key.text] = text
@@ -29,7 +29,7 @@ def read_aliases(tree: Tree, report: Report) -> Aliases:
 
 
 def read_type(text: str, place: Word, report: Report) -> Type | None:
-    """The type that a text names, told where it names none (SM017). `place` is as written."""
+    """The type that a text names; SM017 at `place` if it names none."""
     type_ = parse_type(text)
     if type_ is None:
         report.append(bad_type(place, WORDS))
@@ -41,7 +41,7 @@ def read_type(text: str, place: Word, report: Report) -> Type | None:
 
 
 def typed(key: str, entry: Entry, aliases: Aliases, report: Report) -> Entry:
-    """A variable of a state with the types in it spelt out; other variables as they are."""
+    """A field with the aliases in its types replaced; any other field as it is."""
     value = entry.value
     if not isinstance(value, Map) or key not in ("input_keys", "output_keys", "userdata"):
         return entry
@@ -58,7 +58,7 @@ def typed(key: str, entry: Entry, aliases: Aliases, report: Report) -> Entry:
 
 
 def type_words(key: str, tree: Tree) -> Iterator[str]:
-    """The words of the types that a variable of a state names."""
+    """The words in the types of a field."""
     if not isinstance(tree, Map) or key not in ("input_keys", "output_keys", "userdata"):
         return
     for item in tree.entries:
@@ -72,18 +72,10 @@ def type_words(key: str, tree: Tree) -> Iterator[str]:
 
 
 def words_of(tree: Tree) -> list[str]:
-    """The words of a type as it is written."""
+    """The words of a type, as written."""
     if isinstance(tree, Scalar) and isinstance(tree.value, str):
         return _WORD.findall(tree.value)
     return []
-
-
-def is_long_form(tree: Tree) -> bool:
-    """Whether userdata is written `{type: T, value: V}`."""
-    if not isinstance(tree, Map):
-        return False
-    keys = {entry.key.value for entry in tree.entries}
-    return "value" in keys and keys <= {"type", "value", "doc"}
 
 
 def _long_form(tree: Tree, aliases: Aliases, report: Report) -> Tree:

@@ -1,4 +1,4 @@
-"""What a script declares and never uses: params that no look-up asks for, aliases of types."""
+"""Unused declarations of a script: params that no look-up names, aliases that no type has."""
 
 from __future__ import annotations
 
@@ -9,58 +9,57 @@ from typing import TypeAlias
 from smachac.diagnostics.diagnostic import Report, has_errors
 from smachac.diagnostics.source import Span, Word
 from smachac.frontend.params import is_flat, look_up_word
-from smachac.frontend.state_types import StateType
 from smachac.frontend.type_annotations import type_words, words_of
 from smachac.frontend.yaml_tree import Entry, Map, Scalar, Tree
-from smachac.ir.nodes import Unused
+from smachac.ir.nodes import StateType, Unused
 
 Mark: TypeAlias = tuple[int, int, int]
-"""A moment while a script is read: how much was met by then, and told."""
+"""A position in the reading of a script: look-ups, unknown uses and diagnostics so far."""
 
 
 @dataclass(slots=True)
 class Uses:
-    """What was met of a script so far, in order; `found` is what was declared in vain.
+    """The uses of params and aliases in the part of a script read so far.
 
-    `asked` are the names that look-ups ask for. `unknown`: how often something was met that may
-    use any param, such as a template of SMACHA's.
+    `looked_up` are the names in look-ups, in order. `unknown` counts the states that may use any
+    param, such as those of SMACHA's templates. `found` are the unused declarations.
     """
 
-    asked: list[str] = field(default_factory=list)
+    looked_up: list[str] = field(default_factory=list)
     types: set[str] = field(default_factory=set)
     unknown: int = 0
     found: list[Unused] = field(default_factory=list)
 
     def value(self, key: str, tree: Tree) -> None:
-        """A variable of a state."""
+        """Collect the uses in a field of a state."""
         if not is_flat(tree):
-            self.asked += _names(tree)
+            self.looked_up += _names(tree)
         self.types.update(type_words(key, tree))
 
     def type(self, type_: StateType) -> None:
-        """The type of a state."""
+        """Count a state whose type may use any param."""
         self.unknown += type_.open or "variables" in type_.given
 
     def mark(self, report: Report) -> Mark:
-        """Where a state with params begins."""
-        return len(self.asked), self.unknown, len(report)
+        """The current position: a state begins."""
+        return len(self.looked_up), self.unknown, len(report)
 
     def params(self, own: Entry | None, begin: Mark, report: Report, via: tuple[Span, ...]) -> None:
-        """Judge the params of a state that has been read. Where anything is unknown, or wrong,
-        nothing is said of them."""
+        """Find the unused params of a state whose reading ends here. With errors or unknown uses in
+        the state no param counts as unused."""
         if own is None or not isinstance(own.value, Map):
             return
-        asked, unknown, told = begin
-        if self.unknown > unknown or has_errors(report[told:]):
+        looked_up, unknown, before = begin
+        if self.unknown > unknown or has_errors(report[before:]):
             return
-        used = set(self.asked[asked:])
+        used = set(self.looked_up[looked_up:])
         for entry in own.value.entries:
             name = str(entry.key.value)
             if name not in used:
                 self.found.append(Unused("param", Word(name, entry.key.span), via))
 
     def aliases(self, tree: Tree, report: Report) -> None:
-        """Judge the types of a script that has been read."""
+        """Find the unused aliases of a script, after it was read."""
         if has_errors(report) or not isinstance(tree, Map):
             return
         inside = {word for entry in tree.entries for word in words_of(entry.value)}
@@ -69,16 +68,16 @@ class Uses:
             if name not in self.types | inside:
                 self.found.append(Unused("type", Word(name, entry.key.span)))
 
-    def judged(self, report: Report) -> tuple[Unused, ...]:
-        """What was declared in vain; not what a look-up asks for in the wrong place (SM015)."""
+    def unused(self, report: Report) -> tuple[Unused, ...]:
+        """The unused declarations, without params that a look-up out of scope names (SM015)."""
         if not has_errors(report):
             return tuple(self.found)
-        asked = set(self.asked)
-        return tuple(each for each in self.found if each.word.text not in asked)
+        names = set(self.looked_up)
+        return tuple(each for each in self.found if each.word.text not in names)
 
 
 def _names(tree: Tree) -> Iterator[str]:
-    """The params that a value asks for, at any depth."""
+    """The params that the look-ups in a value name, at any depth."""
     todo: list[Tree] = [tree]
     while todo:
         each = todo.pop()

@@ -1,7 +1,7 @@
-"""URDF, the robot description of ROS: joints with their limits, and links, out of its XML.
+"""URDF, the robot description of ROS: joints with their limits, and links, from XML.
 
-Read with expat alone. A document type, which can make a small file a huge one or name other files,
-is refused; size, depth and number of elements are bounded.
+The parser is expat. A document type is refused, because it can expand a small file to a huge one or
+refer to other files; size, depth and number of elements are bounded.
 """
 
 from __future__ import annotations
@@ -23,13 +23,13 @@ MOVING = TURNING | {"prismatic", "planar", "floating"}
 KINDS = MOVING | {"fixed"}
 
 Stretch = tuple[Joint, ...]
-"""Joints one behind the other."""
+"""Joints in a row, each a child of the one before."""
 
 XACRO = "it is a macro file: expand it with `xacro`, and name what comes out"
 
 
 class UrdfError(Exception):
-    """A text that describes no robot: what is wrong, where, and a line of help."""
+    """A text that describes no robot: the message, its span, and a line of help."""
 
     def __init__(self, message: str, span: Span, help: str | None = None) -> None:
         super().__init__(message)
@@ -38,7 +38,7 @@ class UrdfError(Exception):
 
 @dataclass(slots=True)
 class _Link:
-    """A joint as the file has it; `follows`: another one moves it (`<mimic>`)."""
+    """A joint of the file; `follows`: another joint moves it (`<mimic>`)."""
 
     joint: Joint
     kind: str
@@ -69,7 +69,7 @@ def read_urdf(source: Source) -> Robot:
 
 
 class _Reader:
-    """Takes the elements as expat meets them."""
+    """Receives the elements from expat."""
 
     def __init__(self, source: Source) -> None:
         self.source = source
@@ -105,7 +105,7 @@ class _Reader:
         return Span(self.source, start, min(start + 1, len(self.source.text)))
 
     def here(self, name: str = "") -> Span:
-        """Where the parser is: the name, if it stands in this tag."""
+        """The span of the name in the current tag, or of the tag."""
         span = self.at(self._parser.CurrentLineNumber, self._parser.CurrentColumnNumber)
         text = self.source.text
         end = text.find(">", span.start)
@@ -171,7 +171,7 @@ class _Reader:
 
 
 def _limited(link: _Link) -> Joint:
-    """The joint with its limits; what is left out of a `<limit>` is 0, as the format says."""
+    """The joint with its limits; a missing attribute of `<limit>` is 0, by the URDF standard."""
     joint = link.joint
     if link.kind != "revolute":
         return joint
@@ -197,8 +197,8 @@ def _limited(link: _Link) -> Joint:
 
 
 def _limbs(joints: Mapping[str, _Link], links: Iterable[str]) -> tuple[tuple[Joint, ...], ...]:
-    """The joints that a list of angles may be of: each stretch of the tree without a fork, alone
-    or after those that lead to it from the base. Joints that follow others are not commanded.
+    """The groups of joints that a list of angles may command: each part of the tree without a fork,
+    alone or with the joints from the base to it. Joints that follow others are left out.
     """
     below: dict[str, list[_Link]] = {}
     for each in joints.values():
@@ -230,7 +230,7 @@ def _commanded(link: _Link) -> tuple[Joint, ...]:
 
 
 def _moving(joints: Iterable[_Link]) -> set[str]:
-    """The links that move, or have links below that do, against what they hang on."""
+    """The links that move relative to their parent, or that have such links below them."""
     above = {each.child: each for each in joints}
     found: set[str] = set()
     for each in above.values():

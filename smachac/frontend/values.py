@@ -1,4 +1,4 @@
-"""Trees to the values of the IR: literals, lists, mappings, expressions."""
+"""Values: from a tree to a value of the graph (literal, list, mapping, expression)."""
 
 from __future__ import annotations
 
@@ -10,7 +10,7 @@ from smachac.ir.nodes import Data, Expression, Struct, Value
 
 
 def as_value(tree: Tree, *, code: bool = False) -> Value:
-    """The value of a tree. `code`: every string in it is an expression, as in `callbacks`."""
+    """The value of a tree. `code`: every string is an expression, as in `callbacks`."""
     return Value(data=_data(tree, code), span=tree.span)
 
 
@@ -39,7 +39,7 @@ def _data(tree: Tree, code: bool, ticks: bool = False) -> Data:
 
 
 def _is_python(text: str) -> bool:
-    """Whether a text is an expression of Python; SMACHA printed what has a call in it as code."""
+    """Whether a text is an expression of Python; SMACHA prints a text with a call as code."""
     try:
         ast.parse(text.strip(), mode="eval")
     except (SyntaxError, ValueError, RecursionError, MemoryError):
@@ -48,7 +48,7 @@ def _is_python(text: str) -> bool:
 
 
 def _scalar(tree: Scalar, code: bool) -> Data:
-    """Backticks mark an expression; in plain scalars so does the look of a call or dotted name."""
+    """An expression is a text in backticks, or a plain scalar that is a call or a dotted name."""
     value = tree.value
     if not isinstance(value, str):
         return value

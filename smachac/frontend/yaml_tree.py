@@ -1,8 +1,8 @@
-"""YAML text to a tree whose every part knows its place.
+"""The YAML parser: from a text to a tree in which every node has a span.
 
-Events come from ruamel.yaml's C parser where it is installed (the extra `fast`) and from its pure
-parser elsewhere, with the same tree: scalars are resolved here, by the YAML 1.2 core schema, so
-`on`, `yes` and `010` mean what they mean there. Duplicate keys stay in the tree.
+Events come from ruamel.yaml's C parser if it is installed (the extra `fast`), else from its pure
+Python parser; the tree is the same. Scalars are resolved here, by the YAML 1.2 core schema: `on`
+and `yes` are strings, `010` is ten. Duplicate keys stay in the tree.
 """
 
 from __future__ import annotations
@@ -21,17 +21,17 @@ from smachac.frontend.errors.script import duplicate_key, too_big, wrong_shape, 
 MAX_CHARACTERS = 10_000_000
 MAX_DEPTH = 3_500
 MAX_ALIASED = 100_000
-"""Limits of a script: its length, its nesting, and the nodes that its aliases stand for, or as many
-as it has characters."""
+"""Limits of a script: its length, its nesting, and the nodes that its aliases add (more are allowed
+if the script has more characters)."""
 
 MOST_REREAD, DEEPEST_REREAD = 50_000, 100
-"""Characters and levels of the largest text that the pure parser reads only to word an error: it
-takes 7 us a character there, and 2 ms a bracket."""
+"""The largest text, in characters and levels, that the pure parser reads again to word an error: it
+takes 7 us for a character and 2 ms for a bracket."""
 
 
 @dataclass(frozen=True, slots=True)
 class Scalar:
-    """A single value. `plain`: written without quotes, so it may be a name, look-up or code."""
+    """A single value. `plain`: without quotes, so that it may be a look-up or code."""
 
     value: bool | int | float | str | None
     plain: bool
@@ -40,19 +40,23 @@ class Scalar:
 
 @dataclass(frozen=True, slots=True)
 class Seq:
+    """A list."""
+
     items: tuple[Tree, ...]
     span: Span = field(compare=False)
 
 
 @dataclass(frozen=True, slots=True)
 class Entry:
+    """One key of a mapping with its value."""
+
     key: Scalar
     value: Tree
 
 
 @dataclass(frozen=True, slots=True)
 class Map:
-    """A mapping in the order of the text; of duplicate keys the first counts."""
+    """A mapping in the order of the text. The first of duplicate keys counts."""
 
     entries: tuple[Entry, ...]
     span: Span = field(compare=False)
@@ -68,9 +72,9 @@ Tree: TypeAlias = Scalar | Seq | Map
 
 
 def known_wrong(span: Span) -> Scalar:
-    """What stands for a value that was reported already, so that nobody reports it again.
+    """The scalar in place of a value that was reported, so that it is reported only once.
 
-    No text parses to it: nothing at all, unquoted, is None there.
+    No text parses to it: an empty plain scalar is None.
     """
     return Scalar("", True, span)
 
@@ -110,10 +114,10 @@ def _resolve(text: str) -> bool | int | float | str | None:
 
 
 def parse(source: Source, report: Report) -> Tree | None:
-    """The tree of a source, or None where there is none: empty text or text that is not YAML.
+    """The tree of a source; None if the text is empty or not YAML.
 
-    Problems: SM001 what the YAML parser says, SM002 duplicate keys, SM004 keys that are no
-    scalars, SM006 beyond the limits.
+    Reported are syntax errors (SM001), duplicate keys (SM002), keys that are no scalars (SM004) and
+    limits that are exceeded (SM006).
     """
     if len(source.text) >= MAX_CHARACTERS:
         span = Span(source, 0, 0)
@@ -140,7 +144,7 @@ def parse(source: Source, report: Report) -> Tree | None:
     return _build(source, report)
 
 
-# YAML 1.2.2, section 5.1: what is not printable.
+# The characters that are not printable: YAML 1.2.2, section 5.1.
 _UNPRINTABLE = re.compile(
     "[^\t\n\r\x20-\x7e\x85\xa0-\ud7ff\ue000-\ufefe\uff00-\ufffd\U00010000-\U0010ffff]"
 )
@@ -153,7 +157,7 @@ def _pure_events(text: str) -> Iterator[Any]:
 
 
 def _c_events(text: str) -> Iterator[Any]:
-    """The events of the C parser; none at all where it is not installed."""
+    """The events of the C parser; none if it is not installed."""
     try:
         from ruamel.yaml.cyaml import CParser  # type: ignore[attr-defined]
     except ImportError:
@@ -162,12 +166,12 @@ def _c_events(text: str) -> Iterator[Any]:
 
 
 def events(text: str) -> Iterator[Any]:
-    """The events of a text that `parse` has made a tree of."""
+    """The events of a text that `parse` accepts."""
     from ruamel.yaml.error import YAMLError
 
     try:
         found = list(_c_events(text))
-    except YAMLError:  # there are texts that the pure parser alone can read
+    except YAMLError:  # some texts only the pure parser can read
         found = []
     return iter(found) if found else _pure_events(text)
 
@@ -176,7 +180,7 @@ def _build(source: Source, report: Report) -> Tree | None:
     from ruamel.yaml.error import YAMLError
 
     collecting = gc.isenabled()
-    gc.disable()  # a large tree makes the collector run again and again over live data
+    gc.disable()  # or it runs many times over the growing tree
     try:
         for events in (_c_events, _pure_events):
             found: Report = []
@@ -185,7 +189,7 @@ def _build(source: Source, report: Report) -> Tree | None:
                 builder.drive(events(source.text))
             except YAMLError as error:
                 if events is _c_events and _is_reread(source.text, builder.deepest):
-                    continue  # the words of such a syntax error are the pure parser's everywhere
+                    continue  # the message is always that of the pure parser
                 builder.root = None
                 found.append(_syntax_error(source, error))
             except _BeyondLimitError:
@@ -200,7 +204,7 @@ def _build(source: Source, report: Report) -> Tree | None:
 
 
 def _is_reread(text: str, deepest: int) -> bool:
-    """Whether a text is small enough for the pure parser, in length, levels and open brackets."""
+    """Whether a text is small enough for the pure parser in length, levels and open brackets."""
     if len(text) > MOST_REREAD or deepest > DEEPEST_REREAD:
         return False
     depths = accumulate(1 if bracket in "[{" else -1 for bracket in _BRACKETS.findall(text))
@@ -208,7 +212,7 @@ def _is_reread(text: str, deepest: int) -> bool:
 
 
 def _syntax_error(source: Source, error: Any) -> Diagnostic:
-    """SM001 from what the parser raised: its words, and its place where it gives one."""
+    """SM001 with the message and the position of a parser's exception."""
     mark = getattr(error, "problem_mark", None) or getattr(error, "context_mark", None)
     at = min(mark.index, len(source.text)) if mark is not None else 0
     parts = [getattr(error, name, None) for name in ("problem", "context")]
@@ -220,7 +224,7 @@ def _syntax_error(source: Source, error: Any) -> Diagnostic:
 
 
 class _Open:
-    """A collection whose end has not come yet."""
+    """A collection that is being built."""
 
     __slots__ = ("anchor", "flow", "items", "mapping", "size", "start")
 
@@ -234,11 +238,11 @@ class _Open:
 
 
 class _BeyondLimitError(Exception):
-    """Parsing ended early; the reason is in the report."""
+    """A limit is exceeded and reported; parsing ends."""
 
 
 class _Builder:
-    """Builds one tree from events; the stack stands for recursion, so depth costs nothing."""
+    """Builds one tree from events, with a stack in place of recursion."""
 
     def __init__(self, source: Source, report: Report) -> None:
         self.source = source
@@ -280,7 +284,7 @@ class _Builder:
         text: str = event.value
         start, end = event.start_mark.index, event.end_mark.index
         plain = not event.style
-        if plain and start == end and not text:  # the parsers disagree on where nothing is
+        if plain and start == end and not text:  # positions of nothing differ between parsers
             start = end = self.end
         tag = event.tag
         if tag is not None and str(tag) not in ("tag:yaml.org,2002:str", "!"):
@@ -376,7 +380,7 @@ class _Builder:
         return tuple(entries)
 
     def _merge(self, value: Tree) -> Iterator[Entry]:
-        """What `<<` brings in: the entries of a mapping, or of a list of them."""
+        """The entries that `<<` adds: those of a mapping, or of each mapping in a list."""
         for item in value.items if isinstance(value, Seq) else (value,):
             if isinstance(item, Map):
                 yield from item.entries

@@ -7,6 +7,7 @@ a valid target stays in it and is found by a rule.
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from dataclasses import dataclass, field
 from typing import Literal, NamedTuple, NewType, TypeAlias
 
@@ -283,6 +284,55 @@ class Unused(NamedTuple):
     via: tuple[Span, ...] = ()
 
 
+StateKind = Literal["base", "container", "state"]
+"""What a state type describes: a script's base, a container or a state."""
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class VariableType:
+    """A variable of a state type. `keys`: it lists userdata keys, "input" or "output" ones."""
+
+    name: str
+    type: Type = ANY
+    required: bool = True
+    doc: str = ""
+    default: Value | None = None
+    keys: str = ""
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class StateType:
+    """The interface of all states with one `template`.
+
+    `given` names the parts that a script adds to the interface: any of "variables", "input_keys",
+    "output_keys", "outcomes" (`"*": {}` in the interface). `code` maps a language to the file of a
+    template or to a reference to code; `classes` maps a language to a class: `header`, `class`,
+    `with`. `body` is the analysed code of the Python template. `open`: there is no interface.
+    `prints_itself`: the Python template adds the state to its container, as SMACHA's templates do.
+    A state has an outcome of `optional` only if its container or one of its transitions names it.
+    `used` are the words in the template of a type that accepts any variable; None: not known.
+    """
+
+    name: str
+    kind: StateKind = "state"
+    doc: str = ""
+    variables: Mapping[str, VariableType] = field(default_factory=dict)
+    input_keys: tuple[Key, ...] = ()
+    output_keys: tuple[Key, ...] = ()
+    outcomes: tuple[Outcome, ...] = ()
+    writes: tuple[tuple[str, tuple[str, ...]], ...] = ()
+    given: frozenset[str] = frozenset()
+    claims: tuple[str, ...] = ()
+    blocking: bool = False
+    code: Mapping[str, str] = field(default_factory=dict)
+    classes: Mapping[str, Mapping[str, str]] = field(default_factory=dict)
+    body: Body | None = None
+    open: bool = False
+    prints_itself: bool = False
+    optional: frozenset[str] = frozenset()
+    used: frozenset[str] | None = None
+
+
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Machine:
     """A whole program: the outermost container and the data of the base template.
@@ -290,7 +340,8 @@ class Machine:
     `base` is the base template; `variables` are its variables (`node_name`, `function_name`,
     `manifest`, and those of its interface). `source` is the name of the script without its folder,
     `digest` a SHA-256 over the texts of the script and its sub-scripts. `robot` and `unused` are
-    used by rules only; no target prints them.
+    used by rules only; no target prints them. `state_types` are the interfaces of its states and of
+    its base, by name.
     """
 
     root: StateMachine
@@ -300,6 +351,7 @@ class Machine:
     digest: str = field(default="", compare=False)
     robot: Robot | None = field(default=None, compare=False, repr=False)
     unused: tuple[Unused, ...] = field(default=(), compare=False, repr=False)
+    state_types: Mapping[str, StateType] = field(default_factory=dict, compare=False, repr=False)
 
 
 Checked = NewType("Checked", Machine)

@@ -8,8 +8,7 @@ from collections.abc import Iterable, Sequence
 from typing import Any, NamedTuple
 
 from smachac.frontend import schema
-from smachac.frontend.state_types import StateType, VariableType
-from smachac.frontend.values import as_value
+from smachac.ir.nodes import StateType, VariableType
 from smachac.ir.types import ANY, Type
 
 CONTAINERS = {
@@ -147,7 +146,7 @@ def _default(variable: VariableType) -> str:
 def _data(variable: VariableType) -> Any:
     from smachac.interpreter.userdata import python_data, trace_value
 
-    return trace_value(python_data(as_value(variable.default).data)) if variable.default else None
+    return trace_value(python_data(variable.default.data)) if variable.default else None
 
 
 def _named(name: str, type_: Type) -> str:

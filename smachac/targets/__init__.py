@@ -13,8 +13,7 @@ from keyword import iskeyword
 
 from smachac.diagnostics.diagnostic import Report
 from smachac.frontend.loader import Library
-from smachac.frontend.state_types import StateType
-from smachac.ir.nodes import Checked, Machine
+from smachac.ir.nodes import Checked, Machine, StateType
 from smachac.targets.interface_check import Declared
 from smachac.version import __version__
 

@@ -13,8 +13,7 @@ from typing import Protocol
 from smachac.diagnostics.diagnostic import Diagnostic, Severity
 from smachac.diagnostics.source import Span, Word
 from smachac.frontend.loader import Library
-from smachac.frontend.state_types import StateType, find_state_type
-from smachac.ir.nodes import Leaf, Machine
+from smachac.ir.nodes import Leaf, Machine, StateType
 from smachac.ir.traversal import walk
 from smachac.targets.errors import interfaces_differ, stale_code
 
@@ -83,7 +82,7 @@ def own_types(machine: Machine, library: Library) -> Iterator[tuple[Leaf, StateT
         if isinstance(node, Leaf) and node.type not in seen:
             seen.add(node.type)
             if library.own_template(f"{node.type}.yml") is not None:
-                type_ = find_state_type(node.type, library, [])
+                type_ = machine.state_types.get(node.type)
                 if type_ is not None and not type_.open:
                     yield node, type_
 

@@ -16,6 +16,7 @@ from smachac.frontend.files import disk_library
 from smachac.ir.nodes import Checked, Leaf, Machine, Outcome, StateMachine
 from smachac.report.state_types import CONTAINERS
 from smachac.targets import BuildContext, load_target
+from tests.support.typed_machines import with_state_types
 
 
 @pytest.fixture
@@ -215,7 +216,8 @@ def test_the_languages_of_a_type_are_those_that_print_it(
             name="sm", type="Base", outcomes=DONE, children=(state,), initial="A", span=NOWHERE
         )
         report: Report = []
-        target.emit(Checked(Machine(root=root)), BuildContext(library=library), report)
+        machine = with_state_types(Machine(root=root), library)
+        target.emit(Checked(machine), BuildContext(library=library), report)
         if any("has no code" in item.finding.message for item in report):
             refused.append(each["name"])
     assert [one["name"] for one in states if target_name not in one["languages"]] == refused

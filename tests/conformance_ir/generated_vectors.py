@@ -23,6 +23,7 @@ from smachac.targets.python import TARGET
 from tests.conformance import vector_leaf, vector_replay
 from tests.conformance_ir.ir_vectors import data_of, leaves_of, machine_of
 from tests.support.silent_smach import silent_smach
+from tests.support.typed_machines import with_state_types
 
 Json = Any
 
@@ -77,8 +78,9 @@ def module_of(case: Json) -> str:
     """The text of the generated module."""
     machine = machine_of(case)
     root: Any = _with_scripts(machine.root, "", leaves_of(case))
+    typed = with_state_types(replace(machine, root=root), LIBRARY)
     report: list[Any] = []
-    files = build(Checked(replace(machine, root=root)), TARGET, LIBRARY, report)
+    files = build(Checked(typed), TARGET, LIBRARY, report)
     assert report == []
     (text,) = files.values()
     return text

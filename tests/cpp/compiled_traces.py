@@ -15,6 +15,7 @@ from smachac.frontend.loader import Library
 from smachac.ir.nodes import Checked, Machine
 from smachac.targets.cpp import TARGET
 from tests.cpp.compilers import Compiler
+from tests.support.typed_machines import with_state_types
 
 ROOT = Path(__file__).parents[2]
 LIBRARY = disk_library(ROOT / "main.yml", [])
@@ -78,7 +79,7 @@ def named(machine: Machine, name: str) -> Machine:
 def header(machine: Machine, library: Library = LIBRARY) -> str | None:
     """The header of a machine, or None where C++ cannot say it."""
     report: Report = []
-    files = build(Checked(machine), TARGET, library, report)
+    files = build(Checked(with_state_types(machine, library)), TARGET, library, report)
     assert {item.code.code for item in report} <= {"SM601", "SM602"}
     return next(iter(files.values()), None)
 

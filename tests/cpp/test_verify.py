@@ -10,7 +10,6 @@ from pathlib import Path
 import pytest
 
 from smachac.commands.cli import main
-from smachac.frontend.loader import Library
 from smachac.targets.cpp.header import Header, header_of
 from smachac.targets.cpp.plan import Plan
 from smachac.verify.players import cpp
@@ -103,8 +102,8 @@ def test_a_wrong_header_is_found(
     script.write_text(ROUNDS, "utf-8")
     changed = []
 
-    def broken(planned: Plan, library: Library) -> Header:
-        header = header_of(planned, library)
+    def broken(planned: Plan) -> Header:
+        header = header_of(planned)
         changed.append(break_(header.text) != header.text)
         return header._replace(text=break_(header.text))
 

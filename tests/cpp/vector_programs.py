@@ -19,7 +19,6 @@ from smachac.diagnostics.source import NOWHERE
 from smachac.driver import build
 from smachac.frontend.files import disk_library
 from smachac.frontend.loader import memory_library
-from smachac.frontend.state_types import find_state_type
 from smachac.interpreter.userdata import UserdataError
 from smachac.ir import nodes
 from smachac.ir.nodes import Checked, Key, Leaf, Machine, Node, Outcome, Preset, StateMachine
@@ -33,6 +32,7 @@ from smachac.targets.cpp.types import cpp_literal, cpp_type
 from smachac.targets.cpp.user_classes import interface_hash
 from tests.conformance_ir.ir_vectors import Replay, data_of, leaves_of, machine_of
 from tests.cpp.compilers import Compiler
+from tests.support.typed_machines import with_state_types
 
 Json = Any
 
@@ -78,14 +78,14 @@ def _part(case: Json, name: str, typed: bool) -> Part | list[str]:
             case, path, leaf, within.keys if loose else {}
         )
     library = memory_library(files, BUILT_IN)
+    typed_machine = with_state_types(machine, library)
     report: Report = []
-    texts = build(Checked(machine), TARGET, library, report)
+    texts = build(Checked(typed_machine), TARGET, library, report)
     if report:
         return [item.finding.message for item in report]
     classes = []
     for path, leaf in leaves.items():
-        type_ = find_state_type(leaf.type, library, [])
-        assert type_ is not None
+        type_ = typed_machine.state_types[leaf.type]
         classes.append(_class(type_, f"{name}/root{path}"))
     asked = str(bool(case.get("preempt_before"))).lower()
     told = "\n".join(_told(machine, scopes))

@@ -22,6 +22,7 @@ from smachac.runtime.tracing.compare import compare
 from smachac.targets.python import TARGET
 from tests.strategies.full_machines import busy_machines
 from tests.support.silent_smach import silent_smach
+from tests.support.typed_machines import with_state_types
 
 ROOT = Path(__file__).parents[2]
 LIBRARY = disk_library(ROOT / "main.yml", [])
@@ -39,7 +40,8 @@ def of_generated(
 ) -> list[Event]:
     """The trace of the generated program; `asked`: the visit in which the machine is to stop."""
     report: list[Any] = []
-    ((name, text),) = build(Checked(machine), TARGET, library, report).items()
+    typed = with_state_types(machine, library)
+    ((name, text),) = build(Checked(typed), TARGET, library, report).items()
     assert report == []
     module: dict[str, Any] = {"__name__": "generated"}
     exec(compile(text, name, "exec"), module)

@@ -17,6 +17,7 @@ from smachac.verify import verify
 from smachac.verify.coverage import Coverage
 from smachac.verify.players.python import player
 from tests.strategies.full_machines import busy_machines
+from tests.support.typed_machines import with_state_types
 
 ROOT = Path(__file__).parents[2]
 SLOW = list(HealthCheck)
@@ -28,8 +29,9 @@ LIBRARY = disk_library(ROOT / "main.yml", [])
 @given(busy_machines())
 def test_random_machines_agree(drawn: tuple[Machine, tuple[str, int]]) -> None:
     machine, _ = drawn
+    typed = with_state_types(machine, LIBRARY)
     report: list[Any] = []
-    ((name, text),) = build(Checked(machine), TARGET, LIBRARY, report).items()
+    ((name, text),) = build(Checked(typed), TARGET, LIBRARY, report).items()
     played = player(name, text, machine, folder=ROOT)
     verdict = verify(machine, {"python": played}, script="main.yml", most=40)
     assert verdict.disagreements == []

@@ -11,8 +11,7 @@ from __future__ import annotations
 
 from smachac.diagnostics.diagnostic import Report, in_order
 from smachac.frontend.loader import Library
-from smachac.frontend.state_types import StateType
-from smachac.ir.nodes import Checked
+from smachac.ir.nodes import Checked, StateType
 from smachac.targets import BuildContext, Files, Target, stem
 from smachac.targets.cpp.builtin_states import is_built_in
 from smachac.targets.cpp.class_reader import declared
@@ -26,7 +25,7 @@ def emit(machine: Checked, context: BuildContext, report: Report) -> Files:
     """The header of a machine, `<name>.hpp`, and the files of the options."""
     wanted = project(context.options)
     planned = plan(machine)
-    header = header_of(planned, context.library)
+    header = header_of(planned)
     report.extend(in_order(planned.report))
     if planned.report:
         return {}

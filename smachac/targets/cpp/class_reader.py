@@ -12,8 +12,7 @@ from dataclasses import dataclass
 
 from smachac.diagnostics.source import Source, Span, Word
 from smachac.frontend.loader import Library
-from smachac.frontend.state_types import StateType
-from smachac.ir.nodes import Key
+from smachac.ir.nodes import Key, StateType
 from smachac.targets.cpp.identifiers import identifier
 from smachac.targets.cpp.types import UnportableError
 from smachac.targets.cpp.user_classes import class_code, field_type, interface_hash

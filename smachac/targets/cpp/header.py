@@ -11,8 +11,6 @@ from collections.abc import Set as AbstractSet
 from dataclasses import dataclass, field
 from typing import NamedTuple
 
-from smachac.frontend.loader import Library
-from smachac.frontend.state_types import find_state_type
 from smachac.ir.nodes import Iterator, Leaf, Machine
 from smachac.ir.traversal import walk
 from smachac.targets import made_by
@@ -44,9 +42,9 @@ class Header(NamedTuple):
     classes: tuple[str, ...]
 
 
-def header_of(plan: Plan, library: Library) -> Header:
+def header_of(plan: Plan) -> Header:
     """The header of a machine. Everything that C++ cannot express is added to the plan's report."""
-    printing = _Printing(plan=plan, library=library)
+    printing = _Printing(plan=plan)
     blocks = [
         "\n".join(_container(printing, scope)) for scope in reversed(list(plan.scopes.values()))
     ]
@@ -73,7 +71,6 @@ class _Printing:
     """
 
     plan: Plan
-    library: Library
     classes: dict[str, ClassCode | None] = field(default_factory=dict)
     parameters: dict[str, tuple[str, ...]] = field(default_factory=dict)
     stopping: set[str] = field(default_factory=set)
@@ -82,7 +79,7 @@ class _Printing:
     def code_of(self, leaf: Leaf, scope: ContainerScope) -> LeafCode | None:
         """The code of a leaf; None if its type has no code for C++. Raises UnportableError."""
         if leaf.type not in self.classes:
-            type_ = find_state_type(leaf.type, self.library, [])
+            type_ = self.plan.machine.state_types.get(leaf.type)
             self.classes[leaf.type] = class_code(type_) if type_ is not None else None
         code = self.classes[leaf.type]
         if code is not None:

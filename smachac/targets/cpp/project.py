@@ -6,7 +6,6 @@ import re
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 
-from smachac.frontend.state_types import find_state_type
 from smachac.ir.nodes import Leaf, Machine
 from smachac.ir.traversal import walk
 from smachac.targets import BuildContext, Files, OptionError, made_by, stem
@@ -64,7 +63,7 @@ def runtime(machine: Machine, context: BuildContext) -> dict[str, str]:
     types = {node.type: None for _, node in walk(machine.root) if isinstance(node, Leaf)}
     included = {PROGRAM} if wanted.main else set()
     for name in types:
-        type_ = find_state_type(name, context.library, [])
+        type_ = machine.state_types.get(name)
         code = class_code(type_) if type_ is not None else None
         if code is not None:
             included.add(code.header)

@@ -5,9 +5,7 @@ from __future__ import annotations
 import zlib
 from dataclasses import dataclass
 
-from smachac.frontend.state_types import StateType
-from smachac.frontend.values import as_value
-from smachac.ir.nodes import Data, Key, Leaf
+from smachac.ir.nodes import Data, Key, Leaf, StateType
 from smachac.ir.traversal import PREEMPTED
 from smachac.ir.types import Type
 from smachac.targets.cpp.builtin_states import STOP, LeafCode
@@ -116,7 +114,7 @@ def _variables(type_: StateType, leaf: Leaf) -> list[str]:
     found = []
     for name, variable in type_.variables.items():
         if name not in set_ and variable.default is not None:
-            set_[name] = as_value(variable.default).data
+            set_[name] = variable.default.data
         try:
             found.append(cpp_value(set_.get(name), plain(variable.type)))
         except UnportableError as error:

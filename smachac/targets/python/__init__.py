@@ -10,8 +10,7 @@ from __future__ import annotations
 
 from smachac.diagnostics.diagnostic import Report
 from smachac.frontend.loader import Library
-from smachac.frontend.state_types import StateType
-from smachac.ir.nodes import Checked
+from smachac.ir.nodes import Checked, StateType
 from smachac.targets import BuildContext, Files, OptionError, Target, stem
 from smachac.targets.python.class_reader import declared
 

@@ -3,14 +3,13 @@
 from __future__ import annotations
 
 import ast
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Iterator, Mapping
 from dataclasses import dataclass, field, replace
 
 from smachac.diagnostics.diagnostic import Diagnostic, Related, Report
 from smachac.diagnostics.source import Span
 from smachac.frontend.errors.references import template_error
-from smachac.frontend.state_types import StateType
-from smachac.ir.nodes import Node
+from smachac.ir.nodes import Node, StateType
 from smachac.targets import BuildContext
 from smachac.targets.errors import defined_twice, python_2_code
 from smachac.targets.python import structure
@@ -58,6 +57,7 @@ class ModuleParts:
 
     blocks: Blocks
     context: BuildContext
+    state_types: Mapping[str, StateType]
     fresh: Callable[[str, bool], str] = field(default_factory=structure.variable_names)
     buffers: Buffers = field(default_factory=buffers)
     used: dict[str, UsedType] = field(default_factory=dict)

@@ -11,7 +11,7 @@ import re
 from smachac.diagnostics.source import Word
 from smachac.frontend.loader import Library
 from smachac.frontend.python_source import PythonText, python_text
-from smachac.frontend.state_types import StateType
+from smachac.ir.nodes import StateType
 from smachac.targets.interface_check import Declared, Words
 
 PARAMETERS = ("outcomes", "input_keys", "output_keys", "io_keys")

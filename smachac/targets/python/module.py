@@ -8,7 +8,6 @@ from textwrap import indent
 
 from smachac.diagnostics.diagnostic import Report, has_errors
 from smachac.frontend.errors.references import template_error
-from smachac.frontend.state_types import find_state_type
 from smachac.ir.nodes import Machine
 from smachac.ir.traversal import walk
 from smachac.targets import BuildContext, made_by
@@ -71,7 +70,7 @@ def module_text(machine: Machine, context: BuildContext, report: Report) -> str 
         for name in names
     )
     blocks = Blocks(context.library.template, filters=FILTERS, tests=TESTS, shown=shown)
-    module = ModuleParts(blocks, context)
+    module = ModuleParts(blocks, context, machine.state_types)
     text = None
     try:
         text = _text(machine, context, module)
@@ -161,7 +160,7 @@ def _title(machine: Machine) -> str:
 
 
 def _base_template(machine: Machine, context: BuildContext, module: ModuleParts) -> str:
-    type_ = find_state_type(machine.base, context.library, [])
+    type_ = machine.state_types.get(machine.base)
     file = type_.code.get("python", "") if type_ is not None else ""
     if not file or module.blocks.source(file) is None:
         message = f"the base `{machine.base}` has no template for Python"

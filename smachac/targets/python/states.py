@@ -9,9 +9,8 @@ from textwrap import indent
 
 from smachac.frontend import schema
 from smachac.frontend.errors.references import template_error
-from smachac.frontend.state_types import StateType, find_state_type
 from smachac.ir.leaf import CALLING, variable
-from smachac.ir.nodes import Container, Data, Iterator, Leaf, Node
+from smachac.ir.nodes import Container, Data, Iterator, Leaf, Node, StateType
 from smachac.ir.traversal import own_outcomes
 from smachac.targets.python import structure
 from smachac.targets.python.add_call import NotAddedError, adapted
@@ -130,7 +129,7 @@ def _own_template(node: Container, module: ModuleParts) -> str | None:
             return file
     if node.type in schema.CONTAINERS:
         return None
-    type_ = find_state_type(node.type, library, [])
+    type_ = module.state_types.get(node.type)
     return type_.code.get("python") if type_ is not None else None
 
 
@@ -261,8 +260,7 @@ def _used(leaf: Leaf, module: ModuleParts) -> UsedType:
     """The state type of a leaf; its first use adds the blocks of its template to the module."""
     if leaf.type in module.used:
         return module.used[leaf.type]
-    type_ = find_state_type(leaf.type, module.context.library, [])
-    type_ = type_ or StateType(name=leaf.type, open=True)
+    type_ = module.state_types.get(leaf.type) or StateType(name=leaf.type, open=True)
     code = type_.code.get("python", f"{leaf.type}.tpl.py")
     if ":" in code:
         path, _, class_name = code.partition(":")

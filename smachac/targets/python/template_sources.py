@@ -7,7 +7,7 @@ from collections.abc import Iterator
 
 from smachac.diagnostics.source import Source
 from smachac.frontend.loader import Library
-from smachac.frontend.state_types import TEMPLATE_FILES, find_state_type
+from smachac.frontend.state_types import TEMPLATE_FILES
 from smachac.ir.nodes import Machine
 from smachac.ir.traversal import walk
 
@@ -23,7 +23,7 @@ def template_sources(machine: Machine, library: Library) -> Iterator[tuple[str, 
     include or import: each once, with its file name."""
     types = {machine.base, *(node.type for _, node in walk(machine.root))}
     seen = set[str]()
-    todo = [file for name in sorted(types) for file in _files(name, library)]
+    todo = [file for name in sorted(types) for file in _files(name, machine)]
     while todo:
         file = todo.pop()
         source = library.template(file) if file not in seen else None
@@ -33,9 +33,9 @@ def template_sources(machine: Machine, library: Library) -> Iterator[tuple[str, 
             todo += _OTHERS.findall(source.text)
 
 
-def _files(name: str, library: Library) -> list[str]:
+def _files(name: str, machine: Machine) -> list[str]:
     """The file names that the template of a state type may have."""
-    type_ = find_state_type(name, library, []) if name else None
+    type_ = machine.state_types.get(name)
     code = [type_.code["python"]] if type_ is not None and "python" in type_.code else []
     return [*code, *(pattern.format(name) for pattern in TEMPLATE_FILES)]
 

@@ -15,7 +15,6 @@ from typing import NamedTuple
 
 import smachac
 from smachac.diagnostics.diagnostic import Report
-from smachac.frontend.loader import Library
 from smachac.ir.nodes import Machine
 from smachac.targets.cpp.plan import plan
 from smachac.targets.cpp.types import UnportableError
@@ -35,21 +34,21 @@ MOST_ERRORS = 5
 """Limit on the lines of compiler output that are shown."""
 
 
-def player(machine: Machine, library: Library, report: Report) -> Player:
+def player(machine: Machine, report: Report) -> Player:
     """A player of the generated C++ code. Adds to `report` what C++ cannot express of the machine.
 
     The program is compiled when the player receives test cases. Raises UnplayableError if there is
     no compiler, or if the compilation fails.
     """
     planned = plan(machine)
-    report.extend(Program(planned, library, ()).refused())
+    report.extend(Program(planned, ()).refused())
 
     def play(cases: Sequence[TestCase]) -> Iterator[list[Event]]:
         found = compilers()
         if not found:
             words = "no C++ compiler is here: install g++ or clang++, or the Python package ziglang"
             raise UnplayableError(words)
-        program = Program(planned, library, cases)
+        program = Program(planned, cases)
         try:
             text = program.text()
         except UnportableError as error:

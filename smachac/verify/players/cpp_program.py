@@ -14,10 +14,8 @@ from dataclasses import dataclass, field, replace
 from importlib import resources
 
 from smachac.diagnostics.diagnostic import Report, in_order
-from smachac.frontend.loader import Library, memory_library
-from smachac.frontend.state_types import find_state_type
 from smachac.interpreter.scenario import PlainStep
-from smachac.ir.nodes import Leaf, Node, Outcome, StateMachine
+from smachac.ir.nodes import Key, Leaf, Node, Outcome, StateMachine, StateType
 from smachac.ir.traversal import PREEMPTED, containers, own_outcomes, walk
 from smachac.ir.types import Type
 from smachac.targets.cpp.builtin_states import enumeration
@@ -38,9 +36,8 @@ class Program:
     the test case (play.hpp).
     """
 
-    def __init__(self, planned: Plan, library: Library, cases: Sequence[TestCase]) -> None:
+    def __init__(self, planned: Plan, cases: Sequence[TestCase]) -> None:
         self._plan = planned
-        self._library = library
         self._test_cases = cases
         self._stages = sorted({case.live for case in cases}, key=sorted)
         self._leaves: dict[str, CppLeaf] = {}
@@ -67,11 +64,10 @@ class Program:
 
     def text(self) -> str:
         """The source of the program."""
-        library = self._all()
         play = resources.files("smachac.verify").joinpath("play.hpp").read_text("utf-8")
-        leaves = [leaf.text(library, self._reads) for leaf in self._leaves.values()]
+        leaves = [leaf.text(self._reads) for leaf in self._leaves.values()]
         machines = [
-            f"namespace stage{number} {{\n{self._machine(live, library)[0]}\n}}"
+            f"namespace stage{number} {{\n{self._machine(live)[0]}\n}}"
             for number, live in enumerate(self._stages)
         ]
         spaces = ["namespace verify {", *leaves, "} // namespace verify"]
@@ -83,19 +79,13 @@ class Program:
         live = frozenset(
             path for path, leaf in self._leaves.items() if leaf.leaf.type in LIVE_TYPES
         )
-        return self._machine(live, self._all())[1]
-
-    def _all(self) -> Library:
-        """The library, extended by the interfaces of the leaves."""
-        made = self._leaves.values()
-        interfaces = {f"templates/{leaf.type}.yml": leaf.interface() for leaf in made}
-        return memory_library(interfaces, self._library)
+        return self._machine(live)[1]
 
     @property
     def _reads(self) -> Mapping[str, Sequence[str]]:
         return {path: keys for case in self._test_cases for path, keys in case.reads.items()}
 
-    def _machine(self, live: frozenset[str], library: Library) -> tuple[str, Report]:
+    def _machine(self, live: frozenset[str]) -> tuple[str, Report]:
         """The C++ code of the machine with scripted leaves, except for live ones, and what the
         target refuses."""
         made: dict[str, Node] = {}
@@ -107,12 +97,14 @@ class Program:
                 made[path] = replace(node, children=children)
         root = made[self._plan.machine.root.name]
         assert isinstance(root, StateMachine)
-        machine = replace(self._plan.machine, root=root)
+        types = {leaf.type: leaf.state_type() for leaf in self._leaves.values()}
+        types = {**self._plan.machine.state_types, **types}
+        machine = replace(self._plan.machine, root=root, state_types=types)
         scopes = {
             path: replace(self._plan.scopes[path], node=node) for path, node in containers(root)
         }
         planned = Plan(machine=machine, scopes=scopes, report=list(self._plan.report))
-        lines = header_of(planned, library).text.splitlines()
+        lines = header_of(planned).text.splitlines()
         text = "\n".join(line for line in lines if not line.startswith("#"))
         return text, in_order(planned.report)
 
@@ -185,24 +177,25 @@ class CppLeaf:
                     found["input_keys"][key.name] = type_
         return found
 
-    def interface(self) -> str:
-        """The interface of the state type, as JSON."""
-        keys = {
-            part: {name: str(type_) for name, type_ in types.items()}
-            for part, types in self.keys().items()
-        }
-        interface = {
-            **keys,
-            "outcomes": {name: {} for name in own_outcomes(self.scripted())},
-            "blocking": True,
-            "code": {"cpp": {"header": "smachac/smachac.hpp", "class": f"verify::{self.type}"}},
-        }
-        return json.dumps(interface)
+    def state_type(self) -> StateType:
+        """The interface of the class."""
+        span = self.leaf.span
+        inputs, outputs = (
+            tuple(Key(name=name, type=type_, span=span) for name, type_ in types.items())
+            for types in self.keys().values()
+        )
+        return StateType(
+            name=self.type,
+            input_keys=inputs,
+            output_keys=outputs,
+            outcomes=tuple(Outcome(name=name, span=span) for name in own_outcomes(self.scripted())),
+            blocking=True,
+            classes={"cpp": {"header": "smachac/smachac.hpp", "class": f"verify::{self.type}"}},
+        )
 
-    def text(self, library: Library, reads: Mapping[str, Sequence[str]]) -> str:
-        """The source of the class. The library contains its interface."""
-        keys, type_ = self.keys(), find_state_type(self.type, library, [])
-        assert type_ is not None
+    def text(self, reads: Mapping[str, Sequence[str]]) -> str:
+        """The source of the class."""
+        keys, number = self.keys(), interface_hash(self.state_type())
         ins = [f"{parameter_type(t)} {identifier(k)};" for k, t in keys["input_keys"].items()]
         outs = [
             f"smachac::Key<{cpp_type(t)}> &{identifier(k)};" for k, t in keys["output_keys"].items()
@@ -214,7 +207,7 @@ class CppLeaf:
             *enumeration(own_outcomes(self.scripted())),
             f"struct In {{ {' '.join(ins)} }};",
             f"struct Out {{ {' '.join(outs)} }};",
-            f"static constexpr std::uint32_t smachac_interface = {interface_hash(type_)};",
+            f"static constexpr std::uint32_t smachac_interface = {number};",
             f"Outcome execute({', '.join(parameters)}) {{",
             f"  const std::size_t step = next({self.number});",
             f"  [[maybe_unused]] constexpr smachac::Place place{spot};",

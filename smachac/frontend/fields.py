@@ -1,7 +1,6 @@
-"""The shapes that variables of a script have, and how each is read from a tree.
+"""Readers of fields: from a tree to a typed value, one reader for each shape of the schema.
 
-A reader reports what does not fit (SM004) and returns what does, so it can be used both to check
-and, with a report that nobody reads, to lower.
+A reader reports each part that does not have the shape (SM004, SM002) and returns the others.
 """
 
 from __future__ import annotations
@@ -11,7 +10,11 @@ from collections.abc import Callable
 from smachac.diagnostics.diagnostic import Report
 from smachac.diagnostics.source import Word
 from smachac.frontend.errors.script import duplicate_key, wrong_shape
+from smachac.frontend.script import Keys, Pairs, Rules
+from smachac.frontend.values import as_value
 from smachac.frontend.yaml_tree import Entry, Map, Scalar, Seq, Tree, is_known_wrong
+from smachac.ir.nodes import Preset
+from smachac.ir.types import ANY, parse_type
 
 _YAML_1_1_BOOLEANS = frozenset(
     form
@@ -21,7 +24,7 @@ _YAML_1_1_BOOLEANS = frozenset(
 
 
 def kind_of(tree: Tree) -> str:
-    """What a tree is, in words for messages."""
+    """The kind of a tree, as messages name it."""
     match tree:
         case Map():
             return "a mapping"
@@ -37,9 +40,17 @@ def kind_of(tree: Tree) -> str:
 
 
 def wrong(tree: Tree, wanted: str, report: Report, help: str | None = None) -> None:
+    """Report that a tree is not what is wanted, unless that was reported before."""
     if is_known_wrong(tree):
         return
     report.append(wrong_shape(tree.span, f"{wanted} is due here, not {kind_of(tree)}", help))
+
+
+def name_of(tree: Tree) -> Word | None:
+    """The name that a tree holds, without diagnostics; None for collections and null."""
+    if not isinstance(tree, Scalar) or tree.value is None:
+        return None
+    return Word(tree.value if isinstance(tree.value, str) else tree.span.text, tree.span)
 
 
 def as_name(tree: Tree, report: Report) -> Word | None:
@@ -100,7 +111,7 @@ def _names(key: Scalar, report: Report) -> bool:
     return as_name(key, report) is not None
 
 
-def as_pairs(tree: Tree, report: Report) -> tuple[tuple[Word, Word], ...]:
+def as_pairs(tree: Tree, report: Report) -> Pairs:
     """A mapping of names to names: transitions, remapping."""
     pairs = []
     for entry in tree.entries if isinstance(tree, Map) else as_map(tree, report):
@@ -111,24 +122,69 @@ def as_pairs(tree: Tree, report: Report) -> tuple[tuple[Word, Word], ...]:
     return tuple(pairs)
 
 
-def as_rules(tree: Tree, report: Report) -> tuple[tuple[Word, tuple[tuple[Word, Word], ...]], ...]:
+def pairs_of(tree: Tree) -> Pairs:
+    """The pairs of names that a tree holds, without diagnostics."""
+    entries = tree.entries if isinstance(tree, Map) else ()
+    pairs = ((name_of(entry.key), name_of(entry.value)) for entry in entries)
+    return tuple((key, value) for key, value in pairs if key and value)
+
+
+def as_rules(tree: Tree, report: Report) -> Rules:
     """A mapping of names to mappings of names to names: an outcome map."""
     rules = []
     for entry in as_map(tree, report):
-        key = as_name(entry.key, [])
+        key = name_of(entry.key)
         if key is not None:
             rules.append((key, as_pairs(entry.value, report)))
     return tuple(rules)
 
 
-def as_keys(tree: Tree, report: Report) -> tuple[tuple[Word, Word | None], ...]:
+def as_keys(tree: Tree, report: Report) -> Keys:
     """Keys with their types where given: `[a, b]` or `{a: float, b: Pose}`."""
     if isinstance(tree, Seq):
         return tuple((word, None) for word in as_names(tree, report))
     if isinstance(tree, Map):
-        return as_pairs(tree, report)
+        return tuple((key, parse_type(type_.text)) for key, type_ in as_pairs(tree, report))
     wrong(tree, "a list of keys", report, "write it as `[a, b]` or `{a: float}`")
     return ()
+
+
+def listed_keys(tree: Tree) -> Keys:
+    """The keys that a variable of a state type lists, without diagnostics: rules check the value
+    of the variable against its type."""
+    if isinstance(tree, Map):
+        return tuple((key, parse_type(type_.text)) for key, type_ in pairs_of(tree))
+    found: dict[str, Word] = {}
+    for item in tree.items if isinstance(tree, Seq) else ():
+        word = name_of(item)
+        if word is not None:
+            found.setdefault(word.text, word)
+    return tuple((word, None) for word in found.values())
+
+
+def as_presets(tree: Tree, report: Report) -> tuple[Preset, ...]:
+    """Userdata in the short form `key: value` or the long one `key: {type: T, value: V}`."""
+    return tuple([_preset(entry) for entry in as_map(tree, report)])
+
+
+def _preset(entry: Entry) -> Preset:
+    value, type_ = entry.value, ANY
+    if isinstance(value, Map) and is_long_form(value):
+        parts = {item.key.value: item.value for item in value.entries}
+        named = parts.get("type")
+        if isinstance(named, Scalar) and isinstance(named.value, str):
+            type_ = parse_type(named.value) or ANY
+        value = parts["value"]
+    key = entry.key
+    return Preset(key=str(key.value), value=as_value(value), type=type_, span=key.span)
+
+
+def is_long_form(tree: Tree) -> bool:
+    """Whether userdata is written `{type: T, value: V}`."""
+    if not isinstance(tree, Map):
+        return False
+    keys = {entry.key.value for entry in tree.entries}
+    return "value" in keys and keys <= {"type", "value", "doc"}
 
 
 def as_text(tree: Tree, report: Report) -> str:
@@ -140,15 +196,11 @@ def as_text(tree: Tree, report: Report) -> str:
 
 
 def as_flag(tree: Tree, report: Report) -> bool:
+    """`true` or `false`."""
     if isinstance(tree, Scalar) and isinstance(tree.value, bool):
         return tree.value
     wrong(tree, "`true` or `false`", report)
     return False
-
-
-def as_value(tree: Tree, report: Report) -> Tree:
-    """Anything."""
-    return tree
 
 
 READERS: dict[str, Callable[[Tree, Report], object]] = {
@@ -156,10 +208,11 @@ READERS: dict[str, Callable[[Tree, Report], object]] = {
     "names": as_names,
     "keys": as_keys,
     "map": as_map,
+    "userdata": as_presets,
     "pairs": as_pairs,
     "rules": as_rules,
     "text": as_text,
     "flag": as_flag,
-    "value": as_value,
+    "value": lambda tree, report: as_value(tree),
 }
 """Shape to reader."""

@@ -1,0 +1,128 @@
+"""A resolved script: its states with typed fields, and the state types that they have.
+
+`resolve` makes it of a tree and reports what is wrong with it; `lower` makes a machine of it.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass, field
+from typing import NamedTuple, TypeAlias
+
+from smachac.diagnostics.source import Source, Span, Word
+from smachac.ir.nodes import Preset, StateType, Unused, Value, Variable
+from smachac.ir.robot import Robot
+from smachac.ir.types import Type
+
+Pairs: TypeAlias = tuple[tuple[Word, Word], ...]
+"""Names with names: transitions, remapping."""
+
+Rules: TypeAlias = tuple[tuple[Word, Pairs], ...]
+"""An outcome map: each outcome with pairs of a state and its outcome."""
+
+Keys: TypeAlias = tuple[tuple[Word, Type | None], ...]
+"""Userdata keys, each with its type if the script gives one."""
+
+TIMEOUT, EXHAUSTED = "timeout", "exhausted"
+"""The outcomes that a time limit and retries add."""
+
+ERROR = "error"
+"""The name by which a script refers to the exceptions of a state without an outcome `error`."""
+
+TIMER = "SleepState"
+"""The state type that sugar uses to let time pass."""
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Timeout:
+    """A time limit in seconds. `span` is that of the field's name, in all sugar."""
+
+    seconds: float
+    span: Span
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Retry:
+    """At most `most` tries; another one follows, after `delay` seconds, an outcome in `on`."""
+
+    on: tuple[Word, ...]
+    most: int
+    delay: float
+    span: Span
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class ForEach:
+    """One run for each item of `items`, under the key `item`, while the outcome is in `on`."""
+
+    item: str
+    items: Value
+    on: tuple[Word, ...]
+    span: Span
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Sugar:
+    """The sugar of one state; desugar.py makes containers of it."""
+
+    timeout: Timeout | None = None
+    retry: Retry | None = None
+    for_each: ForEach | None = None
+
+
+class State(NamedTuple):
+    """A state or container of a script, or the script's base.
+
+    `owner` selects the fields of the schema: "base", a container type or "state". `via`: the calls
+    of sub-scripts that lead to it, outermost first. `variables` are those of the state type,
+    `written` all fields as a template of SMACHA's kind needs them. The other fields have the names
+    of the schema; None and empty values mean that the script has no such field, or a wrong one,
+    which was reported. A tuple, because a frozen dataclass of so many fields is slow to make.
+    """
+
+    name: Word
+    owner: str
+    type: StateType
+    via: tuple[Span, ...] = ()
+    states: tuple[State, ...] = ()
+    variables: tuple[Variable, ...] = ()
+    written: tuple[Variable, ...] = ()
+    sugar: Sugar = Sugar()
+    doc: str = ""
+    outcomes: tuple[Word, ...] = ()
+    input_keys: Keys = ()
+    output_keys: Keys = ()
+    userdata: tuple[Preset, ...] = ()
+    transitions: Pairs = ()
+    remapping: Pairs = ()
+    claims: tuple[Word, ...] = ()
+    initial: Word | None = None
+    forever: bool = False
+    on_error: Word | None = None
+    connector_outcome: Word | None = None
+    default_outcome: Word | None = None
+    outcome_map: Rules = ()
+    join: Word | None = None
+    it: Value | None = None
+    it_label: Word | None = None
+    exhausted_outcome: Word | None = None
+    loop_outcomes: tuple[Word, ...] = ()
+    break_outcomes: tuple[Word, ...] = ()
+    final_outcome_map: Pairs = ()
+    robot: Word | None = None
+    frames: tuple[Word, ...] = ()
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Script:
+    """A whole script.
+
+    `sources` are its text and those of its sub-scripts, in the order of use; `state_types` the
+    types that its states and their sugar have, by name.
+    """
+
+    base: State
+    sources: tuple[Source, ...]
+    robot: Robot | None = None
+    unused: tuple[Unused, ...] = ()
+    state_types: Mapping[str, StateType] = field(default_factory=dict)

@@ -1,0 +1,178 @@
+"""The fields of a state, each read once into a typed field.
+
+Reported are unknown fields (SM003), values of the wrong shape (SM004) and missing fields (SM005).
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Mapping
+from typing import Any
+
+from smachac.diagnostics.diagnostic import Related, Report, did_you_mean
+from smachac.diagnostics.source import Word
+from smachac.diagnostics.spelling import guesser_of
+from smachac.frontend import schema
+from smachac.frontend.errors.script import missing_variable, unknown_variable, wrong_shape
+from smachac.frontend.fields import READERS, listed_keys, name_of
+from smachac.frontend.params import Scope
+from smachac.frontend.script import Keys, State
+from smachac.frontend.sugar import NAMES, is_own, read_sugar
+from smachac.frontend.values import as_value, as_written
+from smachac.frontend.yaml_tree import Entry, is_known_wrong
+from smachac.ir.nodes import Key, Outcome, StateType, Struct, Value, Variable
+from smachac.ir.types import ANY
+
+Entries = Mapping[str, Entry]
+"""Fields by long name, as written; the entry's key is the name as written."""
+
+_FIELDS = frozenset(State._fields) & frozenset(schema.VARIABLES)
+"""The fields of the schema that a state keeps; tests compare their types with the readers'."""
+
+_READ_ELSEWHERE = frozenset(["template", "states", "types", *NAMES])
+"""The fields that need more than their value to be read: the library, or the state type."""
+
+_BASE_VARIABLES = ("node_name", "function_name", "manifest")
+"""The fields of the base that are variables of every base type."""
+
+
+def read_fields(
+    name: Word,
+    entries: Entries,
+    owner: str,
+    type_: StateType,
+    report: Report,
+    *,
+    scope: Scope,
+    inner: Word | None,
+) -> dict[str, Any]:
+    """The fields of a state, as arguments of State.
+
+    `scope` are the params that it sees; `inner` is its name in the sub-script, if it is called.
+    """
+    read, rejected = _known_fields(entries, owner, type_, report)
+    if owner != "base" or read.get("name") is None or is_known_wrong(entries["name"].value):
+        read["name"] = name
+    if owner == "state" and "default_outcome" in entries and "default_outcome" not in read:
+        read["default_outcome"] = name_of(entries["default_outcome"].value)
+    if not NAMES.isdisjoint(entries):
+        read["sugar"] = read_sugar(entries, type_, read.get("outcomes", ()), report)
+    if owner == "state" and not type_.open:
+        _check_interface(read, type_, report)
+    for part, keys in _listed_keys(entries, type_):
+        read[part] = (*read.get(part, ()), *keys)
+    _check_required(read["name"], entries, owner, type_, rejected, inner, report)
+    read["variables"] = tuple(_variables(entries, owner, type_))
+    if type_.prints_itself:
+        read["written"] = tuple(_written(read["name"], entries, scope))
+    return read
+
+
+def _known_fields(
+    entries: Entries, owner: str, type_: StateType, report: Report
+) -> tuple[dict[str, Any], set[str | None]]:
+    """The fields of the schema, read, and for each unknown field the one that it looks like."""
+    read: dict[str, Any] = {}
+    meant: set[str | None] = set()
+    for key, entry in entries.items():
+        row = schema.VARIABLES.get(key)
+        if row is not None and (owner in row.owners or key in type_.variables):
+            if key not in _READ_ELSEWHERE:
+                value = READERS[row.shape](entry.value, report)
+                if key in _FIELDS and (key != "name" or owner == "base"):
+                    read[key] = value
+        elif key in type_.variables:
+            continue  # a rule checks it against its type
+        elif type_.open or "variables" in type_.given:
+            if type_.used is not None and key not in type_.used:
+                words = [*schema.names_for(owner), *type_.used]
+                word = Word(str(entry.key.value), entry.key.span)
+                report.append(unknown_variable(word, f"`{type_.name}`", words, anything=True))
+        else:
+            known = [*schema.names_for(owner), *type_.variables]
+            word = Word(str(entry.key.value), entry.key.span)
+            whose = f"state type `{type_.name}`" if owner == "state" else _owner_text(owner)
+            report.append(unknown_variable(word, whose, known))
+            meant.add(guesser_of(tuple(known))(word.text))
+    return read, meant
+
+
+def _check_required(
+    name: Word,
+    entries: Entries,
+    owner: str,
+    type_: StateType,
+    meant: set[str | None],
+    inner: Word | None,
+    report: Report,
+) -> None:
+    """Required fields that are missing; not those for which a misspelt one was found."""
+    required = [*schema.REQUIRED[owner]]
+    required += [key for key, variable in type_.variables.items() if variable.required]
+    for key in required:
+        if key not in entries and key not in meant:
+            whose = f"state type `{type_.name}`" if key in type_.variables else _owner_text(owner)
+            related: tuple[Related, ...] = ()
+            if inner is not None:
+                related = (Related(span=inner.span, message="nor does the sub-script give it"),)
+            report.append(missing_variable(name.span, key, whose, related))
+
+
+def _check_interface(read: Mapping[str, Any], type_: StateType, report: Report) -> None:
+    """The keys and outcomes that a state lists beyond those of a complete interface."""
+    declared: dict[str, tuple[Key, ...] | tuple[Outcome, ...]] = {
+        "input_keys": type_.input_keys,
+        "output_keys": type_.output_keys,
+        "outcomes": type_.outcomes,
+    }
+    for part, own in declared.items():
+        if part in type_.given or part not in read:
+            continue
+        known = [each.name for each in own]
+        words: tuple[Word, ...] = read[part]
+        if part != "outcomes":
+            keys: Keys = read[part]
+            words = tuple(word for word, _ in keys)
+        for word in words:
+            if word.text not in known:
+                what = part.replace("_", " ").removesuffix("s")
+                message = f"state type `{type_.name}` has no {what} `{word.text}`"
+                listed = ", ".join(f"`{name}`" for name in known) or "none"
+                help = did_you_mean(word.text, known) or f"it has {listed}"
+                report.append(wrong_shape(word.span, message, help))
+
+
+def _listed_keys(entries: Entries, type_: StateType) -> Iterator[tuple[str, Keys]]:
+    """The keys that variables of a state type list, each with the field that they add to."""
+    for name, variable in type_.variables.items():
+        if variable.keys in ("input", "output") and name in entries:
+            yield f"{variable.keys}_keys", listed_keys(entries[name].value)
+
+
+def _variables(entries: Entries, owner: str, type_: StateType) -> Iterator[Variable]:
+    """The variables of the state type that a script sets: all fields that are not the owner's."""
+    for name in (*_BASE_VARIABLES, *type_.variables) if owner == "base" else entries:
+        entry, row = entries.get(name), schema.VARIABLES.get(name)
+        of_schema = owner != "base" and row is not None and owner in row.owners
+        if entry is None or (of_schema and not (name in NAMES and is_own(name, type_))):
+            continue
+        known = type_.variables.get(name)
+        value = as_value(entry.value, code=name == "callbacks")
+        declared = known.type if known is not None else ANY
+        yield Variable(name=name, type=declared, value=value, span=entry.key.span)
+
+
+def _written(name: Word, entries: Entries, scope: Scope) -> Iterator[Variable]:
+    """All fields of a state and the params that it sees, as SMACHA's templates need them."""
+    for key, entry in entries.items():
+        if key not in ("template", "states", "params"):
+            yield Variable(name=key, value=as_written(entry.value), span=entry.key.span)
+    if scope:
+        params = tuple((key, as_written(tree).data) for key, tree in scope.items())
+        value = Value(data=Struct(entries=params), span=name.span)
+        yield Variable(name="params", value=value, span=name.span)
+
+
+def _owner_text(owner: str) -> str:
+    if owner == "base":
+        return "the script"
+    return "a state" if owner == "state" else f"a container of type `{owner}`"
