@@ -86,6 +86,9 @@ def ended(outcome: str) -> PathStep:
 class Finding:
     """One fault at one place: what is wrong, where, the other places, what to do.
 
+    `arguments` are the names that the finding is about, in an order fixed for its code, as written
+    where it stands: they do not depend on who calls a sub-script. Identity, fingerprints and
+    baselines use them instead of the message.
     `path` is a witness: the states that are entered, in order, and the outcomes between them.
     `severity` overrides that of the code. `node` is the path of the state it is about.
     `edits` mend the fault, all of them together; none where the cure is not certain.
@@ -93,6 +96,7 @@ class Finding:
 
     span: Span
     message: str
+    arguments: tuple[str, ...] = ()
     help: str | None = None
     related: tuple[Related, ...] = ()
     path: tuple[PathStep, ...] = ()
