@@ -24,7 +24,7 @@ from pathlib import Path
 
 from smachac.diagnostics.diagnostic import Report
 from smachac.diagnostics.source import Source
-from smachac.driver import build, check, load
+from smachac.driver import build, check, read_machine
 from smachac.frontend.files import disk_library
 from smachac.frontend.loader import memory_library
 from smachac.frontend.state_types import find_state_type
@@ -223,7 +223,7 @@ def header(script: str) -> tuple[str, float]:
     """The header of a script, and the seconds that printing it took."""
     library = memory_library({"templates/Hit.yml": HIT}, disk_library(Path("main.yml"), []))
     report: Report = []
-    machine = load(Source("main.yml", script), library, report)
+    machine = read_machine(Source("main.yml", script), library, report)
     assert machine is not None, report
     checked = check(machine, report)
     assert checked is not None, report

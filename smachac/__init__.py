@@ -1,106 +1,215 @@
-"""smachac: a compiler for robot task state machines.
-
-The verbs of the command line for programs; they read the disk and print nothing:
+"""smachac: a compiler for robot task state machines. This is its public API (docs/api.md).
 
     import smachac
     for finding in smachac.check("main.yml"): ...
-    files = smachac.build("main.yml", "python")
+    machine = smachac.load("main.yml")
+    files = smachac.compile("main.yml", "python")
+    result = smachac.run("main.yml")
+
+A source is a path, a `Source`, or a text: with `name`, the first argument is the text itself, and
+reports show it under that name. The functions read files and write and print nothing.
 """
 
 from __future__ import annotations
 
-from smachac.version import __version__ as __version__
+from smachac.version import __version__
 
-TYPE_CHECKING = False  # typing and pathlib would double the time of `smachac --version`
+TYPE_CHECKING = False  # typing, dataclasses and pathlib would double the time of `--version`
 if TYPE_CHECKING:
-    from collections.abc import Callable, Mapping, Sequence
+    from collections import abc
     from os import PathLike
     from typing import Any
 
-    from smachac.diagnostics.diagnostic import Report
-    from smachac.ir.nodes import Checked
+    from smachac.diagnostics.diagnostic import Code, Diagnostic, Edit, Related, Severity
+    from smachac.diagnostics.source import Source, Span
+    from smachac.driver import Analysis
+    from smachac.ir.nodes import (
+        Checked,
+        Concurrence,
+        Expression,
+        Iterator,
+        Key,
+        Leaf,
+        Machine,
+        Node,
+        Outcome,
+        OutcomeRule,
+        Preset,
+        Remap,
+        Sequence,
+        StateMachine,
+        Transition,
+        Value,
+    )
+    from smachac.ir.traversal import walk
+    from smachac.targets import BuildContext, Target
+    from smachac.targets.python.runner import RunResult
 
-    Folders = Sequence[str | PathLike[str]]
+    Text = str | PathLike[str] | Source
+    Folders = abc.Sequence[str | PathLike[str]]
+
+__all__ = [
+    "BuildContext",
+    "Checked",
+    "Code",
+    "Concurrence",
+    "Diagnostic",
+    "Edit",
+    "Expression",
+    "Iterator",
+    "Key",
+    "Leaf",
+    "Machine",
+    "Node",
+    "Outcome",
+    "OutcomeRule",
+    "Preset",
+    "Related",
+    "Remap",
+    "RunResult",
+    "ScriptError",
+    "Sequence",
+    "Severity",
+    "Source",
+    "Span",
+    "StateMachine",
+    "Target",
+    "Transition",
+    "Value",
+    "__version__",
+    "check",
+    "compile",
+    "load",
+    "run",
+    "walk",
+]
+
+_HOMES = {
+    **dict.fromkeys(
+        ("Code", "Diagnostic", "Edit", "Related", "Severity"), "diagnostics.diagnostic"
+    ),
+    **dict.fromkeys(("Source", "Span"), "diagnostics.source"),
+    **dict.fromkeys(("BuildContext", "Target"), "targets"),
+    "RunResult": "targets.python.runner",
+    "walk": "ir.traversal",
+}
+"""Where the exported names that are not node kinds are defined."""
+
+
+def __getattr__(name: str) -> object:
+    """An exported name, imported when it is first used."""
+    from importlib import import_module
+
+    if name not in __all__:
+        raise AttributeError(f"module `smachac` has no attribute `{name}`")
+    module = import_module(f"smachac.{_HOMES.get(name, 'ir.nodes')}")
+    value: object = getattr(module, name)
+    globals()[name] = value
+    return value
+
+
+def __dir__() -> list[str]:
+    return sorted({*globals(), *__all__})
 
 
 class ScriptError(Exception):
-    """A script has errors; `report` holds everything there is to say about it."""
+    """A script has errors. `report` is the list of all its findings; the message shows them."""
 
-    def __init__(self, report: Report) -> None:
+    def __init__(self, report: list[Diagnostic]) -> None:
         from smachac.report.text import render_text
 
         super().__init__(render_text(report))
         self.report = report
 
 
-def check(path: str | PathLike[str], *, scripts: Folders = (), templates: Folders = ()) -> Report:
-    """Every finding about the script at `path`, in order; empty when there is nothing to say.
+def check(
+    source: Text, *, name: str | None = None, scripts: Folders = (), templates: Folders = ()
+) -> list[Diagnostic]:
+    """All findings in a script, in order; an empty list if there are none.
 
     `scripts` and `templates` are more folders with sub-scripts and with state types.
     """
-    from smachac.driver import analyse_file
-
-    return analyse_file(path, scripts, templates)[0].report
+    return _analysis(source, name, scripts, templates).report
 
 
-def load(path: str | PathLike[str], *, scripts: Folders = (), templates: Folders = ()) -> Checked:
-    """The checked machine of the script at `path`. Raises ScriptError."""
-    from smachac.driver import analyse_file
-
-    analysis, _ = analyse_file(path, scripts, templates)
+def load(
+    source: Text, *, name: str | None = None, scripts: Folders = (), templates: Folders = ()
+) -> Checked:
+    """The checked machine of a script. Raises ScriptError."""
+    analysis = _analysis(source, name, scripts, templates)
     if analysis.checked is None:
         raise ScriptError(analysis.report)
     return analysis.checked
 
 
-def build(
-    path: str | PathLike[str],
-    target: str,
+def compile(
+    source: Text,
+    target: str | Target,
     *,
-    options: Mapping[str, str] | None = None,
+    name: str | None = None,
+    options: abc.Mapping[str, str] | None = None,
     scripts: Folders = (),
     templates: Folders = (),
 ) -> dict[str, str]:
-    """The files that a target prints for the script at `path`, with those that they stand on: name
-    to text, not yet written.
+    """The files that a target generates, with the runtime files they need: name to text.
 
-    Raises ScriptError, LookupError for an unknown target, ValueError for a bad option.
+    `target` is the name of an installed target, or a `Target`. Nothing is written. Raises
+    ScriptError, LookupError for an unknown target, ValueError for a bad option.
     """
-    from smachac import driver
-    from smachac.diagnostics.diagnostic import has_errors
-    from smachac.targets import BuildContext, load_target
-    from smachac.targets.runtime_files import runtime_files
+    from smachac.driver import compile_script
+    from smachac.targets import load_target
 
-    found = load_target(target)
+    found = load_target(target) if isinstance(target, str) else target
     if found is None:
         raise LookupError(f"there is no target `{target}`")
-    analysis, library = driver.analyse_file(path, scripts, templates)
-    if analysis.checked is None or library is None:
-        raise ScriptError(analysis.report)
-    report: Report = []
-    files = driver.build(analysis.checked, found, library, report, options)
-    if has_errors(report):
-        raise ScriptError(driver.together(analysis.report, report))
-    context = BuildContext(library=library, options=options or {})
-    return {**files, **runtime_files(found.runtime(analysis.checked, context))}
+    compiled = compile_script(_analysis(source, name, scripts, templates), found, options)
+    if not compiled.files:
+        raise ScriptError(compiled.report)
+    return compiled.files
 
 
 def run(
-    path: str | PathLike[str],
+    source: Text,
     *,
+    name: str | None = None,
     seed: int = 0,
-    observe: Callable[[dict[str, Any]], None] | None = None,
+    observe: abc.Callable[[dict[str, Any]], None] | None = None,
     scripts: Folders = (),
     templates: Folders = (),
-) -> str | None:
-    """Run the generated program of the script at `path` in this process; its outcome.
+) -> RunResult:
+    """Generate the Python program of a script and run it in this process.
 
-    `observe` gets the events of the trace. Raises ScriptError, and whatever the program raises.
+    `observe` is called with each event of the trace when it happens. `seed` is the seed of the
+    simulated world and of `random`. Raises ScriptError, and every exception of the program.
     """
+    from dataclasses import replace
     from pathlib import Path
 
+    from smachac.driver import compile_script
+    from smachac.targets.python import TARGET
     from smachac.targets.python.runner import execute
 
-    machine = load(path, scripts=scripts, templates=templates)
-    ((name, text),) = build(path, "python", scripts=scripts, templates=templates).items()
-    return execute(name, text, machine, observe, folder=Path(path).parent, seed=seed)
+    analysis = _analysis(source, name, scripts, templates)
+    compiled = compile_script(analysis, TARGET)
+    if analysis.checked is None or not compiled.files:
+        raise ScriptError(compiled.report)
+    ((file, text),) = compiled.files.items()
+    events: list[dict[str, Any]] = []
+
+    def note(event: dict[str, Any]) -> None:
+        events.append(event)
+        if observe is not None:
+            observe(event)
+
+    folder = Path(analysis.script).parent
+    result = execute(file, text, analysis.checked, note, folder=folder, seed=seed)
+    return replace(result, events=tuple(events))
+
+
+def _analysis(source: Text, name: str | None, scripts: Folders, templates: Folders) -> Analysis:
+    from smachac.diagnostics.source import Source
+    from smachac.driver import analyse_script
+
+    if name is not None:
+        source = Source(name, str(source))
+    return analyse_script(source, scripts, templates)

@@ -1,27 +1,35 @@
-"""Many scripts looked at together: what they share is read once, and told once."""
+"""Several scripts checked together: a file that they share is read once and reported once.
+
+A sub-script is checked through its callers; one without a caller is checked alone.
+"""
 
 from __future__ import annotations
 
+import json
 import os
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
 from pathlib import Path
 
-from smachac.diagnostics.diagnostic import Report, identity, in_order
+from smachac.diagnostics.diagnostic import Diagnostic, Report, identity, in_order
 from smachac.diagnostics.source import Source, Word
-from smachac.driver import CODES, Analysis, Judge, analyse, analyse_alone
+from smachac.driver import CODES, Analysis, MachineCheck, analyse, read_machine
 from smachac.frontend.errors.suppressions import unused_allowances
 from smachac.frontend.files import Disk, disk_library
+from smachac.frontend.loader import Library
 from smachac.frontend.suppressions import Allowance
 from smachac.frontend.yaml_tree import Seq
+from smachac.ir.recursion import deep_recursion
+from smachac.ir.traversal import remapping
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
-class Survey:
-    """What there is to say about scripts: reports by name, in the order given.
+class Batch:
+    """The reports of several scripts by name, in the order given.
 
-    A sub-script that one of the others calls has no report of its own. `uses`: by the same names,
-    the real paths of all that a script was made of, or would have been had it been there.
+    A sub-script that one of the others calls has no report of its own. `uses` holds, by the same
+    names, the real paths of all files that a script was read from, and of those that were looked
+    for and not found.
     """
 
     reports: Mapping[str, Report]
@@ -29,11 +37,11 @@ class Survey:
 
     @property
     def report(self) -> Report:
-        """All findings in order, each once, however many scripts it was met in."""
+        """All findings in order; a finding in a shared sub-script appears once."""
         return in_order(item for report in self.reports.values() for item in report)
 
-    def only(self, kept: Report) -> Survey:
-        """The same scripts with those findings alone that are like one of `kept`."""
+    def only(self, kept: Report) -> Batch:
+        """The same scripts, with only the findings that are in `kept`."""
         known = {identity(item) for item in kept}
         reports = {
             name: [item for item in report if identity(item) in known]
@@ -41,29 +49,28 @@ class Survey:
         }
         return replace(self, reports=reports)
 
-    def touched_by(self, changed: set[str]) -> Survey:
+    def touched_by(self, changed: set[str]) -> Batch:
         """The scripts that use one of these files."""
         names = [name for name, used in self.uses.items() if used & changed]
-        return Survey(
+        return Batch(
             reports={name: self.reports[name] for name in names},
             uses={name: self.uses[name] for name in names},
         )
 
 
-def survey(
+def check_scripts(
     paths: Sequence[Path],
     disk: Disk,
     scripts: Sequence[Path] = (),
     templates: Sequence[Path] = (),
-    more: Judge | None = None,
-) -> Survey:
-    """Judge scripts by every rule, and by `more`; sub-scripts through their callers, alone if they
-    have none."""
+    extra: MachineCheck | None = None,
+) -> Batch:
+    """Check scripts by all rules and by `extra`: sub-scripts through their callers, or alone."""
     analyses: dict[str, Analysis] = {}
     uses: dict[str, frozenset[str]] = {}
     alone: list[Path] = []
 
-    def judge(path: Path, source: Source | None, report: Report, *, called: bool) -> None:
+    def analyse_path(path: Path, source: Source | None, report: Report, *, called: bool) -> None:
         if source is None:
             analyses[str(path)] = Analysis(report=report)
         else:
@@ -71,7 +78,7 @@ def survey(
                 path, report, scripts=scripts, templates=templates, disk=disk, codes=CODES
             )
             if called:
-                analyses[str(path)] = analyse(source, library, report, more)
+                analyses[str(path)] = analyse(source, library, report, extra)
             else:
                 analyses[str(path)] = analyse_alone(source, library, report)
         uses[str(path)] = frozenset(disk.asked)
@@ -83,31 +90,87 @@ def survey(
         if source is not None and isinstance(disk.parse(source, []), Seq):
             alone.append(path)
         else:
-            judge(path, source, report, called=True)
+            analyse_path(path, source, report, called=True)
     called = frozenset().union(*uses.values())
     alone = [path for path in alone if os.path.realpath(path) not in called]
     for path in alone:
         disk.asked.clear()
-        judge(path, disk.read(path, []), [], called=False)
-    for path in alone:  # those that another one calls were judged twice
+        analyse_path(path, disk.read(path, []), [], called=False)
+    for path in alone:  # one that another sub-script calls was checked through it already
         others = (used for name, used in uses.items() if name != str(path))
         if any(os.path.realpath(path) in used for used in others):
             del uses[str(path)], analyses[str(path)]
     names = [str(path) for path in paths if str(path) in analyses]
     reports = {name: analyses[name].report for name in names}
     if len(names) > 1:
-        _tell_unused(analyses, reports)
-    return Survey(reports=reports, uses={name: uses[name] for name in names})
+        _report_unused_allowances(analyses, reports)
+    return Batch(reports=reports, uses={name: uses[name] for name in names})
 
 
-def _tell_unused(analyses: Mapping[str, Analysis], reports: dict[str, Report]) -> None:
-    """SM021 for allowances of sub-scripts that no caller has a use for."""
+def _report_unused_allowances(analyses: Mapping[str, Analysis], reports: dict[str, Report]) -> None:
+    """SM021 for suppressions in sub-scripts that suppress nothing for any caller."""
     needed: set[Allowance] = set()
     for analysis in analyses.values():
         needed |= set(analysis.given) - set(analysis.unused)
-    told = set(needed)
+    done = set(needed)
     for name in reports:
-        new = [fit for fit in dict.fromkeys(analyses[name].unused) if fit not in told]
-        told.update(new)
+        new = [fit for fit in dict.fromkeys(analyses[name].unused) if fit not in done]
+        done.update(new)
         words = (Word(fit.code, fit.span) for fit in new)
         reports[name] = [*reports[name], *unused_allowances(words)]
+
+
+def analyse_alone(source: Source, library: Library, report: Report) -> Analysis:
+    """The analysis of a sub-script that no script calls: a script is generated that calls it.
+
+    The generated script provides the keys that the sub-script needs and ends with its outcomes.
+    Params come from callers, so unresolved look-ups are not reported. Undefined names are not
+    reported either: the base template of a caller may define them.
+    """
+    name = f"{source.name} (alone)"
+
+    def script(word: str, by: str) -> Source | None:
+        return source if by == name else library.script(word, by)
+
+    own = replace(library, script=script)
+    with deep_recursion():
+        machine = read_machine(_caller(name, (), (), ()), own, [])
+    if machine is None or not machine.root.children:
+        caller = _caller(name, (), (), ())
+    else:
+        state = machine.root.children[0]
+        outer = remapping(state)
+        keys = (
+            [outer.get(key.name, key.name) for key in part]
+            for part in (state.inputs, state.outputs)
+        )
+        caller = _caller(name, [outcome.name for outcome in state.outcomes], *keys)
+    found = analyse(caller, own, report)
+    return replace(found, report=list(_without(caller, found.report)), machine=None, checked=None)
+
+
+def _caller(
+    name: str, outcomes: Iterable[str], inputs: Iterable[str], outputs: Iterable[str]
+) -> Source:
+    """A script that calls one sub-script, and ends with its outcomes."""
+    ends = list(outcomes)
+    script = {
+        "name": "alone",
+        "template": "Base",
+        "outcomes": ends or ["done"],
+        "forever": not ends,
+        "input_keys": list(inputs),
+        "output_keys": list(outputs),
+        "states": [{"CALL": {"script": "called", "transitions": {end: end for end in ends}}}],
+    }
+    return Source(name, json.dumps(script, ensure_ascii=False))
+
+
+def _without(caller: Source, report: Report) -> Iterator[Diagnostic]:
+    """The findings that are not in the generated caller."""
+    for item in report:
+        if item.span.source is caller or item.code in ("SM015", "SM019"):
+            continue
+        finding = item.finding
+        related = tuple(each for each in finding.related if each.span.source is not caller)
+        yield replace(item, finding=replace(finding, related=related))

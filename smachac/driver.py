@@ -1,30 +1,34 @@
-"""The pipeline: text to tree to script to machine to judgement to files."""
+"""The pipeline: read, parse, resolve, lower, check, suppress, emit.
+
+Every command and the public API pass through these functions. Only this module makes a `Checked`.
+"""
 
 from __future__ import annotations
 
-import json
-from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
-from dataclasses import dataclass, replace
+from collections.abc import Callable, Iterable, Mapping, Sequence
+from dataclasses import dataclass
 from os import PathLike
-from typing import TypeAlias
+from pathlib import Path
+from typing import NamedTuple, TypeAlias
 
 from smachac import checks
 from smachac.checks import check_machine
 from smachac.diagnostics.diagnostic import Code, Diagnostic, Report, has_errors, in_order
 from smachac.diagnostics.severities import apply_severities
-from smachac.diagnostics.source import Source, Word
+from smachac.diagnostics.source import Source
 from smachac.frontend.errors import references, suppressions
 from smachac.frontend.errors import script as script_errors
-from smachac.frontend.errors.suppressions import unused_allowances
+from smachac.frontend.files import disk_library, read_source
 from smachac.frontend.loader import Library
 from smachac.frontend.lower import lower
 from smachac.frontend.resolve import resolve
-from smachac.frontend.suppressions import Allowance, allowances, heeded
+from smachac.frontend.script import Script
+from smachac.frontend.suppressions import Allowance, suppress
 from smachac.ir.nodes import Checked, Machine
 from smachac.ir.recursion import deep_recursion
-from smachac.ir.traversal import remapping
 from smachac.targets import BuildContext, Files, Target, errors, load_target
 from smachac.targets.interface_check import code_faults, target_faults
+from smachac.targets.runtime_files import runtime_files
 from smachac.targets.undefined_names import undefined_names
 
 Folders: TypeAlias = "Sequence[str | PathLike[str]]"
@@ -46,144 +50,116 @@ CODES: Mapping[str, Code] = {
 }
 """All codes, those of problems and those of rules, in order."""
 
-
-def analyse_file(
-    path: str | PathLike[str], scripts: Folders, templates: Folders
-) -> tuple[Analysis, Library | None]:
-    """The script at `path`, read and judged; and the library it was read with."""
-    from pathlib import Path
-
-    from smachac.frontend.files import disk_library, read_source
-
-    report: Report = []
-    source = read_source(Path(path), report)
-    if source is None:
-        return Analysis(report=report), None
-    folders = [[Path(folder) for folder in each] for each in (scripts, templates)]
-    library = disk_library(
-        Path(path), report, scripts=folders[0], templates=folders[1], codes=CODES
-    )
-    return analyse(source, library, report), library
-
-
-def load(source: Source, library: Library, report: Report) -> Machine | None:
-    """The machine a script describes, as far as it can be read."""
-    tree = library.parse(source, report)
-    script = resolve(source, tree, library, report)
-    return None if script is None else lower(script)
-
-
-def check(machine: Machine, report: Report) -> Checked | None:
-    """Judge a machine by every rule; the machine again, if neither they nor `report` object."""
-    report.extend(check_machine(machine))
-    return None if has_errors(report) else Checked(machine)
+MachineCheck: TypeAlias = "Callable[[Machine], Iterable[Diagnostic]]"
+"""A check that runs on request only, because it is slow or needs more than the compiler."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Analysis:
-    """What there is to say about a script: its machine as far as it could be read, the machine
-    again if it is without error, and every finding in order, but for those that are allowed.
+    """The result of the pipeline up to the checks: the machine and all findings, in order.
 
-    `unused` are the allowances of sub-scripts that were of no use to this script; `given`, all.
+    `script` is the name of the text. `machine` is the machine as far as it could be read; `checked`
+    is the same machine if the report has no error. `library` is None if there is no text. `given`
+    holds the suppressions of all texts of the script, `unused` those in sub-scripts that suppressed
+    nothing.
     """
 
+    script: str = ""
     machine: Machine | None = None
     checked: Checked | None = None
     report: Report
+    library: Library | None = None
     given: tuple[Allowance, ...] = ()
     unused: tuple[Allowance, ...] = ()
 
 
-Judge = Callable[[Machine], Iterable[Diagnostic]]
-"""A judgement that is not made of every machine, because it takes long or needs more than us."""
+def analyse_script(
+    script: str | PathLike[str] | Source, scripts: Folders = (), templates: Folders = ()
+) -> Analysis:
+    """Read a script, given as a path or as a text, and analyse it.
+
+    Its sub-scripts, templates and settings are read from disk, beside the path or the name of the
+    text; `scripts` and `templates` are more folders.
+    """
+    report: Report = []
+    source = script if isinstance(script, Source) else read_source(Path(script), report)
+    if source is None:
+        return Analysis(report=report)
+    folders = [[Path(folder) for folder in each] for each in (scripts, templates)]
+    library = disk_library(
+        Path(source.name), report, scripts=folders[0], templates=folders[1], codes=CODES
+    )
+    return analyse(source, library, report)
 
 
 def analyse(
-    source: Source, library: Library, report: Report, more: Judge | None = None
+    source: Source, library: Library, report: Report, extra: MachineCheck | None = None
 ) -> Analysis:
-    """Read a script and judge it by every rule, and by `more`; findings already in `report` count
-    as well."""
+    """Parse, resolve, lower and check a script, then apply suppressions and severities.
+
+    Findings that are already in `report` belong to the result as well.
+    """
     with deep_recursion():
-        tree = library.parse(source, report)
-        script = resolve(source, tree, library, report)
+        script = parse_and_resolve(source, library, report)
         machine = lower(script) if script is not None else None
         if machine is not None:
             report.extend(check_machine(machine))
             report.extend(code_faults(machine, library, load_target))
             report.extend(undefined_names(machine, library))
-            report.extend(more(machine) if more is not None else ())
-        sources = {id(text): text for text in (script.sources if script is not None else (source,))}
-        sources |= {id(item.span.source): item.span.source for item in report}
-        given = [
-            fit
-            for text in sources.values()
-            for fit in allowances(text, report, CODES, library.parse)
-        ]
-        found, used = heeded(report, given)
-        unused = [fit for fit in given if fit not in used]
-        found += unused_allowances(
-            Word(fit.code, fit.span) for fit in unused if fit.span.source is source
-        )
-        found = apply_severities(in_order(found), library.policy)
+            report.extend(extra(machine) if extra is not None else ())
+        sources = script.sources if script is not None else (source,)
+        rest, given, unused = suppress(report, source, sources, CODES, library.parse)
+        found = apply_severities(in_order(rest), library.policy)
     return Analysis(
+        script=source.name,
         machine=machine,
         checked=Checked(machine) if machine is not None and not has_errors(found) else None,
         report=found,
-        given=tuple(given),
-        unused=tuple(fit for fit in unused if fit.span.source is not source),
+        library=library,
+        given=given,
+        unused=unused,
     )
 
 
-def analyse_alone(source: Source, library: Library, report: Report) -> Analysis:
-    """A sub-script that nobody calls, judged as far as that goes without its caller.
-
-    It is called by a script made for it, which takes in the keys it needs and ends with its
-    outcomes. Params come from callers, so look-ups that find nothing are passed over, as are names:
-    their base may define them.
-    """
-    name = f"{source.name} (alone)"
-
-    def called(outcomes: Iterable[str], inputs: Iterable[str], outputs: Iterable[str]) -> Source:
-        ends = list(outcomes)
-        script = {
-            "name": "alone",
-            "template": "Base",
-            "outcomes": ends or ["done"],
-            "forever": not ends,
-            "input_keys": list(inputs),
-            "output_keys": list(outputs),
-            "states": [{"CALL": {"script": "called", "transitions": {end: end for end in ends}}}],
-        }
-        return Source(name, json.dumps(script, ensure_ascii=False))
-
-    def script(word: str, by: str) -> Source | None:
-        return source if by == name else library.script(word, by)
-
-    own = replace(library, script=script)
-    with deep_recursion():
-        machine = load(called((), (), ()), own, [])
-    if machine is None or not machine.root.children:
-        outside = called((), (), ())
-    else:
-        state = machine.root.children[0]
-        outer = remapping(state)
-        keys = (
-            [outer.get(key.name, key.name) for key in part]
-            for part in (state.inputs, state.outputs)
-        )
-        outside = called([outcome.name for outcome in state.outcomes], *keys)
-    found = analyse(outside, own, report)
-    return replace(found, report=list(_inside(found.report, outside)), machine=None, checked=None)
+def parse_and_resolve(source: Source, library: Library, report: Report) -> Script | None:
+    """The script of a text, with its sub-scripts and look-ups filled in, as far as it can be
+    read."""
+    tree = library.parse(source, report)
+    return resolve(source, tree, library, report)
 
 
-def _inside(report: Report, outside: Source) -> Iterator[Diagnostic]:
-    """The findings that do not speak of the script made around."""
-    for item in report:
-        if item.span.source is outside or item.code.code in ("SM015", "SM019"):
-            continue
-        finding = item.finding
-        related = tuple(each for each in finding.related if each.span.source is not outside)
-        yield replace(item, finding=replace(finding, related=related))
+def read_machine(source: Source, library: Library, report: Report) -> Machine | None:
+    """The machine of a script, as far as it can be read; it is not checked."""
+    script = parse_and_resolve(source, library, report)
+    return None if script is None else lower(script)
+
+
+def check(machine: Machine, report: Report) -> Checked | None:
+    """Check a machine that has no text, and so neither suppressions nor severities of a project."""
+    report.extend(check_machine(machine))
+    return None if has_errors(report) else Checked(machine)
+
+
+class Compiled(NamedTuple):
+    """The files of a target with the runtime files they need, and the findings of the script and
+    of the target. There are no files if a finding is an error."""
+
+    files: Files
+    report: Report
+
+
+def compile_script(
+    analysis: Analysis, target: Target, options: Mapping[str, str] | None = None
+) -> Compiled:
+    """Emit the files of a target for an analysed script."""
+    if analysis.checked is None or analysis.library is None:
+        return Compiled({}, analysis.report)
+    found: Report = []
+    files = build(analysis.checked, target, analysis.library, found, options)
+    if files:
+        context = BuildContext(library=analysis.library, options=options or {})
+        files |= runtime_files(target.runtime(analysis.checked, context))
+    return Compiled(files, merged(analysis.report, found))
 
 
 def build(
@@ -193,7 +169,7 @@ def build(
     report: Report,
     options: Mapping[str, str] | None = None,
 ) -> Files:
-    """The files a target prints; none if templates or classes of the user are at fault."""
+    """The files that a target emits; none if templates or classes of the user have errors."""
     context = BuildContext(library=library, options=options or {})
     with deep_recursion():
         found = [*target_faults(machine, library, target)]
@@ -202,8 +178,9 @@ def build(
     return {} if has_errors(report) else files
 
 
-def together(report: Report, built: Report) -> Report:
-    """What was found in a script and then in building it; a fault that both name is the latter's,
-    which knows how bad it is."""
-    said = {(item.code, item.finding.message, item.span) for item in built}
-    return [*(i for i in report if (i.code, i.finding.message, i.span) not in said), *built]
+def merged(report: Report, built: Report) -> Report:
+    """The findings of a script, then those of a target. A finding that both have is taken from the
+    target, which decides its severity."""
+    repeated = {(item.code, item.message, item.span) for item in built}
+    rest = [item for item in report if (item.code, item.message, item.span) not in repeated]
+    return [*rest, *built]

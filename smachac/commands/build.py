@@ -1,26 +1,50 @@
-"""The command `build`: the files of a target, printed, written, or compared with those on disk."""
+"""The command `build`: generate the files of a target; print them, write them, or compare them."""
 
 from __future__ import annotations
 
 import argparse
 import sys
-from collections.abc import Mapping
+from argparse import Namespace
 from pathlib import Path
-from typing import TYPE_CHECKING
 
-from smachac.commands.output import FINDINGS, OK, print_report, shown, usage
-from smachac.driver import analyse_file
+from smachac.commands.arguments import SCRIPT, colour, search_folders
+from smachac.commands.files import changed_files, foreign_files, write_files
+from smachac.commands.output import FINDINGS, OK, print_report, usage, without_notes
+from smachac.driver import analyse_script, compile_script
+from smachac.targets import Files, OptionError, load_target, target_names
 
-if TYPE_CHECKING:
-    from smachac.diagnostics.diagnostic import Report
-    from smachac.driver import Analysis
-    from smachac.frontend.loader import Library
-    from smachac.targets import Target
+EXAMPLES = """\
+examples:
+  smachac build main.yml --target python             write the Python program here
+  smachac build main.yml --target cpp -o generated   write the C++ code into a folder
+  smachac build main.yml --target dot -o -           print the picture for Graphviz
+  smachac build main.yml --target dot --option depth=1    set an option of the target
+  smachac build main.yml --target python --check     fail if the file is not up to date (CI)
+
+exit codes: 0 success, 1 the script has errors or a file is in the way or not up to date,
+2 wrong usage, 70 a bug in smachac
+"""
 
 
-def build(arguments: argparse.Namespace) -> int:
-    from smachac.targets import BuildContext, OptionError, load_target, target_names
+def build_arguments(parser: argparse.ArgumentParser) -> None:
+    parser.epilog = EXAMPLES
+    parser.add_argument("script", type=Path, help=SCRIPT)
+    parser.add_argument("--target", "-t", required=True, help="the target (see `smachac targets`)")
+    parser.add_argument("-o", "--output", type=Path, default=Path(), metavar="DIR",
+                        help="folder to write to (default: the current one); `-` prints the main"
+                        " file")  # fmt: skip
+    parser.add_argument("--option", action="append", default=[], metavar="NAME=VALUE",
+                        help="an option of the target (repeatable)")  # fmt: skip
+    parser.add_argument("--check", action="store_true",
+                        help="write nothing; exit with 1 if a file is not up to date")  # fmt: skip
+    parser.add_argument("--force", action="store_true",
+                        help="overwrite files that smachac did not generate")  # fmt: skip
+    search_folders(parser)
+    colour(parser)
 
+
+def build_command(arguments: Namespace) -> int:
+    """Generate code; the exit code."""
     target = load_target(arguments.target)
     if target is None:
         return usage(f"there is no target `{arguments.target}`", arguments.target, target_names())
@@ -28,49 +52,26 @@ def build(arguments: argparse.Namespace) -> int:
     for text in arguments.option:
         name, equals, value = text.partition("=")
         if not equals:
-            return usage(f"--option wants NAME=VALUE, not `{text}`")
+            return usage(f"--option needs NAME=VALUE, not `{text}`")
         if name not in target.options:
             message = f"target `{target.name}` has no option `{name}`"
             return usage(message, name, list(target.options))
         options[name] = value
+    analysis = analyse_script(arguments.script, arguments.scripts, arguments.templates)
     try:
-        analysis, library, files = generate(arguments, target, options)
+        files, report = compile_script(analysis, target, options)
     except OptionError as error:
         return usage(f"--option {error}")
-    if files is None or analysis.checked is None or library is None:
-        return FINDINGS
-    context = BuildContext(library=library, options=options)
-    return _put(files, target.runtime(analysis.checked, context), arguments)
+    print_report(without_notes(report), arguments, sys.stderr)
+    return _put(files, arguments) if files else FINDINGS
 
 
-def generate(
-    arguments: argparse.Namespace, target: Target, options: dict[str, str]
-) -> tuple[Analysis, Library | None, dict[str, str] | None]:
-    """The files of a target; none, with a report on stderr, where the script has errors."""
-    from smachac.diagnostics.diagnostic import has_errors
-    from smachac.driver import build, together
-
-    analysis, library = analyse_file(arguments.script, arguments.scripts, arguments.templates)
-    files: dict[str, str] | None = None
-    report = analysis.report
-    if analysis.checked is not None and library is not None:
-        found: Report = []
-        files = build(analysis.checked, target, library, found, options)
-        report = together(report, found)
-        files = None if has_errors(found) else files
-    print_report(shown(report), arguments, sys.stderr)
-    return analysis, library, files
-
-
-def _put(files: dict[str, str], runtime: Mapping[str, str], arguments: argparse.Namespace) -> int:
-    from smachac.commands.files import changed_files, foreign_files, write_files
-    from smachac.targets.runtime_files import runtime_files
-
+def _put(files: Files, arguments: Namespace) -> int:
+    """Print files, compare them with those on disk, or write them; the exit code."""
     folder: Path = arguments.output
     if str(folder) == "-":
         sys.stdout.write(next(iter(files.values())))
         return OK
-    files = {**files, **runtime_files(runtime)}
     if arguments.check:
         changed = changed_files(folder, files)
         for path in changed:
@@ -79,7 +80,7 @@ def _put(files: dict[str, str], runtime: Mapping[str, str], arguments: argparse.
     foreign = [] if arguments.force else foreign_files(folder, files)
     if foreign:
         for path in foreign:
-            print(f"{path} was not written by smachac; --force overwrites it", file=sys.stderr)
+            print(f"{path} was not generated by smachac; --force overwrites it", file=sys.stderr)
         return FINDINGS
     try:
         for path in write_files(folder, files):

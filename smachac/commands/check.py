@@ -1,7 +1,8 @@
-"""The command `check`: which scripts, what counts, in which form, once or again and again."""
+"""The command `check`: find the errors in scripts; report, fix or record them; watch files."""
 
 from __future__ import annotations
 
+import argparse
 import gc
 import sys
 import time
@@ -11,10 +12,11 @@ from collections.abc import Iterable
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from smachac.batch import Survey, survey
+from smachac.batch import Batch, check_scripts
 from smachac.checks.workspace import NoSimulationError, unreachable
+from smachac.commands.arguments import FORMAT, SCRIPTS, colour, search_folders
 from smachac.commands.files import ChangedError, rewrite_files, write_files
-from smachac.commands.output import FINDINGS, OK, print_report, shown, usage
+from smachac.commands.output import FINDINGS, OK, print_report, usage, without_notes
 from smachac.diagnostics import baseline
 from smachac.diagnostics.diagnostic import Report, Severity
 from smachac.diagnostics.severities import select_findings
@@ -31,20 +33,63 @@ from smachac.frontend.files import Disk, read_source, stamps
 if TYPE_CHECKING:
     from smachac.refactor.autofix import FixResult
 
+EXAMPLES = """\
+examples:
+  smachac check                                  all scripts below the current folder
+  smachac check main.yml --format sarif          a report for code scanning
+  smachac check . --select SM3,SM4 --strict      only userdata and concurrence; warnings fail
+  smachac check . --changed-since origin/main    scripts whose files a pull request changes
+  smachac check . --baseline known.json --write-baseline   record the findings of old code
+  smachac check . --baseline known.json          report new findings only
+  smachac check . --fix --diff                   show what --fix would change, as a patch
+  smachac check main.yml --sim                   check what the simulated arm can reach
+  smachac check main.yml --watch                 check again after every change
+
+exit codes: 0 success, 1 findings that fail, 2 wrong usage, 70 a bug in smachac, 130 interrupted
+"""
+
+FORMATS = ("text", "json", "sarif", "github", "junit")
+
 WRONG_USAGE = (NothingFoundError, GitError, baseline.BaselineError, NoSimulationError)
 
 PAUSE = 0.3
-"""Seconds between two looks at the files that are watched."""
+"""Seconds between two reads of the times of watched files."""
 
 
-def check(arguments: Namespace) -> int:
-    """Judge scripts as the arguments say; the exit code."""
+def check_arguments(parser: argparse.ArgumentParser) -> None:
+    parser.epilog = EXAMPLES
+    parser.add_argument("script", nargs="*", type=Path, help=SCRIPTS)
+    search_folders(parser)
+    parser.add_argument("--format", choices=FORMATS, default="text", help=FORMAT)
+    parser.add_argument("--strict", action="store_true", help="warnings fail, as errors do")
+    for name, what in (("select", "report only these codes"), ("ignore", "ignore these codes")):
+        parser.add_argument(f"--{name}", action="append", default=[], metavar="CODE[,CODE]",
+                            help=f"{what}; SM2 stands for all that begin so")  # fmt: skip
+    parser.add_argument("--baseline", type=Path, metavar="FILE",
+                        help="ignore the findings that are listed in FILE")  # fmt: skip
+    parser.add_argument("--write-baseline", action="store_true",
+                        help="write all current findings to the file of --baseline")  # fmt: skip
+    parser.add_argument("--changed-since", metavar="REV", help="check only scripts of which a file"
+                        " changed since this git revision")  # fmt: skip
+    parser.add_argument("--fix", action="store_true",
+                        help="fix the findings that have one certain fix")  # fmt: skip
+    parser.add_argument("--diff", action="store_true",
+                        help="show what --fix would change, as a patch; write nothing")  # fmt: skip
+    parser.add_argument("--sim", action="store_true",
+                        help="also check what the simulated arm can reach")  # fmt: skip
+    parser.add_argument("--watch", action="store_true",
+                        help="check again when a file changes, until Ctrl-C")  # fmt: skip
+    colour(parser)
+
+
+def check_command(arguments: Namespace) -> int:
+    """Check scripts once, or again and again; the exit code."""
     arguments.script = arguments.script or [Path()]
     for code in (*_codes(arguments.select), *_codes(arguments.ignore)):
         if not any(known.startswith(code) for known in CODES):
             return usage(f"there is no code `{code}`", code, list(CODES))
     if arguments.write_baseline and arguments.baseline is None:
-        return usage("--write-baseline wants --baseline FILE")
+        return usage("--write-baseline needs --baseline FILE")
     try:
         return _watch(arguments) if arguments.watch else _once(arguments, set())
     except WRONG_USAGE as error:
@@ -52,42 +97,42 @@ def check(arguments: Namespace) -> int:
 
 
 def _codes(words: list[str]) -> list[str]:
-    """Codes, or beginnings of codes, from options that may hold several."""
+    """The codes, or beginnings of codes, of options with commas between them."""
     return [code.strip().upper() for word in words for code in word.split(",") if code.strip()]
 
 
 def _once(arguments: Namespace, used: set[str]) -> int:
-    """One round; the exit code. What the scripts are made of comes into `used`."""
+    """Check once; the exit code. The real paths of all files that were read go into `used`."""
     started = time.perf_counter()
     disk = Disk()
     paths = scripts_of(arguments.script, disk)
-    more = unreachable if arguments.sim else None
-    whole = survey(paths, disk, arguments.scripts, arguments.templates, more)
+    extra = unreachable if arguments.sim else None
+    whole = check_scripts(paths, disk, arguments.scripts, arguments.templates, extra)
     used.update(*whole.uses.values())
     changed = changed_since(arguments.changed_since) if arguments.changed_since else None
     found, notes = _counted(whole, changed, arguments)
     if arguments.write_baseline:
         return _write_baseline(arguments.baseline, found.report)
-    mends = 0
+    fixes = 0
     if arguments.fix or arguments.diff:
         from smachac.refactor.autofix import Texts, apply_fixes
 
-        def again(texts: Texts) -> Survey:
-            return survey(paths, Disk(texts), arguments.scripts, arguments.templates, more)
+        def again(texts: Texts) -> Batch:
+            return check_scripts(paths, Disk(texts), arguments.scripts, arguments.templates, extra)
 
-        def counted(survey: Survey) -> Report:
-            return _counted(survey, changed, arguments)[0].report
+        def counted(batch: Batch) -> Report:
+            return _counted(batch, changed, arguments)[0].report
 
-        cured = apply_fixes(whole, counted, again)
-        mends = cured.count
+        fixed = apply_fixes(whole, counted, again)
+        fixes = fixed.count
         if arguments.diff:
-            _put_diff(cured)
-        elif not _rewritten(cured):
+            _put_diff(fixed)
+        elif not _rewritten(fixed):
             return FINDINGS
-        found, notes = _counted(cured.survey, changed, arguments)
-        notes += [f"{mends} mended"] if mends else []
-    elif cures := sum(bool(item.finding.edits) for item in found.report):
-        notes.append(f"{cures} with a cure: --fix")
+        found, notes = _counted(fixed.batch, changed, arguments)
+        notes += [f"{fixes} fixed"] if fixes else []
+    elif fixable := sum(bool(item.finding.edits) for item in found.report):
+        notes.append(f"{fixable} fixable with --fix")
     grave = {Severity.ERROR, Severity.WARNING} if arguments.strict else {Severity.ERROR}
     failing = {
         name: [item for item in each if item.severity in grave]
@@ -97,44 +142,44 @@ def _once(arguments: Namespace, used: set[str]) -> int:
         notes.append(f"{time.perf_counter() - started:.2f} s")
     if not arguments.diff:
         _put(found, failing, notes, arguments)
-    return FINDINGS if any(failing.values()) or (arguments.diff and mends) else OK
+    return FINDINGS if any(failing.values()) or (arguments.diff and fixes) else OK
 
 
 def _counted(
-    found: Survey, changed: set[str] | None, arguments: Namespace
-) -> tuple[Survey, list[str]]:
-    """What of a survey counts by the arguments, and notes on what does not."""
+    found: Batch, changed: set[str] | None, arguments: Namespace
+) -> tuple[Batch, list[str]]:
+    """The findings that the arguments select, and notes on those that they do not."""
     if changed is not None:
         found = found.touched_by(changed)
     report = select_findings(found.report, _codes(arguments.select), _codes(arguments.ignore))
     notes = []
     if arguments.baseline is not None and not arguments.write_baseline:
         report, known, gone = baseline.compare(report, _read_baseline(arguments.baseline))
-        notes += [f"{known} known"] if known else []
-        notes += [f"{gone} of the baseline gone"] if gone else []
+        notes += [f"{known} in the baseline"] if known else []
+        notes += [f"{gone} of the baseline no longer found"] if gone else []
     return found.only(report), notes
 
 
-def _put_diff(cured: FixResult) -> None:
+def _put_diff(fixed: FixResult) -> None:
     from smachac.refactor.autofix import differences
 
-    sys.stdout.writelines(differences(cured.texts, cured.sources))
-    print(f"--fix would mend {cured.count} findings in {len(cured.texts)} files", file=sys.stderr)
+    sys.stdout.writelines(differences(fixed.texts, fixed.sources))
+    print(f"--fix would fix {fixed.count} findings in {len(fixed.texts)} files", file=sys.stderr)
 
 
-def _rewritten(cured: FixResult) -> bool:
-    """Write what was mended; whether that went well."""
+def _rewritten(fixed: FixResult) -> bool:
+    """Write the fixed texts; whether that succeeded."""
     try:
-        rewrite_files(cured.texts, cured.sources)
+        rewrite_files(fixed.texts, fixed.sources)
     except (OSError, ChangedError) as error:
         words = getattr(error, "strerror", None) or str(error)
-        print(f"nothing was mended: {words}", file=sys.stderr)
+        print(f"nothing was fixed: {words}", file=sys.stderr)
         return False
     return True
 
 
-def _put(found: Survey, failing: dict[str, Report], notes: list[str], arguments: Namespace) -> None:
-    """Print what was found, in the form that is asked for."""
+def _put(found: Batch, failing: dict[str, Report], notes: list[str], arguments: Namespace) -> None:
+    """Print the findings in the requested format."""
     report = found.report
     match arguments.format:
         case "json":
@@ -148,15 +193,15 @@ def _put(found: Survey, failing: dict[str, Report], notes: list[str], arguments:
         case "junit":
             from smachac.report.junit import render_junit
 
-            mild = {name: shown(each) for name, each in found.reports.items()}
+            mild = {name: without_notes(each) for name, each in found.reports.items()}
             sys.stdout.write(render_junit(mild, failing))
         case "github":
             from smachac.report.github import render_github
 
-            sys.stdout.write(render_github(shown(report)))
+            sys.stdout.write(render_github(without_notes(report)))
             print(_summary(report, len(found.reports), notes))
         case _:
-            print_report(shown(report), arguments, sys.stdout)
+            print_report(without_notes(report), arguments, sys.stdout)
             print(_summary(report, len(found.reports), notes))
 
 
@@ -174,7 +219,7 @@ def _write_baseline(path: Path, report: Report) -> int:
         write_files(path.parent, {path.name: baseline.render(report)})
     except OSError as error:
         return usage(f"cannot write {path}: {error.strerror or error}")
-    print(f"wrote {path}: {len(report)} findings are known from now on")
+    print(f"wrote {path}: {len(report)} findings, which --baseline ignores from now on")
     return OK
 
 
@@ -190,7 +235,7 @@ def _read_baseline(path: Path) -> Counter[str]:
 
 
 def _watch(arguments: Namespace) -> int:
-    """Check, and check again whenever a file changes, until Ctrl-C."""
+    """Check, and check again when a file changes, until Ctrl-C."""
     known: set[str] = set()
     while True:
         before = stamps(_watched(arguments, known))
@@ -200,12 +245,12 @@ def _watch(arguments: Namespace) -> int:
         except WRONG_USAGE as error:
             if not known:
                 raise
-            usage(str(error))  # a folder may be empty for a while
+            usage(str(error))  # a folder may be empty for some time
         known = used or known
         now = stamps(_watched(arguments, known))
         base = {**now, **{path: before[path] for path in now if path in before}}
         print(f"watching {len(base)} files; Ctrl-C ends", flush=True)
-        gc.collect()  # it is off while we work
+        gc.collect()  # automatic collection is off
         while stamps(_watched(arguments, known)) == base:
             time.sleep(PAUSE)
         print()

@@ -1,30 +1,63 @@
-"""The command `explain`: a code, a state, a key, or the failures of a script."""
+"""The command `explain`: explain a code, a state, a key, or the failures of a script."""
 
 from __future__ import annotations
 
 import argparse
 import sys
+from argparse import Namespace
 from pathlib import Path
 
 from smachac.analysis.context import Context
-from smachac.commands.output import FINDINGS, OK, print_report, shown, usage
-from smachac.driver import CODES, analyse_file
+from smachac.commands.arguments import colour, search_folders
+from smachac.commands.output import FINDINGS, OK, print_report, usage, without_notes
+from smachac.driver import CODES, analyse_script
+
+EXAMPLES = """\
+examples:
+  smachac explain SM201                  a code: what it means, with examples
+  smachac explain main.yml grasp_pose    a key: which states set it and read it, where it is unset
+  smachac explain main.yml PICK/GRASP    a state, by its path or the end of its path
+  smachac explain main.yml --failures    where every failure leads
+  smachac explain main.yml --failures --format csv > failures.csv
+
+exit codes: 0 success, 1 the script cannot be read, 2 wrong usage or unknown name,
+70 a bug in smachac
+"""
 
 
-def explain(arguments: argparse.Namespace) -> int:
+def explain_arguments(parser: argparse.ArgumentParser) -> None:
+    parser.epilog = EXAMPLES
+    parser.add_argument("words", nargs="*", metavar="CODE | SCRIPT [NAME]",
+                        help="a code, or a script and the name of a state or key")  # fmt: skip
+    parser.add_argument("--all", action="store_true", help="explain all codes, as Markdown")
+    parser.add_argument("--failures", action="store_true",
+                        help="list where every failure of the script leads")  # fmt: skip
+    parser.add_argument("--format", choices=("text", "json", "md", "csv"), default="text",
+                        help="format of the output; md and csv only with --failures")  # fmt: skip
+    search_folders(parser)
+    colour(parser)
+
+
+def explain_command(arguments: Namespace) -> int:
+    """Explain what the words name; the exit code."""
     words, form = arguments.words, arguments.format
     if form in ("md", "csv") and not arguments.failures:
-        return usage(f"--format {form} is for --failures")
-    if arguments.all or (len(words) == 1 and not arguments.failures):
-        return explain_code(*words) if not arguments.all else explain_code()
+        return usage(f"--format {form} needs --failures")
+    if arguments.all:
+        from smachac.report.explain_code import render_rules
+
+        sys.stdout.write(render_rules(CODES))
+        return OK
+    if len(words) == 1 and not arguments.failures:
+        return _explain_code(words[0])
     if len(words) != (1 if arguments.failures else 2):
-        return usage("name a code such as SM201, or a script with a state or key or --failures")
-    analysis, _ = analyse_file(Path(words[0]), arguments.scripts, arguments.templates)
+        return usage("name a code such as SM201, or a script with a state or a key or --failures")
+    analysis = analyse_script(Path(words[0]), arguments.scripts, arguments.templates)
     if analysis.machine is None:
-        print_report(shown(analysis.report), arguments, sys.stderr)
+        print_report(without_notes(analysis.report), arguments, sys.stderr)
         return FINDINGS
     if analysis.checked is None:
-        print("the script has errors: this is what can be read of it", file=sys.stderr)
+        print("the script has errors: the explanation may be incomplete", file=sys.stderr)
     if arguments.failures:
         from smachac.report.explain_failures import render_failures
 
@@ -40,16 +73,13 @@ def explain(arguments: argparse.Namespace) -> int:
     return OK
 
 
-def explain_code(word: str = "") -> int:
-    """What a code means; without a word, all of them."""
-    from smachac.report.explain_code import render_code, render_rules
+def _explain_code(word: str) -> int:
+    """Print what a code means; the exit code."""
+    from smachac.report.explain_code import render_code
 
-    if not word:
-        sys.stdout.write(render_rules(CODES))
-        return OK
     code = CODES.get(word.upper())
     if code is None and Path(word).suffix:
-        return usage(f"name a state or a key of {word}, or say --failures")
+        return usage(f"name a state or a key of {word}, or use --failures")
     if code is None:
         return usage(f"there is no code `{word}`", word.upper(), list(CODES))
     print(render_code(code))

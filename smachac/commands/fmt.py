@@ -1,30 +1,52 @@
-"""The commands that rewrite scripts: what they make of the texts is shown, or written."""
+"""The command `fmt`: format scripts; comments stay."""
 
 from __future__ import annotations
 
+import argparse
 import os
 import sys
 from argparse import Namespace
-from collections.abc import Mapping
 from pathlib import Path
 
-from smachac.commands.files import ChangedError, rewrite_files
-from smachac.commands.output import FINDINGS, OK, print_report, usage
+from smachac.commands.arguments import SCRIPTS, colour, dry_run
+from smachac.commands.files import put_changes
+from smachac.commands.output import FINDINGS, print_report, usage
 from smachac.diagnostics.diagnostic import Report
 from smachac.diagnostics.source import Source
 from smachac.frontend.discovery import NothingFoundError, scripts_of
 from smachac.frontend.files import Disk
-from smachac.refactor.autofix import Texts, differences
 from smachac.refactor.formatter import format_script
 
+EXAMPLES = """\
+examples:
+  smachac fmt                        format all scripts below the current folder
+  smachac fmt main.yml --diff        show the changes as a patch
+  smachac fmt --check                fail if a script is not formatted (CI)
+  smachac fmt main.yml --shorthand   T, o, t, [[x]] instead of template, outcomes, transitions, ...
 
-def fmt(arguments: Namespace) -> int:
-    """Lay out scripts; what is not YAML is reported and left alone."""
+exit codes: 0 success, 1 a file would change (--check, --diff), cannot be read or written,
+2 wrong usage, 70 a bug in smachac
+"""
+
+
+def fmt_arguments(parser: argparse.ArgumentParser) -> None:
+    parser.epilog = EXAMPLES
+    parser.add_argument("script", nargs="*", type=Path, help=SCRIPTS)
+    dry_run(parser)
+    spelling = parser.add_mutually_exclusive_group()
+    for name in ("short", "long"):
+        spelling.add_argument(f"--{name}hand", dest="spelling", action="store_const", const=name,
+                              default="kept", help=f"use {name} names of variables")  # fmt: skip
+    colour(parser)
+
+
+def fmt_command(arguments: Namespace) -> int:
+    """Format scripts; the exit code. A file that is not YAML is reported and left unchanged."""
     disk = Disk()
     report: Report = []
     texts: dict[str, str] = {}
     sources: dict[str, Source] = {}
-    left = 0
+    failed = 0
     try:
         paths = scripts_of(arguments.script or [Path()], disk)
     except NothingFoundError as error:
@@ -34,47 +56,15 @@ def fmt(arguments: Namespace) -> int:
         source = disk.read(path, found)
         if source is None or disk.parse(source, found) is None:
             report += found
-            left += bool(found)
+            failed += bool(found)
             continue
         new = format_script(source, arguments.spelling)
         if new is None:
-            print(f"{path} is left as it is: its YAML is too unusual", file=sys.stderr)
-            left += 1
+            print(f"{path} was not changed: `fmt` does not support its YAML", file=sys.stderr)
+            failed += 1
         elif new != source.text:
             name = os.path.realpath(path)
             texts[name], sources[name] = new, source
     print_report(report, arguments, sys.stderr)
-    code = put(texts, sources, arguments, "laid out")
-    return FINDINGS if left else code
-
-
-def put(
-    texts: Texts,
-    sources: Mapping[str, Source],
-    arguments: Namespace,
-    done: str,
-    new: frozenset[str] = frozenset(),
-) -> int:
-    """Write new texts, or show what would be written, as `--check` and `--diff` say. `new` are the
-    paths of files that are not there yet."""
-    verbs = {
-        source.name: "made" if path in new else done
-        for path, source in sorted(sources.items(), key=lambda each: each[1].name)
-    }
-    if arguments.diff:
-        sys.stdout.writelines(differences(texts, sources))
-        return FINDINGS if texts else OK
-    if arguments.check:
-        for name, verb in verbs.items():
-            print(f"{name} would be {verb}")
-        return FINDINGS if texts else OK
-    try:
-        rewrite_files(texts, {path: sources[path] for path in sources.keys() - new})
-    except (OSError, ChangedError) as error:
-        words = getattr(error, "strerror", None) or str(error)
-        where = getattr(error, "filename", None)
-        print(f"nothing was written: {f'{where}: ' if where else ''}{words}", file=sys.stderr)
-        return FINDINGS
-    for name, verb in verbs.items():
-        print(f"{verb} {name}")
-    return OK
+    code = put_changes(texts, sources, arguments, "formatted")
+    return FINDINGS if failed else code

@@ -1,7 +1,8 @@
-"""The command `migrate`: what becomes of the SMACHA scripts and templates of a folder."""
+"""The command `migrate`: report what to change in SMACHA scripts and templates."""
 
 from __future__ import annotations
 
+import argparse
 import os
 import re
 import sys
@@ -9,10 +10,12 @@ from argparse import Namespace
 from collections.abc import Iterable, Iterator, Sequence
 from pathlib import Path
 
+from smachac.batch import analyse_alone
+from smachac.commands.arguments import FORMAT, search_folders
 from smachac.commands.output import FINDINGS, OK, usage
 from smachac.diagnostics.diagnostic import Diagnostic, Report, Severity, in_order
 from smachac.diagnostics.source import Source, Span
-from smachac.driver import CODES, analyse, analyse_alone, build
+from smachac.driver import CODES, analyse, compile_script
 from smachac.frontend.discovery import NothingFoundError, scripts_of
 from smachac.frontend.files import Disk, disk_library
 from smachac.frontend.schema import LONG
@@ -20,19 +23,42 @@ from smachac.frontend.yaml_tree import Map, Seq, Tree
 from smachac.refactor.smacha.report import File, MigrationItem, render_migration
 from smachac.refactor.smacha.script_differences import SmachaDifference, script_differences
 from smachac.refactor.smacha.template_differences import template_differences, top_level_sets
-from smachac.targets import load_target
+from smachac.targets.python import TARGET
 from smachac.targets.templates.engine import BlockError, Blocks
 
 TEMPLATE = re.compile(r"[^.].*\.tpl(\.py)?$")
+"""File names of templates."""
 
 
-def migrate(arguments: Namespace) -> int:
-    """Report on the folders; the exit code: 1 where something has to be edited."""
+EXAMPLES = """\
+examples:
+  smachac migrate .                      all scripts and templates below the current folder
+  smachac migrate scripts templates      the files of two folders
+  smachac migrate . --format json > left.json   for programs; md for a page
+
+kinds of places in the report:
+  edit      SMACHA ignored an error here; correct it, smachac generates no code with it
+  changed   SMACHA and smachac behave differently here, or SMACHA failed here
+  note      works as before; `smachac check` has a finding here
+
+exit codes: 0 nothing to edit, 1 something to edit, 2 wrong usage, 70 a bug in smachac
+"""
+
+
+def migrate_arguments(parser: argparse.ArgumentParser) -> None:
+    parser.epilog = EXAMPLES
+    parser.add_argument("folder", nargs="*", type=Path, help="folders (default: the current one)")
+    search_folders(parser)
+    parser.add_argument("--format", choices=("text", "json", "md"), default="text", help=FORMAT)
+
+
+def migrate_command(arguments: Namespace) -> int:
+    """Report on folders; the exit code: 1 if something has to be edited."""
     disk = Disk()
     folders: list[Path] = arguments.folder or [Path()]
     for folder in folders:
         if not folder.is_dir():
-            what = "is a file: name the folder that it is in" if folder.exists() else "is no folder"
+            what = "is a file: name its folder" if folder.exists() else "is not a folder"
             return usage(f"`{folder}` {what}")
     templates = [path for folder in folders for path in template_files(folder)]
     try:
@@ -56,7 +82,7 @@ def template_files(folder: Path) -> Iterator[Path]:
 def _files(
     scripts: Sequence[Path], templates: Sequence[Path], disk: Disk, arguments: Namespace
 ) -> Iterator[File]:
-    """What there is to say of each file, scripts first."""
+    """The report on each file, scripts first."""
     texts = [(path, disk.read(path, [])) for path in scripts]
     alone = {path for path, text in texts if text and isinstance(disk.parse(text, []), Seq)}
     reports: dict[Path, Report] = {}
@@ -96,12 +122,10 @@ def _files(
         library = disk_library(path, [], templates=_near(path, templates), disk=disk)
         known = [item for item in found if _is_at(item.span, path)]
         fault = _syntax_fault(source)
-        if fault is not None and not any(item.code.code == "SM605" for item in known):
+        if fault is not None and not any(item.code == "SM605" for item in known):
             known.append(fault)
-        told = (
-            [] if fault is not None else template_differences(source, library.template, given, sets)
-        )
-        items = [*map(_item, known), *_untold(told, known)]
+        differences = () if fault else template_differences(source, library.template, given, sets)
+        items = [*map(_item, known), *map(_difference, _unreported(differences, known))]
         yield File(
             name=str(path),
             kind="template",
@@ -120,7 +144,7 @@ def _report(
     *,
     alone: bool = False,
 ) -> Report:
-    """What checking a script says, and building it for Python."""
+    """The findings of checking a script and of generating Python from it."""
     report: Report = []
     if source is None:
         disk.read(path, report)
@@ -135,23 +159,18 @@ def _report(
     )
     if alone:
         return analyse_alone(source, library, report).report
-    analysis = analyse(source, library, report)
-    found = list(analysis.report)
-    target = load_target("python")
-    if analysis.checked is not None and target is not None:
-        build(analysis.checked, target, library, found)
-    return found
+    return compile_script(analyse(source, library, report), TARGET).report
 
 
 def _near(path: Path, files: Iterable[Path]) -> list[Path]:
-    """The folders of files, those first whose paths have most in common with that of a script."""
+    """The folders of files; first those whose paths have most parts in common with a script."""
     own = set(path.parent.parts)
     folders = dict.fromkeys(file.parent for file in files)
     return sorted(folders, key=lambda folder: (-len(own & set(folder.parts)), str(folder)))
 
 
 def _keys(tree: Tree) -> Iterator[str]:
-    """The names of all that a script gives, in their long form."""
+    """The names of all variables in a script, in their long form."""
     todo = [tree]
     while todo:
         each = todo.pop()
@@ -162,30 +181,37 @@ def _keys(tree: Tree) -> Iterator[str]:
             todo += each.items
 
 
-def _untold(told: Iterable[SmachaDifference], known: Report) -> Iterator[MigrationItem]:
-    """The quirks of a template of which building a program has not spoken."""
-    lines = {item.span.line for item in known if item.code.code == "SM606"}
-    missing = " ".join(item.finding.message for item in known if item.code.code == "SM605")
-    for quirk in told:
-        if quirk.name == "python-2" and quirk.what == "note" and quirk.span.line in lines:
+def _unreported(found: Iterable[SmachaDifference], known: Report) -> Iterator[SmachaDifference]:
+    """The differences of a template that no finding reports: SM606 for a line of Python 2, SM605
+    for a line with an undefined name."""
+    old_python = {item.span.line for item in known if item.code == "SM606"}
+    failing = [item.span.text for item in known if item.code == "SM605"]
+    for difference in found:
+        if (
+            difference.name == "python-2"
+            and difference.what == "note"
+            and difference.span.line in old_python
+        ):
             continue
-        if quirk.name == "unknown-name" and f"'{quirk.span.text}' is undefined" in missing:
+        if difference.name == "unknown-name" and any(
+            difference.span.text in line for line in failing
+        ):
             continue
-        yield _quirk(quirk)
+        yield difference
 
 
-def _quirk(quirk: SmachaDifference) -> MigrationItem:
+def _difference(difference: SmachaDifference) -> MigrationItem:
     return MigrationItem(
-        line=quirk.span.line,
-        column=quirk.span.column,
-        what=quirk.what,
-        name=quirk.name,
-        message=quirk.message,
+        line=difference.span.line,
+        column=difference.span.column,
+        what=difference.what,
+        name=difference.name,
+        message=difference.message,
     )
 
 
 def _syntax_fault(source: Source) -> Diagnostic | None:
-    """Why a template cannot be read at all."""
+    """The error of a template that cannot be parsed."""
     name = Path(source.name).name
     try:
         Blocks({name: source}.get).parsed(name)
@@ -203,10 +229,10 @@ def _has_errors(found: Report, path: Path) -> bool:
 
 
 def _items(found: Report, path: Path, source: Source | None, disk: Disk) -> Iterator[MigrationItem]:
-    """Of one script: what must be edited, and the quirks of SMACHA that it has."""
+    """The findings in one script and its differences from SMACHA."""
     items = [_item(item) for item in found if _is_at(item.span, path)]
-    for quirk in script_differences(disk.parse(source, [])) if source is not None else ():
-        items.append(_quirk(quirk))
+    for difference in script_differences(disk.parse(source, [])) if source is not None else ():
+        items.append(_difference(difference))
     yield from sorted(items, key=lambda item: (item.line, item.column, item.name))
 
 
@@ -215,7 +241,7 @@ def _item(item: Diagnostic) -> MigrationItem:
         line=item.span.line,
         column=item.span.column,
         what="edit" if item.severity is Severity.ERROR else "note",
-        name=item.code.code,
-        message=item.finding.message,
-        help=item.finding.help or "",
+        name=item.code,
+        message=item.message,
+        help=item.help or "",
     )

@@ -1,7 +1,8 @@
-"""The command `new`: files that are written once, and never over others."""
+"""The command `new`: create a project or a state type; no file is overwritten."""
 
 from __future__ import annotations
 
+import argparse
 import sys
 from argparse import Namespace
 from dataclasses import replace
@@ -12,7 +13,7 @@ from smachac.commands.output import FINDINGS, OK, usage
 from smachac.commands.scaffold import (
     BadNameError,
     Files,
-    Wanted,
+    NewStateType,
     code_file,
     code_line,
     interface,
@@ -27,28 +28,55 @@ from smachac.frontend.files import disk_library
 from smachac.frontend.loader import Library
 from smachac.frontend.state_types import find_state_type
 
+EXAMPLES = """\
+examples:
+  smachac new my_robot               a folder with a machine that runs
+  smachac new state Grasp            templates/Grasp.yml and robot_states/grasp.py
+  smachac new state Grasp --input target=Pose --output "width=float<m>" --outcome held
+  smachac new state Grasp --target cpp     include/robot_states/grasp.hpp
 
-def new(arguments: Namespace) -> int:
-    """Begin a project, or a state type."""
+Existing files are never overwritten.
+exit codes: 0 success, 1 a file exists or cannot be written, 2 wrong usage, 70 a bug in smachac
+"""
+
+
+def new_arguments(parser: argparse.ArgumentParser) -> None:
+    parser.epilog = EXAMPLES
+    parser.add_argument("words", nargs="+", metavar="FOLDER | state NAME",
+                        help="the folder of a new project, or `state` and the name of a new state"
+                        " type")  # fmt: skip
+    parser.add_argument("--target", choices=("python", "cpp"), default="python",
+                        help="language of the generated code (default: python)")  # fmt: skip
+    for name in ("input", "output"):
+        parser.add_argument(f"--{name}", action="append", default=[], metavar="KEY[=TYPE]",
+                            help=f"an {name} key of the state type (repeatable)")  # fmt: skip
+    parser.add_argument("--outcome", action="append", default=[], metavar="NAME",
+                        help="an outcome of the state type (repeatable)")  # fmt: skip
+
+
+def new_command(arguments: Namespace) -> int:
+    """Create a project or a state type; the exit code."""
     words: list[str] = arguments.words
     if words[:1] == ["state"] and len(words) == 2:
         return _state(words[1], arguments)
     if len(words) != 1 or words == ["state"]:
-        return usage("name a folder, or say `new state NAME`")
+        return usage(
+            "name a folder, as in `new my_robot`, or a state type, as in `new state Grasp`"
+        )
     folder = Path(words[0])
     return _put(folder, project(folder.resolve().name))
 
 
 def _put(folder: Path, files: Files) -> int:
-    """Write files, unless one of them is there."""
+    """Write files, unless one of them exists; the exit code."""
     there = present_files(folder, files)
     for path in there:
-        print(f"{path} is there already: nothing was written", file=sys.stderr)
+        print(f"{path} exists already: nothing was written", file=sys.stderr)
     if there:
         return FINDINGS
     try:
         for path in write_files(folder, files):
-            print(f"made {path}")
+            print(f"created {path}")
     except OSError as error:
         print(f"cannot write to {folder}: {error.strerror or error}", file=sys.stderr)
         return FINDINGS
@@ -56,12 +84,12 @@ def _put(folder: Path, files: Files) -> int:
 
 
 def _state(name: str, arguments: Namespace) -> int:
-    """A state type, or the code of one in another language."""
+    """Create a state type, or the code of an existing one in another language; the exit code."""
     language: str = arguments.target
     if not is_type_name(name):
-        return usage(f"`{name}` is no name for a state type: write it as `GraspPart`")
+        return usage(f"`{name}` is not a name for a state type: write it as `GraspPart`")
     try:
-        wanted = Wanted(
+        wanted = NewStateType(
             name=name,
             inputs=[key_and_type(text) for text in arguments.input],
             outputs=[key_and_type(text) for text in arguments.output],
@@ -69,7 +97,7 @@ def _state(name: str, arguments: Namespace) -> int:
         )
         for outcome in wanted.outcomes:
             if not outcome.isidentifier():
-                raise BadNameError(f"`{outcome}` is no name for an outcome")
+                raise BadNameError(f"`{outcome}` is not a name for an outcome")
     except BadNameError as error:
         return usage(str(error))
     folder = Path()
@@ -87,7 +115,7 @@ def _state(name: str, arguments: Namespace) -> int:
     try:
         files[code_file(name, language)] = stub(type_, language)
     except UnportableError as error:
-        return usage(f"there can be no stub in C++: {error}")
+        return usage(f"C++ cannot express the interface: {error}")
     package = code_file(name, language).rpartition("/")[0] + "/__init__.py"
     if language == "python" and not present_files(folder, {package: ""}):
         files[package] = ""
@@ -98,7 +126,7 @@ def _state(name: str, arguments: Namespace) -> int:
 
 
 def _with(library: Library, name: str, text: str) -> Library:
-    """A library in which there is one more interface."""
+    """A library with one more interface."""
     source = Source(name, text)
 
     def template(wanted: str) -> Source | None:

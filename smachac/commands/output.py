@@ -1,17 +1,17 @@
-"""What the commands share in speaking to the user: reports, colours, words on wrong usage."""
+"""Exit codes, and how commands print reports and errors of usage."""
 
 from __future__ import annotations
 
 import os
 import sys
 from argparse import Namespace
-from typing import TYPE_CHECKING, Any
+from collections.abc import Sequence
+from typing import Any
 
-if TYPE_CHECKING:
-    from smachac.diagnostics.diagnostic import Report
+from smachac.diagnostics.diagnostic import Report, Severity, did_you_mean
 
 OK, FINDINGS, USAGE = 0, 1, 2
-"""Exit code of wrong usage."""
+"""Exit codes: success; findings or failure; wrong usage."""
 
 
 def wants_colour(arguments: Namespace, stream: Any) -> bool:
@@ -20,10 +20,8 @@ def wants_colour(arguments: Namespace, stream: Any) -> bool:
     return bool(stream.isatty()) and "NO_COLOR" not in os.environ
 
 
-def shown(report: Report) -> Report:
-    """What people are shown of a report: all but information."""
-    from smachac.diagnostics.diagnostic import Severity
-
+def without_notes(report: Report) -> Report:
+    """The findings that reports for people show: errors and warnings."""
     return [item for item in report if item.severity is not Severity.INFO]
 
 
@@ -34,10 +32,9 @@ def print_report(report: Report, arguments: Namespace, stream: Any) -> None:
         print(render_text(report, colour=wants_colour(arguments, stream)), file=stream)
 
 
-def usage(message: str, word: str = "", known: list[str] | None = None) -> int:
-    """Wrong usage, in the words of argparse, with what may have been meant; its exit code."""
-    from smachac.diagnostics.diagnostic import did_you_mean
-
+def usage(message: str, word: str = "", known: Sequence[str] = ()) -> int:
+    """Print an error of usage as argparse does, with the known name that is nearest to `word`, or
+    all of them; the exit code."""
     print(f"smachac: error: {message}", file=sys.stderr)
     if known:
         print(did_you_mean(word, known) or f"known: {', '.join(known)}", file=sys.stderr)

@@ -1,7 +1,12 @@
-"""The commands that move or rename states: worked out in memory, proven, then shown or written."""
+"""The commands `contain`, `extract`, `inline` and `rename`.
+
+A change is made in memory. The changed script is analysed again and compared with the script
+before; only a change that keeps its behaviour is shown or written.
+"""
 
 from __future__ import annotations
 
+import argparse
 import os
 import sys
 from argparse import Namespace
@@ -10,7 +15,8 @@ from collections.abc import Callable, Container, Iterator, Mapping
 from functools import partial
 from pathlib import Path
 
-from smachac.commands.fmt import put
+from smachac.commands.arguments import SCRIPT, colour, dry_run, search_folders
+from smachac.commands.files import put_changes
 from smachac.commands.output import FINDINGS, print_report, usage
 from smachac.diagnostics.diagnostic import Code, Diagnostic, Finding, Report, Severity, has_errors
 from smachac.diagnostics.source import Source, Span
@@ -26,20 +32,105 @@ from smachac.ir.recursion import deep_recursion
 from smachac.ir.traversal import walk
 from smachac.refactor.contain import contain, equal_after_contain, plan_container, preset_keys
 from smachac.refactor.cst import Atom, UnsupportedYamlError
-from smachac.refactor.editor import RefusedError, ScriptEditor
+from smachac.refactor.editor import RefusedError, ScriptEditor, variable
 from smachac.refactor.equivalence import equal_after_rename, same_machine
 from smachac.refactor.extract_inline import extract, inline
+from smachac.refactor.field_order import variables_of
 from smachac.refactor.locate import NotFoundError, different_container_error, find_named, find_state
 from smachac.refactor.open_states import TemplateFacts, with_inferred_interfaces
 from smachac.refactor.rename import Renaming, rename_key, rename_outcome, rename_state
 
-Texts = Mapping[str, str]
+EXIT_CODES = """\
+exit codes: 0 success, 1 refused, or a file would change (--check, --diff), 2 wrong usage,
+70 a bug in smachac
+"""
 
-NO_ERRORS = "mend these errors first, for nobody knows what the machine would be"
+CONTAIN_EXAMPLES = f"""\
+examples:
+  smachac contain main.yml LOAD StateMachine LOAD_TABLE LOAD_BLOCK   two states in sequence
+  smachac contain main.yml LOOK Concurrence FIND WARM_UP             at the same time from now on
+  smachac contain main.yml LOAD StateMachine LOAD_TABLE LOAD_BLOCK --diff   show a patch
+
+{EXIT_CODES}"""
+
+EXTRACT_EXAMPLES = f"""\
+examples:
+  smachac extract main.yml PICK_BLOCK              into pick_block.yml beside main.yml
+  smachac extract main.yml sm/PICK --to grasp.yml  into a file with another name
+  smachac extract main.yml PICK_BLOCK --diff       show a patch
+
+{EXIT_CODES}"""
+
+INLINE_EXAMPLES = f"""\
+examples:
+  smachac inline main.yml PICK_BLOCK         replace the call of pick_block.yml by its content
+  smachac inline main.yml PICK_BLOCK --diff  show a patch
+
+{EXIT_CODES}"""
+
+RENAME_EXAMPLES = f"""\
+examples:
+  smachac rename main.yml PICK_BLOCK GRASP        a state, and the transitions to it
+  smachac rename main.yml PICK_BLOCK/aborted lost an outcome, inside the state and around it
+  smachac rename main.yml block_pose part_pose    a key of the machine
+  smachac rename main.yml PICK_BLOCK/pose goal    a key of a container
+  smachac rename main.yml done ready --kind key   if the name stands for several things
+
+{EXIT_CODES}"""
+
+
+def contain_arguments(parser: argparse.ArgumentParser) -> None:
+    parser.epilog = CONTAIN_EXAMPLES
+    parser.add_argument("script", type=Path, help=SCRIPT)
+    parser.add_argument("name", metavar="NAME", help="the name of the new container")
+    parser.add_argument("type", metavar="TYPE", choices=("StateMachine", "Concurrence"),
+                        help="StateMachine or Concurrence")  # fmt: skip
+    parser.add_argument("states", metavar="STATE", nargs="+",
+                        help="states of one container, by name or path")  # fmt: skip
+    _common_arguments(parser)
+
+
+def extract_arguments(parser: argparse.ArgumentParser) -> None:
+    parser.epilog = EXTRACT_EXAMPLES
+    parser.add_argument("script", type=Path, help=SCRIPT)
+    parser.add_argument("state", metavar="STATE",
+                        help="a container, by its path or the end of its path")  # fmt: skip
+    parser.add_argument("--to", type=Path, metavar="FILE",
+                        help="name of the new file (default: that of the state)")  # fmt: skip
+    _common_arguments(parser)
+
+
+def inline_arguments(parser: argparse.ArgumentParser) -> None:
+    parser.epilog = INLINE_EXAMPLES
+    parser.add_argument("script", type=Path, help=SCRIPT)
+    parser.add_argument("state", metavar="STATE", help="a state that calls a sub-script, by its"
+                        " path or the end of its path")  # fmt: skip
+    _common_arguments(parser)
+
+
+def rename_arguments(parser: argparse.ArgumentParser) -> None:
+    parser.epilog = RENAME_EXAMPLES
+    parser.add_argument("script", type=Path, help=SCRIPT)
+    parser.add_argument("path", metavar="PATH", help="a state, by its path or the end of its path;"
+                        " or such a path and the name of an outcome or a key")  # fmt: skip
+    parser.add_argument("new", metavar="NEW", help="the new name")
+    parser.add_argument("--kind", choices=("state", "outcome", "key"),
+                        help="what PATH names, if it is ambiguous")  # fmt: skip
+    _common_arguments(parser)
+
+
+def _common_arguments(parser: argparse.ArgumentParser) -> None:
+    dry_run(parser)
+    search_folders(parser)
+    colour(parser)
+
+
+class HasErrorsError(Exception):
+    """The script has errors, so its machine is not known."""
 
 
 class Desk:
-    """One script with all it is made of, before a change; line ends are line feeds alone."""
+    """One script with all texts it is read from, before a change, with line feeds as line ends."""
 
     def __init__(self, arguments: Namespace) -> None:
         self.arguments = arguments
@@ -50,7 +141,7 @@ class Desk:
         self.made: dict[str, str] = {}
 
     def read(self, disk: Disk, path: Path | None = None) -> Analysis:
-        """What there is to say of the script, or of another one, read from a disk."""
+        """The analysis of the script, or of another one, read from a disk."""
         path = path or self.path
         report: Report = []
         source = disk.read(path, report)
@@ -67,20 +158,19 @@ class Desk:
         return analyse(source, library, report)
 
     def library(self) -> Library:
-        """What the script may call and use, as it was before."""
+        """The library of the script before the change."""
         return disk_library(self.path, [], scripts=self.arguments.scripts,
                             templates=self.arguments.templates, disk=self.disk)  # fmt: skip
 
     @property
     def machine(self) -> Machine:
-        """The machine before the change. Raises RefusedError where the script has errors."""
+        """The machine before the change. Raises HasErrorsError."""
         if self.analysis.checked is None:
-            place = Span(Source(str(self.path), ""), 0, 0)
-            raise RefusedError(place, NO_ERRORS)
+            raise HasErrorsError
         return self.analysis.checked
 
     def sheet(self, source: Source) -> ScriptEditor:
-        """The text that a source holds, to be changed."""
+        """The editable text of a source. Raises RefusedError."""
         name = os.path.realpath(source.name)
         if name not in self.sheets:
             try:
@@ -91,7 +181,7 @@ class Desk:
         return self.sheets[name]
 
     def texts(self) -> dict[str, str]:
-        """What has become of the texts, by real path; those that stay the same are left out."""
+        """The changed texts and the new ones, by real path."""
         found = {name: sheet.result() for name, sheet in self.sheets.items()}
         changed = {
             name: text for name, text in found.items() if text != self.sheets[name].source.text
@@ -99,8 +189,8 @@ class Desk:
         return {**changed, **self.made}
 
     def others(self, changed: Container[str]) -> Iterator[tuple[Path, Machine]]:
-        """The machines of the other scripts beside this one that use one of these files, as far as
-        they have no errors."""
+        """The machines of the other scripts in the same folder that use one of these files and have
+        no errors."""
         mine = os.path.realpath(self.path)
         for path in scripts_of([self.path.parent], self.disk):
             if os.path.realpath(path) == mine:
@@ -114,27 +204,27 @@ class Desk:
                 yield path, found.checked
 
     def proven(self, span: Span, same: Callable[[Machine, Machine], bool]) -> Analysis:
-        """The script after the change. Raises RefusedError unless it is as good as before, and so
-        is every other script beside it that uses a file that changes."""
+        """The script after the change. Raises RefusedError unless it and every other script in the
+        folder that uses a changed file behave as before."""
         texts = self.texts()
         disk = Disk(texts, plain=True)
         after = self.read(disk)
         if after.checked is None:
             first = next(item for item in after.report if item.severity is Severity.ERROR)
-            message = f"the script would have an error: {first.finding.message}"
-            anchors = "alias" in first.finding.message
-            help = "write out what the alias stands for" if anchors else first.finding.help
+            message = f"the script would have an error: {first.message}"
+            alias = first.code == "SM001" and first.span.text.startswith("*")
+            help = "replace the alias by its value" if alias else first.help
             raise RefusedError(span, message, help)
         if not same(self.machine, after.checked):
-            raise RefusedError(span, "the machine would not do the same any more")
+            raise RefusedError(span, "the machine would behave differently")
         for path, machine in self.others(texts.keys() - {os.path.realpath(self.path)}):
             other = self.read(disk, path).checked
             if other is None or not same(machine, other):
-                raise RefusedError(span, f"{path} would not do the same any more")
+                raise RefusedError(span, f"the machine of {path} would behave differently")
         return after
 
-    def written(self) -> int:
-        """Write what has become, or show it; the exit code."""
+    def put(self) -> int:
+        """Write the changes, or show them; the exit code."""
         texts: dict[str, str] = {}
         sources: dict[str, Source] = {}
         disk = Disk()
@@ -150,35 +240,34 @@ class Desk:
             texts[name] = text.replace("\n", "\r\n") if crlf else text
             sources[name] = before
         if not texts:
-            print("nothing to do")
-        return put(texts, sources, self.arguments, "changed", new=frozenset(self.made))
+            print("nothing to change")
+        return put_changes(texts, sources, self.arguments, "changed", new=frozenset(self.made))
 
 
-def perform(arguments: Namespace, verb: str, change: Callable[[Desk], int]) -> int:
-    """Run one of the commands below, and tell why it cannot be done."""
+def perform(arguments: Namespace, command: str, change: Callable[[Desk], int]) -> int:
+    """Run one of the commands below, and report why a change is refused; the exit code."""
     with deep_recursion():
         desk = Desk(arguments)
         try:
-            if desk.analysis.checked is None:
-                errors = (each for each in desk.analysis.report if has_errors([each]))
-                print_report(list(errors), arguments, sys.stderr)
             return change(desk)
+        except HasErrorsError:
+            errors = [each for each in desk.analysis.report if has_errors([each])]
+            print_report(errors, arguments, sys.stderr)
+            if desk.analysis.machine is not None:
+                print("nothing was changed: fix the errors of the script first", file=sys.stderr)
+            return FINDINGS
         except NotFoundError as error:
             return usage(str(error))
         except RefusedError as error:
-            if error.message == NO_ERRORS and has_errors(desk.analysis.report):
-                if desk.analysis.machine is not None:
-                    print(f"nothing was changed: {error.message}", file=sys.stderr)
-                return FINDINGS
-            code = Code(code=verb, name=verb, severity=Severity.ERROR, explanation="")
+            code = Code(code=command, name=command, severity=Severity.ERROR, explanation="")
             finding = Finding(span=error.span, message=error.message, help=error.help)
-            told = Diagnostic(code=code, severity=Severity.ERROR, finding=finding)
-            print_report([told], arguments, sys.stderr)
+            refusal = Diagnostic(kind=code, severity=Severity.ERROR, finding=finding)
+            print_report([refusal], arguments, sys.stderr)
             return FINDINGS
 
 
-def run_extract(arguments: Namespace) -> int:
-    """Make a sub-script of a container."""
+def extract_command(arguments: Namespace) -> int:
+    """Move a container into a new sub-script; the exit code."""
 
     def change(desk: Desk) -> int:
         path, node = find_state(desk.machine, arguments.state)
@@ -189,19 +278,21 @@ def run_extract(arguments: Namespace) -> int:
         name = arguments.to or Path(f"{node.name.lower()}.yml")
         target = folder / name
         if name.suffix not in (".yml", ".yaml") or len(name.parts) != 1:
-            return usage("--to wants the name of a file beside the script, such as `pick.yml`")
+            return usage("--to needs the name of a file without a folder, such as `pick.yml`")
         text = extract(sheet, node.span, name.stem)
         if target.exists() or desk.disk.is_file(target):
-            raise RefusedError(node.span, f"{target} is there already", "choose another: --to")
+            raise RefusedError(
+                node.span, f"{target} exists already", "choose another name with --to"
+            )
         desk.made[os.path.realpath(target)] = text
         desk.proven(node.span, same_machine)
-        return desk.written()
+        return desk.put()
 
     return perform(arguments, "extract", change)
 
 
-def run_inline(arguments: Namespace) -> int:
-    """Put a sub-script in the place of its call."""
+def inline_command(arguments: Namespace) -> int:
+    """Replace the call of a sub-script by its content; the exit code."""
 
     def change(desk: Desk) -> int:
         _, node = find_state(desk.machine, arguments.state)
@@ -209,20 +300,20 @@ def run_inline(arguments: Namespace) -> int:
         sub = _called(desk, node)
         inline(sheet, node.span, ScriptEditor(sub))
         desk.proven(node.span, same_machine)
-        return desk.written()
+        return desk.put()
 
     return perform(arguments, "inline", change)
 
 
-def run_rename(arguments: Namespace) -> int:
-    """Give a state, an outcome or a key another name."""
+def rename_command(arguments: Namespace) -> int:
+    """Rename a state, an outcome or a key; the exit code."""
     if not is_plain(arguments.new):
-        return usage(f"`{arguments.new}` is no name that YAML takes as it stands")
+        return usage(f"`{arguments.new}` needs quotes in YAML: choose another name")
 
     def change(desk: Desk) -> int:
         kind, declared, old = find_named(desk.machine, arguments.path, arguments.kind)
         if old == arguments.new:
-            return desk.written()
+            return desk.put()
         _check_written(desk.machine, kind, declared, old)
         work = Renaming(old, arguments.new, desk.sheet)
         rename = {"state": rename_state, "outcome": rename_outcome, "key": rename_key}[kind]
@@ -231,30 +322,32 @@ def run_rename(arguments: Namespace) -> int:
         for _, machine in desk.others(shared) if shared else ():
             rename(work, machine, declared)
         desk.proven(declared, lambda one, other: equal_after_rename(one, other, old, arguments.new))
-        return desk.written()
+        return desk.put()
 
     return perform(arguments, "rename", change)
 
 
 def _check_written(machine: Machine, kind: str, declared: Span, old: str) -> None:
-    """Raises RefusedError where a name does not stand in a script for itself."""
+    """Raises RefusedError if a script does not contain the declaration of a name."""
     nodes = [node for _, node in walk(machine.root)]
     texts = {id(node.span.source) for node in nodes}
     mine = next((node for node in nodes
                  if any(each.span == declared for each in node.outcomes)), None)  # fmt: skip
     if kind == "outcome" and mine is not None and id(declared.source) not in texts:
-        message = f"`{old}` is an outcome of the state type `{mine.type}`, whatever its name here"
+        message = f"`{old}` is an outcome of the state type `{mine.type}`, not of the script"
         help = f"rename it in the interface of `{mine.type}`, or put the state into a container"
         raise RefusedError(mine.span, message, help)
     if kind != "key" and declared.text.strip("'\"") != old:
-        message = f"nobody wrote `{old}` here: it comes from the language, or from a look-up"
+        message = (
+            f"the script does not contain `{old}` here: it is a default or comes from a look-up"
+        )
         raise RefusedError(declared, message)
 
 
-def run_contain(arguments: Namespace) -> int:
-    """Put states into a container of their own."""
+def contain_command(arguments: Namespace) -> int:
+    """Move states into a new container; the exit code."""
     if not is_plain(arguments.name):
-        return usage(f"`{arguments.name}` is no name that YAML takes as it stands")
+        return usage(f"`{arguments.name}` needs quotes in YAML: choose another name")
 
     def change(desk: Desk) -> int:
         before = desk.machine
@@ -265,8 +358,8 @@ def run_contain(arguments: Namespace) -> int:
         _, parent = find_state(before, above)
         assert not isinstance(parent, Leaf)
         if isinstance(parent, StateMachine):
-            told = partial(_told, before.state_types, desk.library())
-            parent = with_inferred_interfaces(parent, told)
+            facts = partial(_facts, before.state_types, desk.library())
+            parent = with_inferred_interfaces(parent, facts)
         known = {child.name: child for child in parent.children}
         names = [each.rpartition("/")[2] for each in arguments.states]
         for name in names:
@@ -278,13 +371,13 @@ def run_contain(arguments: Namespace) -> int:
         contain(desk.sheet, made)
         after = desk.proven(inside[0].span, lambda one, two: equal_after_contain(one, two, made))
         _no_worse(desk.analysis, after, inside[0].span)
-        return desk.written()
+        return desk.put()
 
     return perform(arguments, "contain", change)
 
 
-def _told(types: Mapping[str, StateType], library: Library, leaf: Leaf) -> TemplateFacts:
-    """The keys in the template of a state without an interface."""
+def _facts(types: Mapping[str, StateType], library: Library, leaf: Leaf) -> TemplateFacts:
+    """Keys and outcomes of a state without an interface, read from its template."""
     type_ = types.get(leaf.type)
     template = library.template(type_.code.get("python", "")) if type_ is not None else None
     if type_ is None or template is None:
@@ -295,33 +388,30 @@ def _told(types: Mapping[str, StateType], library: Library, leaf: Leaf) -> Templ
 
 
 def _no_worse(before: Analysis, after: Analysis, span: Span) -> None:
-    """Raises RefusedError where the flow of data has a fault that it had not."""
+    """Raises RefusedError if the change adds a fault of the data flow."""
 
     def flaws(analysis: Analysis) -> Counter[str]:
         grave = (each for each in analysis.report if each.severity is not Severity.INFO)
-        return Counter(each.code.code for each in grave if each.code.code.startswith("SM3"))
+        return Counter(each.code for each in grave if each.code.startswith("SM3"))
 
     new = flaws(after) - flaws(before)
-    found = next((item for item in after.report if item.code.code in new), None)
+    found = next((item for item in after.report if item.code in new), None)
     if found is not None:
-        message = f"the script would have a fault: {found.finding.message} ({found.code.code})"
-        raise RefusedError(span, message, found.finding.help)
+        message = f"the script would have a fault: {found.message} ({found.code})"
+        raise RefusedError(span, message, found.help)
 
 
 def _called(desk: Desk, node: Node) -> Source:
     """The text of the sub-script that a state calls. Raises RefusedError."""
-    from smachac.refactor.editor import variable
-    from smachac.refactor.field_order import variables_of
-
     sheet = desk.sheet(node.span.source)
     body = variables_of(sheet.state(node.span).item)
     script = variable(body, "script") if body is not None else None
     if script is None:
-        help = "`smachac extract` is what goes the other way"
+        help = "`smachac extract` makes a sub-script of a container"
         raise RefusedError(node.span, f"`{node.name}` calls no sub-script", help)
     words = script.value.text.strip("'\"") if isinstance(script.value, Atom) else ""
     found = desk.library().script(words, node.span.source.name)
     if found is None:
         message = "the name of the sub-script comes from a look-up"
-        raise RefusedError(node.span, message, "write it out first")
+        raise RefusedError(node.span, message, "replace the look-up by the name first")
     return found

@@ -1,11 +1,10 @@
-"""The command `run`: the generated program, here and now, or a machine played from a scenario."""
+"""The command `run`: run the generated Python program, or play a scenario on the interpreter."""
 
 from __future__ import annotations
 
 import argparse
 import gc
 import os
-import re
 import sys
 import traceback
 from argparse import Namespace
@@ -15,61 +14,124 @@ from functools import partial
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-from smachac.commands.build import generate
-from smachac.commands.output import FINDINGS, OK, print_report, shown, usage, wants_colour
-from smachac.driver import analyse_file
+from smachac.commands.arguments import SCRIPT, colour, count, names, search_folders
+from smachac.commands.output import (
+    FINDINGS,
+    OK,
+    print_report,
+    usage,
+    wants_colour,
+    without_notes,
+)
+from smachac.driver import Analysis, analyse_script, compile_script
 from smachac.frontend.errors.script import wrong_shape
 
 if TYPE_CHECKING:
     from smachac.diagnostics.diagnostic import Report
     from smachac.diagnostics.source import Span
-    from smachac.frontend.loader import Library
     from smachac.frontend.yaml_tree import Tree
     from smachac.interpreter.result import RunResult
-    from smachac.interpreter.scenario import Scenario
+    from smachac.interpreter.scenario import Scenario, ScenarioProblem
     from smachac.ir.nodes import Machine
 
+EXAMPLES = """\
+examples:
+  smachac run main.yml                           run it, on the simulated arm if it moves one
+  smachac run main.yml --record film.gif         make a film of the arm
+  smachac run main.yml --trace trace.jsonl -q    write the trace, print only the outcome
+  smachac run main.yml --mock scenario.yml       play a scenario, without robot and simulation
+  smachac run main.yml --mock scenario.yml --orders 100   try 100 orders of concurrent branches
+  smachac run main.yml --expect succeeded        fail if the outcome is another one (CI)
 
-def run(arguments: argparse.Namespace) -> int:
-    """Ends with 0 when the machine ends with an outcome (the one of `--expect`, if given)."""
-    from smachac.targets import load_target
+exit codes: 0 the machine ended with an outcome (the one of --expect), 1 the run failed or the
+script has errors, 2 wrong usage, 70 a bug in smachac, 130 interrupted
+"""
 
+
+def run_arguments(parser: argparse.ArgumentParser) -> None:
+    parser.epilog = EXAMPLES
+    parser.add_argument("script", type=Path, help=SCRIPT)
+    parser.add_argument("--gui", action="store_true", help="show the simulated arm in a window")
+    parser.add_argument("--record", type=Path, metavar="FILE",
+                        help="make a film of the simulated arm: .gif or .mp4")  # fmt: skip
+    parser.add_argument("--trace", type=Path, metavar="FILE",
+                        help="write every event to FILE, as JSON lines")  # fmt: skip
+    parser.add_argument("--seed", type=int, default=0,
+                        help="seed of the simulation and random states (default: 0)")  # fmt: skip
+    parser.add_argument("--mock", type=Path, metavar="FILE",
+                        help="play the scenario in FILE, do not run the program")  # fmt: skip
+    parser.add_argument("--schedule", type=names, metavar="A,B,...",
+                        help="with --mock: the turns of concurrent branches")  # fmt: skip
+    parser.add_argument("--orders", type=count, metavar="N",
+                        help="with --mock: try N orders of turns; fail if the results"
+                        " differ")  # fmt: skip
+    parser.add_argument("--expect", metavar="OUTCOME",
+                        help="fail if the outcome is another one")  # fmt: skip
+    parser.add_argument("--quiet", "-q", action="store_true",
+                        help="print only the outcome, no progress")  # fmt: skip
+    search_folders(parser)
+    colour(parser)
+
+
+def run_command(arguments: Namespace) -> int:
+    """Run a script; the exit code."""
+    record: Path | None = arguments.record
+    if record is not None and record.suffix.lower() not in (".gif", ".mp4"):
+        return usage(f"--record writes .gif and .mp4, not `{record}`")
     if arguments.mock is None and (arguments.schedule or arguments.orders):
-        return usage("--schedule and --orders are for --mock: a program's threads run as they do")
-    target = load_target("python")
-    assert target is not None
+        return usage("--schedule and --orders need --mock: the turns of threads cannot be chosen")
+    if arguments.mock is not None and (record is not None or arguments.gui):
+        return usage(NO_ARM)
+    analysis = analyse_script(arguments.script, arguments.scripts, arguments.templates)
     if arguments.mock is not None:
-        analysis, library = analyse_file(arguments.script, arguments.scripts, arguments.templates)
-        files = {}
-        print_report(shown(analysis.report), arguments, sys.stderr)
-    else:
-        analysis, library, made = generate(arguments, target, {})
-        files = made or {}
-    machine = analysis.checked
-    if machine is None or not (files or arguments.mock):
+        return _run_scenario(arguments, analysis)
+    return _run_program(arguments, analysis)
+
+
+NO_ARM = "--record and --gui need a program that uses the simulated arm; this run does not"
+
+
+def _run_program(arguments: Namespace, analysis: Analysis) -> int:
+    """Generate the Python program and run it; the exit code."""
+    from smachac.targets.python import TARGET
+    from smachac.targets.python.template_sources import uses_simulation
+
+    files, report = compile_script(analysis, TARGET)
+    print_report(without_notes(report), arguments, sys.stderr)
+    machine, library = analysis.checked, analysis.library
+    if machine is None or library is None or not files:
         return FINDINGS
-    wrong = _wrong_film(arguments, machine, library if files else None)
-    if wrong:
-        return usage(wrong)
-    scenario = None
-    if arguments.mock is not None:
-        report: Report = []
-        scenario = read_scenario_file(arguments.mock, machine, report)
-        print_report(report, arguments, sys.stderr)
-        if scenario is None:
-            return FINDINGS
-        if arguments.orders is not None:
-            text, agree = play_orders(machine, scenario, arguments.seed, arguments.orders)
-            print(text)
-            return OK if agree else FINDINGS
+    if (arguments.gui or arguments.record) and not uses_simulation(machine, library):
+        return usage(NO_ARM)
+    ((name, text),) = files.items()
+    return _observed(arguments, lambda observe: perform(name, text, machine, arguments, observe))
+
+
+def _run_scenario(arguments: Namespace, analysis: Analysis) -> int:
+    """Play a scenario; the exit code."""
+    print_report(without_notes(analysis.report), arguments, sys.stderr)
+    machine = analysis.checked
+    if machine is None:
+        return FINDINGS
+    report: Report = []
+    scenario = read_scenario_file(arguments.mock, machine, report)
+    print_report(report, arguments, sys.stderr)
+    if scenario is None:
+        return FINDINGS
+    if arguments.orders is not None:
+        text, agree = play_orders(machine, scenario, arguments.seed, arguments.orders)
+        print(text)
+        return OK if agree else FINDINGS
+    seed, schedule = arguments.seed, arguments.schedule
+    return _observed(arguments, lambda observe: play(machine, scenario, seed, schedule, observe))
+
+
+def _observed(arguments: Namespace, go: Callable[[Callable[[Event], None]], str]) -> int:
+    """Run a machine with trace and progress, and print its outcome; the exit code."""
     try:
         with watching(arguments, wants_colour(arguments, sys.stdout)) as (observe, errors):
             try:
-                if scenario is not None:
-                    outcome = play(machine, scenario, arguments.seed, arguments.schedule, observe)
-                else:
-                    ((name, text),) = files.items()
-                    outcome = perform(name, text, machine, arguments, observe)
+                outcome = go(observe)
             except FailedError as error:
                 sys.stdout.flush()
                 print(f"the run failed{_where(errors)}\n{error}", file=sys.stderr)
@@ -84,20 +146,6 @@ def run(arguments: argparse.Namespace) -> int:
     return OK
 
 
-def _wrong_film(arguments: argparse.Namespace, machine: Machine, library: Library | None) -> str:
-    """What is wrong with `--record` and `--gui`, if anything. `library` is that of the program;
-    None where no program runs."""
-    from smachac.targets.python.template_sources import uses_simulation
-
-    if arguments.record is None and not arguments.gui:
-        return ""
-    if library is None or not uses_simulation(machine, library):
-        return "--record and --gui need a program for the simulated arm; this run has no arm"
-    if arguments.record is not None and arguments.record.suffix.lower() not in (".gif", ".mp4"):
-        return f"--record makes .gif and .mp4, not `{arguments.record}`"
-    return ""
-
-
 def _where(errors: list[dict[str, Any]]) -> str:
     """The state that failed first, and its line in the script."""
     if not errors:
@@ -110,7 +158,7 @@ Event = dict[str, Any]
 
 
 class FailedError(Exception):
-    """A run ended without an outcome; the words say why."""
+    """A run ended without an outcome; the message gives the reason."""
 
 
 def play(
@@ -141,9 +189,9 @@ def play(
 
 
 def play_orders(machine: Machine, scenario: Scenario, seed: int, most: int) -> tuple[str, bool]:
-    """Play a scenario with the branches of concurrences in every order, at most so many.
+    """Play a scenario with up to `most` orders of turns of concurrent branches.
 
-    What came of them, in words, and whether all came to the same end.
+    The results as text, and whether all results are the same.
     """
     from itertools import islice
 
@@ -162,7 +210,7 @@ def play_orders(machine: Machine, scenario: Scenario, seed: int, most: int) -> t
         ends.setdefault(" ".join([end, *held]), []).append(result)
     tried = sum(map(len, ends.values()))
     more = next(orders, None) is not None
-    which = "there are more" if more else "all there are" if tried > 1 else "the only one"
+    which = "not all" if more else "all there are" if tried > 1 else "the only one"
     lines = [f"{tried} order{'s' * (tried > 1)} of branches tried, {which}:"]
     for end, results in ends.items():
         turns = ",".join(_short_turns(results[0]))
@@ -170,12 +218,12 @@ def play_orders(machine: Machine, scenario: Scenario, seed: int, most: int) -> t
             f"{len(results):>6}  {end}" + (f"\n        --schedule {turns}" if turns else "")
         )
     if len(ends) > 1:
-        lines.append("a race: how it ends depends on which branch comes first")
+        lines.append("a race: the result depends on which branch is first")
     return "\n".join(lines), len(ends) == 1
 
 
 def _short_turns(result: RunResult) -> Iterator[str]:
-    """The turns of a run as `--schedule` takes them: names where these are enough."""
+    """The turns of a run in the form of `--schedule`: names, or paths where names are ambiguous."""
     for choice in result.choices:
         name = choice.taken.rpartition("/")[2]
         alike = [path for path in choice.ready if path.endswith(f"/{name}")]
@@ -188,7 +236,7 @@ def perform(
     """Run the generated module; the outcome. Raises FailedError."""
     from smachac.targets.python.runner import execute
 
-    gc.enable()  # from here on it is the user's program that runs
+    gc.enable()  # from here on the user's program runs
     try:
         outcome = execute(
             name,
@@ -200,18 +248,18 @@ def perform(
             gui=arguments.gui,
             record=arguments.record,
             on_preempt=lambda: print(
-                "asked to stop: states clean up; Ctrl-C again ends at once", file=sys.stderr
+                "preemption requested: the states stop; Ctrl-C again ends at once", file=sys.stderr
             ),
-        )
+        ).outcome
     except Exception as error:
-        raise FailedError(_told(error, name, arguments.script.parent)) from error
+        raise FailedError(_failure(error, name, arguments.script.parent)) from error
     if outcome is None:
         raise FailedError("the machine ended without an outcome")
     return outcome
 
 
-def _told(error: BaseException, name: str, folder: Path) -> str:
-    """What went wrong first, and where in the generated program or in code of the user."""
+def _failure(error: BaseException, name: str, folder: Path) -> str:
+    """The first exception, with its places in the generated program and in code of the user."""
     first = error
     while (cause := first.__cause__ or first.__context__) is not None:
         first = cause
@@ -230,7 +278,7 @@ def _told(error: BaseException, name: str, folder: Path) -> str:
 def watching(
     arguments: Namespace, colour: bool
 ) -> Iterator[tuple[Callable[[Event], None], list[Event]]]:
-    """An observer that writes the trace and shows progress; and the errors it hears of."""
+    """An observer that writes the trace and shows progress, and the error events it received."""
     from smachac.runtime.tracing.progress import Progress
     from smachac.runtime.tracing.writer import TraceWriter
 
@@ -258,7 +306,7 @@ def watching(
 
 
 def read_scenario_file(path: Path, machine: Machine, report: Report) -> Scenario | None:
-    """The scenario of a file; None, with problems in the report, where it is not right."""
+    """The scenario of a file; None, with findings in the report, if it has faults."""
     from smachac.frontend.files import read_source
     from smachac.frontend.yaml_tree import parse
     from smachac.interpreter.scenario import read_scenario
@@ -268,8 +316,8 @@ def read_scenario_file(path: Path, machine: Machine, report: Report) -> Scenario
     if tree is None:
         return None
     scenario, found = read_scenario(_plain(tree), machine)
-    for message in found:
-        report.append(wrong_shape(_place(message, tree), message))
+    for problem in found:
+        report.append(wrong_shape(_place(problem, tree), problem.message))
     return None if report else scenario
 
 
@@ -283,20 +331,19 @@ def _plain(tree: Tree) -> Any:
     return tree.value
 
 
-def _place(message: str, tree: Tree) -> Span:
-    """The place in a scenario that a message speaks of: a state by its path, one of its steps."""
+def _place(problem: ScenarioProblem, tree: Tree) -> Span:
+    """The place of a fault in the text of a scenario: a step, the name of a state, or all of it."""
     from smachac.frontend.yaml_tree import Map, Seq
 
     states = tree.get("states") if isinstance(tree, Map) else None
-    found = re.match(r"`([^`]*)`|(.*), step (\d+):", message) or re.search(r"`([^`]*)`", message)
-    if states is None or found is None or not isinstance(states.value, Map):
+    if states is None or not isinstance(states.value, Map):
         return tree.span
-    path = found.group(1) or found.group(2) or ""
     for entry in states.value.entries:
-        key = str(entry.key.value)
-        if key == path or path.endswith(f"/{key}") or f"`{key}`" in message:
-            step = found.group(3) if found.re.groups >= 3 else None
-            if step and isinstance(entry.value, Seq):
-                return entry.value.items[int(step) - 1].span
-            return entry.value.span if step else entry.key.span
+        if str(entry.key.value) != problem.state:
+            continue
+        if problem.step is None:
+            return entry.key.span
+        if isinstance(entry.value, Seq):
+            return entry.value.items[problem.step - 1].span
+        return entry.value.span
     return tree.span

@@ -1,4 +1,4 @@
-"""What `smachac new` begins: a project, or a state type with a stub of its code. Written once."""
+"""The files that the command `new` creates: a project, or a state type with a stub of its code."""
 
 from __future__ import annotations
 
@@ -14,17 +14,16 @@ from smachac.ir.types import WORDS, Type, parse_type, unknown_words
 LANGUAGES = ("python", "cpp")
 
 Files = dict[str, str]
-"""Names to texts, by their path in a folder."""
+"""File texts by their path in a folder."""
 
 
 class BadNameError(ValueError):
-    """Something cannot be called so; the words say why."""
+    """A name is not valid; the message gives the reason."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
-class Wanted:
-    """A state type to be: its name in capitals and small letters, its keys with their types, the
-    outcomes it ends with."""
+class NewStateType:
+    """A state type to create: its name, its keys with their types, its outcomes."""
 
     name: str
     inputs: Sequence[tuple[str, str]] = ()
@@ -36,27 +35,27 @@ def key_and_type(text: str) -> tuple[str, str]:
     """`target` or `target=Pose`. Raises BadNameError."""
     key, _, named = text.partition("=")
     if not key.isidentifier():
-        raise BadNameError(f"`{key}` is no name for a key")
+        raise BadNameError(f"`{key}` is not a name for a key")
     if named and parse_type(named) is None:
-        raise BadNameError(f"`{named}` is no type")
+        raise BadNameError(f"`{named}` is not a type")
     for word in unknown_words(type_) if (type_ := parse_type(named or "any")) is not None else ():
-        near = did_you_mean(word, WORDS) or "a type of ROS is written as `geometry_msgs/Twist`"
-        raise BadNameError(f"`{word}` names no type\n{near}")
+        near = did_you_mean(word, WORDS) or "types of ROS have the form `geometry_msgs/Twist`"
+        raise BadNameError(f"there is no type `{word}`\n{near}")
     return key, named or "any"
 
 
 def file_stem(name: str) -> str:
-    """`GraspPart` as a file is called: `grasp_part`."""
+    """The file name for a state type: `grasp_part` for `GraspPart`."""
     return re.sub(r"(?<=[a-z0-9])(?=[A-Z])|(?<=[A-Z])(?=[A-Z][a-z])", "_", name).lower()
 
 
-def interface(wanted: Wanted, language: str) -> str:
+def interface(wanted: NewStateType, language: str) -> str:
     """The interface of a new state type."""
     name = wanted.name
     lines = [
-        f"# What the checker knows of {name}, and what scripts may say to it (docs/language.md).",
+        f"# The interface of {name}: its keys, outcomes and variables (docs/language.md).",
         f"name: {name}",
-        "doc: Say in one sentence what it does.",
+        "doc: Describe in one sentence what it does.",
     ]
     for part, keys in (("input_keys", wanted.inputs), ("output_keys", wanted.outputs)):
         lines += [f"{part}:"] if keys else []
@@ -70,25 +69,25 @@ def _quoted(text: str) -> str:
 
 
 def code_line(name: str, language: str) -> str:
-    """What the interface says of the code in a language."""
+    """The reference of an interface to the code in a language."""
     if language == "cpp":
         return f'cpp: {{header: {HEADERS}/{file_stem(name)}.hpp, class: "{HEADERS}::{name}"}}'
     return f'python: "{MODULES}.{file_stem(name)}:{name}"'
 
 
 MODULES, HEADERS = "robot_states", "robot_states"
-"""The package of Python, the folder and the namespace of C++, that stubs are put into."""
+"""The Python package, and the folder and namespace of C++, of stubs."""
 
 
 def code_file(name: str, language: str) -> str:
-    """Where the stub of a state type stands."""
+    """The path of the stub of a state type."""
     if language == "cpp":
         return f"include/{HEADERS}/{file_stem(name)}.hpp"
     return f"{MODULES}/{file_stem(name)}.py"
 
 
 def stub(type_: StateType, language: str) -> str:
-    """Code for an interface that does nothing yet."""
+    """Code that fits an interface and does nothing yet."""
     return _cpp_stub(type_) if language == "cpp" else _python_stub(type_)
 
 
@@ -129,7 +128,7 @@ def _access(key: str) -> str:
 
 
 def _cpp_stub(type_: StateType) -> str:
-    """A class as the target `cpp` wants it (docs/cpp.md). Raises UnportableError."""
+    """A class for the target `cpp` (docs/cpp.md). Raises UnportableError."""
     from smachac.targets.cpp.identifiers import identifier
     from smachac.targets.cpp.types import cpp_type
     from smachac.targets.cpp.user_classes import field_type, interface_hash, parameter_type, stops
@@ -168,7 +167,7 @@ def _cpp_stub(type_: StateType) -> str:
                 for key in type_.output_keys)  # fmt: skip
         lines.append(f"  struct Out {{ {'; '.join(keys)}; }};")
     lines += [
-        "  // Changes with the interface: the compiler then asks you to compare the two.",
+        "  // The number of the interface: when the interface changes, this no longer compiles.",
         f"  static constexpr std::uint32_t smachac_interface = {interface_hash(type_)};",
         "",
     ]
@@ -197,10 +196,10 @@ def _cpp_stub(type_: StateType) -> str:
 # --- a project
 
 MAIN = """\
-# Ask, act, and end well or badly: a machine to begin with.
+# A first machine: it greets, acts, and ends with success or failure.
 name: {name}
 template: Base
-doc: Say in one sentence what the robot does.
+doc: Describe in one sentence what the robot does.
 outcomes: [succeeded, aborted]
 userdata:
   goal: {{type: str, value: door}}
@@ -211,13 +210,13 @@ states:
       transitions: {{succeeded: ACT}}
 
   - ACT:
-      template: ScriptedState           # stands in for a state that is not written yet
+      template: ScriptedState           # replaces a state that is not written yet
       outcomes: [there, lost]
       transitions: {{there: succeeded, lost: aborted}}
 """
 
 SETTINGS = """\
-# Where scripts of this folder look for sub-scripts and state types (docs/ci.md has the rest).
+# Folders with sub-scripts and state types (docs/ci.md describes all settings).
 templates = ["templates"]
 """
 
@@ -243,26 +242,26 @@ repos:
 READ_ME = """\
 # {name}
 
-- `main.yml` is the machine, `templates/` what is known of its state types, `{modules}/` their
+- `main.yml` is the machine, `templates/` has the interfaces of its state types, `{modules}/` their
   code.
-- `smachac check` judges it, `smachac run main.yml` runs it,
-  `smachac build main.yml --target python` prints it as a program.
-- `smachac new state Grasp` begins another state type.
+- `smachac check` finds errors, `smachac run main.yml` runs it,
+  `smachac build main.yml --target python` generates a program.
+- `smachac new state Grasp` creates another state type.
 
-The line for CI: `smachac fmt . --check && smachac check . --strict`
+The command for CI: `smachac fmt . --check && smachac check . --strict`
 """
 
 GREET = """\
-# What the checker knows of Greet, and what scripts may say to it (docs/language.md).
+# The interface of Greet: its keys, outcomes and variables (docs/language.md).
 name: Greet
-doc: Says where it goes.
+doc: Prints the goal.
 input_keys: {{goal: str}}
 outcomes: {{succeeded: {{}}}}
 code: {{{code}}}
 """
 
 GREET_CODE = """\
-\"\"\"Greet: says where it goes.\"\"\"
+\"\"\"Greet: prints the goal.\"\"\"
 
 try:
     import smach
@@ -281,7 +280,7 @@ class Greet(smach.State):
 
 
 def project(name: str) -> Files:
-    """A project that is without a finding, can be built, and runs."""
+    """A project without findings, which can be built and run."""
     machine = re.sub(r"\W+", "_", name).strip("_").lower() or "robot"
     machine = f"robot_{machine}" if not machine.isidentifier() else machine
     return {
@@ -296,5 +295,5 @@ def project(name: str) -> Files:
 
 
 def is_type_name(name: str) -> bool:
-    """Whether a state type may be called so: as a class in Python and C++, and a file."""
+    """Whether a name is valid for a state type: for a class in Python and C++, and for a file."""
     return name.isascii() and name.isidentifier() and name[:1].isupper() and not name.endswith("_")

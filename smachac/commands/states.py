@@ -1,12 +1,14 @@
-"""The command `states`: what state types there are."""
+"""The command `states`: list the state types, or describe one."""
 
 from __future__ import annotations
 
+import argparse
 import json
 import sys
 from argparse import Namespace
 from pathlib import Path
 
+from smachac.commands.arguments import folder
 from smachac.commands.output import OK, usage
 from smachac.diagnostics.diagnostic import Report
 from smachac.frontend.files import disk_library
@@ -17,9 +19,26 @@ from smachac.report.state_types import CONTAINERS, Known, container_type
 from smachac.targets import load_target, target_names
 from smachac.targets.interface_check import languages
 
+EXAMPLES = """\
+examples:
+  smachac states                               all state types for scripts in the current folder
+  smachac states MoveToJointPositionsState     the variables, keys and outcomes of one
+  smachac states --format md > states.md       all of them as a document
 
-def states(arguments: Namespace) -> int:
-    """Tell of the state types that there are, or of one."""
+exit codes: 0 success, 2 wrong usage or unknown state type, 70 a bug in smachac
+"""
+
+
+def states_arguments(parser: argparse.ArgumentParser) -> None:
+    parser.epilog = EXAMPLES
+    parser.add_argument("name", nargs="?", metavar="NAME", help="the state type to describe")
+    parser.add_argument("--format", choices=("text", "json", "md"), default="text",
+                        help="format of the output")  # fmt: skip
+    folder(parser, "templates", "templates and interfaces")
+
+
+def states_command(arguments: Namespace) -> int:
+    """Print state types; the exit code."""
     known = _known_types(arguments.templates)
     names = [each.type.name for each in known]
     if arguments.name is not None and arguments.name not in names:
@@ -41,7 +60,7 @@ def states(arguments: Namespace) -> int:
 
 
 def _known_types(templates: list[Path]) -> list[Known]:
-    """The state types that a script in this folder may have: the user's, then the built-in ones."""
+    """The state types for scripts in the current folder: the user's, then the built-in ones."""
     found: Report = []
     library = disk_library(Path("main.yml"), found, templates=templates)
     targets = [target for name in target_names() if (target := load_target(name)) is not None]
@@ -56,7 +75,7 @@ def _known_types(templates: list[Path]) -> list[Known]:
         type_ = find_state_type(name, library, [])
         mine = any(library.own_template(f"{name}{end}") for end in (".yml", ".tpl.py", ".tpl"))
         if type_ is None or not (mine or library.template(f"{name}.yml")):
-            continue  # a piece that templates are made of
+            continue  # a template that only other templates include
         known.append(row(type_, "of this project" if mine else "built-in"))
     known += [row(container_type(name), "built-in") for name in CONTAINERS]
     return sorted(known, key=lambda each: (each.place == "built-in", each.type.name))

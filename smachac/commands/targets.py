@@ -1,19 +1,28 @@
-"""The command `targets`: the targets and their options."""
+"""The command `targets`: list the targets and their options."""
 
 from __future__ import annotations
 
 import argparse
-from typing import TYPE_CHECKING
+from argparse import Namespace
 
 from smachac.commands.output import OK
+from smachac.targets import load_target, target_names
 
-if TYPE_CHECKING:
-    pass
+EXAMPLES = """\
+examples:
+  smachac targets                                        the targets, each with its options
+  smachac build main.yml --target dot --option depth=1   use a target and one of its options
+
+exit codes: 0 success, 2 wrong usage, 70 a bug in smachac
+"""
 
 
-def targets(arguments: argparse.Namespace) -> int:
-    from smachac.targets import load_target, target_names
+def targets_arguments(parser: argparse.ArgumentParser) -> None:
+    parser.epilog = EXAMPLES
 
+
+def targets_command(arguments: Namespace) -> int:
+    """Print the targets; the exit code."""
     for name in target_names():
         target = load_target(name)
         assert target is not None

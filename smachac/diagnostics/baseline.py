@@ -23,7 +23,7 @@ def render(report: Report) -> str:
         mark = fingerprint(item)
         entry = {
             "file": PurePath(item.span.source.name).name,
-            "code": item.code.code,
+            "code": item.code,
             "fingerprint": mark,
             "count": counts[mark],
             "message": item.finding.message,

@@ -112,19 +112,40 @@ class Finding:
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Diagnostic:
-    """A finding with its code: what reports print.
+    """A finding with its kind: what reports print.
 
     `steps` has one entry for each step of the finding's `path`: the span of its state, if known.
     """
 
-    code: Code
+    kind: Code
     severity: Severity
     finding: Finding = field()
     steps: tuple[Span | None, ...] = ()
 
     @property
+    def code(self) -> str:
+        """The permanent code, such as `SM201`."""
+        return self.kind.code
+
+    @property
+    def message(self) -> str:
+        """What is wrong."""
+        return self.finding.message
+
+    @property
     def span(self) -> Span:
+        """Where it is wrong."""
         return self.finding.span
+
+    @property
+    def help(self) -> str | None:
+        """What to do, if that is known."""
+        return self.finding.help
+
+    @property
+    def related(self) -> tuple[Related, ...]:
+        """Other places, each with a message."""
+        return self.finding.related
 
 
 Report = list[Diagnostic]
@@ -133,7 +154,7 @@ Report = list[Diagnostic]
 def diagnostic(code: Code, finding: Finding, steps: tuple[Span | None, ...] = ()) -> Diagnostic:
     """A finding with its code, in the severity that it has."""
     severity = finding.severity or code.severity
-    return Diagnostic(code=code, severity=severity, finding=finding, steps=steps)
+    return Diagnostic(kind=code, severity=severity, finding=finding, steps=steps)
 
 
 @dataclass(frozen=True, slots=True)
@@ -175,7 +196,7 @@ def identity(item: Diagnostic) -> tuple[object, ...]:
     if any(each.span.source is not finding.span.source for each in finding.related):
         names = set((finding.node or "").split("/"))
         message = _QUOTED.sub(lambda found: "``" if found[1] in names else found[0], message)
-    return item.code.code, item.severity, item.span, message
+    return item.code, item.severity, item.span, message
 
 
 _QUOTED = re.compile("`([^`]*)`")
@@ -196,7 +217,7 @@ def in_order(report: Iterable[Diagnostic]) -> Report:
         key=lambda item: (
             files[item.span.source],
             item.span.start,
-            item.code.code,
+            item.code,
             item.finding.message,
         ),
     )
@@ -210,7 +231,7 @@ def fingerprint(item: Diagnostic) -> str:
     """
     file = PurePath(item.span.source.name).name
     state = (item.finding.node or "").rpartition("/")[2]
-    text = "\0".join((item.code.code, file, state, item.finding.message))
+    text = "\0".join((item.code, file, state, item.finding.message))
     return hashlib.sha256(text.encode("utf-8", "surrogatepass")).hexdigest()[:16]
 
 

@@ -18,7 +18,7 @@ class Policy:
 def is_firm(item: Diagnostic) -> bool:
     """Whether a finding is an error that cannot be disabled: no target could print such a
     machine."""
-    return item.code.firm and item.severity is Severity.ERROR
+    return item.kind.firm and item.severity is Severity.ERROR
 
 
 def apply_severities(report: Report, policy: Policy) -> Report:
@@ -27,7 +27,7 @@ def apply_severities(report: Report, policy: Policy) -> Report:
         return report
     found = []
     for item in report:
-        name = _longest(item.code.code, policy.severities)
+        name = _longest(item.code, policy.severities)
         level = item.severity if name is None else policy.severities[name]
         if name is None or is_firm(item):
             found.append(item)
@@ -49,7 +49,7 @@ def select_findings(report: Report, select: Sequence[str], ignore: Sequence[str]
             return less is None and (more is not None or not select)
         return len(more) > len(less)
 
-    return [item for item in report if is_firm(item) or wanted(item.code.code)]
+    return [item for item in report if is_firm(item) or wanted(item.code)]
 
 
 def _longest(code: str, beginnings: Iterable[str]) -> str | None:

@@ -29,7 +29,7 @@ def read_source(path: Path, report: Report) -> Source | None:
             place = Span(Source(str(path), ""), 0, 0)
             report.append(too_big(place, f"the file has {path.stat().st_size:,} bytes"))
             return None
-        return Source(str(path), _decoded(path.read_bytes()))
+        return Source(str(path), decoded(path.read_bytes()))
     except OSError as error:
         span = Span(Source(str(path), ""), 0, 0)
         words = (error.strerror or str(error)).lower()
@@ -50,7 +50,7 @@ def _names_beside(path: Path) -> list[str]:
     return []
 
 
-def _decoded(data: bytes) -> str:
+def decoded(data: bytes) -> str:
     """UTF-8 with or without a byte order mark, or UTF-16 with one (YAML 1.2.2, section 5.2)."""
     if data[:2] in (b"\xff\xfe", b"\xfe\xff"):
         return data.decode("utf-16")

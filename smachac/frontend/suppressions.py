@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import re
 from bisect import bisect_right
-from collections.abc import Callable, Iterator, Mapping, Sequence
+from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from typing import NamedTuple
 
 from smachac.diagnostics.diagnostic import Code, Report
@@ -14,6 +14,7 @@ from smachac.frontend.errors.suppressions import (
     bad_comment,
     unfounded_allowance,
     unknown_code,
+    unused_allowances,
     vain_allowance,
 )
 from smachac.frontend.yaml_tree import Map, Scalar, Seq, Tree, parse
@@ -123,6 +124,35 @@ def _lines_applied_to(source: Source) -> list[int]:
     return applied
 
 
+class Suppressed(NamedTuple):
+    """A report after suppressions: what is left, every suppression, and those in other texts than
+    the main script that suppressed nothing."""
+
+    rest: Report
+    given: tuple[Allowance, ...]
+    unused: tuple[Allowance, ...]
+
+
+def suppress(
+    report: Report,
+    main: Source,
+    sources: Iterable[Source],
+    codes: Mapping[str, Code],
+    parse: Parser = parse,
+) -> Suppressed:
+    """Apply the suppressions of all texts of a script and of the texts that have findings.
+
+    SM021 for a suppression of the main script that suppressed nothing.
+    """
+    texts = dict.fromkeys((*sources, *(item.span.source for item in report)))
+    given = [fit for text in texts for fit in allowances(text, report, codes, parse)]
+    rest, used = heeded(report, given)
+    unused = [fit for fit in given if fit not in used]
+    rest += unused_allowances(Word(fit.code, fit.span) for fit in unused if fit.span.source is main)
+    others = tuple(fit for fit in unused if fit.span.source is not main)
+    return Suppressed(rest, tuple(given), others)
+
+
 def heeded(report: Report, given: Sequence[Allowance]) -> tuple[Report, set[Allowance]]:
     """Apply suppressions: the findings that are left, and the allowances that were used.
 
@@ -136,7 +166,7 @@ def heeded(report: Report, given: Sequence[Allowance]) -> tuple[Report, set[Allo
         by_line.setdefault(line, allowance)
     kept, used = [], set()
     for item in report:
-        fit = by_line.get((item.span.source, item.span.line, item.code.code))
+        fit = by_line.get((item.span.source, item.span.line, item.code))
         if fit is not None and fit not in used and is_firm(item):
             kept.append(vain_allowance(Word(fit.code, fit.span)))
         if fit is not None:

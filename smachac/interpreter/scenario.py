@@ -127,8 +127,17 @@ def _by_path(scenario: Scenario, machine: Machine) -> dict[str, tuple[Step, ...]
     return by_path
 
 
-def read_scenario(data: object, machine: Machine) -> tuple[Scenario, list[str]]:
-    """A scenario of plain data, as a file holds it, with full paths; and what is wrong with it.
+class ScenarioProblem(NamedTuple):
+    """A fault of a scenario. `state` is the key below `states:` that it is about, if any; `step`
+    the number of the step, counted from 1."""
+
+    message: str
+    state: str | None = None
+    step: int | None = None
+
+
+def read_scenario(data: object, machine: Machine) -> tuple[Scenario, list[ScenarioProblem]]:
+    """The scenario that plain data of a file describes, with full paths; and its faults.
 
     ```yaml
     states:
@@ -141,25 +150,30 @@ def read_scenario(data: object, machine: Machine) -> tuple[Scenario, list[str]]:
       WALK: [succeeded, {outcome: preempted, stop: true}]
     ```
     """
-    problems: list[str] = []
+    problems: list[ScenarioProblem] = []
     steps: dict[str, tuple[Step, ...]] = {}
     if not isinstance(data, dict) or not isinstance(data.get("states"), dict):
-        return Scenario(steps={}), ["a scenario is a mapping with `states`: a mapping of paths"]
+        message = "a scenario is a mapping with `states`: a mapping of paths"
+        return Scenario(steps={}), [ScenarioProblem(message)]
     problems.extend(
-        f"unknown key `{key}`; a scenario has only `states`" for key in data if key != "states"
+        ScenarioProblem(f"unknown key `{key}`; a scenario has only `states`")
+        for key in data
+        if key != "states"
     )
     leaves = _leaves(machine)
-    for name, given in data["states"].items():
-        path = _found(str(name), leaves)
+    for key, given in data["states"].items():
+        name = str(key)
+        path = _found(name, leaves)
         if path is None:
-            problems.append(_not_found(str(name), machine, leaves))
+            problems.append(ScenarioProblem(_not_found(name, machine, leaves), name))
             continue
         if path in steps:
-            problems.append(f"`{path}` is given twice, the second time as `{name}`")
+            message = f"`{path}` is given twice, the second time as `{name}`"
+            problems.append(ScenarioProblem(message, name))
         entries = given if isinstance(given, list) else [given]
         if not entries:
-            problems.append(f"`{name}` has no steps")
-        reader = _StepReader(leaves[path], path, problems)
+            problems.append(ScenarioProblem(f"`{name}` has no steps", name))
+        reader = _StepReader(leaves[path], path, name, problems)
         steps[path] = tuple(reader.step(entry, at) for at, entry in enumerate(entries, 1))
     return Scenario(steps=steps), problems
 
@@ -174,11 +188,12 @@ class _LeafEntry:
 
 @dataclass(frozen=True, slots=True)
 class _StepReader:
-    """Converts the steps of one leaf, and collects the problems."""
+    """Converts the steps of one leaf, `name` in the scenario, and collects the problems."""
 
     place: _LeafEntry
     path: str
-    problems: list[str]
+    name: str
+    problems: list[ScenarioProblem]
 
     def step(self, entry: object, number: int) -> Step:
         if isinstance(entry, str | bool):
@@ -222,7 +237,8 @@ class _StepReader:
 
     def problem(self, number: int, message: str, help_: str | None = None) -> None:
         end = f"; {help_}" if help_ else ""
-        self.problems.append(f"{self.path}, step {number}: {message}{end}")
+        text = f"{self.path}, step {number}: {message}{end}"
+        self.problems.append(ScenarioProblem(text, self.name, number))
 
 
 def _leaves(machine: Machine) -> dict[str, _LeafEntry]:

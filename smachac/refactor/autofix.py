@@ -10,7 +10,7 @@ from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 
-from smachac.batch import Survey
+from smachac.batch import Batch
 from smachac.diagnostics.diagnostic import Diagnostic, Edit, Report, Severity, fingerprint
 from smachac.diagnostics.source import Source
 from smachac.frontend.files import BUILT_IN
@@ -32,11 +32,11 @@ class FixResult:
     count: int
     texts: Texts
     sources: Mapping[str, Source]
-    survey: Survey
+    batch: Batch
 
 
 def apply_fixes(
-    before: Survey, selected: Callable[[Survey], Report], reanalyse: Callable[[Texts], Survey]
+    before: Batch, selected: Callable[[Batch], Report], reanalyse: Callable[[Texts], Batch]
 ) -> FixResult:
     """Apply the edits of the selected findings, and keep those that pass a new analysis.
 
@@ -46,52 +46,54 @@ def apply_fixes(
     by `smachac fmt`.
     """
     count = 0
-    survey = before
+    current = before
     texts: dict[str, str] = {}
     sources: dict[str, Source] = {}
     for _ in range(MAX_ROUNDS):
-        kept, after = _fix_round(survey, selected(survey), lambda new: reanalyse({**texts, **new}))
+        kept, after = _fix_round(
+            current, selected(current), lambda new: reanalyse({**texts, **new})
+        )
         if not kept:
             break
         for path, (source, text) in _apply_edits(kept).items():
             texts[path] = text
             sources.setdefault(path, source)
         count += len(kept)
-        survey = after
+        current = after
     formatted = {
         path: format_script(Source(sources[path].name, text)) for path, text in texts.items()
     }
     new = {
         path: text for path, text in formatted.items() if text is not None and text != texts[path]
     }
-    if new and _is_improvement(survey, after := reanalyse({**texts, **new}), ()):
+    if new and _is_improvement(current, after := reanalyse({**texts, **new}), ()):
         texts.update(new)
-        survey = after
-    return FixResult(count=count, texts=texts, sources=sources, survey=survey)
+        current = after
+    return FixResult(count=count, texts=texts, sources=sources, batch=current)
 
 
 def _fix_round(
-    before: Survey, report: Report, reanalyse: Callable[[Texts], Survey]
-) -> tuple[list[Diagnostic], Survey]:
+    before: Batch, report: Report, reanalyse: Callable[[Texts], Batch]
+) -> tuple[list[Diagnostic], Batch]:
     """The findings of a report that their edits fix, and the analysis after the edits."""
     kept: list[Diagnostic] = []
-    survey = before
+    current = before
 
     def bisect(batch: Sequence[Diagnostic]) -> None:
-        nonlocal survey
+        nonlocal current
         if not batch:
             return
         tried = [*kept, *batch]
         after = reanalyse({path: text for path, (_, text) in _apply_edits(tried).items()})
         if _is_improvement(before, after, tried):
             kept.extend(batch)
-            survey = after
+            current = after
         elif len(batch) > 1:
             bisect(batch[: len(batch) // 2])
             bisect(batch[len(batch) // 2 :])
 
     bisect(_compatible([item for item in report if item.finding.edits]))
-    return kept, survey
+    return kept, current
 
 
 def _path(edit: Edit) -> str:
@@ -144,7 +146,7 @@ def _apply_edits(report: Sequence[Diagnostic]) -> dict[str, tuple[Source, str]]:
     return found
 
 
-def _is_improvement(before: Survey, after: Survey, kept: Sequence[Diagnostic]) -> bool:
+def _is_improvement(before: Batch, after: Batch, kept: Sequence[Diagnostic]) -> bool:
     """Whether the fixed findings are gone, and no error is new."""
     old = Counter(map(fingerprint, before.report))
     new = Counter(map(fingerprint, after.report))

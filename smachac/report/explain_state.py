@@ -204,7 +204,7 @@ def _arrival(node: Node, arrival: Arrival) -> str:
 
 def _found(item: Any) -> str:
     finding = item.finding
-    return f"{item.severity.value}[{item.code.code}] {finding.message}{place(finding.span)}"
+    return f"{item.severity.value}[{item.code}] {finding.message}{place(finding.span)}"
 
 
 def state_json(story: StateStory) -> dict[str, Any]:
@@ -223,7 +223,7 @@ def state_json(story: StateStory) -> dict[str, Any]:
         "way": list(story.way),
         "reachable": story.reachable,
         "exits": [_exit_json(each) for each in story.exits],
-        "findings": [{"code": i.code.code, "message": i.finding.message} for i in story.report],
+        "findings": [{"code": i.code, "message": i.finding.message} for i in story.report],
     }
 
 

@@ -28,7 +28,7 @@ def _command(item: Diagnostic) -> str:
         properties["endLine"] = max(line, end_line)
         if line == end_line:  # GitHub refuses columns over several lines
             properties |= {"col": column, "endColumn": max(column, end_column)}
-    properties["title"] = f"{item.code.code} {item.code.name}"
+    properties["title"] = f"{item.code} {item.kind.name}"
     listed = ",".join(f"{name}={_property(str(value))}" for name, value in properties.items())
     return f"::{_COMMANDS[item.severity]} {listed}::{_data(_words(item))}"
 

@@ -24,8 +24,8 @@ def render_json(report: Report) -> str:
 def _diagnostic(item: Diagnostic) -> dict[str, Any]:
     finding = item.finding
     return {
-        "code": item.code.code,
-        "name": item.code.name,
+        "code": item.code,
+        "name": item.kind.name,
         "severity": item.severity.value,
         "message": finding.message,
         "help": finding.help,

@@ -29,7 +29,7 @@ def render_junit(reports: Mapping[str, Report], failing: Mapping[str, Report]) -
         test = ET.SubElement(suite, "testcase", name=shown, classname="smachac.check", file=shown)
         grave = failing.get(name, [])
         if grave:
-            codes = dict.fromkeys(item.code.code for item in grave)
+            codes = dict.fromkeys(item.code for item in grave)
             failure = ET.SubElement(test, "failure", message=_text(summary(grave)))
             failure.set("type", " ".join(codes))
             failure.text = "\n" + _text(render_text(grave))

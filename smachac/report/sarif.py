@@ -29,7 +29,7 @@ _LEVELS = {Severity.ERROR: "error", Severity.WARNING: "warning", Severity.INFO: 
 
 def render_sarif(report: Report) -> str:
     """One run with a result for each finding, and the rules they refer to. ASCII."""
-    codes = {item.code.code: item.code for item in report}
+    codes = {item.code: item.kind for item in report}
     rules = [codes[name] for name in sorted(codes)]
     numbers = {code.code: number for number, code in enumerate(rules)}
     seen: Counter[str] = Counter()
@@ -37,7 +37,7 @@ def render_sarif(report: Report) -> str:
     for item in report:
         mark = fingerprint(item)
         seen[mark] += 1
-        results.append(_result(item, numbers[item.code.code], f"{mark}:{seen[mark]}"))
+        results.append(_result(item, numbers[item.code], f"{mark}:{seen[mark]}"))
     driver = {"name": "smachac", "version": __version__, "rules": [_rule(code) for code in rules]}
     run = {
         "tool": {"driver": driver},
@@ -67,7 +67,7 @@ def _result(item: Diagnostic, rule: int, mark: str) -> dict[str, Any]:
     node = finding.node
     logical = [{"name": node.rpartition("/")[2], "fullyQualifiedName": node}] if node else []
     result: dict[str, Any] = {
-        "ruleId": item.code.code,
+        "ruleId": item.code,
         "ruleIndex": rule,
         "level": _LEVELS[item.severity],
         "message": _message(text),

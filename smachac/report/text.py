@@ -103,7 +103,7 @@ def _rendered(item: Diagnostic, *, colour: bool, width: int) -> str:
 
 def _lines(item: Diagnostic, width: int, paint: Paint) -> Iterator[str]:
     finding = item.finding
-    head = paint("primary", f"{item.severity.value}[{item.code.code}]")
+    head = paint("primary", f"{item.severity.value}[{item.code}]")
     yield head + paint("strong", f": {visible(finding.message)}")
     places = [("", "primary", finding.span)]
     places += [(related.message, "related", related.span) for related in finding.related]

@@ -197,7 +197,7 @@ def codes(text: str) -> list[str]:
     """The codes of the rules over types."""
     found = check_machine(lines(text))
     ours = ("SM304", "SM501", "SM502", "SM503", "SM504")
-    return [item.code.code for item in found if item.code.code in ours]
+    return [item.code for item in found if item.code in ours]
 
 
 CHAIN = """
@@ -293,7 +293,7 @@ def well_typed(draw: st.DrawFn) -> tuple[Machine, int]:
 
 def type_findings(machine: Machine) -> list[object]:
     found = check_machine(machine)
-    return [item for item in found if item.code.code in ("SM304", "SM501", "SM504")]
+    return [item for item in found if item.code in ("SM304", "SM501", "SM504")]
 
 
 @given(well_typed())
@@ -331,7 +331,7 @@ def test_one_type_changed_is_found_where_it_stands(
     root = changed(machine.root, path.split("/")[1:], CLASHING)
     assert isinstance(root, StateMachine)
     found = check_machine(replace(machine, root=root))
-    clashes = [item for item in found if item.code.code == "SM304"]
+    clashes = [item for item in found if item.code == "SM304"]
     assert len(clashes) == 1
     (leaf,) = [node for where, node in walk(root) if where == path]
     (key,) = leaf.inputs

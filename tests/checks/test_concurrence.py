@@ -50,7 +50,7 @@ def around(node: Concurrence) -> StateMachine:
 
 
 def said(node: Concurrence, code: str) -> list[Diagnostic]:
-    return [item for item in report(around(node)) if item.code.code == code]
+    return [item for item in report(around(node)) if item.code == code]
 
 
 def every(node: Concurrence, left_out: tuple[str, ...] = ()) -> Iterator[Combination]:
@@ -187,7 +187,7 @@ def test_the_interpreter_ends_as_is_said(node: Concurrence, seed: int) -> None:
     """The combinations shown by SM402 and SM404 do give those results when they are played."""
     assume(node.default_outcome)
     for item in [*said(node, "SM404"), *said(node, "SM402")]:
-        masked = item.code.code == "SM404"
+        masked = item.code == "SM404"
         promised = item.finding.message.split("`")[3] if masked else (
             item.finding.message.split("`")[-2])  # fmt: skip
         for ended in told(node, item):
@@ -355,7 +355,7 @@ def test_a_misspelt_rule_is_one_fault() -> None:
         node = concurrence("BOTH", " ".join(names), *branches, default="failed", rules=rules,
                            to=dict.fromkeys(names, "done"))  # fmt: skip
         loud = [item for item in report(around(node)) if item.severity is not Severity.INFO]
-        assert [item.code.code for item in loud] == ["SM403"]
+        assert [item.code for item in loud] == ["SM403"]
         whole = replace(node, default_outcome="")
         missed = said(whole, "SM401")
         assert bool(missed) == ((child, outcome) in (("RIHGT", "done"), ("RIGHT", "doen")))

@@ -159,7 +159,7 @@ def test_played_the_failure_is_the_last_that_happens(root: StateMachine) -> None
         entered = [e["path"].rpartition("/")[2] for e in events if e["event"] == "enter"]
         if result.outcome == "succeeded" and entered[-1] == name:
             unhandled.add(name)
-    told = [item for item in report(root) if item.code.code == "SM206"]
+    told = [item for item in report(root) if item.code == "SM206"]
     assert bool(told) == bool(unhandled)
     for item in told:
         named = item.finding.message.replace("`sm`", "").split("`")[1::2]

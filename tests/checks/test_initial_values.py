@@ -48,7 +48,7 @@ def found(own: str = "", one: str = "", two: str = "", three: str = "") -> list[
 def said(text: str, **files: str) -> list[Diagnostic]:
     library = memory_library({f"{name}.yml": text for name, text in files.items()}, BUILT_IN)
     report = analyse(Source("main.yml", text), library, []).report
-    return [item for item in report if item.code.code == "SM313"]
+    return [item for item in report if item.code == "SM313"]
 
 
 def test_both_places_are_told() -> None:

@@ -47,7 +47,7 @@ def watch(to: dict[str, str], *, forever: bool = False) -> StateMachine:
          "forever, ignores", "in an iterator", "stopped inside", "open"],
 )  # fmt: skip
 def test_a_branch_that_does_not_end(branch: Node, join: str, says: str | None) -> None:
-    items = [item for item in report(both(WORK, branch, join=join)) if item.code.code == "SM407"]
+    items = [item for item in report(both(WORK, branch, join=join)) if item.code == "SM407"]
     assert [item.finding.node for item in items] == (["sm/BOTH/WATCH"] if says else [])
     assert all(says is not None and says in item.finding.message for item in items)
 
@@ -80,12 +80,12 @@ def test_a_wait_needs_a_limit(outcomes: str, variables: dict[str, Any], limited:
     to = dict.fromkeys(outcomes.split(), "done")
     wait = blocking(leaf("WAIT", to, **variables))
     root = machine("sm", "done", wait)
-    items = [item for item in report(root) if item.code.code == "SM207"]
+    items = [item for item in report(root) if item.code == "SM207"]
     assert [item.severity for item in items] == ([] if limited else [Severity.INFO])
     inside = both(WORK, machine("IN", "done", wait))
     assert found(inside, "SM207") == ([] if limited else ["SM207 sm/BOTH/IN/WAIT"])
     unlike = machine("sm", "done", replace(wait, blocking=False))
-    assert [item for item in report(unlike) if item.code.code == "SM207"] == []
+    assert [item for item in report(unlike) if item.code == "SM207"] == []
 
 
 def test_a_time_limit_needs_a_state_that_answers() -> None:

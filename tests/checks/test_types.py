@@ -14,11 +14,11 @@ def found(text: str) -> list[Diagnostic]:
     """What the rules over types find in a machine; `; ` ends a line."""
     report = check_machine(parse_machine(text.replace("; ", "\n"), "main.smir"))
     codes = ("SM304", "SM501", "SM502", "SM503", "SM504")
-    return [item for item in report if item.code.code in codes]
+    return [item for item in report if item.code in codes]
 
 
 def codes(text: str) -> list[str]:
-    return [item.code.code for item in found(text)]
+    return [item.code for item in found(text)]
 
 
 MOVE = """

@@ -246,7 +246,7 @@ def test_callbacks_run_in_the_order_of_the_alphabet() -> None:
 )
 def test_steps_say_what_a_scripted_state_sets(steps: Any, severities: list[Severity]) -> None:
     told = leaf("W", {"ok": "R"}, type="ScriptedState", outs="k", steps=steps)
-    items = [item for item in report(root(told, reader("R", DONE))) if item.code.code == "SM301"]
+    items = [item for item in report(root(told, reader("R", DONE))) if item.code == "SM301"]
     assert [item.severity for item in items] == severities
 
 

@@ -152,14 +152,14 @@ def test_a_baseline_knows_what_was_there(folder: Path, capsys: pytest.CaptureFix
     write(folder, {"pick.yml": text})
     capsys.readouterr()
     assert main(["check", "main.yml", "other.yml", "--baseline", "b.json"]) == 0
-    assert capsys.readouterr().out == "no findings; 2 scripts checked (1 known)\n"
+    assert capsys.readouterr().out == "no findings; 2 scripts checked (1 in the baseline)\n"
     lost = "      - LOST2: {template: ScriptedState, outcomes: [ok], transitions: {ok: ok}}\n"
     write(folder, {"pick.yml": text + lost})
     assert main(["check", "main.yml", "--baseline", "b.json"]) == 1
     assert lines(capsys.readouterr().out) == ["SM201 pick.yml:10:9"]
     write(folder, {"pick.yml": "- PICK: {template: ScriptedState, outcomes: [ok]}\n"})
     assert main(["check", "main.yml", "--baseline", "b.json"]) == 0
-    assert capsys.readouterr().out == "no findings (1 of the baseline gone)\n"
+    assert capsys.readouterr().out == "no findings (1 of the baseline no longer found)\n"
 
 
 @pytest.mark.parametrize("text", [None, "{", "[]", '{"version": 2}', '{"version": 1}', "[" * 9999])

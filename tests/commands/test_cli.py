@@ -275,7 +275,7 @@ def test_ctrl_c_preempts_the_machine(tmp_path: Path) -> None:
     assert process.returncode == 0
     assert "TIDY_UP" in rest
     assert shown.rstrip().endswith("outcome: preempted")
-    assert "asked to stop" in told
+    assert "preemption requested" in told
 
 
 @pytest.mark.parametrize(

@@ -12,7 +12,7 @@ from smachac.frontend.files import disk_library, find_project, read_source
 
 
 def codes(report: Report) -> list[str]:
-    return [item.code.code for item in report]
+    return [item.code for item in report]
 
 
 def test_what_cannot_be_read_is_told(tmp_path: Path) -> None:

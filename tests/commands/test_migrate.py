@@ -255,7 +255,7 @@ def test_no_folder_and_nothing_in_it(tmp_path: Path, capsys: pytest.CaptureFixtu
 def test_a_file_is_no_folder(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
     (tmp_path / "main.yml").write_text("name: sm\n")
     assert main(["migrate", str(tmp_path / "main.yml")]) == 2
-    assert "is a file: name the folder that it is in" in capsys.readouterr().err
+    assert "is a file: name its folder" in capsys.readouterr().err
 
 
 def test_a_report_on_nothing() -> None:

@@ -53,7 +53,7 @@ def test_nothing_is_written_over(project: Path, capsys: pytest.CaptureFixture[st
     (project / "README.md").unlink()
     before = files(project)
     assert main(["new", "."]) == 1
-    assert "main.yml is there already: nothing was written" in capsys.readouterr().err
+    assert "main.yml exists already: nothing was written" in capsys.readouterr().err
     assert files(project) == before
     assert main(["new", "state", "Grasp"]) == 0
     before = files(project)
@@ -92,7 +92,7 @@ def test_code_in_another_language(project: Path, capsys: pytest.CaptureFixture[s
     capsys.readouterr()
     assert main(["new", "state", "Grasp", "--target", "cpp"]) == 0
     assert capsys.readouterr().out == (
-        "made include/robot_states/grasp.hpp\n"
+        "created include/robot_states/grasp.hpp\n"
         "add to the `code` of templates/Grasp.yml:"
         ' cpp: {header: robot_states/grasp.hpp, class: "robot_states::Grasp"}\n'
     )
@@ -105,15 +105,21 @@ def test_code_in_another_language(project: Path, capsys: pytest.CaptureFixture[s
 @pytest.mark.parametrize(
     ("words", "message"),
     [
-        (["state", "grasp"], "`grasp` is no name for a state type"),
-        (["state", "Gräsp"], "`Gräsp` is no name"),
-        (["state"], "name a folder, or say `new state NAME`"),
+        (["state", "grasp"], "`grasp` is not a name for a state type"),
+        (["state", "Gräsp"], "`Gräsp` is not a name"),
+        (["state"], "name a folder, as in `new my_robot`"),
         (["a", "b"], "name a folder"),
-        (["state", "Grasp", "--input", "a b"], "`a b` is no name for a key"),
-        (["state", "Grasp", "--input", "a=float<"], "`float<` is no type"),
-        (["state", "Grasp", "--input", "a=flaot"], "`flaot` names no type\ndid you mean `float`?"),
-        (["state", "Grasp", "--outcome", "no good"], "`no good` is no name for an outcome"),
-        (["state", "Grasp", "--target", "cpp", "--input", "a=pkg/Msg"], "there can be no stub"),
+        (["state", "Grasp", "--input", "a b"], "`a b` is not a name for a key"),
+        (["state", "Grasp", "--input", "a=float<"], "`float<` is not a type"),
+        (
+            ["state", "Grasp", "--input", "a=flaot"],
+            "there is no type `flaot`\ndid you mean `float`?",
+        ),
+        (["state", "Grasp", "--outcome", "no good"], "`no good` is not a name for an outcome"),
+        (
+            ["state", "Grasp", "--target", "cpp", "--input", "a=pkg/Msg"],
+            "C++ cannot express the interface",
+        ),
     ],
 )
 def test_wrong_usage(

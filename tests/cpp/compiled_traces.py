@@ -80,7 +80,7 @@ def header(machine: Machine, library: Library = LIBRARY) -> str | None:
     """The header of a machine, or None where C++ cannot say it."""
     report: Report = []
     files = build(Checked(with_state_types(machine, library)), TARGET, library, report)
-    assert {item.code.code for item in report} <= {"SM601", "SM602"}
+    assert {item.code for item in report} <= {"SM601", "SM602"}
     return next(iter(files.values()), None)
 
 

@@ -58,7 +58,7 @@ def test_golden_commands_print_what_is_shown(
 @pytest.mark.parametrize("name", FILES)
 def test_a_script_has_one_mistake(name: str, folder: Path) -> None:
     report = smachac.check(name)
-    (code,) = {item.code.code for item in report if item.severity.value != "info"}
+    (code,) = {item.code for item in report if item.severity.value != "info"}
     row = re.search(rf"\| {code}, while you write \|", TEXT)
     assert row is not None
 

@@ -81,7 +81,7 @@ APART = {"carry.yml", "late.yml", "look.yml", "speed.yml"}
 def test_the_interpreter_and_the_program_agree(name: str, folder: Path) -> None:
     program: list[dict[str, Any]] = []
     interpreter: list[dict[str, Any]] = []
-    outcome = smachac.run(name, observe=program.append)
+    outcome = smachac.run(name, observe=program.append).outcome
     assert run(smachac.load(name), builtin_behaviour(), interpreter.append).outcome == outcome
     assert compare(program, interpreter) is None
 

@@ -48,7 +48,7 @@ def test_blocks_are_found() -> None:
 
 @pytest.mark.parametrize(("folder", "block"), shown())
 def test_a_header_holds_what_is_shown_of_it(folder: str, block: str) -> None:
-    files = smachac.build(ROOT / "examples" / folder / "main.yml", "cpp")
+    files = smachac.compile(ROOT / "examples" / folder / "main.yml", "cpp")
     assert missing(block, next(iter(files.values()))) is None
 
 

@@ -11,7 +11,7 @@ import pytest
 
 from smachac.diagnostics.diagnostic import Report
 from smachac.diagnostics.source import Source, Word
-from smachac.driver import load
+from smachac.driver import read_machine
 from smachac.frontend import schema
 from smachac.frontend.fields import READERS
 from smachac.frontend.files import disk_library
@@ -90,7 +90,7 @@ def test_what_cannot_be_read_is_reported_once() -> None:
     text = SCRIPT.replace("claims: [arm]", "claims: [arm, arm]").replace("{count: 3", "{on: 3")
     text = text.replace("in: [a, 2]", "in: [a, 2], by: 2").replace("robot: panda", "robot: [x]")
     _, report = resolved(text)
-    faults = sorted((item.span.line, item.code.code) for item in report)
+    faults = sorted((item.span.line, item.code) for item in report)
     assert faults == [(5, "SM004"), (6, "SM004"), (14, "SM002"), (17, "SM003")]
 
 
@@ -106,7 +106,7 @@ def test_readers_return_what_states_hold() -> None:
 @pytest.mark.parametrize("path", sorted((ROOT / "examples").glob("*/main.yml")), ids=str)
 def test_machines_carry_the_state_types_of_their_states(path: Path) -> None:
     library = disk_library(path, [])
-    machine = load(Source(str(path), path.read_text("utf-8")), library, [])
+    machine = read_machine(Source(str(path), path.read_text("utf-8")), library, [])
     assert machine is not None
     found = dict(machine.state_types)
     names = {machine.base, *(node.type for _, node in walk(machine.root))}

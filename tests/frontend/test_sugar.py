@@ -156,7 +156,7 @@ def test_no_number_of_tries(tries: object, tmp_path: Path) -> None:
     sugar = f"retry: {{on: [aborted], max: {tries}}}".replace("True", "true")
     (tmp_path / "main.yml").write_text(SCRIPT.replace("SUGAR", sugar), encoding="utf-8")
     found = smachac.check(tmp_path / "main.yml")
-    assert [item.code.code for item in found if item.severity.value == "error"] == ["SM004"]
+    assert [item.code for item in found if item.severity.value == "error"] == ["SM004"]
 
 
 @pytest.mark.parametrize(
@@ -167,7 +167,7 @@ def test_no_durations(text: str) -> None:
     report: Report = []
     assert tree is not None
     assert duration(tree, report) is None
-    assert [item.code.code for item in report] == ["SM004"]
+    assert [item.code for item in report] == ["SM004"]
 
 
 def test_a_variable_of_the_state_type_comes_first(tmp_path: Path) -> None:

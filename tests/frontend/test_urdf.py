@@ -208,6 +208,4 @@ def test_the_robot_of_a_script(tmp_path: Path, name: str, expected: list[str]) -
     (folder / "sub" / "odd.urdf").write_bytes(b"\xff\xfe\xff")
     (folder / "main.yml").write_text(SCRIPT.format(robot=name))
     report = smachac.check(folder / "main.yml")
-    assert [
-        item.finding.message for item in report if item.code.code in ("SM018", "SM007")
-    ] == expected
+    assert [item.finding.message for item in report if item.code in ("SM018", "SM007")] == expected

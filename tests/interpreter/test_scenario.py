@@ -10,6 +10,7 @@ from smachac.interpreter.behaviours import builtin_behaviour
 from smachac.interpreter.scenario import (
     PlainStep,
     Scenario,
+    ScenarioProblem,
     Step,
     plain_steps_by_path,
     read_scenario,
@@ -35,7 +36,8 @@ def picking() -> Machine:
 
 
 def read(states: Any) -> tuple[Scenario, list[str]]:
-    return read_scenario({"states": states}, picking())
+    scenario, problems = read_scenario({"states": states}, picking())
+    return scenario, [problem.message for problem in problems]
 
 
 def test_the_forms_of_a_scenario() -> None:
@@ -107,12 +109,24 @@ def test_what_is_wrong_is_told(states: Any, problem: str) -> None:
 def test_a_scenario_is_a_mapping_of_states(given: Any) -> None:
     scenario, problems = read_scenario(given, picking())
     assert scenario.steps == {}
-    assert problems == ["a scenario is a mapping with `states`: a mapping of paths"]
+    assert problems == [
+        ScenarioProblem("a scenario is a mapping with `states`: a mapping of paths")
+    ]
 
 
 def test_other_keys_beside_states_are_told() -> None:
     assert read_scenario({"states": {}, "state": {}}, picking())[1] == [
-        "unknown key `state`; a scenario has only `states`"
+        ScenarioProblem("unknown key `state`; a scenario has only `states`")
+    ]
+
+
+def test_a_problem_names_its_key_and_step() -> None:
+    states = {"PICK/GRASP": ["aborted", "lost"], "CHEKC": True, "sm/CHECK": []}
+    _, problems = read_scenario({"states": states}, picking())
+    assert [problem[1:] for problem in problems] == [
+        ("PICK/GRASP", 2),
+        ("CHEKC", None),
+        ("sm/CHECK", None),
     ]
 
 

@@ -10,7 +10,7 @@ from typing import Any
 import pytest
 from hypothesis import HealthCheck, given, seed, settings
 
-from smachac.driver import build, check, load
+from smachac.driver import build, check, read_machine
 from smachac.frontend.files import disk_library, read_source
 from smachac.frontend.loader import Library
 from smachac.interpreter.behaviours import builtin_behaviour
@@ -106,7 +106,7 @@ def test_examples(script: Path) -> None:
     source = read_source(script, report)
     assert source is not None
     library = disk_library(script, report)
-    machine = load(source, library, report)
+    machine = read_machine(source, library, report)
     assert machine is not None
     assert check(machine, report) is not None
     ours = of_interpreter(machine)

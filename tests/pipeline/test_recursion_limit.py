@@ -32,7 +32,7 @@ def nested(levels: int, inside: str = "{T: ScriptedState, o: [done]}") -> str:
 
 def codes(script: str, files: dict[str, str] | None = None) -> set[str]:
     found = analyse(Source("main.yml", script), library(files or {}), []).report
-    return {item.code.code for item in found if item.severity.value == "error"}
+    return {item.code for item in found if item.severity.value == "error"}
 
 
 HEAD = "name: sm\noutcomes: [done]\nstates:\n  - X: "

@@ -11,7 +11,7 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from smachac.batch import Survey, survey
+from smachac.batch import Batch, check_scripts
 from smachac.commands.cli import main
 from smachac.commands.files import ChangedError, rewrite_files
 from smachac.diagnostics.diagnostic import (
@@ -112,9 +112,9 @@ def folder(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
 def test_names_are_mended_in_every_file(folder: Path, capsys: pytest.CaptureFixture[str]) -> None:
     (folder / "main.yml").chmod(0o640)
     assert main(["check", "main.yml"]) == 1
-    assert "(3 with a cure: --fix)" in capsys.readouterr().out
+    assert "(3 fixable with --fix)" in capsys.readouterr().out
     assert main(["check", "--fix"]) == 0
-    assert capsys.readouterr().out == "no findings (5 mended)\n"
+    assert capsys.readouterr().out == "no findings (5 fixed)\n"
     assert main(["check", "--fix"]) == 0
     right = BAD.replace("sliped", "slipped").replace("abroted", "aborted")
     assert (folder / "main.yml").read_text() == right.replace("lfit", "lift")
@@ -131,7 +131,7 @@ def test_a_diff_is_a_patch_and_writes_nothing(
     (folder / "main.yml").write_bytes(text.replace("\n", "\r\n").encode())
     assert main(["check", "--diff"]) == 1
     shown = capsys.readouterr()
-    assert shown.err == "--fix would mend 4 findings in 2 files\n"
+    assert shown.err == "--fix would fix 4 findings in 2 files\n"
     assert "\\ No newline at end of file" in shown.out
     assert (folder / "sub" / "lift.yml").read_text() == SUB
     assert main(["check", "--fix"]) == 0
@@ -159,7 +159,7 @@ def test_a_fix_that_adds_an_error_is_not_written(
     assert main(["check", "main.yml", "--fix", *options]) == 1  # firm codes count all the same
     # Both keys would be `transitions`; the target is mended on its own.
     assert (folder / "main.yml").read_text() == text.replace("dnoe", "done")
-    assert "(1 mended)" in capsys.readouterr().out
+    assert "(1 fixed)" in capsys.readouterr().out
 
 
 def test_what_was_changed_meanwhile_is_left(tmp_path: Path) -> None:
@@ -192,17 +192,19 @@ def test_a_fix_that_shows_more_errors_is_not_written(folder: Path) -> None:
     assert (folder / "main.yml").read_text() == text
 
 
-def look(texts: Mapping[str, str]) -> Survey:
-    return survey([Path("main.yml")], Disk({os.path.realpath("main.yml"): texts["main.yml"]}))
+def look(texts: Mapping[str, str]) -> Batch:
+    return check_scripts(
+        [Path("main.yml")], Disk({os.path.realpath("main.yml"): texts["main.yml"]})
+    )
 
 
 def tried(text: str) -> FixResult:
     before = look({"main.yml": text})
 
-    def again(texts: Mapping[str, str]) -> Survey:
+    def again(texts: Mapping[str, str]) -> Batch:
         return look({"main.yml": next(iter(texts.values()))})
 
-    return apply_fixes(before, lambda survey: survey.report, again)
+    return apply_fixes(before, lambda batch: batch.report, again)
 
 
 KEYS = """\
@@ -367,7 +369,7 @@ def test_fixes_never_make_it_worse(damage: list[tuple[int, str, int]]) -> None:
         text = text[:at] + letter + text[at + cut :]
     before = look({"main.yml": text}).report
     result = tried(text)
-    after = result.survey.report
+    after = result.batch.report
     errors = [fingerprint(item) for item in after if item.severity is Severity.ERROR]
     assert len(errors) <= sum(item.severity is Severity.ERROR for item in before)
     assert set(errors) <= {fingerprint(item) for item in before}
@@ -383,7 +385,7 @@ def edit(number: int, start: int, end: int, text: str, source: Source) -> Diagno
     edits = (Edit(span=Span(source, start, end), text=text),)
     template = look({"main.yml": "name: sm\n"}).report[0]
     finding = Finding(span=edits[0].span, message=f"{number}", edits=edits)
-    return Diagnostic(code=template.code, severity=Severity.ERROR, finding=finding)
+    return Diagnostic(kind=template.kind, severity=Severity.ERROR, finding=finding)
 
 
 @pytest.mark.parametrize(
@@ -400,7 +402,7 @@ def edit(number: int, start: int, end: int, text: str, source: Source) -> Diagno
 def test_edits_that_overlap_are_left_out(edits: list[tuple[int, int, str]], expected: str) -> None:
     source = Source("main.yml", "abcdef")
     report = [edit(number, *each, source) for number, each in enumerate(edits)]
-    nothing = Survey(reports={}, uses={})
-    before = Survey(reports={"main.yml": report}, uses={})
-    result = apply_fixes(before, lambda survey: survey.report, lambda texts: nothing)
+    nothing = Batch(reports={}, uses={})
+    before = Batch(reports={"main.yml": report}, uses={})
+    result = apply_fixes(before, lambda batch: batch.report, lambda texts: nothing)
     assert list(result.texts.values()) == ([expected] if expected != "abcdef" else [])

@@ -169,11 +169,11 @@ def test_fmt_writes_what_it_says(
     script.chmod(0o640)
     os.chdir(tmp_path)
     assert main(["fmt", "--check"]) == 1
-    assert capsys.readouterr().out == "main.yml would be laid out\n"
+    assert capsys.readouterr().out == "main.yml would be formatted\n"
     assert main(["fmt", "main.yml", "--diff"]) == 1
     assert "+outcomes: [done]" in capsys.readouterr().out
     assert main(["fmt"]) == 0
-    assert capsys.readouterr().out == "laid out main.yml\n"
+    assert capsys.readouterr().out == "formatted main.yml\n"
     assert script.read_bytes() == b"\xef\xbb\xbf" + LAID.replace("\n", "\r\n").encode()
     assert script.stat().st_mode & 0o777 == 0o640
     assert main(["fmt", "--check"]) == 0
@@ -196,7 +196,7 @@ def test_fmt_leaves_alone_what_it_cannot_read_or_write(
     assert "error[SM001]" in capsys.readouterr().err
     (tmp_path / "odd.yml").write_text("%YAML 1.2\n---\nname: sm\nstates: []\n")
     assert main(["fmt", "odd.yml"]) == 1
-    assert "odd.yml is left as it is" in capsys.readouterr().err
+    assert "odd.yml was not changed" in capsys.readouterr().err
     assert main(["fmt", "nowhere"]) == 1
     assert main(["fmt", "*.yaml"]) == 2
 

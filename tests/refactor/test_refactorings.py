@@ -22,7 +22,7 @@ from hypothesis import strategies as st
 import smachac
 from smachac.commands.cli import main
 from smachac.diagnostics.source import Source
-from smachac.driver import analyse_file
+from smachac.driver import analyse_script
 from smachac.interpreter.interpreter import run
 from smachac.interpreter.userdata import Userdata, UserdataError
 from smachac.ir.nodes import Leaf, Machine, StateMachine
@@ -104,7 +104,7 @@ def remarked(text: str, name: str) -> str:
 
 
 def machine() -> Machine:
-    found = analyse_file("main.yml", (), ())[0]
+    found = analyse_script("main.yml")
     assert found.checked is not None, [item.finding.message for item in found.report]
     return found.checked
 
@@ -220,7 +220,7 @@ def test_a_state_without_interface_leaves_a_container_as_before(
         (tmp_path / path.name).write_bytes(path.read_bytes())
 
     def ends() -> list[str | None]:
-        (text,) = smachac.build("main.yml", "python", templates=["."]).values()
+        (text,) = smachac.compile("main.yml", "python", templates=["."]).values()
         return [outcome_of(text, end) for end in ("succeeded", "aborted", "preempted", "there")]
 
     before = ends()
@@ -332,10 +332,10 @@ def test_a_concurrence_decides_as_the_states_did_in_a_row(seed: int) -> None:
                  f" transitions: {{ok: {end}}}}}"]  # fmt: skip
     with tempfile.TemporaryDirectory() as folder, inside(folder):
         Path("main.yml").write_text("\n".join(rows) + "\n")
-        before = analyse_file("main.yml", (), ())[0].machine
+        before = analyse_script("main.yml").machine
         chosen = names[draw.randrange(len(names)) :]
         code = main(["contain", "main.yml", "ALL", "Concurrence", *chosen])
-        after = analyse_file("main.yml", (), ())[0].machine
+        after = analyse_script("main.yml").machine
     assert before is not None
     assert after is not None
     for each in range(30 if code == 0 else 0):

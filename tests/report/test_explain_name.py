@@ -36,7 +36,7 @@ BROKEN = str(ROOT / "tests" / "explained" / "main.yml")
         ([PICK], "name a state or a key of"),
         ([PICK, "home", "more"], "name a code such as SM201"),
         ([PICK, "home", "--failures"], "name a code such as SM201"),
-        ([PICK, "home", "--format", "md"], "--format md is for --failures"),
+        ([PICK, "home", "--format", "md"], "--format md needs --failures"),
         ([], "name a code such as SM201"),
     ],
 )

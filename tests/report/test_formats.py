@@ -41,7 +41,7 @@ def schema() -> Any:
 
 
 def diagnostic(finding: Finding, severity: Severity = Severity.ERROR) -> Diagnostic:
-    return Diagnostic(code=CODES["SM204"], severity=severity, finding=finding)
+    return Diagnostic(kind=CODES["SM204"], severity=severity, finding=finding)
 
 
 FULL = diagnostic(

@@ -6,7 +6,8 @@ from pathlib import Path
 
 import pytest
 
-from smachac.commands.cli import FORMATS, main
+from smachac.commands.check import FORMATS
+from smachac.commands.cli import main
 from smachac.version import __version__
 from tests.support.golden import compare_file
 

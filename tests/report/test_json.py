@@ -28,7 +28,7 @@ SCRIPT = Source("main.yml", "name: sm\ntransitions: {a: B}\n")
 
 def diagnostic(finding: Finding, severity: Severity = Severity.ERROR) -> Diagnostic:
     code = Code(code="SM101", name="unknown-target", severity=severity, explanation="")
-    return Diagnostic(code=code, severity=severity, finding=finding)
+    return Diagnostic(kind=code, severity=severity, finding=finding)
 
 
 FULL = diagnostic(

@@ -51,7 +51,7 @@ def finding(
     code = Code(code="SM101", name="unknown-target", severity=severity, explanation="")
     steps = tuple(map(PathStep, path))
     found = Finding(span=span, message=message, related=related, path=steps, help=hint)
-    return Diagnostic(code=code, severity=severity, finding=found)
+    return Diagnostic(kind=code, severity=severity, finding=found)
 
 
 def shown(*report: Diagnostic, width: int = 100) -> str:

@@ -60,7 +60,7 @@ def built(folder: Path, states: str, **options: str) -> str:
     """The program of a script with these states."""
     path = folder / "main.yml"
     path.write_text(HEAD + states, encoding="utf-8")
-    (text,) = smachac.build(path, "python", options=options).values()
+    (text,) = smachac.compile(path, "python", options=options).values()
     return text
 
 
@@ -74,7 +74,7 @@ def test_the_script_of_the_docs_runs(graph: Graph, tmp_path: Path) -> None:
     text = (ROOT / "docs/ros.md").read_text("utf-8")
     path = tmp_path / "fetch.yml"
     path.write_text(text.split("```yaml\n")[1].split("```")[0], encoding="utf-8")
-    (program,) = smachac.build(path, "python").values()
+    (program,) = smachac.compile(path, "python").values()
     graph.node("action_server")
     graph.node("service_server")
     assert graph.run(program).endswith("outcome: succeeded\n")

@@ -55,7 +55,7 @@ def deed(folder: Path, name: str) -> str:
     (folder / "templates/Deed.yml").write_text(TYPE, encoding="utf-8")
     path = folder / "main.yml"
     path.write_text(SCRIPT.format(deed=name), encoding="utf-8")
-    (text,) = smachac.build(path, "python").values()
+    (text,) = smachac.compile(path, "python").values()
     return text
 
 
@@ -85,7 +85,7 @@ def test_a_signal_that_does_not_wake_the_main_thread(
 ) -> None:
     path = tmp_path / "main.yml"
     path.write_text(SLEEPER, encoding="utf-8")
-    (text,) = smachac.build(path, "python").values()
+    (text,) = smachac.compile(path, "python").values()
     program = graph.start(text)
     program.expect("-->'LONG'")
     program.send_aside(number)

@@ -118,7 +118,7 @@ print(sorted({(topic, message._type) for topic, message, _ in bag.read_messages(
 def built(folder: Path, states: str) -> str:
     path = folder / "main.yml"
     path.write_text(HEAD + states, encoding="utf-8")
-    (text,) = smachac.build(path, "python").values()
+    (text,) = smachac.compile(path, "python").values()
     return text
 
 

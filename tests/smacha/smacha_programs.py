@@ -86,7 +86,7 @@ def text_of(script: str, *templates: Path, **options: str) -> str:
     """The program of a script."""
     path = FOLDER / "scripts" / f"{script}.yml"
     folders = templates or (TEMPLATES,)
-    ((_, text),) = smachac.build(path, "python", templates=folders, options=options).items()
+    ((_, text),) = smachac.compile(path, "python", templates=folders, options=options).items()
     return text
 
 

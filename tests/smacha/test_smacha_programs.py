@@ -87,13 +87,13 @@ def test_params_come_from_the_call_and_from_the_sub_script() -> None:
 def test_a_class_defined_twice_and_not_alike_is_told() -> None:
     path = FOLDER / "scripts" / "counting.yml"
     report = built_report(path)
-    assert [item.code.code for item in report] == ["SM607"]
+    assert [item.code for item in report] == ["SM607"]
     assert [each.span.text for each in report[0].finding.related] == ["FOO", "BAR"]
 
 
 def test_python_2_is_translated_and_told() -> None:
     report = built_report(FOLDER / "scripts" / "two_arms.yml")
-    assert [item.code.code for item in report] == ["SM606", "SM606"]
+    assert [item.code for item in report] == ["SM606", "SM606"]
     assert [item.span.text for item in report] == [
         "except (KeyError, AttributeError), e:",
         "print 'no such limb: %s' % e",
@@ -146,7 +146,7 @@ def test_outcomes_that_are_a_default_are_not_all(tmp_path: Path, given: str) -> 
     rest = "transitions: {a: done, b: A}}" if given else "transitions: {c: done}}"
     states = f"states:\n  - A: {{template: T, {given}{', ' if given else ''}{rest}\n"
     (tmp_path / "main.yml").write_text("name: sm\ntemplate: Base\noutcomes: [done]\n" + states)
-    analysis, _ = driver.analyse_file(tmp_path / "main.yml", (), (tmp_path,))
+    analysis = driver.analyse_script(tmp_path / "main.yml", (), (tmp_path,))
     assert analysis.checked is not None, [item.finding.message for item in analysis.report]
 
 
@@ -196,8 +196,8 @@ def test_variables_that_a_template_does_not_use(
         "name: sm\ntemplate: Base\noutcomes: [done]\nstates:\n"
         "  - A: {template: T, arm: 1, fast: 2, speed: 3, transition: {a: done}}\n"
     )
-    analysis, _ = driver.analyse_file(tmp_path / "main.yml", (), (tmp_path,))
-    found = [item for item in analysis.report if item.code.code == "SM003"]
+    analysis = driver.analyse_script(tmp_path / "main.yml", (), (tmp_path,))
+    found = [item for item in analysis.report if item.code == "SM003"]
     assert [item.span.text for item in found] == told
     assert all(item.severity is Severity.WARNING for item in found)
     assert not told or found[-1].finding.help == "did you mean `transitions`?"
@@ -260,10 +260,11 @@ def test_options_are_yes_or_no() -> None:
 
 def test_a_program_that_is_one_function_runs_and_tells_its_outcome(tmp_path: Path) -> None:
     events: list[dict[str, object]] = []
-    outcome = smachac.run(
+    result = smachac.run(
         FOLDER / "scripts" / "recording.yml", templates=[TEMPLATES], observe=events.append
     )
-    assert outcome == "succeeded"
+    assert result.outcome == "succeeded"
+    assert list(result.events) == events
     entered = [event["path"] for event in events if event["event"] == "enter"]
     assert entered == ["SM/START", "SM/IN", "SM/IN/PAUSE", "SM/STOP"]
 
@@ -297,7 +298,7 @@ def test_functions_are_called_before_a_state_does_its_work(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     path = FOLDER.parent / "cases" / "smacha" / "callbacks_first" / "main.yml"
-    machine = machine_of(smachac.build(path, "python")["sm.py"])
+    machine = machine_of(smachac.compile(path, "python")["sm.py"])
     monkeypatch.chdir(tmp_path)
     written: list[str] = []
     delete = machine["DELETE"].execute
@@ -320,7 +321,7 @@ def test_functions_are_called_before_a_state_does_its_work(
 
 def test_keys_are_conditions_of_outcomes_without_one() -> None:
     path = FOLDER.parent / "cases" / "smacha" / "keys_as_conditions" / "main.yml"
-    machine = machine_of(smachac.build(path, "python")["sm.py"])
+    machine = machine_of(smachac.compile(path, "python")["sm.py"])
     assert machine.execute() == run(smachac.load(path), builtin_behaviour()).outcome == "stopped"
 
 
@@ -332,7 +333,7 @@ def test_functions_are_called_first_in_cpp_as_well(tmp_path: Path) -> None:
         "      input_keys: [n]\n      output_keys: [n]\n"
         "      callbacks: {n: 'lambda ud: ud.n + 1'}\n"
     )
-    text = smachac.build(path, "cpp")["sm.hpp"]
+    text = smachac.compile(path, "cpp")["sm.hpp"]
     assert 0 < text.index('run.write("n", ud.n, ') < text.index("draws_.below(1)")
 
 
@@ -354,7 +355,7 @@ def test_states_of_ros_keep_their_keys_beside_those_of_the_script(
         "      output_keys: [msg, file]\n"
         "      callbacks: {msg: 'lambda ud: [ud.x, 2.0, 3.0]', file: 'lambda ud: str(ud.x)'}\n"
     )
-    text = smachac.build(path, "python")["sm.py"]
+    text = smachac.compile(path, "python")["sm.py"]
     assert sorted(machine_of(text)["A"].get_registered_input_keys()) == keys
     assert "_lambda_cb" not in text
     assert text.count("with_callbacks(") == 2
@@ -407,12 +408,12 @@ def test_services_and_actions_get_what_the_script_says() -> None:
 
 def built_report(path: Path) -> Report:
     """What building says beyond what checking says."""
-    analysis, library = driver.analyse_file(path, (), (TEMPLATES,))
+    analysis = driver.analyse_script(path, (), (TEMPLATES,))
     target = load_target("python")
     assert analysis.checked is not None
-    assert library is not None
+    assert analysis.library is not None
     assert target is not None
     report: Report = []
-    build(analysis.checked, target, library, report)
+    build(analysis.checked, target, analysis.library, report)
     assert all(item.severity is Severity.WARNING for item in report)
     return report

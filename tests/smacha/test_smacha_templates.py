@@ -85,7 +85,7 @@ def built(tmp_path: Path) -> Built:
         (tmp_path / "templates").mkdir(exist_ok=True)
         for name, text in templates.items():
             (tmp_path / "templates" / f"{name}.tpl.py").write_text(text)
-        (text,) = smachac.build(tmp_path / "main.yml", "python").values()
+        (text,) = smachac.compile(tmp_path / "main.yml", "python").values()
         return text
 
     return build
@@ -337,7 +337,7 @@ def test_what_the_user_has_comes_before_what_is_built_in(built: Built, tmp_path:
     (tmp_path / "other" / "SleepState.tpl.py").write_text(own.replace("own", "other"))
     assert "class SleepState(" in built(script.replace("{done: done}", "{succeeded: done}"))
     assert "own_A = 1" in built(script, SleepState=own)
-    text = smachac.build(tmp_path / "main.yml", "python", templates=[tmp_path / "other"])
+    text = smachac.compile(tmp_path / "main.yml", "python", templates=[tmp_path / "other"])
     assert "other_A = 1" in text["SM.py"]
 
 

@@ -16,13 +16,13 @@ def report(root: StateMachine) -> list[Diagnostic]:
 def found(root: StateMachine, code: str = "SM") -> list[str]:
     """Codes and states of what is found above an info, of one code or of all."""
     loud = [item for item in report(root) if item.severity is not Severity.INFO]
-    lines = [f"{item.code.code} {item.finding.node}" for item in loud]
+    lines = [f"{item.code} {item.finding.node}" for item in loud]
     return [line for line in lines if line.startswith(code)]
 
 
 def one(root: StateMachine, code: str) -> Diagnostic:
     """The only finding of a code."""
-    (item,) = [item for item in report(root) if item.code.code == code]
+    (item,) = [item for item in report(root) if item.code == code]
     return item
 
 

@@ -10,10 +10,10 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from smachac.commands.scaffold import Wanted, code_file, interface, stub
+from smachac.commands.scaffold import NewStateType, code_file, interface, stub
 from smachac.diagnostics.diagnostic import Report, Severity
 from smachac.diagnostics.source import Source
-from smachac.driver import analyse, build, together
+from smachac.driver import analyse, build, merged
 from smachac.frontend.files import disk_library
 from smachac.frontend.loader import memory_library
 from smachac.frontend.state_types import find_state_type
@@ -73,12 +73,12 @@ def judged(texts: Mapping[str, str], target_name: str | None = None) -> Report:
         built: Report = []
         files = build(analysis.checked, target, library, built)
         assert bool(files) == (not built)
-        report = together(report, built)
-    return [item for item in report if item.code.code in ("SM603", "SM604")]
+        report = merged(report, built)
+    return [item for item in report if item.code in ("SM603", "SM604")]
 
 
 def said(texts: Mapping[str, str], target: str | None = None) -> list[str]:
-    return [f"{item.code.code} {item.finding.message}" for item in judged(texts, target)]
+    return [f"{item.code} {item.finding.message}" for item in judged(texts, target)]
 
 
 PYTHON, CPP = stubs()
@@ -103,7 +103,7 @@ KEYS = st.lists(
     max_size=4,
 )
 WANTED = st.builds(
-    lambda inputs, outputs, outcomes: Wanted(
+    lambda inputs, outputs, outcomes: NewStateType(
         name="Grasp", inputs=inputs, outputs=outputs, outcomes=outcomes
     ),
     KEYS,
@@ -112,7 +112,7 @@ WANTED = st.builds(
 )
 
 
-def machine(wanted: Wanted) -> str:
+def machine(wanted: NewStateType) -> str:
     """A script with one state of a type, and all it reads."""
     lines = ["name: sm", "outcomes: [over]", "input_keys:"]
     lines += [f"  {key}: {type_}" for key, type_ in wanted.inputs]
@@ -123,7 +123,7 @@ def machine(wanted: Wanted) -> str:
 
 @settings(max_examples=30)
 @given(wanted=WANTED, language=st.sampled_from(["python", "cpp"]))
-def test_a_stub_of_any_interface_is_what_that_says(wanted: Wanted, language: str) -> None:
+def test_a_stub_of_any_interface_is_what_that_says(wanted: NewStateType, language: str) -> None:
     text = interface(wanted, language)
     type_ = find_state_type("Grasp", memory_library({"templates/Grasp.yml": text}, BUILT_IN), [])
     assert type_ is not None
@@ -134,13 +134,13 @@ def test_a_stub_of_any_interface_is_what_that_says(wanted: Wanted, language: str
 
 @settings(max_examples=30)
 @given(one=WANTED, other=WANTED)
-def test_a_stub_of_another_interface_is_found(one: Wanted, other: Wanted) -> None:
+def test_a_stub_of_another_interface_is_found(one: NewStateType, other: NewStateType) -> None:
     """In C++ all that a class depends on, in Python names alone."""
 
-    def outside(wanted: Wanted) -> tuple[object, ...]:
+    def outside(wanted: NewStateType) -> tuple[object, ...]:
         return wanted.inputs, wanted.outputs, wanted.outcomes
 
-    def names(wanted: Wanted) -> list[set[str]]:
+    def names(wanted: NewStateType) -> list[set[str]]:
         keys = ([key for key, _ in part] for part in (wanted.inputs, wanted.outputs))
         return [set(wanted.outcomes), *map(set, keys)]
 

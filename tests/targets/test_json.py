@@ -10,7 +10,7 @@ import pytest
 
 from smachac.diagnostics.diagnostic import Report
 from smachac.diagnostics.source import NOWHERE, Source, Span
-from smachac.driver import load
+from smachac.driver import read_machine
 from smachac.frontend.files import disk_library, read_source
 from smachac.ir.nodes import (
     Checked,
@@ -143,7 +143,7 @@ def test_every_script_fits_the_schema(path: Path) -> None:
     report: Report = []
     source = read_source(path, report)
     assert source is not None
-    built = load(source, disk_library(path, report), report)
+    built = read_machine(source, disk_library(path, report), report)
     assert built is not None
     data = to_json(built)
     assert faults(data, SCHEMA) == []

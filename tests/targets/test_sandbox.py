@@ -100,7 +100,7 @@ def test_harm_ends_in_an_error_at_its_line(harm: str, tmp_path: Path) -> None:
     body, words = HARMFUL[harm]
     report = failed(tmp_path, f"{{% block body %}}\n{body}\n{{% endblock %}}\n")
     (found,) = report
-    assert found.code.code == "SM605"
+    assert found.code == "SM605"
     assert words in found.finding.message
     assert found.span.source.name.endswith("Bad.tpl.py")
     assert found.span.line == 2
@@ -124,7 +124,7 @@ def test_harm_ends_in_an_error_at_its_line(harm: str, tmp_path: Path) -> None:
 )  # fmt: skip
 def test_templates_that_are_wrong_as_a_whole(template: str, words: str, tmp_path: Path) -> None:
     (found,) = failed(tmp_path, template)
-    assert found.code.code == "SM605"
+    assert found.code == "SM605"
     assert words in found.finding.message
 
 

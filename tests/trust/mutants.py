@@ -128,13 +128,13 @@ def judge(subject: Subject, mutant: Mutant) -> Verdict:
     losers = missing(analysis.machine, RUNS) if mutant.loss and analysis.machine else set()
     right |= readers(subject, analysis, printed, losers)
     said = tuple(
-        f"{item.code.code} {item.span.source.name}:{item.span.line}" for item in analysis.report
+        f"{item.code} {item.span.source.name}:{item.span.line}" for item in analysis.report
     )
     others = mutant.ends or mutant.loss
     caught = any(
         line_of(span) in right
         for item in analysis.report
-        if item.code.code in mutant.codes
+        if item.code in mutant.codes
         for span in (item.span, *(each.span for each in item.finding.related if others))
     )
     judgement: Judgement = "caught" if caught else "missed"

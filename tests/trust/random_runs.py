@@ -118,7 +118,7 @@ def contradictions(machine: Machine, report: Report, events: list[Event]) -> Ite
     after it was entered. Of two states of one name (SM106) no event says which it is of. A state
     that catches its exceptions ends in spite of a missing key, a container in spite of a trap.
     """
-    if any(item.code.code == "SM106" for item in report):
+    if any(item.code == "SM106" for item in report):
         return
     around = {path for path, _ in containers(machine.root)}
     entered = {each["path"] for each in events if each["event"] == "enter"}
@@ -127,13 +127,13 @@ def contradictions(machine: Machine, report: Report, events: list[Event]) -> Ite
     ended = {each["path"] for each in events if each["event"] == "exit"}
     for item in report:
         path = item.finding.node or ""
-        match item.code.code:
+        match item.code:
             case "SM201" if path in entered:
                 yield f"SM201: {path} is entered"
             case "SM301" | "SM303" if path in ended - around:
                 if item.severity is not Severity.ERROR:
                     continue
-                yield f"{item.code.code}: {path} ends"
+                yield f"{item.code}: {path} ends"
             case "SM202" if ends_after(events, path):
                 yield f"SM202: what {path} is in ends"
 

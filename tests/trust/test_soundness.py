@@ -46,10 +46,10 @@ def fault(machine: Machine, report: Report, result: RunResult, asked: bool) -> s
     if result.error is None or result.error.kind == "no-end":
         return None
     kind, path = result.error.kind, result.error.path
-    codes = {item.code.code for item in report}
+    codes = {item.code for item in report}
     if kind == "missing-key" and codes & {"SM301", "SM405"}:
         return None
-    told = {item.finding.node for item in report if item.code.code == "SM208"}
+    told = {item.finding.node for item in report if item.code == "SM208"}
     if asked and kind == "undeclared-outcome" and path in told:
         return None
     return f"{kind}: {result.error}"
@@ -105,7 +105,7 @@ def mended(machine: Machine) -> tuple[Machine, Report] | None:
         wrong = {
             item.finding.node
             for item in report
-            if item.severity is Severity.ERROR and item.code.code not in HARMLESS
+            if item.severity is Severity.ERROR and item.code not in HARMLESS
         }
         if not wrong:
             return machine, report
@@ -146,7 +146,7 @@ def test_what_is_said_holds_where_states_fail_and_catch(drawn: tuple[Machine, ob
     run(machine, builtin_behaviour(), events.append, max_steps=300)
     assert list(contradictions(machine, report, events)) == []
     missing = [each for each in events if "holds nothing" in each.get("message", "")]
-    told = {item.code.code for item in report} & {"SM301", "SM303", "SM307"}
+    told = {item.code for item in report} & {"SM301", "SM303", "SM307"}
     event("caught" if any(each.get("outcome") == "error" for each in events) else "quiet")
     assert told or not missing
 

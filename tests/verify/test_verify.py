@@ -123,7 +123,7 @@ states:
 
 
 def program(script: Path) -> tuple[str, str]:
-    ((name, text),) = smachac.build(script, "python").items()
+    ((name, text),) = smachac.compile(script, "python").items()
     return name, text
 
 

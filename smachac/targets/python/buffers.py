@@ -72,7 +72,7 @@ class ModuleParts:
         if found.span.source is not node.span.source:
             place = Related(span=node.span, message=f"printed here for `{node.name}`")
             finding = replace(found.finding, related=(*found.finding.related, place))
-            found = Diagnostic(code=found.code, severity=found.severity, finding=finding)
+            found = Diagnostic(kind=found.kind, severity=found.severity, finding=finding)
         self.note(found)
 
     def note(self, found: Diagnostic) -> None:

@@ -9,6 +9,7 @@ import sys
 import threading
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager
+from dataclasses import dataclass
 from pathlib import Path
 from types import FrameType, ModuleType
 from typing import Any
@@ -17,6 +18,20 @@ from smachac.ir.nodes import Machine
 from smachac.ir.traversal import walk
 
 Event = dict[str, Any]
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class RunResult:
+    """How a run ended: the outcome of the machine, the events of its trace, and the userdata of the
+    outermost container at the end.
+
+    `outcome` is None if the program returned none. `userdata` is None if the program does not give
+    access to its machine, as some programs of SMACHA templates do not.
+    """
+
+    outcome: str | None
+    userdata: dict[str, object] | None
+    events: tuple[Event, ...] = ()
 
 
 def places(machine: Machine) -> dict[str, str]:
@@ -38,8 +53,8 @@ def execute(
     gui: bool = False,
     record: Path | None = None,
     on_preempt: Callable[[], None] = lambda: None,
-) -> str | None:
-    """Run the module `text` and return the outcome of its machine.
+) -> RunResult:
+    """Run the module `text`; the result has no events, which `observe` receives.
 
     `folder` is where the program may import modules of the user from: that of the script.
     `observe` gets every event of the trace. Ctrl-C requests the machine to preempt and calls
@@ -66,7 +81,15 @@ def execute(
             _preempting(built, on_preempt),
         ):
             outcome: str | None = module[main_function(machine)]()
-        return outcomes[0] if outcomes else outcome
+        return RunResult(
+            outcome=outcomes[0] if outcomes else outcome,
+            userdata=_userdata(built[-1]) if built else None,
+        )
+
+
+def _userdata(root: Any) -> dict[str, object]:
+    """The userdata of a machine of SMACH or of the bundled runtime."""
+    return {key: root.userdata[key] for key in root.userdata.keys()}  # noqa: SIM118 (no mapping)
 
 
 @contextmanager
