@@ -107,7 +107,7 @@ TOLD = """\
         --schedule LEFT
      1  outcome: right
         --schedule RIGHT
-a race: how it ends depends on which branch comes first
+a race: the result depends on which branch is first
 """
 
 
@@ -126,7 +126,7 @@ def test_orders_tell_a_race(tmp_path: Path, capsys: pytest.CaptureFixture[str]) 
 def test_orders_that_agree(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
     arguments = files(tmp_path, RACE.replace("join: any", "join: all"))
     assert main([*arguments, "--orders", "1"]) == 0
-    assert "1 order of branches tried, there are more:" in capsys.readouterr().out
+    assert "1 order of branches tried, not all:" in capsys.readouterr().out
     assert main([*arguments, "--orders", "5"]) == 0
     assert "2 orders of branches tried, all there are:" in capsys.readouterr().out
 
