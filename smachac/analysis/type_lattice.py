@@ -280,8 +280,10 @@ def item_of(type_: Type) -> Type:
             return joined(items(type_))
         case "list" | "array":
             return inside(type_)
-        case "record" | "dict" | "str":
+        case "record" | "str":
             return STR
+        case "dict":
+            return STR if type_.args else ANY  # keys of a bare dict may be of any type
         case "literal" | "one_of":
             return STR if all(isinstance(each, str) for each in type_.args) else ANY
     return ANY

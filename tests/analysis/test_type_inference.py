@@ -81,6 +81,8 @@ NAMES = {
         ("min(ud.i, 2.5)", "float"),
         ("sum(ud.l)", "int"),
         ("sorted(ud.l)", "list[int]"),
+        ("sorted({2: 1, 1: 2})", "list"),
+        ("list({'a': 1})", "list[str]"),
         ("round(ud.x)", "int"),
         ("round(ud.x, 1)", "float<m>"),
         ("float(ud.s)", "float"),
