@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from collections import deque
 from collections.abc import Callable, Iterator, Mapping
 from types import MappingProxyType
 
@@ -256,30 +255,20 @@ class Planner:
 
 def _reachable_places(found: list[Edge]) -> dict[Vertex, None]:
     """The places that can be reached from the start."""
-    following: dict[Vertex, list[Vertex]] = {}
-    for edge in found:
-        following.setdefault(edge.source, []).append(edge.target)
-    seen: dict[Vertex, None] = {START: None}
-    todo = [START]
-    while todo:
-        for place in following.get(todo.pop(), ()):
-            if place not in seen:
-                seen[place] = None
-                todo.append(place)
-    return seen
+    import networkx as nx
+
+    graph = nx.DiGraph((edge.source, edge.target) for edge in found)
+    graph.add_node(START)
+    return dict.fromkeys(nx.dfs_preorder_nodes(graph, START))
 
 
 def _distances_to(found: list[Edge], ends: list[Vertex]) -> dict[Vertex, int]:
     """For each place, the number of edges to the nearest of some ends."""
-    before: dict[Vertex, list[Vertex]] = {}
-    for edge in found:
-        before.setdefault(edge.target, []).append(edge.source)
-    distances: dict[Vertex, int] = dict.fromkeys(ends, 0)
-    todo = deque(ends)
-    while todo:
-        here = todo.popleft()
-        for place in before.get(here, ()):
-            if place not in distances:
-                distances[place] = distances[here] + 1
-                todo.append(place)
-    return distances
+    import networkx as nx
+
+    reverse = nx.DiGraph((edge.target, edge.source) for edge in found)
+    source = ("source of the search",)  # one node before all ends: no name of a state is a tuple
+    reverse.add_node(source)
+    reverse.add_edges_from((source, end) for end in ends)
+    lengths = nx.single_source_shortest_path_length(reverse, source)
+    return {place: length - 1 for place, length in lengths.items() if place != source}
