@@ -146,3 +146,27 @@ def test_the_script_for_ci(target: str, ended: int, printed: str, tmp_path: Path
     )
     assert done.returncode == ended, done.stderr
     assert printed in done.stdout
+
+
+def test_two_projects_may_have_modules_of_one_name(tmp_path: Path) -> None:
+    outcomes = []
+    for outcome in ("first", "second"):
+        folder = tmp_path / outcome
+        (folder / "templates").mkdir(parents=True)
+        (folder / "robot_parts").mkdir()
+        (folder / "robot_parts" / "__init__.py").write_text("")
+        (folder / "robot_parts" / "act.py").write_text(
+            "from smachac.runtime import smach\n\n\nclass Act(smach.State):\n"
+            "    def __init__(self):\n        super().__init__(outcomes=['first', 'second'])\n\n"
+            f"    def execute(self, userdata):\n        return '{outcome}'\n"
+        )
+        (folder / "templates" / "Act.yml").write_text(
+            'name: Act\noutcomes: {first: {}, second: {}}\ncode: {python: "robot_parts.act:Act"}\n'
+        )
+        (folder / "main.yml").write_text(
+            "name: sm\ntemplate: Base\noutcomes: [first, second]\nstates:\n"
+            "  - ACT: {template: Act, transitions: {first: first, second: second}}\n"
+        )
+        outcomes.append(smachac.run(folder / "main.yml").outcome)
+    assert outcomes == ["first", "second"]
+    assert "robot_parts" not in sys.modules

@@ -137,11 +137,31 @@ def loaded(name: str, text: str, folder: Path) -> Iterator[dict[str, Any]]:
     module.__file__ = name
     linecache.cache[name] = (len(text), None, text.splitlines(keepends=True), name)
     sys.path.insert(0, str(folder.resolve()))
+    before = set(sys.modules)
     try:
         exec(compile(text, name, "exec"), module.__dict__)
         yield module.__dict__
     finally:
         sys.path.remove(str(folder.resolve()))
+        _forget(before, folder.resolve())
+
+
+def _forget(before: set[str], folder: Path) -> None:
+    """Remove the modules and packages that stand in a folder and were imported since `before`: the
+    next script may have others of the same names."""
+    mine = {
+        name
+        for name in sys.modules.keys() - before
+        if "." not in name and _home(sys.modules[name]) == folder
+    }
+    for name in [name for name in sys.modules if name.partition(".")[0] in mine]:
+        del sys.modules[name]
+
+
+def _home(module: ModuleType) -> Path | None:
+    """The folder that a module file or a package stands in."""
+    places = [*getattr(module, "__path__", ())] or [getattr(module, "__file__", None)]
+    return Path(places[0]).parent if places[0] is not None else None
 
 
 def hidden(message: str, *arguments: object) -> None:
