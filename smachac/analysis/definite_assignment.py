@@ -288,7 +288,7 @@ def joined(
     exits = frozenset(outcome_names(container))
     base = _Base(every)
     exact = len(container.rules) * len(base.perhaps) <= MOST_WORK
-    ways = [(rule.outcome, _given(every, rule)) for rule in container.rules if rule.when]
+    ways = [(rule.outcome, _given(every, rule)) for rule in container.rules]
     ways.append((container.default_outcome, _otherwise(every, container.rules)))
     for outcome, left in ways:
         if outcome in exits and left is not None:

@@ -111,14 +111,20 @@ def _concurrence_edges(container: Concurrence) -> Iterator[Edge]:
         for condition in rule.when:
             pairs = wanted.setdefault(condition.child, {})
             pairs[condition.outcome, rule.outcome] = None
+    unconditional = dict.fromkeys(rule.outcome for rule in container.rules if not rule.when)
     for child in container.children:
         yield Edge(START, child.name, "", "enter")
         declared = outcome_names(child)
         for outcome, result in wanted.get(child.name, {}):
             if result in exits and (_is_open(child) or outcome in declared):
                 yield Edge(child.name, exit_vertex(result), outcome, "rule")
+        outcomes = declared or (("",) if _is_open(child) else ())
+        for result in unconditional:
+            if result in exits:
+                yield from (
+                    Edge(child.name, exit_vertex(result), name, "rule") for name in outcomes
+                )
         if container.default_outcome in exits:
-            outcomes = declared or (("",) if _is_open(child) else ())
             for outcome in outcomes:
                 yield Edge(child.name, exit_vertex(container.default_outcome), outcome, "default")
 
