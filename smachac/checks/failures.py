@@ -197,18 +197,18 @@ _Ending: TypeAlias = "tuple[str, str]"
 """The path of a state, and an outcome of it."""
 
 
-class _Fate(NamedTuple):
+class _Propagation(NamedTuple):
     """An outcome of `node` that is passed up from container to container until the machine ends
-    with a success. `turn` is the first step whose target is named as a success; None where it is
+    with a success. `masking` is the first step whose target is named as a success; None where it is
     this one."""
 
     path: str
     node: Node
     outcome: str
     target: str
-    turn: _Fate | None
+    masking: _Propagation | None
     span: Span
-    then: _Fate | None
+    then: _Propagation | None
 
 
 @rule("SM206", "unhandled-failure", Severity.WARNING)
@@ -254,28 +254,28 @@ def unhandled_failure(context: Context) -> Iterator[Finding]:
     good = successes(outcome_names(root))
     if not good:
         return
-    fates: dict[_Ending, _Fate | None] = {(root.name, name): None for name in good}
-    turns: dict[_Ending, list[_Fate]] = {}
+    propagated: dict[_Ending, _Propagation | None] = {(root.name, name): None for name in good}
+    maskings: dict[_Ending, list[_Propagation]] = {}
     for path, container in context.containers:
         names = frozenset(child.name for child in container.children)
         for child in container.children:
-            for fate in _fates(path, container, names, child, fates):
+            for each in _propagations(path, container, names, child, propagated):
                 if not isinstance(child, Leaf):
-                    fates.setdefault((fate.path, fate.outcome), fate)
-                if starts_failure(child, fate.outcome):
-                    turn = fate.turn or fate
-                    turns.setdefault((turn.path, turn.outcome), []).append(fate)
-    for found in turns.values():
+                    propagated.setdefault((each.path, each.outcome), each)
+                if starts_failure(child, each.outcome):
+                    masking = each.masking or each
+                    maskings.setdefault((masking.path, masking.outcome), []).append(each)
+    for found in maskings.values():
         yield _unhandled_failure(root, found)
 
 
-def _fates(
+def _propagations(
     path: str,
     container: Container,
     names: frozenset[str],
     child: Node,
-    fates: Mapping[_Ending, _Fate | None],
-) -> Iterator[_Fate]:
+    propagated: Mapping[_Ending, _Propagation | None],
+) -> Iterator[_Propagation]:
     """The outcomes of a child with which the machine ends with a success."""
     ways: list[tuple[str, str, Span]] = []
     match container:
@@ -290,38 +290,38 @@ def _fates(
             inner = outcome_names(child) if child.name == container.name else ()
             ways = [(end, end, container.span) for end in inner]
     for outcome, target, span in ways:
-        if (path, target) in fates:
-            then = fates[path, target]
+        if (path, target) in propagated:
+            then = propagated[path, target]
             called_good = target.lower() in SUCCESSES | GOOD
-            turn = None if called_good or then is None else then.turn or then
-            yield _Fate(f"{path}/{child.name}", child, outcome, target, turn, span, then)
+            masking = None if called_good or then is None else then.masking or then
+            yield _Propagation(f"{path}/{child.name}", child, outcome, target, masking, span, then)
 
 
-def _unhandled_failure(root: StateMachine, found: list[_Fate]) -> Finding:
+def _unhandled_failure(root: StateMachine, found: list[_Propagation]) -> Finding:
     first = found[0]
-    turn = first.turn or first
+    masking = first.masking or first
     way: list[PathStep] = []
     end = ""
-    step: _Fate | None = first
+    step: _Propagation | None = first
     while step is not None and len(way) < 2 * MOST_STEPS:
         way += [entered(step.node.name, step.path), ended(step.outcome)]
         end, step = step.target, step.then
-    others = [fate.node.name for fate in found[1:]]
+    others = [each.node.name for each in found[1:]]
     also = f"; failures of {listed(others)} are hidden too" if others else ""
     return Finding(
-        span=turn.span,
+        span=masking.span,
         message=f"`{first.node.name}` fails with `{first.outcome}`, but `{root.name}` ends with a"
         f" success{also}",
         arguments=(
-            own_name(turn.node, turn.span),
-            turn.outcome,
-            *sorted({fate.node.name for fate in found}),
+            own_name(masking.node, masking.span),
+            masking.outcome,
+            *sorted({each.node.name for each in found}),
         ),
         help="lead the failure to a state that recovers, or to an outcome of failure",
         related=(
-            *(other_place(first.node.span, "this state fails") if turn is not first else ()),
-            *calls(turn.node, turn.span),
+            *(other_place(first.node.span, "this state fails") if masking is not first else ()),
+            *calls(masking.node, masking.span),
         ),
         path=(*way, entered(end, None)),
-        node=turn.path,
+        node=masking.path,
     )

@@ -36,6 +36,15 @@ def test_a_rule_that_asks_one_child_hides_the_other() -> None:
     assert item.finding.path_labels == ("BOTH", "(ready)", "succeeded")
 
 
+def test_two_rules_for_one_outcome_are_two_faults() -> None:
+    root = both(LEFT, RIGHT, rules=(("ready", {"LEFT": "done"}), ("ready", {"RIGHT": "done"})))
+    items = [item.finding.arguments for item in report(root) if item.code.code == "SM404"]
+    assert items == [
+        ("BOTH", "ready", "LEFT: done", "RIGHT"),
+        ("BOTH", "ready", "RIGHT: done", "LEFT"),
+    ]
+
+
 @pytest.mark.parametrize(
     "root",
     [
@@ -119,7 +128,7 @@ def test_a_failure_that_ends_the_machine_with_a_success(root: Any, states: list[
     assert found(root, "SM206") == [f"SM206 {state}" for state in states]
 
 
-def test_the_turn_is_told_once_with_a_way_there() -> None:
+def test_a_masking_step_is_reported_once_with_a_path_to_it() -> None:
     inside = machine("IN", "x aborted", leaf("A", {"aborted": "=aborted", "x": "B"}),
                      leaf("B", {"aborted": "=aborted", "x": "x"}),
                      to={"x": "succeeded", "aborted": "succeeded"})  # fmt: skip

@@ -57,7 +57,7 @@ def test_branches_that_all_go_on_until_they_are_stopped_are_meant_so() -> None:
     assert found(both(one_, replace(one_, name="OTHER")), "SM407") == []
 
 
-def test_a_trap_in_a_branch_is_told_as_a_trap() -> None:
+def test_a_trap_in_a_branch_is_reported_as_a_trap() -> None:
     trap = watch({"preempted": "WAIT"})
     root = both(WORK, trap, join="any")
     assert found(root, "SM202") == ["SM202 sm/BOTH/WATCH/WAIT"]
