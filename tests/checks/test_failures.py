@@ -38,7 +38,7 @@ def test_a_rule_that_asks_one_child_hides_the_other() -> None:
 
 def test_two_rules_for_one_outcome_are_two_faults() -> None:
     root = both(LEFT, RIGHT, rules=(("ready", {"LEFT": "done"}), ("ready", {"RIGHT": "done"})))
-    items = [item.finding.arguments for item in report(root) if item.code.code == "SM404"]
+    items = [item.finding.arguments for item in report(root) if item.code == "SM404"]
     assert items == [
         ("BOTH", "ready", "LEFT: done", "RIGHT"),
         ("BOTH", "ready", "RIGHT: done", "LEFT"),

@@ -8,8 +8,7 @@ import pytest
 
 from smachac.checks import check_machine
 from smachac.diagnostics.diagnostic import Report
-from smachac.driver import CODES, analyse
-from smachac.frontend.files import disk_library, read_source
+from smachac.driver import CODES, analyse_script
 from smachac.report.explain_code import MAIN, explanation
 
 ARGUMENTS = {
@@ -41,19 +40,15 @@ def every_finding(files: dict[str, str], folder: Path) -> Report:
         path = folder / name
         path.parent.mkdir(parents=True, exist_ok=True)
         path.write_text(text, "utf-8")
-    report: Report = []
-    library = disk_library(folder / MAIN, report)
-    source = read_source(folder / MAIN, report)
-    assert source is not None
-    analysis = analyse(source, library, report)
-    assert analysis.machine is not None
-    return check_machine(analysis.machine)
+    machine = analyse_script(folder / MAIN).machine
+    assert machine is not None
+    return check_machine(machine)
 
 
 @pytest.mark.parametrize("code", ARGUMENTS)
 def test_the_example_of_a_code_has_these_arguments(code: str, tmp_path: Path) -> None:
     report = every_finding(dict(explanation(CODES[code]).wrong), tmp_path)
-    found = [item.finding.arguments for item in report if item.code.code == code]
+    found = [item.finding.arguments for item in report if item.code == code]
     assert found == [ARGUMENTS[code]]
 
 
@@ -104,7 +99,7 @@ def test_arguments_do_not_depend_on_the_caller_of_a_sub_script(
         found = {
             item.finding.arguments
             for item in report
-            if item.code.code == code
+            if item.code == code
             and item.span.source.name.endswith("sub.yml")
             and str(item.finding.node).startswith(f"sm/{call}")
         }
