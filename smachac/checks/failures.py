@@ -1,4 +1,4 @@
-"""Rules over failures that end as a success."""
+"""Rules over failures after which a container or the machine ends with a success."""
 
 from __future__ import annotations
 
@@ -11,7 +11,7 @@ from smachac.analysis.failure_paths import starts_failure
 from smachac.analysis.outcome_rules import Combination, Space, Study, UndecidedError
 from smachac.analysis.possible_outcomes import Judged
 from smachac.checks.concurrence import written
-from smachac.checks.messages import calls, other_place
+from smachac.checks.messages import calls, other_place, own_name
 from smachac.checks.rule import rule
 from smachac.diagnostics.diagnostic import Finding, PathStep, Severity, ended, entered
 from smachac.diagnostics.source import Span
@@ -24,17 +24,18 @@ from smachac.ir.traversal import leads_to_child, outcome_names
 
 @rule("SM404", "masked-failure", Severity.WARNING)
 def masked_failure(context: Context) -> Iterator[Finding]:
-    """A child failed, and the concurrence ends as if all had gone well.
+    """A branch fails, and the concurrence ends with a success.
 
-    The robot goes on with a part it did not grasp, or to a place it did not look at. Most often
-    the default outcome is one of success, or a rule does not list all children.
+    The robot continues with a part that it did not grasp, or at a place that it did not inspect.
+    Often the default outcome is a success, or a rule does not list all branches.
 
-    Exactly: an outcome of failure is `aborted`, `failed`, `error`, `timeout` and the like. A
-    success is an outcome called `succeeded` (or `done`, `ok` and the like beside one of failure),
-    and one with which the concurrence always ends when no child failed; not one that leads
-    straight to an outcome of failure. A rule that lists the child that failed, with that failure,
-    is meant so. Nobody preempts the concurrence; with `join: any` it is the first child to end that
-    failed, for the others are told to give up.
+    Exactly: an outcome of failure is `aborted`, `failed`, `error`, `timeout` or similar. A success
+    is the outcome `succeeded` (or `done`, `ok` or similar if the concurrence also has an outcome of
+    failure), and an outcome with which the concurrence always ends when no branch fails; an outcome
+    whose transition leads to an outcome of failure is no success. A rule that lists the branch with
+    its failure is intended, and not reported. No preempt request comes from outside. With
+    `join: any` only a failure of the branch that ends first counts, because the concurrence
+    preempts the others.
 
     Wrong:
         name: sm
@@ -76,7 +77,7 @@ def masked_failure(context: Context) -> Iterator[Finding]:
 
 
 def _masked(context: Context, each: Judged) -> Iterator[Finding]:
-    """For the default outcome and each rule with a success the failures that it hides."""
+    """The failures that the default outcome and each rule with a success hide."""
     read, node = each.read, each.read.node
     spaces = each.calm
     if not any(read.failures(*ends) for space, _ in spaces for ends in space.items()):
@@ -84,15 +85,15 @@ def _masked(context: Context, each: Judged) -> Iterator[Finding]:
     good = _good_results(read, [space for space, _ in spaces])
     if node.default_outcome in good:
         hidden = _hidden(read, spaces, {}, read.rules.all)
-        help = "let the default be an outcome of failure, and list what is a success in a rule"
-        yield from _masks(context, each, node.default_outcome, node.default_span, hidden, help)
+        help = "use an outcome of failure as default outcome, and write a rule for each success"
+        yield from _masks(context, each, node.default_outcome, node.default_span, {}, hidden, help)
     for number, entry in enumerate(read.written):
         if entry.outcome in good:
             given = read.rules.conditions[number]
             rivals = read.rules.larger_than(len(given) - 1) & ~(1 << number)
             hidden = _hidden(read, spaces, given, rivals)
-            help = f"list every child in the rule for `{entry.outcome}`"
-            yield from _masks(context, each, entry.outcome, entry.span, hidden, help)
+            help = f"list every branch in the rule for `{entry.outcome}`"
+            yield from _masks(context, each, entry.outcome, entry.span, given, hidden, help)
 
 
 def _good_results(read: Study, spaces: list[Space]) -> frozenset[str]:
@@ -118,7 +119,7 @@ def _bad(name: str) -> bool:
 
 
 def _good_part(read: Study, space: Space) -> Space:
-    """The outcomes of success of each child; those that say nothing where it has none."""
+    """The outcomes of success of each child; the neutral ones where it has none."""
     found: Space = {}
     for name, ends in space.items():
         good = tuple(end for end in ends if end.lower() in SUCCESSES | GOOD)
@@ -131,8 +132,8 @@ def _good_part(read: Study, space: Space) -> Space:
 def _hidden(
     read: Study, spaces: list[tuple[Space, str]], given: Combination, avoided: int
 ) -> dict[str, Combination]:
-    """The children that a deciding rule does not ask and that may have failed, each with what
-    decides then."""
+    """The children that may have failed and that the deciding rule does not list, each with a
+    combination of outcomes in which that rule decides."""
     found: dict[str, Combination] = {}
     for space, first in spaces:
         for child in [first] if first else space:
@@ -152,6 +153,7 @@ def _masks(
     each: Judged,
     outcome: str,
     span: Span,
+    given: Combination,
     hidden: dict[str, Combination],
     help: str,
 ) -> Iterator[Finding]:
@@ -160,16 +162,22 @@ def _masks(
     node = each.read.node
     child, shown = next(iter(hidden.items()))
     others = [name for name in hidden if name != child]
-    also = f"; {listed(others)} may fail unseen as well" if others else ""
+    also = f"; failures of {listed(others)} are hidden too" if others else ""
     failed = next(one for one in node.children if one.name == child)
     step = next((step for step in node.transitions if step.outcome == outcome), None)
     yield Finding(
         span=span,
         message=f"`{node.name}` ends with `{outcome}` although `{child}` failed: {written(shown)}"
         f"{also}",
+        arguments=(
+            own_name(node, span),
+            outcome,
+            ", ".join(f"{name}: {end}" for name, end in given.items()),
+            *sorted(hidden),
+        ),
         help=help,
         related=(
-            *other_place(failed.span, f"ends with `{shown[child]}`"),
+            *other_place(failed.span, f"this state ends with `{shown[child]}`"),
             *calls(node, span),
         ),
         path=_onwards(context, each.path, node, step) if step else (),
@@ -178,7 +186,7 @@ def _masks(
 
 
 def _onwards(context: Context, path: str, node: Node, step: Transition) -> tuple[PathStep, ...]:
-    """A state, its outcome, and the state beside it, or the outcome, that this leads to."""
+    """The steps of a witness path: a state, its outcome, and the target of its transition."""
     beside: str | None = f"{path.removesuffix(node.name)}{step.target}"
     if step.origin == "implicit" or beside not in context.spans:
         beside = None
@@ -189,30 +197,30 @@ _Ending: TypeAlias = "tuple[str, str]"
 """The path of a state, and an outcome of it."""
 
 
-class _Fate(NamedTuple):
-    """An outcome of `node` that leaves container after container until the machine has ended with
-    a success. `turn` is the first step on which the failure is called a success."""
+class _Propagation(NamedTuple):
+    """An outcome of `node` that is passed up from container to container until the machine ends
+    with a success. `masking` is the first step whose target is named as a success; None where it is
+    this one."""
 
     path: str
     node: Node
     outcome: str
     target: str
-    turn: _Fate | None
+    masking: _Propagation | None
     span: Span
-    then: _Fate | None
+    then: _Propagation | None
 
 
 @rule("SM206", "unhandled-failure", Severity.WARNING)
 def unhandled_failure(context: Context) -> Iterator[Finding]:
-    """A state fails, and the machine ends with a success, without any other state in between.
+    """A state fails, and the machine ends with a success without entering another state.
 
-    Whoever started the robot is told that the task is done. The failure needs a recovery, or an
-    outcome of its own.
+    The machine reports that the robot has done its task, although a part of the task failed.
 
-    Exactly: an outcome of failure of a state (`aborted`, `failed`, `error`, `timeout` and the
-    like) leaves the containers around it, by whatever transitions, until the machine has ended
-    with `succeeded`, or with `done`, `ok` or the like where the machine has an outcome of failure
-    as well. What a concurrence makes of the failures of its children is told by SM404.
+    Exactly: an outcome of failure of a state (`aborted`, `failed`, `error`, `timeout` or similar)
+    leads out of all containers around the state until the machine ends with `succeeded`, or with
+    `done`, `ok` or similar if the machine also has an outcome of failure. SM404 reports failures of
+    the branches of a concurrence.
 
     Wrong:
         name: sm
@@ -246,29 +254,29 @@ def unhandled_failure(context: Context) -> Iterator[Finding]:
     good = successes(outcome_names(root))
     if not good:
         return
-    fates: dict[_Ending, _Fate | None] = {(root.name, name): None for name in good}
-    turns: dict[_Ending, list[_Fate]] = {}
+    propagated: dict[_Ending, _Propagation | None] = {(root.name, name): None for name in good}
+    maskings: dict[_Ending, list[_Propagation]] = {}
     for path, container in context.containers:
         names = frozenset(child.name for child in container.children)
         for child in container.children:
-            for fate in _fates(path, container, names, child, fates):
+            for each in _propagations(path, container, names, child, propagated):
                 if not isinstance(child, Leaf):
-                    fates.setdefault((fate.path, fate.outcome), fate)
-                if starts_failure(child, fate.outcome):
-                    turn = fate.turn or fate
-                    turns.setdefault((turn.path, turn.outcome), []).append(fate)
-    for found in turns.values():
+                    propagated.setdefault((each.path, each.outcome), each)
+                if starts_failure(child, each.outcome):
+                    masking = each.masking or each
+                    maskings.setdefault((masking.path, masking.outcome), []).append(each)
+    for found in maskings.values():
         yield _unhandled_failure(root, found)
 
 
-def _fates(
+def _propagations(
     path: str,
     container: Container,
     names: frozenset[str],
     child: Node,
-    fates: Mapping[_Ending, _Fate | None],
-) -> Iterator[_Fate]:
-    """The outcomes of a child that end the machine with a success."""
+    propagated: Mapping[_Ending, _Propagation | None],
+) -> Iterator[_Propagation]:
+    """The outcomes of a child with which the machine ends with a success."""
     ways: list[tuple[str, str, Span]] = []
     match container:
         case StateMachine() | Sequence():
@@ -282,33 +290,38 @@ def _fates(
             inner = outcome_names(child) if child.name == container.name else ()
             ways = [(end, end, container.span) for end in inner]
     for outcome, target, span in ways:
-        if (path, target) in fates:
-            then = fates[path, target]
+        if (path, target) in propagated:
+            then = propagated[path, target]
             called_good = target.lower() in SUCCESSES | GOOD
-            turn = None if called_good or then is None else then.turn or then
-            yield _Fate(f"{path}/{child.name}", child, outcome, target, turn, span, then)
+            masking = None if called_good or then is None else then.masking or then
+            yield _Propagation(f"{path}/{child.name}", child, outcome, target, masking, span, then)
 
 
-def _unhandled_failure(root: StateMachine, found: list[_Fate]) -> Finding:
+def _unhandled_failure(root: StateMachine, found: list[_Propagation]) -> Finding:
     first = found[0]
-    turn = first.turn or first
+    masking = first.masking or first
     way: list[PathStep] = []
     end = ""
-    step: _Fate | None = first
+    step: _Propagation | None = first
     while step is not None and len(way) < 2 * MOST_STEPS:
         way += [entered(step.node.name, step.path), ended(step.outcome)]
         end, step = step.target, step.then
-    others = [fate.node.name for fate in found[1:]]
-    also = f"; so it does after {listed(others)}" if others else ""
+    others = [each.node.name for each in found[1:]]
+    also = f"; failures of {listed(others)} are hidden too" if others else ""
     return Finding(
-        span=turn.span,
-        message=f"`{first.node.name}` fails with `{first.outcome}`, and `{root.name}` ends with a"
+        span=masking.span,
+        message=f"`{first.node.name}` fails with `{first.outcome}`, but `{root.name}` ends with a"
         f" success{also}",
+        arguments=(
+            own_name(masking.node, masking.span),
+            masking.outcome,
+            *sorted({each.node.name for each in found}),
+        ),
         help="lead the failure to a state that recovers, or to an outcome of failure",
         related=(
-            *(other_place(first.node.span, "the state that fails") if turn is not first else ()),
-            *calls(turn.node, turn.span),
+            *(other_place(first.node.span, "this state fails") if masking is not first else ()),
+            *calls(masking.node, masking.span),
         ),
         path=(*way, entered(end, None)),
-        node=turn.path,
+        node=masking.path,
     )

@@ -1,4 +1,4 @@
-"""Rules over loops: whether a machine can still end, and what bounds a loop."""
+"""Rules over loops: parts of a machine without a way out, and loops without a limit."""
 
 from __future__ import annotations
 
@@ -20,7 +20,7 @@ from smachac.analysis.control_flow import (
     stuck_states,
     way,
 )
-from smachac.checks.messages import calls
+from smachac.checks.messages import calls, own_name
 from smachac.checks.rule import rule
 from smachac.diagnostics.diagnostic import Finding, PathStep, Severity
 from smachac.diagnostics.wording import listed
@@ -32,10 +32,10 @@ from smachac.ir.traversal import leads_to_child, outcome_names
 
 @rule("SM202", "trap", Severity.ERROR)
 def trap(context: Context) -> Iterator[Finding]:
-    """Once this state is entered, no outcome of the container can be reached any more.
+    """From this state no outcome of the container can be reached.
 
-    The robot goes round in circles, or waits in a part that never ends, until somebody pulls the
-    plug. A machine that is meant so says `forever: true`.
+    The robot repeats the same states, or waits in one of them, until somebody stops it by force.
+    A machine that must run without end has `forever: true`.
 
     Wrong:
         name: sm
@@ -76,20 +76,21 @@ def trap(context: Context) -> Iterator[Finding]:
 def _trapped(
     path: str, container: Linear, child: Node, region: list[str], witness: list[PathStep]
 ) -> Finding:
-    what = f"from {listed(region)} no outcome of `{container.name}` can be reached"
-    help = f"lead a transition to an outcome of `{container.name}`"
+    what = f"no outcome of `{container.name}` can be reached from {listed(region)}"
+    help = f"add a transition to an outcome of `{container.name}`"
     once = [step.node for step in witness].count(f"{path}/{child.name}") == 1
     if once and isinstance(child, Leaf):
-        what = f"`{child.name}` has no outcomes, so `{container.name}` never ends after it"
-        help = f"give `{child.name}` an outcome"
+        what = f"`{child.name}` has no outcomes, so `{container.name}` never ends after entering it"
+        help = f"add an outcome to `{child.name}`"
     elif once:
-        what = f"`{child.name}` never ends, so neither does `{container.name}`"
-        help = f"give `{child.name}` a way out"
+        what = f"`{child.name}` never ends, so `{container.name}` never ends after entering it"
+        help = f"make `{child.name}` end with an outcome"
     if isinstance(container, StateMachine):
-        help += f", or write `forever: true` if `{container.name}` is meant so"
+        help += f", or write `forever: true` if `{container.name}` must run without end"
     return Finding(
         span=child.span,
         message=what,
+        arguments=tuple(sorted(region)),
         help=help,
         related=calls(child, child.span),
         path=tuple(witness) if len(witness) > 1 else (),
@@ -98,8 +99,8 @@ def _trapped(
 
 
 class _Loop(NamedTuple):
-    """A region that is not left while its states fail. `step` is the failure of `child` that
-    keeps it inside, None where success does not leave either."""
+    """A region that does not end while its states fail. `step` is the transition for a failure of
+    `child` that stays inside; None where a success stays inside as well."""
 
     region: list[str]
     child: Node
@@ -108,17 +109,18 @@ class _Loop(NamedTuple):
 
 @rule("SM204", "unbounded-loop", Severity.WARNING)
 def unbounded_loop(context: Context) -> Iterator[Finding]:
-    """Nothing bounds a loop: neither a number of tries nor, where it never ends, a wait.
+    """A loop of retries has no limit, or a loop without end contains no state that waits.
 
-    A robot that stops only when it succeeds tries until it breaks something. One that loops
-    without waiting does nothing else.
+    A robot that retries without a limit can damage itself or what it holds. A loop without a wait
+    uses all the time of a processor.
 
     Exactly: a state retries when an outcome of failure (`aborted`, `failed`, `error`, `timeout`)
-    leads it back to itself. Let every such state fail each time, and nobody preempt: if no outcome
-    of the container can be reached then, though a success would leave the loop, it has no bound.
-    A way out of any other state in the loop is a bound. Where even success does not leave, which
-    is right for `forever: true` and for what runs until it is preempted, some state on every
-    circle has to wait: one that is blocking, as a SleepState, or of which nothing is known.
+    leads back to that state, directly or through other states. The retries have no limit if no
+    outcome of the container can be reached while every such state fails each time and no preempt
+    request comes, but could be reached after a success. A way out of any other state in the loop
+    is a limit. Where a success does not leave the loop either (`forever: true`, or a loop that runs
+    until a preempt request), every cycle must contain a state that can wait: a blocking state, a
+    SleepState, or a state whose type has no interface.
 
     Wrong:
         name: sm
@@ -168,7 +170,7 @@ def unbounded_loop(context: Context) -> Iterator[Finding]:
 
 
 def _goes_back(container: Linear) -> bool:
-    """Whether a transition leads to its own state or one above: without, nothing can loop."""
+    """Whether a transition leads to its own state or to one above it, as every loop needs."""
     order = {child.name: number for number, child in enumerate(container.children)}
     return any(
         order.get(step.target, len(order)) <= number
@@ -178,7 +180,7 @@ def _goes_back(container: Linear) -> bool:
 
 
 def _waiting(context: Context) -> frozenset[str]:
-    """The states, by path, that wait, or may."""
+    """The paths of the states that wait, or may wait."""
     found: set[str] = set()
     for path, node in reversed(context.states):
         if isinstance(node, Leaf):
@@ -191,7 +193,7 @@ def _waiting(context: Context) -> frozenset[str]:
 
 
 def _unpreempted(container: Linear) -> Linear:
-    """The container while nobody preempts it."""
+    """The container without the outcome `preempted` of its states."""
 
     def child(node: Node) -> Node:
         outcomes = tuple(one for one in node.outcomes if one.name != PREEMPTED)
@@ -204,7 +206,7 @@ def _unpreempted(container: Linear) -> Linear:
 
 
 def _failing(node: Node) -> Node:
-    """A state that fails each time. What an open leaf may do beside stays."""
+    """A state that fails each time; the undeclared outcomes of an open leaf stay."""
     declared = frozenset(outcome_names(node))
     steps = [s for s in node.transitions if is_failure(s.outcome) or s.outcome not in declared]
     outcomes = [one for one in node.outcomes if is_failure(one.name)]
@@ -212,7 +214,7 @@ def _failing(node: Node) -> Node:
 
 
 def _unbounded(flow: Linear, entered: frozenset[str], steps: SiblingSteps) -> Iterator[_Loop]:
-    """The loops that are not left while all that retries fails."""
+    """The loops that do not end while every state that retries fails."""
     part = {name: part for part, names in enumerate(regions(steps, steps)) for name in names}
     retrying = {
         name
@@ -255,9 +257,10 @@ def _retries(
     kept[child.name] = [(step.outcome, step.target)]
     return Finding(
         span=step.span,
-        message=f"nothing bounds the tries of `{child.name}`: while it ends with"
-        f" `{step.outcome}`, `{container.name}` goes on for ever",
-        help="count the tries, and lead the last failure out of the loop",
+        message=f"the retries of `{child.name}` have no limit: while it ends with"
+        f" `{step.outcome}`, `{container.name}` does not end",
+        arguments=(own_name(child, step.span), step.outcome),
+        help="count the retries, and leave the loop after the last one",
         related=calls(child, step.span),
         path=tuple(circle(path, region, kept)),
         node=f"{path}/{child.name}",
@@ -267,7 +270,7 @@ def _retries(
 def _spin(
     path: str, region: list[str], steps: SiblingSteps, waits: frozenset[str]
 ) -> list[PathStep]:
-    """A circle of a region on which no state waits; empty if there is none."""
+    """A cycle in a region on which no state waits; empty if there is none."""
     hasty = [name for name in region if name not in waits]
     circles = (circle(path, part, steps) for part in regions(hasty, steps))
     return next(filter(None, circles), [])
@@ -278,8 +281,9 @@ def _spins(path: str, container: Linear, spin: list[PathStep]) -> Finding:
     names = listed(step.label for step in spin[::2])
     return Finding(
         span=child.span,
-        message=f"{names} repeat without an end and without a wait",
-        help="let a state of the loop wait, such as a SleepState",
+        message=f"the loop of {names} has no end and contains no state that waits",
+        arguments=tuple(sorted({step.label for step in spin[::2]})),
+        help="add a state that waits to the loop, such as a SleepState",
         related=calls(child, child.span),
         path=tuple(spin),
         node=f"{path}/{child.name}",

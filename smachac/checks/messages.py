@@ -25,3 +25,9 @@ def calls(node: Node, span: Span) -> tuple[Related, ...]:
 def other_place(span: Span, message: str) -> tuple[Related, ...]:
     """A related place, if there is one."""
     return () if span.source is NOWHERE.source else (Related(span=span, message=message),)
+
+
+def own_name(node: Node, span: Span) -> str:
+    """The name of a state as an argument of a finding at `span`; empty where a call of a sub-script
+    in another file gives the name."""
+    return node.name if node.span.source is span.source else ""

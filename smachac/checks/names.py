@@ -1,4 +1,4 @@
-"""Rules over names: what transitions and states are called, and whether it exists."""
+"""Rules over names: of the states, and of the states and outcomes that transitions refer to."""
 
 from __future__ import annotations
 
@@ -15,7 +15,7 @@ from smachac.analysis.control_flow import (
     unknown_outcomes,
 )
 from smachac.checks.expressions import unknown_endings
-from smachac.checks.messages import calls, did_you_mean, other_place
+from smachac.checks.messages import calls, did_you_mean, other_place, own_name
 from smachac.checks.rule import rule
 from smachac.diagnostics.diagnostic import Finding, Severity
 from smachac.diagnostics.source import Word
@@ -27,8 +27,8 @@ from smachac.ir.traversal import outcome_names
 
 
 class _Lost(NamedTuple):
-    """A transition to nowhere: where it stands, the name it probably means, and that which it
-    means for certain."""
+    """A transition with an unknown target. `meant` is the nearest known name; `sure`, the only
+    known name one slip away."""
 
     path: str
     container: Linear
@@ -40,10 +40,13 @@ class _Lost(NamedTuple):
 
 @rule("SM101", "unknown-target", Severity.ERROR, firm=True)
 def unknown_target(context: Context) -> Iterator[Finding]:
-    """A transition leads to what is neither a state beside it nor an outcome of its container.
+    """The target of a transition is neither a state nor an outcome of the same container.
 
-    SMACH notices when the container is run, and then runs none of its states: the robot stands
-    still in the middle of its task. Children of a concurrence have no transitions at all.
+    SMACH reports an error when the container starts, and runs none of its states: the robot stops
+    in the middle of its task.
+
+    Exactly: a transition in a branch of a concurrence or in the child of an iterator is never
+    taken, whatever its target; that is a warning.
 
     Wrong:
         name: sm
@@ -99,16 +102,24 @@ def _nowhere(fault: _Lost, elsewhere: str | None) -> Finding:
     path, container, child, step, meant, sure = fault
     whole = f"`{step.target}` is neither a state nor an outcome of `{container.name}`"
     if not step.target:
-        whole = f"`{step.outcome}` of `{child.name}` leads nowhere: its target is empty"
+        whole = f"the transition for outcome `{step.outcome}` of `{child.name}` has no target"
     above = elsewhere.rpartition("/")[0] if elsewhere else ""
     help = did_you_mean(meant)
     if above:
-        help = f"the state is in `{above}`; a transition cannot cross the edge of a container"
+        help = (
+            f"use a state or an outcome of `{container.name}`; the state `{step.target}` in"
+            f" `{above}` cannot be a target here"
+        )
         sure = None
     return Finding(
         span=step.target_span,
         message=whole,
-        help=help or f"name a state or an outcome of `{container.name}`",
+        arguments=(
+            own_name(container, step.target_span),
+            step.target,
+            *(() if step.target else (step.outcome,)),
+        ),
+        help=help or f"use a state or an outcome of `{container.name}`",
         related=calls(child, step.target_span),
         node=f"{path}/{child.name}",
         edits=respelt(Word(step.target, step.target_span), sure),
@@ -116,17 +127,19 @@ def _nowhere(fault: _Lost, elsewhere: str | None) -> Finding:
 
 
 def _idle_transitions(path: str, container: Container) -> Iterator[Finding]:
-    why, cure = "the child of an iterator runs again or ends it", "loop_outcomes"
+    why = "an iterator repeats its child or ends"
+    help = "remove it; `loop_outcomes` lists the outcomes that continue the loop"
     if isinstance(container, Concurrence):
-        why, cure = "children of a concurrence start together", "outcome_map"
+        why = "the branches of a concurrence start together"
+        help = f"remove it; the rules in `outcome_map` decide how `{container.name}` ends"
     for child in container.children:
         for step in child.transitions:
             if step.origin == "written":
                 yield Finding(
                     span=step.span,
-                    message=f"the transition of `{step.outcome}` is never taken: {why}",
-                    help=f"drop it; what an outcome of `{child.name}` leads to stands in"
-                    f" `{cure}` of `{container.name}`",
+                    message=f"the transition for `{step.outcome}` is never taken: {why}",
+                    arguments=(own_name(child, step.span), step.target, step.outcome),
+                    help=help,
                     related=calls(child, step.span),
                     severity=Severity.WARNING,
                     node=f"{path}/{child.name}",
@@ -135,10 +148,12 @@ def _idle_transitions(path: str, container: Container) -> Iterator[Finding]:
 
 @rule("SM102", "unknown-outcome", Severity.ERROR, firm=True)
 def unknown_outcome(context: Context) -> Iterator[Finding]:
-    """A transition starts from an outcome that its state does not have.
+    """A transition is for an outcome that its state does not have.
 
-    It is never taken: the recovery that somebody wrote for the robot does not exist. Likewise the
-    condition of a ConditionalOutcomeState and the step of a ScriptedState for such an outcome.
+    The transition is never taken. If it was written as a recovery, the robot has no recovery.
+
+    Exactly: also the condition of a ConditionalOutcomeState and the step of a ScriptedState for
+    such an outcome, and an entry of `loop_outcomes` that is not an outcome of the child.
 
     Wrong:
         name: sm
@@ -173,12 +188,13 @@ def unknown_outcome(context: Context) -> Iterator[Finding]:
 
 def _unknown_steps(path: str, child: Node) -> Iterator[Finding]:
     unknown = unknown_outcomes(child)
-    known = _has(child) if unknown else ""
+    known = _known_outcomes(child) if unknown else ""
     guess = guesser(outcome_names(child))
     for step, meant in unknown:
         yield Finding(
             span=step.span,
             message=f"`{child.name}` has no outcome `{step.outcome}`",
+            arguments=(own_name(child, step.span), step.outcome),
             help=did_you_mean(meant) or known,
             related=calls(child, step.span),
             node=f"{path}/{child.name}",
@@ -186,9 +202,11 @@ def _unknown_steps(path: str, child: Node) -> Iterator[Finding]:
         )
 
 
-def _has(child: Node) -> str:
+def _known_outcomes(child: Node) -> str:
     names = outcome_names(child)
-    return f"its outcomes are {listed(names)}" if names else "it has no outcomes"
+    if not names:
+        return f"remove the transition: `{child.name}` has no outcomes"
+    return f"use one of its outcomes: {listed(names)}"
 
 
 def _unknown_loops(path: str, container: nodes.Iterator) -> Iterator[Finding]:
@@ -199,8 +217,10 @@ def _unknown_loops(path: str, container: nodes.Iterator) -> Iterator[Finding]:
         if name not in known:
             yield Finding(
                 span=container.span,
-                message=f"`{container.name}` loops on `{name}`, which its child never ends with",
-                help=f"the outcomes of the child are {listed(known)}",
+                message=f"`loop_outcomes` of `{container.name}` lists `{name}`, which is not an"
+                " outcome of its child",
+                arguments=(container.name, name),
+                help=f"use outcomes of the child: {listed(known)}",
                 related=calls(container, container.span),
                 node=path,
             )
@@ -210,7 +230,8 @@ def _unknown_loops(path: str, container: nodes.Iterator) -> Iterator[Finding]:
 def duplicate_state(context: Context) -> Iterator[Finding]:
     """Two states of one container have the same name.
 
-    A transition to that name can mean only one of them; the other part of the task is lost.
+    A transition to that name leads to only one of them: the robot never does the work of the
+    other one.
 
     Wrong:
         name: sm
@@ -236,9 +257,10 @@ def duplicate_state(context: Context) -> Iterator[Finding]:
                 yield Finding(
                     span=child.span,
                     message=f"`{container.name}` already has a state `{child.name}`",
-                    help="give it another name",
+                    arguments=(child.name,),
+                    help="rename one of the two states",
                     related=(
-                        *other_place(known.span, "the first"),
+                        *other_place(known.span, "the first state of this name"),
                         *calls(child, child.span),
                     ),
                     node=f"{path}/{child.name}",
@@ -247,10 +269,10 @@ def duplicate_state(context: Context) -> Iterator[Finding]:
 
 @rule("SM107", "name-clash", Severity.ERROR, firm=True)
 def name_clash(context: Context) -> Iterator[Finding]:
-    """A state is called like an outcome of its container, or has a name that paths cannot hold.
+    """A state has the name of an outcome of its container, or a name that is not valid in paths.
 
-    A transition to a name that is both goes to the state, so the machine goes on where it was to
-    end. A `/` in a name makes two states one in traces and messages.
+    A transition to a name of both kinds leads to the state: the robot continues where its task
+    should end. With a `/` in a name, two states can have the same path in traces and messages.
 
     Wrong:
         name: sm
@@ -272,8 +294,9 @@ def name_clash(context: Context) -> Iterator[Finding]:
         if not node.name.isprintable() or "/" in node.name or not node.name:
             yield Finding(
                 span=node.span,
-                message=f"{node.name!r} cannot be the name of a state",
-                help="a name has at least one character, none of them `/` or a control character",
+                message=f"{node.name!r} is not a valid name of a state",
+                arguments=(node.name,),
+                help="use a name of one or more characters, without `/` and control characters",
                 related=calls(node, node.span),
                 node=path,
             )
@@ -284,9 +307,10 @@ def name_clash(context: Context) -> Iterator[Finding]:
                 yield Finding(
                     span=child.span,
                     message=f"`{child.name}` is both a state and an outcome of `{container.name}`",
+                    arguments=(child.name,),
                     help="rename one of them: a transition to that name leads to the state",
                     related=(
-                        *other_place(exits[child.name].span, "the outcome"),
+                        *other_place(exits[child.name].span, "the outcome of this name"),
                         *calls(child, child.span),
                     ),
                     node=f"{path}/{child.name}",
@@ -295,9 +319,10 @@ def name_clash(context: Context) -> Iterator[Finding]:
 
 @rule("SM108", "shadowed-name", Severity.WARNING)
 def shadowed_name(context: Context) -> Iterator[Finding]:
-    """A state is called like the container it is in.
+    """A state has the same name as its container.
 
-    Pictures, traces and editors show the same name on two levels; people mend the wrong one.
+    Diagrams, traces and editors show the same name on two levels. Somebody who repairs the robot's
+    task can easily change the wrong one.
 
     Wrong:
         name: sm
@@ -328,8 +353,9 @@ def shadowed_name(context: Context) -> Iterator[Finding]:
             if child.name == container.name and not container.sugar:
                 yield Finding(
                     span=child.span,
-                    message=f"`{child.name}` is called like the container it is in",
-                    help="give one of them another name",
+                    message=f"state `{child.name}` has the same name as its container",
+                    arguments=(child.name,),
+                    help="rename one of them",
                     related=(
                         *other_place(container.span, "the container"),
                         *calls(child, child.span),

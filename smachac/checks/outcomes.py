@@ -1,4 +1,4 @@
-"""Rules over outcomes: whether each leads somewhere and is declared where it ends up."""
+"""Rules over outcomes: whether each has a transition, and is declared by its container."""
 
 from __future__ import annotations
 
@@ -6,7 +6,7 @@ from collections.abc import Iterable, Iterator
 
 from smachac.analysis.context import Context
 from smachac.analysis.control_flow import Linear, places_of, unknown_outcomes
-from smachac.checks.messages import calls, did_you_mean, other_place
+from smachac.checks.messages import calls, did_you_mean, other_place, own_name
 from smachac.checks.rule import rule
 from smachac.diagnostics.diagnostic import Finding, Severity
 from smachac.ir import nodes
@@ -19,7 +19,8 @@ from smachac.ir.traversal import outcome_names
 def undeclared_container_outcome(context: Context) -> Iterator[Finding]:
     """A concurrence or iterator can end with an outcome that it does not declare.
 
-    What stands around it has no transition for that, so the machine stops there.
+    The container around it has no transition for that outcome: the machine stops with an error,
+    and the robot stops in the middle of its task.
 
     Wrong:
         name: sm
@@ -63,9 +64,11 @@ def undeclared_container_outcome(context: Context) -> Iterator[Finding]:
 
 
 def _undeclared_results(path: str, container: Concurrence) -> Iterator[Finding]:
-    results = [("its outcome map", entry.outcome, entry.span) for entry in container.rules]
+    results = [
+        ("a rule of the outcome map gives", entry.outcome, entry.span) for entry in container.rules
+    ]
     if container.default_outcome:
-        results.append(("`default_outcome`", container.default_outcome, container.default_span))
+        results.append(("`default_outcome` is", container.default_outcome, container.default_span))
     declared = frozenset(outcome_names(container))
     guess = places_of(container)
     for source, name, span in results:
@@ -73,17 +76,18 @@ def _undeclared_results(path: str, container: Concurrence) -> Iterator[Finding]:
             meant = guess(name)
             yield Finding(
                 span=span,
-                message=f"`{container.name}` has no outcome `{name}`, which {source} gives",
+                message=f"{source} `{name}`, which is not an outcome of `{container.name}`",
+                arguments=(own_name(container, span), name),
                 help=did_you_mean(meant if meant in declared else None)
-                or f"add it to the outcomes of `{container.name}`",
+                or f"add `{name}` to the outcomes of `{container.name}`",
                 related=calls(container, span),
                 node=path,
             )
 
 
 def endings(container: nodes.Iterator) -> Iterator[tuple[str, str, str]]:
-    """What an iterator can end with: the state that brings it about (empty when the items are
-    used up), its outcome, and the outcome of the iterator."""
+    """The ways in which an iterator can end: its child (empty after the last item), the outcome
+    of that, and the outcome of the iterator."""
     renamed = dict(container.final_map)
     exhausted = container.exhausted_outcome
     yield "", exhausted, renamed.get(exhausted, exhausted)
@@ -99,12 +103,14 @@ def _undeclared_endings(path: str, container: nodes.Iterator) -> Iterator[Findin
     for child, outcome, result in endings(container):
         if result in declared:
             continue
-        why = f"when `{child}` ends with `{outcome}`" if child else "after the last item"
-        renamed = "" if not child else ", let it loop, or rename it in `final_outcome_map`"
+        when = f"when `{child}` ends with `{outcome}`" if child else "after the last item"
+        others = f", or `{outcome}` to its `loop_outcomes`" if child else ""
         yield Finding(
             span=container.span,
-            message=f"`{container.name}` has no outcome `{result}`, which it ends with {why}",
-            help=f"add it to the outcomes of `{container.name}`{renamed}",
+            message=f"`{container.name}` ends with `{result}` {when}, but has no such outcome",
+            arguments=(container.name, result, child, outcome),
+            help=f"add `{result}` to the outcomes of `{container.name}`{others}, or rename"
+            f" `{outcome}` in its `final_outcome_map`",
             related=calls(container, container.span),
             node=path,
         )
@@ -114,8 +120,8 @@ def _undeclared_endings(path: str, container: nodes.Iterator) -> Iterator[Findin
 def unhandled_outcome(context: Context) -> Iterator[Finding]:
     """An outcome of a state has no transition, and its container has no outcome of that name.
 
-    When the state ends so, nobody has said what comes next: SMACH stops with an error, wherever
-    the arm is.
+    When the state ends with that outcome, no next state is defined: SMACH stops with an error, and
+    the arm stops where it is.
 
     Wrong:
         name: sm
@@ -144,7 +150,8 @@ def unhandled_outcome(context: Context) -> Iterator[Finding]:
 
 
 def unhandled(child: Node) -> list[Outcome]:
-    """The outcomes of a state that lead nowhere, without those that a misspelt transition means."""
+    """The outcomes of a state without a transition, except those that a misspelt transition is
+    probably for."""
     handled = {step.outcome for step in child.transitions}
     if all(outcome.name in handled for outcome in child.outcomes):
         return []
@@ -153,12 +160,13 @@ def unhandled(child: Node) -> list[Outcome]:
 
 
 def _unhandled(path: str, container: Linear, child: Node, outcome: Outcome) -> Finding:
-    # An interface may lie in another folder on another machine: only the script's own place counts.
+    # The file of an interface may have another place on another machine, so it is not shown.
     inside = outcome.span.source is child.span.source
     return Finding(
         span=child.span,
-        message=f"outcome `{outcome.name}` of `{child.name}` leads nowhere: it has no transition,"
-        f" and `{container.name}` has no such outcome",
+        message=f"outcome `{outcome.name}` of `{child.name}` has no transition, and"
+        f" `{container.name}` has no outcome of that name",
+        arguments=(child.name, outcome.name),
         help=f"add `{outcome.name}:` to the transitions of `{child.name}`, or `{outcome.name}` to"
         f" the outcomes of `{container.name}`",
         related=(
@@ -171,10 +179,12 @@ def _unhandled(path: str, container: Linear, child: Node, outcome: Outcome) -> F
 
 @rule("SM105", "implicit-exit", Severity.INFO)
 def implicit_exit(context: Context) -> Iterator[Finding]:
-    """An outcome ends the machine only because both have an outcome of that name.
+    """An outcome without a transition ends the container, which has an outcome of the same name.
 
-    Nothing is wrong with that, unless it was forgotten: a failure that leaves by its name, while
-    the success beside it has a transition, is a warning. The robot would stop without a recovery.
+    This is often intended. If the transition was forgotten, the robot stops without a recovery.
+
+    Exactly: it is a warning for an outcome of failure of a state that has a transition for an
+    outcome of success, and a note otherwise.
 
     Wrong:
         name: sm
@@ -227,10 +237,11 @@ def _implicit(
         forgotten = beside and is_failure(step.outcome)
         yield Finding(
             span=step.span,
-            message=f"`{step.outcome}` of `{child.name}` has no transition: by its name alone it"
-            f" ends `{container.name}`",
-            help=f"write `{step.outcome}: {step.target}` if that is meant, or lead it to a state"
-            " that recovers"
+            message=f"outcome `{step.outcome}` of `{child.name}` has no transition, so"
+            f" `{container.name}` ends with `{step.target}`",
+            arguments=(own_name(child, step.span), step.outcome),
+            help=f"write `{step.outcome}: {step.target}` if this is intended, or a transition to a"
+            " state that recovers"
             if forgotten
             else None,
             related=calls(child, step.span),

@@ -1,4 +1,4 @@
-"""Rules over the shape of the graph: where it starts, what is reached, how it can end."""
+"""Rules over reachability: of states, of the outcomes of containers, and initial states."""
 
 from __future__ import annotations
 
@@ -12,7 +12,7 @@ from smachac.analysis.control_flow import (
     leads_somewhere,
     mended,
 )
-from smachac.checks.messages import calls, did_you_mean
+from smachac.checks.messages import calls, did_you_mean, own_name
 from smachac.checks.outcomes import endings, unhandled
 from smachac.checks.rule import rule
 from smachac.checks.timeouts import undeclared_stops
@@ -29,10 +29,10 @@ from smachac.ir.traversal import outcome_names
 
 @rule("SM201", "unreachable-state", Severity.ERROR)
 def unreachable_state(context: Context) -> Iterator[Finding]:
-    """No path leads to this state from the initial one.
+    """No path leads to this state from the initial state of its container.
 
-    A part of the task that somebody wrote is never done, whatever happens: most often a
-    recovery, or the release of what the robot holds.
+    The robot never does this part of its task. Often it is a recovery, or the state in which the
+    gripper opens.
 
     Wrong:
         name: sm
@@ -70,8 +70,9 @@ def unreachable_state(context: Context) -> Iterator[Finding]:
         for child in hidden:
             yield Finding(
                 span=child.span,
-                message=f"`{child.name}` cannot be reached from `{container.initial}`, where"
-                f" `{container.name}` starts",
+                message=f"`{child.name}` cannot be reached from `{container.initial}`, the initial"
+                f" state of `{container.name}`",
+                arguments=(child.name,),
                 help=_why_unreachable(container, child, before.get(child.name, [])),
                 related=calls(child, child.span),
                 node=f"{path}/{child.name}",
@@ -89,21 +90,21 @@ def _before(container: Linear, hidden: frozenset[str]) -> dict[str, list[str]]:
 
 def _why_unreachable(container: Linear, child: Node, before: list[str]) -> str:
     if before:
-        return f"what leads to it cannot be reached either: {listed(before)}"
+        return f"first make a state that leads to it reachable: {listed(before)}"
     if isinstance(container, Sequence):
         return (
-            f"a sequence goes on with `{container.connector_outcome}`: has the state before it"
-            " that outcome, without a transition of its own?"
+            f"give the state before it the outcome `{container.connector_outcome}` without a"
+            " transition: a sequence continues with that outcome"
         )
-    return f"lead a transition to `{child.name}`, or take it out"
+    return f"add a transition to `{child.name}`, or remove `{child.name}`"
 
 
 @rule("SM203", "impossible-outcome", Severity.WARNING)
 def impossible_outcome(context: Context) -> Iterator[Finding]:
-    """A container declares an outcome that nothing in it can bring about.
+    """A container declares an outcome with which it can never end.
 
-    What stands around it waits for a case that never comes. Often it is a failure: then failures
-    are taken for something else.
+    What the script does after that outcome never happens. If the outcome is one of failure, a
+    failure of the robot probably ends the container with another outcome.
 
     Wrong:
         name: sm
@@ -133,7 +134,7 @@ def impossible_outcome(context: Context) -> Iterator[Finding]:
 
 
 def _possible_outcomes(container: Container) -> frozenset[str] | None:
-    """The outcomes that something in a container brings about; None where a fault hides them."""
+    """The outcomes with which a container can end; None where another fault makes that unknown."""
     if not container.children:
         return None
     match container:
@@ -149,7 +150,7 @@ def _possible_outcomes(container: Container) -> frozenset[str] | None:
 
 
 def _if_declared(container: Container, results: set[str]) -> frozenset[str] | None:
-    """Results, unless one is undeclared: then it may stand for the outcome that is missed."""
+    """Results, or None where one is undeclared: it may be meant for the declared outcome."""
     return frozenset(results) if results.issubset(outcome_names(container)) else None
 
 
@@ -181,27 +182,35 @@ def _iterator_outcomes(container: nodes.Iterator) -> frozenset[str] | None:
         return None
     found = {edge.target[1] for edge in edges(container) if isinstance(edge.target, tuple)}
     found.update(stopped_endings(container).values())
-    # What SM208 speaks of was meant to bring about `preempted`.
+    # Where SM208 is reported, `preempted` is what the iterator was meant to end with.
     return frozenset(found | {PREEMPTED} if undeclared_stops(container) else found)
 
 
 def _impossible(path: str, container: Container, outcome: Outcome) -> Finding:
-    help = f"lead a transition to it, or take it out of the outcomes of `{container.name}`"
+    removed = f"remove it from the outcomes of `{container.name}`"
+    help = f"add a transition to `{outcome.name}`, or {removed}"
     severity = None
     if isinstance(container, Concurrence):
-        help = f"give it a rule, or take it out of the outcomes of `{container.name}`"
+        help = f"add a rule for `{outcome.name}`, or {removed}"
         if outcome.name == PREEMPTED:
-            # So it does in SMACH for Noetic, whatever the rules say (smach-semantics P10).
-            help = "keep it where SMACH for Noetic runs the machine: there a preempt request does"
+            # docs/semantics.md, Preemption.
+            help = (
+                "keep it if the machine runs in SMACH for Noetic: there a preempt request ends"
+                f" `{container.name}` with it"
+            )
             severity = Severity.INFO
     if isinstance(container, nodes.Iterator):
         child = container.children[0].name
-        help = f"it ends with the first item: no outcome of `{child}` is in `loop_outcomes`"
+        help = (
+            f"list an outcome of `{child}` in `loop_outcomes`: without one, `{container.name}` ends"
+            " after the first item"
+        )
         if container.loop_outcomes:
-            help = f"take it out of the outcomes of `{container.name}`"
+            help = removed
     return Finding(
         span=outcome.span,
-        message=f"nothing can end `{container.name}` with `{outcome.name}`",
+        message=f"`{container.name}` can never end with its outcome `{outcome.name}`",
+        arguments=(own_name(container, outcome.span), outcome.name),
         help=help,
         related=calls(container, outcome.span),
         severity=severity,
@@ -211,9 +220,10 @@ def _impossible(path: str, container: Container, outcome: Outcome) -> Finding:
 
 @rule("SM205", "no-initial", Severity.ERROR, firm=True)
 def no_initial(context: Context) -> Iterator[Finding]:
-    """A container has no state to start with.
+    """A container has no states, or its initial state does not exist.
 
-    SMACH refuses to run it: the robot stands still where the container was to work.
+    SMACH reports an error when the container starts, and runs none of its states: the robot stops
+    in the middle of its task.
 
     Wrong:
         name: sm
@@ -238,7 +248,8 @@ def no_initial(context: Context) -> Iterator[Finding]:
             yield Finding(
                 span=container.span,
                 message=f"`{container.name}` has no states",
-                help="add a state, or take it out",
+                arguments=(container.name,),
+                help="add a state",
                 related=calls(container, container.span),
                 node=path,
             )
@@ -253,9 +264,10 @@ def _unknown_initial(path: str, container: Linear) -> Iterator[Finding]:
     guess = guesser(names)(container.initial)
     yield Finding(
         span=container.initial_span,
-        message=f"`{container.name}` is to start with `{container.initial}`, which is none of its"
+        message=f"`initial` of `{container.name}` is `{container.initial}`, which is not one of its"
         " states",
-        help=did_you_mean(guess) or f"its states are {listed(names)}",
+        arguments=(own_name(container, container.initial_span), container.initial),
+        help=did_you_mean(guess) or f"use one of its states: {listed(names)}",
         related=calls(container, container.initial_span),
         node=path,
     )

@@ -1,4 +1,4 @@
-"""Rules over waits without an end: branches that nothing stops, states without a time limit."""
+"""Rules over waits: states without a time limit, branches and iterators that cannot be stopped."""
 
 from __future__ import annotations
 
@@ -22,15 +22,15 @@ TIMEOUTS = frozenset(["timeout", "timed_out"])
 
 @rule("SM207", "no-timeout", Severity.INFO)
 def no_timeout(context: Context) -> Iterator[Finding]:
-    """A state waits for the outside world, and nothing limits the wait.
+    """A state waits for an external event, and the wait has no time limit.
 
-    A person who does not come, or a message that is lost, stops the robot for good. In a
-    concurrence, where it is a warning, it keeps all other branches waiting as well, and nobody
-    can call it off when one of them has failed.
+    If a message is lost, the robot waits forever. In a concurrence the other branches wait as
+    well, even when one of them has failed; there it is a warning.
 
-    Exactly: the interface says that the state is `blocking`, and it has no outcome `timeout`,
-    `timed_out` or `preempted`, and no variable that ends with `timeout` is set. The `timeout:`
-    of a script preempts the state, so it needs that outcome as well.
+    Exactly: the state type is `blocking` in its interface and has none of the outcomes `timeout`,
+    `timed_out` and `preempted`, and the state sets no variable whose name ends with `timeout`.
+    The `timeout:` of a script sends a preempt request to the state, which therefore needs the
+    outcome `preempted`.
 
     Wrong:
         name: sm
@@ -81,7 +81,8 @@ def no_timeout(context: Context) -> Iterator[Finding]:
             yield Finding(
                 span=node.span,
                 message=_unlimited(node, outer),
-                help=f"give its type `{node.type}` an outcome `preempted`, or `timeout`",
+                arguments=(node.name,),
+                help=f"add an outcome `preempted` or `timeout` to the state type `{node.type}`",
                 related=calls(node, node.span),
                 severity=Severity.WARNING if outer is not None else None,
                 node=path,
@@ -90,13 +91,10 @@ def no_timeout(context: Context) -> Iterator[Finding]:
 
 def _unlimited(leaf: Leaf, outer: Concurrence | None) -> str:
     if outer is not None and outer.sugar == "timeout":
-        limited = f"the time limit of `{outer.name}` cannot end `{leaf.name}`"
+        limited = f"the time limit of `{outer.name}` cannot stop `{leaf.name}`"
         return f"{limited}, which has no outcome `preempted`"
-    waits = f", and all of `{outer.name}` waits for it" if outer is not None else ""
-    return (
-        f"`{leaf.name}` may wait for ever{waits}: it has neither a time limit nor an outcome"
-        " `preempted`"
-    )
+    waits = f"block `{outer.name}`" if outer is not None else "wait"
+    return f"`{leaf.name}` can {waits} forever: it has no time limit and no outcome `preempted`"
 
 
 def _is_limited(leaf: Leaf) -> bool:
@@ -110,15 +108,15 @@ def _is_limited(leaf: Leaf) -> bool:
 
 @rule("SM407", "never-ends", Severity.WARNING)
 def never_ends(context: Context) -> Iterator[Finding]:
-    """A branch of a concurrence has no end, and nobody, or nothing, can stop it.
+    """A branch of a concurrence never ends, and nothing in the concurrence stops it.
 
-    The other branches end, and the robot stands still for ever while the concurrence waits for
-    this one.
+    After the other branches have ended, the concurrence waits for this branch forever, and the
+    robot does not continue its task.
 
-    Exactly: some other branch ends by itself. With `join: all` this branch ends only when it is
-    preempted, which nothing in the concurrence does; with `join: any` it is meant to go on for
-    ever (`forever: true`) and ends not even when it is preempted. A branch that is never done,
-    without being meant so, is told by SM202; a single state that waits by SM207.
+    Exactly: at least one other branch ends without a preempt request. With `join: all` this branch
+    ends only after a preempt request, which no branch sends. With `join: any` this branch has
+    `forever: true`, and does not end after a preempt request either. A branch that never ends
+    without `forever: true` is an error of SM202; a single state that waits is SM207.
 
     Wrong:
         name: sm
@@ -174,20 +172,27 @@ def _lasting(
     path: str, container: Concurrence, found: Endings, endless: AbstractSet[str]
 ) -> Iterator[Finding]:
     ever, calm = found
-    ending = [child.name for child in container.children if calm[f"{path}/{child.name}"]]
-    for child in container.children if ending else ():
+    ends = any(calm[f"{path}/{child.name}"] for child in container.children)
+    for child in container.children if ends else ():
         here = f"{path}/{child.name}"
         if container.join == "all" and ever[here] and not calm[here]:
-            why = f"ends only when it is asked to stop, and nothing in `{container.name}` asks"
-            help = "write `join: any`, so that the first to end stops the others, or let it end"
+            why = f"ends only after a preempt request, and nothing in `{container.name}` sends one"
+            help = (
+                "write `join: any`, so that the first branch to end stops the others, or make"
+                f" `{child.name}` end"
+            )
         elif container.join == "any" and not ever[here] and here in endless:
-            why = f"goes on for ever, also after {listed(ending)} would end `{container.name}`"
-            help = "let a state in it answer with `preempted`, and lead that out"
+            why = f"runs forever, also after a preempt request, so `{container.name}` cannot end"
+            help = (
+                f"add the outcome `preempted` to a state in `{child.name}`, with a transition to an"
+                f" outcome of `{child.name}`"
+            )
         else:
             continue
         yield Finding(
             span=child.span,
             message=f"`{child.name}` {why}",
+            arguments=(child.name,),
             help=help,
             related=calls(child, child.span),
             node=here,
@@ -196,13 +201,15 @@ def _lasting(
 
 @rule("SM208", "no-way-to-stop", Severity.INFO)
 def no_way_to_stop(context: Context) -> Iterator[Finding]:
-    """An iterator that is asked to stop ends with an outcome that it does not have.
+    """After a preempt request an iterator ends with an outcome that it does not declare.
 
-    A request to stop, such as Ctrl-C, ends it after the item at hand with the outcome of its
-    state, also if that is one on which it goes on else; `final_outcome_map` renames it. What the
-    iterator does not declare is an error, and the whole machine ends there instead of with an
-    outcome. That is a note, and a warning where the iterator declares `preempted`: somebody counts
-    on it.
+    The machine then stops with an error instead of an outcome, and the robot does not reach a safe
+    state.
+
+    Exactly: after a preempt request, such as Ctrl-C, an iterator ends after the current item with
+    the outcome of its child, even if that outcome is in `loop_outcomes`; `final_outcome_map`
+    renames it. It is a note if the iterator does not declare the result, and a warning if the
+    iterator also declares `preempted`, because then it is probably meant to end with that.
 
     Wrong:
         name: sm
@@ -241,12 +248,13 @@ def no_way_to_stop(context: Context) -> Iterator[Finding]:
             continue
         name, counted_on = container.name, PREEMPTED in outcome_names(container)
         renamed = ", ".join(f"{outcome}: {PREEMPTED}" for outcome in lost)
-        first = "" if counted_on else f"add `{PREEMPTED}` to its outcomes, and "
+        first = "" if counted_on else f"add `{PREEMPTED}` to the outcomes of `{name}`, and "
         yield Finding(
             span=container.span,
-            message=f"when `{name}` is asked to stop it can end with {listed(lost)}, which is none"
-            " of its outcomes: an error",
-            help=f"{first}rename it: `final_outcome_map: {{{renamed}}}`",
+            message=f"after a preempt request `{name}` can end with {listed(lost)}, which is not"
+            " one of its outcomes",
+            arguments=(name, *sorted(lost)),
+            help=f"{first}write `final_outcome_map: {{{renamed}}}`",
             related=calls(container, container.span),
             severity=Severity.WARNING if counted_on else None,
             node=path,
@@ -254,8 +262,7 @@ def no_way_to_stop(context: Context) -> Iterator[Finding]:
 
 
 def undeclared_stops(container: nodes.Iterator) -> list[str]:
-    """The looping outcomes of its state with which an iterator that is asked to stop would end
-    without having them as its own."""
+    """The undeclared outcomes with which an iterator ends after a preempt request."""
     own = outcome_names(container)
     ends = stopped_endings(container)
     return [] if container.catches else [each for each, result in ends.items() if result not in own]

@@ -36,6 +36,15 @@ def test_a_rule_that_asks_one_child_hides_the_other() -> None:
     assert item.finding.path_labels == ("BOTH", "(ready)", "succeeded")
 
 
+def test_two_rules_for_one_outcome_are_two_faults() -> None:
+    root = both(LEFT, RIGHT, rules=(("ready", {"LEFT": "done"}), ("ready", {"RIGHT": "done"})))
+    items = [item.finding.arguments for item in report(root) if item.code == "SM404"]
+    assert items == [
+        ("BOTH", "ready", "LEFT: done", "RIGHT"),
+        ("BOTH", "ready", "RIGHT: done", "LEFT"),
+    ]
+
+
 @pytest.mark.parametrize(
     "root",
     [
@@ -119,15 +128,16 @@ def test_a_failure_that_ends_the_machine_with_a_success(root: Any, states: list[
     assert found(root, "SM206") == [f"SM206 {state}" for state in states]
 
 
-def test_the_turn_is_told_once_with_a_way_there() -> None:
+def test_a_masking_step_is_reported_once_with_a_path_to_it() -> None:
     inside = machine("IN", "x aborted", leaf("A", {"aborted": "=aborted", "x": "B"}),
                      leaf("B", {"aborted": "=aborted", "x": "x"}),
                      to={"x": "succeeded", "aborted": "succeeded"})  # fmt: skip
     item = one(machine("sm", ROOT, inside), "SM206")
     assert item.finding.path_labels == ("A", "(aborted)", "IN", "(aborted)", "succeeded")
     assert item.finding.message == (
-        "`A` fails with `aborted`, and `sm` ends with a success; so it does after `B`"
+        "`A` fails with `aborted`, but `sm` ends with a success; failures of `B` are hidden too"
     )
+    assert item.finding.arguments == ("IN", "aborted", "A", "B")
 
 
 @st.composite
@@ -162,8 +172,7 @@ def test_played_the_failure_is_the_last_that_happens(root: StateMachine) -> None
     told = [item for item in report(root) if item.code == "SM206"]
     assert bool(told) == bool(unhandled)
     for item in told:
-        named = item.finding.message.replace("`sm`", "").split("`")[1::2]
-        assert {name for name in named if name != "aborted"} <= unhandled
+        assert set(item.finding.arguments[2:]) <= unhandled
 
 
 def starts(root: StateMachine) -> list[tuple[str, StateMachine]]:

@@ -28,12 +28,12 @@ def test_a_target_elsewhere_is_explained() -> None:
     root = machine("sm", "done", leaf("A", {"ok": "IN", "no": "DEEP"}), inner)
     item = one(root, "SM101")
     assert item.finding.node == "sm/A"
-    assert "the state is in `sm/IN`" in str(item.finding.help)
+    assert "the state `DEEP` in `sm/IN` cannot be a target here" in str(item.finding.help)
 
 
 def test_an_empty_target_is_no_target() -> None:
     item = one(machine("sm", "done", leaf("A", {"ok": "", "go": "done"})), "SM101")
-    assert item.finding.message == "`ok` of `A` leads nowhere: its target is empty"
+    assert item.finding.message == "the transition for outcome `ok` of `A` has no target"
 
 
 def test_a_misspelt_target_is_one_fault() -> None:
@@ -83,7 +83,9 @@ def test_an_iterator_loops_only_on_outcomes_of_its_child() -> None:
                     items_key="k", held={"k": [1]},
                     to={"ok": "done", "exhausted": "done"})  # fmt: skip
     item = one(machine("sm", "done", node), "SM102")
-    assert item.finding.message == "`IT` loops on `baad`, which its child never ends with"
+    assert item.finding.message == (
+        "`loop_outcomes` of `IT` lists `baad`, which is not an outcome of its child"
+    )
 
 
 def test_a_state_beside_an_unknown_outcome_is_unreachable() -> None:

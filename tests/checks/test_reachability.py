@@ -47,8 +47,8 @@ def test_what_leads_to_an_unreachable_state_is_named() -> None:
     )
     items = [item for item in report(root) if item.code == "SM201"]
     assert [item.finding.node for item in items] == ["sm/B", "sm/C", "sm/D"]
-    assert items[1].finding.help == "what leads to it cannot be reached either: `B`"
-    assert items[2].finding.help == "lead a transition to `D`, or take it out"
+    assert items[1].finding.help == "first make a state that leads to it reachable: `B`"
+    assert items[2].finding.help == "add a transition to `D`, or remove `D`"
 
 
 def test_a_sequence_whose_link_is_missing_says_so() -> None:
@@ -56,7 +56,7 @@ def test_a_sequence_whose_link_is_missing_says_so() -> None:
                     to={"ok": "done"})  # fmt: skip
     item = one(machine("sm", "done", node), "SM201")
     assert item.finding.node == "sm/SEQ/B"
-    assert "a sequence goes on with `ok`" in str(item.finding.help)
+    assert "the outcome `ok` without a transition" in str(item.finding.help)
 
 
 @pytest.mark.parametrize("kind", [machine, iterator])
@@ -131,7 +131,8 @@ def test_a_trap_inside_is_not_reported_outside_as_well() -> None:
 def test_a_part_that_is_meant_to_go_on_traps_what_is_around_it() -> None:
     root = machine("sm", "done", endless("IN", {"ok": "done"}))
     assert found(root, "SM202") == ["SM202 sm/IN"]
-    assert one(root, "SM202").finding.message == "`IN` never ends, so neither does `sm`"
+    message = one(root, "SM202").finding.message
+    assert message == "`IN` never ends, so `sm` never ends after entering it"
     assert found(looping(root), "SM202") == []
 
 

@@ -31,14 +31,14 @@ def watch(to: dict[str, str], *, forever: bool = False) -> StateMachine:
 @pytest.mark.parametrize(
     ("branch", "join", "says"),
     [
-        (watch({"preempted": "stopped"}), "all", "ends only when it is asked to stop"),
-        (leaf("WATCH", outcomes="preempted"), "all", "ends only when it is asked to stop"),
+        (watch({"preempted": "stopped"}), "all", "ends only after a preempt request"),
+        (leaf("WATCH", outcomes="preempted"), "all", "ends only after a preempt request"),
         (watch({"preempted": "stopped"}), "any", None),
         (watch({"seen": "stopped"}), "all", None),
         (watch({"preempted": "stopped"}, forever=True), "any", None),
-        (watch({"preempted": "WAIT"}, forever=True), "any", "goes on for ever"),
+        (watch({"preempted": "WAIT"}, forever=True), "any", "runs forever, also after"),
         (iterator("WATCH", "stopped", watch({"preempted": "stopped"}), items=[1],
-                  exhausted="stopped"), "all", "ends only when it is asked to stop"),
+                  exhausted="stopped"), "all", "ends only after a preempt request"),
         (concurrence("WATCH", "x", leaf("A", outcomes="x"), watch({"preempted": "stopped"}),
                      default="x", join="any"), "all", None),
         (leaf("WATCH", outcomes="preempted", open=True), "all", None),
@@ -57,7 +57,7 @@ def test_branches_that_all_go_on_until_they_are_stopped_are_meant_so() -> None:
     assert found(both(one_, replace(one_, name="OTHER")), "SM407") == []
 
 
-def test_a_trap_in_a_branch_is_told_as_a_trap() -> None:
+def test_a_trap_in_a_branch_is_reported_as_a_trap() -> None:
     trap = watch({"preempted": "WAIT"})
     root = both(WORK, trap, join="any")
     assert found(root, "SM202") == ["SM202 sm/BOTH/WATCH/WAIT"]
@@ -93,7 +93,7 @@ def test_a_time_limit_needs_a_state_that_answers() -> None:
                        leaf("TIMER", outcomes="succeeded preempted"), default="timeout",
                        join="any", to={"ok": "done", "timeout": "lost"})  # fmt: skip
     item = one(machine("sm", "done lost", replace(node, sugar="timeout")), "SM207")
-    assert "the time limit of `WAIT` cannot end `WAIT`" in item.finding.message
+    assert "the time limit of `WAIT` cannot stop `WAIT`" in item.finding.message
 
 
 Flow = dict[str, dict[str, str]]
