@@ -109,7 +109,7 @@ def _missing_code(leaf: Leaf, path: str) -> Iterator[Finding]:
                     span=variable.value.span,
                     message=f"the callback `{key}` of `{leaf.name}` is not a function",
                     arguments=(key,),
-                    help=f"write a function, such as `{key}: 'lambda ud: ud.n + 1'`, or a name",
+                    help=f"write a function, such as `{key}: 'lambda ud: ud.n + 1'`, or its name",
                     node=path,
                 )
 

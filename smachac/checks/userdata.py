@@ -31,7 +31,7 @@ MOST_RELATED = 3
 
 @rule("SM301", "read-before-write", Severity.ERROR)
 def read_before_write(context: Context) -> Iterator[Finding]:
-    """A state reads a userdata key that is not set on some path to the state.
+    """A state reads a userdata key that is unset on at least one path to the state.
 
     On that path the machine stops with an error, and the robot stops in the middle of its task.
 
@@ -158,8 +158,8 @@ def unknown_remap(context: Context) -> Iterator[Finding]:
     SMACH ignores such an entry without a message: the state uses the key of its own name, which has
     another value than intended, or is not set at all.
 
-    Exactly: the left name is not a key of the state, or nothing sets the right name in the
-    container.
+    Exactly: in `remapping: {a: b}`, `a` is not a key of the state, or nothing in the container
+    sets `b`.
 
     Wrong:
         name: sm
@@ -233,7 +233,7 @@ def _remapped(missing: Missing, guesses: _Guesses) -> Iterator[Finding]:
 
 @rule("SM303", "undeclared-container-key", Severity.ERROR)
 def undeclared_container_key(context: Context) -> Iterator[Finding]:
-    """A state reads a key of an outer container that is not an input key of its own container.
+    """A state reads a key of an outer container, but the key is no input of its own container.
 
     A container has its own userdata: only the keys in its `input_keys` are copied into it. The
     state finds the key unset, and the machine stops with an error in the middle of the task.
