@@ -65,18 +65,17 @@ def _overruled(path: str, preset: Preset) -> Iterator[Finding]:
     vain = [each for each in others if not _alike(each, last)]
     if not vain:
         return
-    container = f"`{path.rpartition('/')[2]}`"
-    giver = f"{container} itself" if vain[0].own else f"`{vain[0].state.text}`"
+    giver = path.rpartition("/")[2] if vain[0].own else vain[0].state.text
     yield Finding(
         span=_place(vain[0], last),
-        message=f"the initial value of `{preset.key}` from {giver} is overwritten by"
-        f" `{last.state.text}` before {container} starts",
+        message=f"the initial value of `{preset.key}` in `{giver}` is never used:"
+        f" `{last.state.text}` overwrites it",
         arguments=(preset.key,),
         help="use another key in one of the two states, with `remapping`"
         if not vain[0].own
         else f"set `{preset.key}` only once, or use another key in the state, with `remapping`",
         related=(
-            *(Related(span=each.span, message="also overwritten") for each in vain[1:]),
+            *(Related(span=each.span, message="overwritten too") for each in vain[1:]),
             Related(span=_place(last, vain[0]), message="this value is used"),
         ),
         node=path,

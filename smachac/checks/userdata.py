@@ -97,8 +97,7 @@ class _Guesses:
 
 def _unset(missing: Missing, witness: Witness, users: list[Use], guesses: _Guesses) -> Finding:
     scope, reader, name = missing.scope, witness.reader, missing.scope.container.name
-    paths = "any path" if witness.always else "every path"
-    why = f"which is not set on {paths} to `{reader.node.name}`"
+    why = f"which is unset on {'every path' if witness.always else 'some paths'}"
     value = f"`userdata: {{{missing.key}: ...}}`"
     help = f"set `{missing.key}` on every path, or give it an initial value in `{name}`: {value}"
     if missing.cause == "nowhere":
@@ -233,7 +232,7 @@ def _remapped(missing: Missing, guesses: _Guesses) -> Iterator[Finding]:
 
 @rule("SM303", "undeclared-container-key", Severity.ERROR)
 def undeclared_container_key(context: Context) -> Iterator[Finding]:
-    """A state reads a key of an outer container, but the key is no input of its own container.
+    """A state reads a key of an outer container, but it is not an input of its own container.
 
     A container has its own userdata: only the keys in its `input_keys` are copied into it. The
     state finds the key unset, and the machine stops with an error in the middle of the task.
@@ -282,7 +281,7 @@ def undeclared_container_key(context: Context) -> Iterator[Finding]:
         others = tuple(reader_at(scope, vertex, key) for vertex in missing.vertices[1:])
         yield Finding(
             span=reader.span,
-            message=f"{reader.words}, which is a key of `{holder.name}` but not an input key of"
+            message=f"{reader.words}, which is a key of `{holder.name}` but not an input of"
             f" {listed(between)}",
             arguments=(reader.key,),
             help=f"add `{key}` to the `input_keys` of {listed(between)}",
@@ -375,7 +374,7 @@ def lost_output(context: Context) -> Iterator[Finding]:
         gets = "an unset key" if lost.is_missing else "an older value"
         yield Finding(
             span=keeper.span,
-            message=f"{inner}, set by `{lost.writer.name}`, is not an output key of"
+            message=f"{inner}, set by `{lost.writer.name}`, is not an output of"
             f" `{keeper.name}`: `{lost.reader.node.name}` reads {gets}",
             arguments=(lost.own,),
             help=f"add `{lost.own}` to the `output_keys` of `{keeper.name}`",
