@@ -109,7 +109,8 @@ def _missing_code(leaf: Leaf, path: str) -> Iterator[Finding]:
                     span=variable.value.span,
                     message=f"the callback `{key}` of `{leaf.name}` is not a function",
                     arguments=(key,),
-                    help=f"write a function, such as `{key}: 'lambda ud: ud.n + 1'`, or its name",
+                    help=f"write a function, such as `{key}: 'lambda ud: ud.n + 1'`,"
+                    " or the name of one",
                     node=path,
                 )
 
