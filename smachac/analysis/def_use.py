@@ -210,7 +210,7 @@ def way_to(path: str, found: Search, end: Reached) -> list[PathStep]:
     return steps[::-1]
 
 
-UseKind = Literal["presets", "items", "reads", "writes", "takes in", "hands out"]
+UseKind = Literal["presets", "items", "reads", "writes", "copies in", "copies out"]
 """How a key is used: the container holds it before it starts; an iterator puts its items there; a
 leaf reads or writes it; a container copies it from or to the userdata around it."""
 
@@ -262,14 +262,14 @@ def _uses_of(flow: DataFlow, scope: UserdataScope, child: Node) -> Iterator[tupl
     names = remapping(child)
     path = f"{scope.path}/{child.name}"
     is_leaf = isinstance(child, Leaf)
-    kind: UseKind = "reads" if is_leaf else "takes in"
+    kind: UseKind = "reads" if is_leaf else "copies in"
     for each in child.inputs:
         span = place_of(child, each)
         yield (
             names.get(each.name, each.name),
             Use(path=path, kind=kind, key=each.name, span=span),
         )
-    kind = "writes" if is_leaf else "hands out"
+    kind = "writes" if is_leaf else "copies out"
     inner = flow.scopes.get(path)
     known = outcome_names(child) if child.outputs else ()
     endings = [(name, child_writes(child, inner, name, raw=raw)) for name in known]

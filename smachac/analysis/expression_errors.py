@@ -42,16 +42,16 @@ from smachac.ir.nodes import Expression
 from smachac.ir.types import Type
 
 FaultKind: TypeAlias = Literal["operation", "comparison", "unit"]
-"""It fails; its result is always the same; it mixes units."""
+"""The operation fails; the result of the comparison is always the same; the units differ."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Fault:
-    """An expression that cannot be meant so.
+    """A type error in an expression.
 
-    `what` says in words what it does, `keys` are those of the userdata that it does it with.
-    `always`: every evaluation of the whole comes to it. `word` is what was written for one of
-    `choices`; `length`: the fault is one of how many items there are.
+    `what` is its description in a message, `keys` are the userdata keys in it. `always`: every
+    evaluation of the whole expression evaluates this part. `word` is the name in the script instead
+    of one of `choices`; `length`: the number of items is wrong.
     """
 
     kind: FaultKind
@@ -71,7 +71,7 @@ EMPTY = record(())
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class _Part:
-    """A part of an expression, and the keys that conditions have asked for before it."""
+    """A part of an expression, and the keys in the conditions before it."""
 
     expr: Expr
     always: bool = True
@@ -177,7 +177,7 @@ class _Judge:
             case Unary(word, operand) if word != "not":
                 type_ = self.type(operand)
                 if not can_be_negated(type_):
-                    yield self.fault(expr, f"takes `{told(type_)}` for a number", operand)
+                    yield self.fault(expr, f"uses `{type_text(type_)}` as a number", operand)
             case Binary(word, left, right):
                 yield from self.binary(expr, word, left, right)
             case Compare(first, rest):
@@ -198,11 +198,12 @@ class _Judge:
             help = None
             if kinds(type_) == {"mapping"}:
                 entry = print_expression(Index(value, Constant(name)))
-                help = f"the entry of a mapping is `{entry}`"
+                help = f"write `{entry}` for the entry of the mapping"
             yield Fault(
                 kind="operation",
                 expr=expr,
-                what=f"`{print_expression(expr)}` asks `{told(type_)}` for `{name}`",
+                what=f"`{print_expression(expr)}` reads an attribute that"
+                f" `{type_text(type_)}` does not have",
                 keys=self.keys(value),
                 help=help,
                 word=name,
@@ -214,27 +215,27 @@ class _Judge:
         if not can_be_indexed(owner, place):
             found = kinds(owner)
             help = None
-            does = f"takes an item of `{told(owner)}`"
+            does = f"reads an item of `{type_text(owner)}`, which has no items"
             if found & {"text", "list", "mapping"}:
-                does = f"looks up `{told(place)}` in `{told(owner)}`"
-                named = found == {"mapping"}
-                help = (
-                    f"the items are {'named by text' if named else 'numbered: the first is `[0]`'}"
-                )
+                does = f"uses `{type_text(place)}` as an index of `{type_text(owner)}`"
+                help = "use a number as the index: the first item is `[0]`"
+                if found == {"mapping"}:
+                    help = "use text as the index: the name of an entry"
             yield self.fault(expr, does, value, index, help=help)
             return
         size = _size(owner)
         known = place.args[0] if place.name == "literal" and len(place.args) == 1 else None
         if isinstance(known, int) and size is not None and not -size <= known < size:
-            text = f"`{print_expression(expr)}` is beyond the {size} items of `{told(owner)}`"
-            last = f"the last one is `[{size - 1}]`" if size else None
+            count = f"{size} item{'s' if size != 1 else ''}"
+            text = f"`{print_expression(expr)}` is out of range: `{type_text(owner)}` has {count}"
+            last = f"use an index up to `[{size - 1}]`" if size else None
             keys = self.keys(value, index)
             yield Fault(kind="operation", expr=expr, what=text, keys=keys, help=last, length=True)
 
     def binary(self, expr: Expr, word: str, left: Expr, right: Expr) -> Iterator[Fault]:
         one, other = self.type(left), self.type(right)
         if fails(word, one, other):
-            does = _DOES[word].format(told(one), told(other))
+            does = _DOES[word].format(type_text(one), type_text(other))
             yield self.fault(expr, does, left, right, help=_cure(word, one, other))
         elif word in ("+", "-", "%"):
             yield from self.units(expr, one, other, left, right)
@@ -242,7 +243,8 @@ class _Judge:
     def compare(self, expr: Expr, word: str, left: Expr, right: Expr) -> Iterator[Fault]:
         one, other = self.type(left), self.type(right)
         if fails(word, one, other):
-            does = _DOES.get(word, "compares `{}` with `{}`").format(told(one), told(other))
+            does = _DOES.get(word, "compares `{}` with `{}`")
+            does = does.format(type_text(one), type_text(other))
             yield self.fault(expr, does, left, right, help=_cure(word, one, other))
             return
         if word in ("in", "not in"):
@@ -262,19 +264,19 @@ class _Judge:
             return Fault(
                 kind="comparison",
                 expr=expr,
-                what=f"{text}no `{chosen}` is {' or '.join(f'`{each}`' for each in given.args)}",
+                what=f"{text}`{chosen}` has no value {' or '.join(f'`{v}`' for v in given.args)}",
                 keys=keys,
                 word=str(given.args[0]),
                 choices=tuple(map(str, chosen.args)),
             )
-        text += f"`{told(one)}` never equals `{told(other)}`"
+        text += f"`{type_text(one)}` never equals `{type_text(other)}`"
         return Fault(kind="comparison", expr=expr, what=text, keys=keys)
 
     def units(self, expr: Expr, one: Type, other: Type, left: Expr, right: Expr) -> Iterator[Fault]:
         if {one.name, other.name} <= {"int", "float"}:
             clash = misfit(one, Type("float", other.args))
             if clash is not None and clash.kind == "unit":
-                text = f"`{print_expression(expr)}` takes `{one}` and `{other}` together"
+                text = f"`{print_expression(expr)}` combines `{one}` and `{other}`"
                 yield Fault(
                     kind="unit",
                     expr=expr,
@@ -290,7 +292,7 @@ class _Judge:
             if isinstance(expr.function, Name) and text in self.parameters:
                 return
             if not can_be_called(type_):
-                does = f"calls `{told(type_)}`, which is no function"
+                does = f"calls `{type_text(type_)}`, which is not a function"
                 yield self.fault(expr, does, expr.function)
             return
         signature = SIGNATURES.get(text)
@@ -300,7 +302,8 @@ class _Judge:
         given = len(expr.arguments)
         unknown = [name for name, _ in expr.keywords if name not in keywords]
         if unknown:
-            yield self.fault(expr, f"gives `{text}` a `{unknown[0]}`, which it does not take")
+            does = f"passes the argument `{unknown[0]}` to `{text}`, which does not accept it"
+            yield self.fault(expr, does)
         elif given > most or (given < least and not expr.keywords):
             count = f"{given} argument{'s' if given != 1 else ''}"
             due = (
@@ -310,12 +313,12 @@ class _Judge:
                 if given > most
                 else f"{least}"
             )
-            yield self.fault(expr, f"gives `{text}` {count}, and it takes {due}")
+            yield self.fault(expr, f"passes {count} to `{text}`, which accepts {due}")
         elif given:
             type_ = self.type(expr.arguments[0])
             found, wanted = kinds(type_), alone if given == 1 else many
             if found and wanted and found.isdisjoint(wanted):
-                does = f"gives `{text}` `{told(type_)}`, which it does not take"
+                does = f"passes `{type_text(type_)}` to `{text}`, which does not accept it"
                 yield self.fault(expr, does, expr.arguments[0])
 
 
@@ -323,7 +326,7 @@ _EQUAL = ("==", "!=", "in", "not in")
 
 _DOES: Mapping[str, str] = {
     "+": "adds `{}` and `{}`",
-    "-": "takes `{1}` from `{0}`",
+    "-": "subtracts `{1}` from `{0}`",
     "*": "multiplies `{}` by `{}`",
     **dict.fromkeys(("/", "//", "%"), "divides `{}` by `{}`"),
     "**": "raises `{}` to the power of `{}`",
@@ -331,13 +334,13 @@ _DOES: Mapping[str, str] = {
 }
 
 
-def told(type_: Type) -> str:
-    """A type as messages name it."""
+def type_text(type_: Type) -> str:
+    """A type as part of a message."""
     return str(widened(type_))
 
 
 def _size(type_: Type) -> int | None:
-    """How many items there are, where that is known."""
+    """The number of items, if it is known."""
     return {"Point": 3, "Quaternion": 4}.get(type_.name, length_of(type_))
 
 
@@ -345,17 +348,17 @@ def _cure(word: str, one: Type, other: Type) -> str | None:
     both = {*kinds(one), *kinds(other)}
     if both == {"number", "text"}:
         if word == "+":
-            return "make both text with `str(...)`, or both numbers with `float(...)`"
-        return "make a number of the text with `float(...)`"
+            return "convert both to text with `str(...)`, or both to numbers with `float(...)`"
+        return "convert the text to a number with `float(...)`"
     if "nothing" in both:
-        return "nothing (`null`) is all that the script puts there: give it a value"
+        return "give it a value: the script sets it only to nothing (`null`)"
     return None
 
 
 Kinds = frozenset[str]
 
 ANYTHING: Kinds = frozenset()
-"""The kinds of a value of which nothing is known."""
+"""The kinds of a value of unknown type."""
 
 _KINDS: Mapping[str, Kinds] = {
     **dict.fromkeys(("bool", "int", "float"), frozenset(["number"])),
@@ -378,7 +381,7 @@ _BUILT_IN: Mapping[str, tuple[type, ...]] = {
 
 def kinds(type_: Type) -> Kinds:
     """The kinds that a value of a type can have: `number`, `text`, `list`, `mapping`, `struct`,
-    `nothing`. None at all where it is not known, as of `T?`, which is mostly asked before."""
+    `nothing`. Empty if they are unknown, as for `T?`, which conditions usually test before."""
     if type_.name in ("literal", "one_of"):
         return frozenset("text" if isinstance(each, str) else "number" for each in type_.args)
     return _KINDS.get(type_.name, ANYTHING)
@@ -416,8 +419,8 @@ def _works(word: str, one: str, other: str) -> bool:
 
 
 def never_equal(left: Type, right: Type) -> bool:
-    """Whether two values differ, whichever they are. One that may be nothing is not judged, as a
-    state may have its turn before the value comes."""
+    """Whether any two values of the types differ. False for a type that includes nothing, because a
+    state can run before the value is set."""
     enumerations = {"one_of", "literal"}
     if "one_of" in (left.name, right.name) and {left.name, right.name} <= enumerations:
         return not any(one == other for one in left.args for other in right.args)
@@ -446,7 +449,7 @@ def has_attribute(type_: Type, name: str) -> bool:
 
 
 def can_be_indexed(owner: Type, index: Type) -> bool:
-    """Whether some value of a type can be asked for an item of some such number or name."""
+    """Whether some value of a type has items with such an index."""
     known, wanted = kinds(owner), kinds(index)
     if not known or "struct" in known:
         return True
@@ -454,7 +457,7 @@ def can_be_indexed(owner: Type, index: Type) -> bool:
         return False
     if not wanted or "struct" in wanted:
         return True
-    # What the mappings of a script are asked by is text.
+    # The entries of mappings in a script have text as names.
     named = owner.name == "record" or bool(owner.args)
     by_number = bool(known & {"text", "list"}) or not named
     return (by_number and "number" in wanted) or ("mapping" in known and "text" in wanted) or (

@@ -14,10 +14,10 @@ from smachac.ir.nodes import Concurrence, Leaf, Node
 from smachac.ir.outcome_names import PREEMPTED, is_failure, successes
 from smachac.ir.traversal import outcome_names
 
-Answer = Literal["caught", "repeated", "passed over", "not caught", "lost"]
+Answer = Literal["caught", "repeated", "ignored", "not caught", "lost"]
 """What becomes of a failure: another state follows than after a success; the state, or one that
-contains it, runs again; what follows is what follows a success; the machine ends; nothing is said
-to follow."""
+contains it, runs again; the same follows as after a success; the machine ends; there is no
+transition."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -104,7 +104,7 @@ def _answer(arrival: Arrival, path: str, alike: set[tuple[str, str]]) -> Answer:
         return "repeated"
     final = _final(arrival)
     if (arrival.target, final) in alike and not is_failure(final):
-        return "passed over"
+        return "ignored"
     return "caught" if arrival.target else "not caught"
 
 

@@ -21,9 +21,9 @@ MOST_LEVELS = 50
 """The most containers outwards in which a key that is no output is searched."""
 
 Cause = Literal["unset", "nowhere", "lost", "outside", "remapped"]
-"""Why a key is not there: some path does not set it; nothing in the container sets it at all; what
-sets it does so inside a container that keeps it; a container around has it and it is not taken in;
-a remap leads to a name that nothing has."""
+"""Why a key is unset: some path does not set it; nothing in the container sets it; it is set inside
+a container of which it is no output; an outer container has it, but it is no input; a remap refers
+to a key that nothing sets."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -257,17 +257,19 @@ class Searches:
 
 
 class Reader(NamedTuple):
-    """A state that needs a key of its container, where the script says so, and in words."""
+    """A state that reads a key of its container: the name of the key in the state, the span of that
+    name, and the start of a sentence about the read."""
 
     path: str
     node: Node
+    key: str
     span: Span
     words: str
 
 
 def container_name(scope: UserdataScope, span: Span) -> str:
-    """What a finding calls a container: a sub-script has another name at each call, and a fault
-    in it is one fault."""
+    """The name of a container in a message: "the sub-script" for the root of a called script, which
+    has another name at each call."""
     is_called = scope.container.span.source is not span.source
     return "the sub-script" if is_called else f"`{scope.container.name}`"
 
@@ -276,12 +278,13 @@ def reader_at(scope: UserdataScope, vertex: Vertex, key: str) -> Reader:
     """The state at a vertex of a container; the container itself where that is its start."""
     node: Node = scope.container
     if not isinstance(vertex, str):
-        return Reader(scope.path, node, node.span, f"`{node.name}` goes through `{key}`")
+        return Reader(scope.path, node, key, node.span, f"`{node.name}` iterates over `{key}`")
     node = scope.children[vertex]
     names = remapping(node)
     own = next((each for each in node.inputs if names.get(each.name, each.name) == key), None)
     span = node.span if own is None else place_of(node, own)
     called = f"`{key}`"
     if own is not None and own.name != key:
-        called = f"`{own.name}` (`{key}` of {container_name(scope, span)})"
-    return Reader(f"{scope.path}/{vertex}", node, span, f"`{node.name}` reads {called}")
+        called = f"`{own.name}` (`{key}` in {container_name(scope, span)})"
+    name = key if own is None else own.name
+    return Reader(f"{scope.path}/{vertex}", node, name, span, f"`{node.name}` reads {called}")

@@ -1,8 +1,9 @@
-"""Rules over keys that are declared and not used, and used but not declared."""
+"""Rules on declarations: keys that are declared but not used, or used but not declared."""
 
 from __future__ import annotations
 
 from collections.abc import Iterable, Iterator
+from typing import Literal
 
 from smachac.analysis.accesses import callback_names, callbacks, userdata_fields
 from smachac.analysis.context import Context
@@ -28,12 +29,14 @@ from smachac.ir.traversal import outcome_names, remapping
 
 @rule("SM305", "dead-key", Severity.WARNING)
 def dead_key(context: Context) -> Iterator[Finding]:
-    """A key is set, and nothing ever reads it.
+    """A userdata key is set, but nothing in its container reads it.
 
-    Either it is left over, or its reader knows it by another name and works with something else.
-    Outputs that a state has by its type, and those of a sub-script, are nobody's fault. What the
-    outermost machine has set can be read after the run, so that is only noted: its `output_keys`
-    name the results.
+    The key is left over, or a state that should read it uses another name and so works with a
+    wrong value.
+
+    Exactly: only keys in `userdata` and in the `output_keys` of states are checked, not the outputs
+    of a state type or sub-script. It is an info for outputs of states in the outermost machine,
+    because they can be read after the run; its `output_keys` declare the results.
 
     Wrong:
         name: sm
@@ -73,8 +76,9 @@ def dead_key(context: Context) -> Iterator[Finding]:
             where = container_name(scope, span)
             yield Finding(
                 span=span,
-                message=f"`{key}` is set here, and nothing in {where} reads it",
-                help=f"take it out, or add it to the `output_keys` of {where}",
+                message=f"`{key}` is set, but nothing in {where} reads it",
+                arguments=(key,),
+                help=f"remove it, or add it to the `output_keys` of {where}",
                 related=calls(node, span),
                 severity=Severity.INFO if is_result else None,
                 node=scope.path if node is container else f"{scope.path}/{node.name}",
@@ -82,7 +86,7 @@ def dead_key(context: Context) -> Iterator[Finding]:
 
 
 def _sees_everything(scope: UserdataScope) -> bool:
-    """Whether something in a container may read any key."""
+    """Whether a state in a container can read any key."""
     raw = isinstance(scope.container, nodes.Iterator)
     return any(
         is_open(child) or (raw and isinstance(child, Leaf)) for child in scope.container.children
@@ -90,7 +94,7 @@ def _sees_everything(scope: UserdataScope) -> bool:
 
 
 def _read_in(scope: UserdataScope) -> set[str]:
-    """The keys that something in a container declares as its input, or goes through."""
+    """The keys that a state in a container declares as inputs, or over which it iterates."""
     found = set(scope.reads.get(START, ()))
     for child in scope.container.children:
         names = remapping(child)
@@ -99,7 +103,7 @@ def _read_in(scope: UserdataScope) -> set[str]:
 
 
 def _written_in(scope: UserdataScope) -> set[str]:
-    """The keys that are there from the start, or that something in a container declares to set."""
+    """The keys that are set at the start, or that a state in a container declares as an output."""
     container = scope.container
     found = {*scope.inputs, *(preset.key for preset in container.userdata)}
     if isinstance(container, nodes.Iterator):
@@ -127,7 +131,7 @@ def _set_by_the_script(scope: UserdataScope) -> Iterator[tuple[str, Node, Span]]
 
 
 def _sets(node: Node, key: Key) -> bool:
-    """Whether a state can set one of its outputs (SM306 says where it cannot)."""
+    """Whether a state can set one of its outputs (if not: SM306)."""
     if not isinstance(node, Leaf) or node.type != "CallbacksState":
         return True
     return key.name in callback_names(node)
@@ -135,11 +139,12 @@ def _sets(node: Node, key: Key) -> bool:
 
 @rule("SM306", "unused-declaration", Severity.WARNING)
 def unused_declaration(context: Context) -> Iterator[Finding]:
-    """A key, an outcome, a param or a type is declared, and nothing uses it.
+    """A key, an outcome, a param or a type is declared, but nothing uses it.
 
-    Who calls a container has to hand in what nobody needs, or waits for a result that never comes;
-    a param that nobody looks up changes nothing, though whoever sets it believes so. Nothing is
-    said of params where a template without an interface may read them.
+    The caller of a container must provide a key without need, or expects a result that is never
+    set. An unused param has no effect, so the robot does not do what the caller intended.
+
+    Exactly: params are not checked where a template without an interface can read them.
 
     Wrong:
         name: sm
@@ -187,44 +192,44 @@ def unused_declaration(context: Context) -> Iterator[Finding]:
         used = _read_in(scope) | scope.outputs.keys()
         for key in container.inputs:
             if key.name not in used and (scope.path, key.name) not in kept:
-                yield _unused(scope.path, container, key, "input", "reads")
+                yield _unused(scope.path, container, key, "input")
         set_ = _written_in(scope)
         outer = scope.path.rpartition("/")[0]
         for key in container.outputs:
             if key.name not in set_ and (outer, scope.outputs[key.name]) not in missing:
-                yield _unused(scope.path, container, key, "output", "sets")
+                yield _unused(scope.path, container, key, "output")
     yield from _unused_by_the_script(context.machine)
 
 
-def _unused(path: str, node: Node, key: Key, what: str, use: str) -> Finding:
+def _unused(path: str, node: Node, key: Key, role: Literal["input", "output"]) -> Finding:
     span = key.span if not isinstance(node, Leaf) else place_of(node, key)
+    use = "reads" if role == "input" else "sets"
     return Finding(
         span=span,
-        message=f"`{key.name}` is declared as an {what} here, and nothing inside {use} it",
-        help=f"take it out of the `{what}_keys`",
+        message=f"`{key.name}` is declared as an {role} key, but nothing inside {use} it",
+        arguments=(role, key.name),
+        help=f"remove it from the `{role}_keys`",
         related=calls(node, span),
         node=path,
     )
 
 
 def _unused_by_the_script(machine: Machine) -> Iterator[Finding]:
-    """Params and types: what is left of them in the graph is nothing."""
+    """The params and types of the script that nothing uses."""
     for what, word, via in machine.unused:
-        message = f"the type `{word.text}` is named here, and nothing is of it"
-        if what == "param":
-            message = f"the param `{word.text}` is given here, and nothing inside looks it up"
         outside = (call for call in via if call.source is not word.span.source)
         yield Finding(
             span=word.span,
-            message=message,
-            help="take it out, or look for the name that was meant",
+            message=f"the {what} `{word.text}` is defined, but nothing uses it",
+            arguments=(what, word.text),
+            help="remove it, or correct its name",
             related=tuple(Related(span=call, message=CALLED_HERE) for call in outside),
             node=machine.root.name,
         )
 
 
 def _unused_by_code(path: str, leaf: Leaf) -> Iterator[Finding]:
-    """The keys that a leaf made of code in the script declares, and that none of it uses."""
+    """The declared keys and outcomes of a leaf that its code in the script does not use."""
     functions = callbacks(leaf)
     if leaf.type not in ("CallbacksState", "ConditionalOutcomeState") or functions is None:
         return
@@ -235,42 +240,46 @@ def _unused_by_code(path: str, leaf: Leaf) -> Iterator[Finding]:
     if len(fields) == len(known):
         used = {key for each in fields for key in (*each.read, *each.tested)}
         used |= _meant_keys((key for key, _ in undeclared_reads(leaf)), leaf.inputs)
-        yield from _unused_keys(path, leaf, leaf.inputs, used, "input", "reads")
+        yield from _unused_keys(path, leaf, leaf.inputs, used, "input")
     if leaf.type == "ConditionalOutcomeState" and not [*unknown_endings(path, leaf)]:
         yield from _unused_outcomes(path, leaf, functions)
     if leaf.type == "CallbacksState":
         made = callback_names(leaf) | _meant_keys(undeclared_writes(leaf), leaf.outputs)
-        yield from _unused_keys(path, leaf, leaf.outputs, made, "output", "sets")
+        yield from _unused_keys(path, leaf, leaf.outputs, made, "output")
 
 
 def _unused_outcomes(path: str, leaf: Leaf, functions: Iterable[str]) -> Iterator[Finding]:
-    """The outcomes for which there is no condition."""
+    """The declared outcomes without a condition."""
     possible = {*functions, variable(leaf, "default_outcome"), leaf.catches}
     for outcome in leaf.outcomes:
         if outcome.name not in possible:
             yield Finding(
                 span=outcome.span,
-                message=f"`{outcome.name}` is declared as an outcome here, and no condition leads"
-                " to it",
-                help=f"give it one in `callbacks`, or take it out of the outcomes of `{leaf.name}`",
+                message=f"`{outcome.name}` is declared as an outcome, but no condition leads to it",
+                arguments=("outcome", outcome.name),
+                help="add a condition for it to `callbacks`, or remove it from `outcomes`",
                 related=calls(leaf, outcome.span),
                 node=path,
             )
 
 
 def _unused_keys(
-    path: str, leaf: Leaf, keys: Iterable[Key], used: Iterable[str], what: str, use: str
+    path: str,
+    leaf: Leaf,
+    keys: Iterable[Key],
+    used: Iterable[str],
+    role: Literal["input", "output"],
 ) -> Iterator[Finding]:
     names = set(used)
-    return (_unused(path, leaf, key, what, use) for key in keys if key.name not in names)
+    return (_unused(path, leaf, key, role) for key in keys if key.name not in names)
 
 
 @rule("SM308", "lossy-write", Severity.ERROR)
 def lossy_write(context: Context) -> Iterator[Finding]:
-    """A state sets a key that is not among its output keys.
+    """A state sets a key that is not one of its output keys.
 
-    SMACH drops the write and only logs it: the counter never counts, and the loop that it is to
-    end goes on.
+    SMACH discards the value and only writes a log entry: for example, a counter keeps its value,
+    and the loop that it limits never ends.
 
     Wrong:
         name: sm
@@ -300,12 +309,13 @@ def lossy_write(context: Context) -> Iterator[Finding]:
     for path, leaf in _leaves_with_code(context):
         for key in undeclared_writes(leaf):
             only = any(each.name == key for each in leaf.inputs)
-            what = "which is an input key only" if only else "which is none of its output keys"
+            what = "only an input key" if only else "not one of its output keys"
             span = _place_of_write(leaf, key)
             meant = _meant(key, leaf.outputs if not only else ())
             yield Finding(
                 span=span,
-                message=f"`{leaf.name}` sets `{key}`, {what}: the value is dropped",
+                message=f"`{leaf.name}` sets `{key}`, which is {what}: the value is discarded",
+                arguments=(key,),
                 help=meant or f"add `{key}` to the `output_keys` of `{leaf.name}`",
                 related=calls(leaf, span),
                 node=path,
@@ -315,7 +325,7 @@ def lossy_write(context: Context) -> Iterator[Finding]:
 
 
 def _leaves_with_code(context: Context) -> Iterator[tuple[str, Leaf]]:
-    """The leaves but those that see every key of an iterator, as there is nothing to declare."""
+    """The leaves that see only declared keys: all but children of iterators, and open ones."""
     for path, container in context.containers:
         for child in container.children if not isinstance(container, nodes.Iterator) else ():
             if isinstance(child, Leaf) and not child.open:
@@ -323,7 +333,7 @@ def _leaves_with_code(context: Context) -> Iterator[tuple[str, Leaf]]:
 
 
 def _meant_keys(wrong: Iterable[str], known: Iterable[Key]) -> set[str]:
-    """The keys that were meant by names of none (SM308, SM310)."""
+    """The likely keys behind misspelt names (SM308, SM310)."""
     guess = guesser(each.name for each in known)
     return {name for key in wrong if (name := guess(key)) is not None}
 
@@ -342,9 +352,10 @@ def _place_of_write(leaf: Leaf, key: str) -> Span:
 
 @rule("SM310", "undeclared-access", Severity.ERROR)
 def undeclared_access(context: Context) -> Iterator[Finding]:
-    """Code of the script reads a userdata key that its state does not declare.
+    """The code of a state reads a userdata key that is not one of its input keys.
 
-    The state sees only its input keys: the read fails, and the machine stops there.
+    A state can read only its input keys: the read fails, and the machine stops in the middle of
+    the task.
 
     Wrong:
         name: sm
@@ -379,7 +390,9 @@ def undeclared_access(context: Context) -> Iterator[Finding]:
         for key, code in undeclared_reads(leaf):
             yield Finding(
                 span=code.span,
-                message=f"the code of `{leaf.name}` reads `{key}`, which is none of its input keys",
+                message=f"the code of `{leaf.name}` reads `{key}`, which is not one of its"
+                " input keys",
+                arguments=(key,),
                 help=_meant(key, leaf.inputs)
                 or f"add `{key}` to the `input_keys` of `{leaf.name}`",
                 related=calls(leaf, code.span),
@@ -403,11 +416,13 @@ def leaves_by_type(context: Context, *, declared: bool) -> Iterator[tuple[str, L
 
 @rule("SM309", "undeclared-return", Severity.ERROR)
 def undeclared_return(context: Context) -> Iterator[Finding]:
-    """The Python code of a state type returns what is not one of its outcomes, or nothing.
+    """The Python code of a state type returns a value that is not one of its outcomes, or no value.
 
-    SMACH ends the whole machine with an error then. The code is read, never run; what Jinja fills
-    in is not judged. A warning where only some ways through `execute` end without `return`: they
-    may be ways that nothing ever takes.
+    Then SMACH stops the whole machine with an error, and the robot stops in the middle of its task.
+
+    Exactly: the code is read, never run, and parts that Jinja fills in are not checked. It is a
+    warning if only some paths through `execute` end without `return`, because such a path may be
+    impossible.
 
     Wrong:
         name: sm
@@ -460,12 +475,15 @@ def undeclared_return(context: Context) -> Iterator[Finding]:
 def _wrong_returns(path: str, leaf: Leaf, body: Body) -> Iterator[Finding]:
     outcomes = outcome_names(leaf)
     guess = guesser(outcomes)
-    known = f"its outcomes are {listed(outcomes)}" if outcomes else "it has no outcomes"
+    known = f"return one of its outcomes: {listed(outcomes)}"
+    if not outcomes:
+        known = f"add outcomes to the interface `{leaf.type}`"
     for word in body.returns:
         if word.text not in outcomes:
             yield Finding(
                 span=word.span,
-                message=f"`{leaf.type}` returns `{word.text}`, which is none of its outcomes",
+                message=f"`{leaf.type}` returns `{word.text}`, which is not one of its outcomes",
+                arguments=(leaf.type, word.text),
                 help=did_you_mean(guess(word.text)) or known,
                 node=path,
             )
@@ -474,6 +492,7 @@ def _wrong_returns(path: str, leaf: Leaf, body: Body) -> Iterator[Finding]:
         yield Finding(
             span=body.silent,
             message=f"`execute` of `{leaf.type}` {does} an outcome",
+            arguments=(leaf.type,),
             help=known,
             severity=None if body.always_silent else Severity.WARNING,
             node=path,
@@ -481,14 +500,15 @@ def _wrong_returns(path: str, leaf: Leaf, body: Body) -> Iterator[Finding]:
 
 
 def unknown_reads(context: Context) -> Iterator[Finding]:
-    """The keys that code of a type reads and its interface does not take; SM310 says them."""
+    """The keys that the code of a type reads without an input in its interface (SM310)."""
     for path, leaf, body in leaves_by_type(context, declared=True):
         inputs = [key.name for key in leaf.inputs]
         for word in _first_of_each(body.reads, inputs):
             yield Finding(
                 span=word.span,
-                message=f"the code of `{leaf.type}` reads `{word.text}`, which is none of the input"
-                " keys of its interface",
+                message=f"the code of `{leaf.type}` reads `{word.text}`, which is not an input"
+                " key of its interface",
+                arguments=(word.text,),
                 help=did_you_mean(guesser(inputs)(word.text))
                 or f"add `{word.text}` to the `input_keys` of the interface `{leaf.type}`",
                 node=path,
@@ -496,20 +516,21 @@ def unknown_reads(context: Context) -> Iterator[Finding]:
 
 
 def dropped_writes(context: Context) -> Iterator[Finding]:
-    """The keys that code of a type writes and its interface does not give; SM308 says them, but
-    for those that are read as well and not known at all, which is SM310."""
+    """The keys that the code of a type sets without an output in its interface (SM308). Unknown
+    keys that the code also reads are left to SM310."""
     for path, leaf, body in leaves_by_type(context, declared=True):
         inputs = {key.name for key in leaf.inputs}
         outputs = [key.name for key in leaf.outputs]
         unknown = {word.text for word in body.reads} - inputs
         for word in _first_of_each(body.writes, [*outputs, *unknown]):
             only = word.text in inputs
-            what = "an input key only" if only else "none of the output keys of its interface"
+            what = "only an input key" if only else "not an output key of its interface"
             guess = None if only else did_you_mean(guesser(outputs)(word.text))
             yield Finding(
                 span=word.span,
-                message=f"the code of `{leaf.type}` writes `{word.text}`, which is {what}:"
-                " the value is dropped",
+                message=f"the code of `{leaf.type}` sets `{word.text}`, which is {what}: the value"
+                " is discarded",
+                arguments=(word.text,),
                 help=guess
                 or f"add `{word.text}` to the `output_keys` of the interface `{leaf.type}`",
                 node=path,
@@ -517,7 +538,7 @@ def dropped_writes(context: Context) -> Iterator[Finding]:
 
 
 def _first_of_each(words: Iterable[Word], known: Iterable[str]) -> list[Word]:
-    """The words that are not known, each where it first stands."""
+    """The first occurrence of each unknown word."""
     found: dict[str, Word] = {}
     for word in words:
         found.setdefault(word.text, word)

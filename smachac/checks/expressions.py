@@ -1,4 +1,4 @@
-"""Rules over the code in a script."""
+"""Rules on the code in a script."""
 
 from __future__ import annotations
 
@@ -17,6 +17,7 @@ from smachac.diagnostics.diagnostic import Finding, Related, Severity
 from smachac.diagnostics.source import Word
 from smachac.diagnostics.spelling import guesser
 from smachac.diagnostics.wording import listed
+from smachac.ir.expressions import print_expression
 from smachac.ir.nodes import Expression, Leaf, Struct
 from smachac.ir.traversal import expressions, outcome_names
 
@@ -26,10 +27,10 @@ MAX_LEVELS = 500
 
 @rule("SM016", "bad-expression", Severity.ERROR, firm=True)
 def bad_expression(context: Context) -> Iterator[Finding]:
-    """Code of the script is no expression, or something else stands where code is due.
+    """Code in the script is not a valid expression, or there is no code where code is required.
 
-    The generated program would not even start, or would fail at the first visit of the state,
-    with the robot in the middle of its task.
+    The generated program would not start, or would stop at the first visit of the state, with the
+    robot in the middle of its task.
 
     Wrong:
         name: sm
@@ -63,7 +64,8 @@ def bad_expression(context: Context) -> Iterator[Finding]:
             if fault:
                 yield Finding(
                     span=expression.span,
-                    message=f"`{expression.text}` is no expression: {fault}",
+                    message=f"`{expression.text}` is not a valid expression: {fault}",
+                    arguments=(expression.text,),
                     help="write a value, or a function such as `lambda ud: ud.n + 1`",
                     node=path,
                 )
@@ -72,7 +74,7 @@ def bad_expression(context: Context) -> Iterator[Finding]:
 
 
 def _fault(text: str) -> str:
-    """What Python says against an expression; nothing when it is one."""
+    """The reason why Python rejects an expression; empty if it is valid."""
     try:
         with warnings.catch_warnings():
             warnings.simplefilter("ignore", SyntaxWarning)
@@ -80,7 +82,7 @@ def _fault(text: str) -> str:
     except SyntaxError as error:
         return (error.msg or "invalid syntax").lower()
     except (ValueError, RecursionError, MemoryError):
-        return "it is too deep, or holds a character that code may not have"
+        return "it is nested too deeply, or contains a character that is not allowed"
     # Every level takes a character or more.
     if len(text) > MAX_LEVELS and _is_deeper(tree):
         return f"it is nested deeper than {MAX_LEVELS} levels"
@@ -97,7 +99,7 @@ def _is_deeper(tree: ast.AST) -> bool:
 
 
 def _missing_code(leaf: Leaf, path: str) -> Iterator[Finding]:
-    """Entries of `callbacks` that are no code: a number, a list, nothing."""
+    """Entries of `callbacks` that are not code, such as a number or a list."""
     for variable in leaf.variables:
         if variable.name != "callbacks" or not isinstance(variable.value.data, Struct):
             continue
@@ -105,23 +107,25 @@ def _missing_code(leaf: Leaf, path: str) -> Iterator[Finding]:
             if not isinstance(value, Expression):
                 yield Finding(
                     span=variable.value.span,
-                    message=f"the callback `{key}` of `{leaf.name}` is no function",
-                    help=f"write it as `{key}: 'lambda ud: ud.n + 1'`, or name a function",
+                    message=f"the callback `{key}` of `{leaf.name}` is not a function",
+                    arguments=(key,),
+                    help=f"write a function, such as `{key}: 'lambda ud: ud.n + 1'`,"
+                    " or the name of one",
                     node=path,
                 )
 
 
 def unknown_endings(path: str, leaf: Leaf) -> Iterator[Finding]:
-    """What the script makes a leaf end with that is none of its outcomes; SM102 says it."""
+    """The unknown outcomes in the conditions and steps of a leaf (SM102)."""
     outcomes = outcome_names(leaf)
     guess = guesser(outcomes)
-    known = f"its outcomes are {listed(outcomes)}"
+    known = f"use one of its outcomes: {listed(outcomes)}"
     for word, what in _endings(leaf) if outcomes and not leaf.open else ():
         if word.text not in outcomes:
             yield Finding(
                 span=word.span,
-                message=f"{what} of `{leaf.name}` is for `{word.text}`,"
-                " which is none of its outcomes",
+                message=f"{what} `{word.text}`, which is not one of its outcomes",
+                arguments=(word.text,),
                 help=did_you_mean(guess(word.text)) or known,
                 related=calls(leaf, word.span),
                 node=path,
@@ -129,30 +133,32 @@ def unknown_endings(path: str, leaf: Leaf) -> Iterator[Finding]:
 
 
 def _endings(leaf: Leaf) -> Iterator[tuple[Word, str]]:
-    """The outcomes that conditions and steps of a leaf speak of."""
+    """The outcomes in the conditions and steps of a leaf, each with the start of its message."""
     if leaf.type == "ConditionalOutcomeState":
         for outcome, site in (callbacks(leaf) or {}).items():
-            yield Word(outcome, site.span), "a condition"
+            yield Word(outcome, site.span), f"a condition of `{leaf.name}` leads to"
     elif leaf.type == "ScriptedState":
         for held in leaf.variables:
             steps = held.value.data if held.name == "steps" else ()
             for step in steps if isinstance(steps, tuple) else ():
-                told = dict(step.entries).get("outcome") if isinstance(step, Struct) else None
-                if isinstance(told, str) and told:
-                    yield Word(told, held.value.span), "a step"
+                end = dict(step.entries).get("outcome") if isinstance(step, Struct) else None
+                if isinstance(end, str) and end:
+                    yield Word(end, held.value.span), f"a step of `{leaf.name}` ends with"
 
 
 MOST_SOURCES = 3
-"""So many of the places a value comes from one finding shows."""
+"""Limit on the origins of values that a finding shows."""
 
 
 @rule("SM311", "impossible-operation", Severity.ERROR)
 def impossible_operation(context: Context) -> Iterator[Finding]:
-    """Code of the script does with a value what its type cannot do.
+    """Code in the script contains an operation that the type of a value does not support.
 
-    It fails in every run that comes to it, with the robot in the middle of its task: a number is
-    added to text, a word is asked for an item, a function gets too many arguments. A warning where
-    only some runs evaluate that part of the code. Of `any`, and of a `T?`, nothing is said.
+    The code fails in every run that evaluates it, with the robot in the middle of its task: for
+    example, it adds a number to text, or calls a function with too many arguments.
+
+    Exactly: a warning if only some runs evaluate that part of the code. Values of the type `any` or
+    of a type `T?` are not checked.
 
     Wrong:
         name: sm
@@ -188,10 +194,10 @@ def impossible_operation(context: Context) -> Iterator[Finding]:
 
 @rule("SM312", "constant-comparison", Severity.WARNING)
 def constant_comparison(context: Context) -> Iterator[Finding]:
-    """Code of the script compares values of which it is known that they are never equal.
+    """Code in the script compares values that, by their types, can never be equal.
 
-    Python does not complain of it: the condition is never true, or always, and the machine goes on
-    the wrong way.
+    Python reports no error: the condition is always false, or always true, and the machine takes a
+    wrong transition.
 
     Wrong:
         name: sm
@@ -226,7 +232,7 @@ def constant_comparison(context: Context) -> Iterator[Finding]:
 
 
 def mixed_units(context: Context) -> Iterator[Finding]:
-    """The operations over numbers of different units; SM504 says them."""
+    """The operations on numbers with different units (SM504)."""
     for site, fault in _faults(context, "unit"):
         yield _finding(site, fault, f"in {_owner(site)}, {fault.what}")
 
@@ -236,18 +242,19 @@ def _faults(context: Context, kind: FaultKind) -> Iterator[tuple[ExpressionSite,
 
 
 def _owner(site: ExpressionSite) -> str:
-    return f"the {'code' if isinstance(site.node, Leaf) else 'data'} of `{site.node.name}`"
+    return f"the code of `{site.node.name}`"
 
 
 def _finding(
     site: ExpressionSite, fault: Fault, message: str, severity: Severity | None = None
 ) -> Finding:
     guess = did_you_mean(guesser(fault.choices)(fault.word)) if fault.choices else None
-    choices = f"it is one of {', '.join(f'`{each}`' for each in fault.choices)}"
+    choices = f"use one of {', '.join(f'`{each}`' for each in fault.choices)}"
     span = site.expression.span
     return Finding(
         span=span,
         message=message,
+        arguments=(print_expression(fault.expr),),
         help=guess or (choices if fault.choices else fault.help),
         related=(*_sources(site, fault), *calls(site.node, span)),
         node=site.path,
@@ -256,7 +263,7 @@ def _finding(
 
 
 def _sources(site: ExpressionSite, fault: Fault) -> Iterator[Related]:
-    """Where the types of the keys come from."""
+    """The origins of the values of the keys."""
     shown = {site.expression.span}
     for key in fault.keys:
         cell = site.cells.get(key)

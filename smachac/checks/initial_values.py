@@ -1,4 +1,4 @@
-"""The rule over what containers hold before they run."""
+"""The rule on initial values of userdata."""
 
 from __future__ import annotations
 
@@ -13,11 +13,12 @@ from smachac.ir.nodes import Given, Preset
 
 @rule("SM313", "overruled-value", Severity.WARNING)
 def overruled_value(context: Context) -> Iterator[Finding]:
-    """Two states of one container give a key of its userdata different values.
+    """Two states of one container give the same userdata key different initial values.
 
-    The userdata of a state is that of its container, and all of it is set before the container
-    starts: the last value counts, also for the states before. Nothing is said where the values are
-    the same.
+    The `userdata` of a state is set in its container, before the container starts. The last value
+    overwrites the others, so an earlier state works with a value that was written for another one.
+
+    Exactly: equal values are allowed.
 
     Wrong:
         name: sm
@@ -64,25 +65,25 @@ def _overruled(path: str, preset: Preset) -> Iterator[Finding]:
     vain = [each for each in others if not _alike(each, last)]
     if not vain:
         return
-    whose = f"`{path.rpartition('/')[2]}`"
-    first = "its own `userdata` gives" if vain[0].own else f"`{vain[0].state.text}` gives"
+    giver = path.rpartition("/")[2] if vain[0].own else vain[0].state.text
     yield Finding(
         span=_place(vain[0], last),
-        message=f"{whose} never holds the value that {first} `{preset.key}`:"
-        f" `{last.state.text}` gives it another one",
-        help="let one of them read a key of another name, through its `remapping`"
+        message=f"the initial value of `{preset.key}` in `{giver}` is never used:"
+        f" `{last.state.text}` overwrites it",
+        arguments=(preset.key,),
+        help="use another key in one of the two states, with `remapping`"
         if not vain[0].own
-        else f"give `{preset.key}` once, or another key through the `remapping` of the state",
+        else f"set `{preset.key}` only once, or use another key in the state, with `remapping`",
         related=(
-            *(Related(span=each.span, message="nor this one") for each in vain[1:]),
-            Related(span=_place(last, vain[0]), message="the last one counts"),
+            *(Related(span=each.span, message="overwritten too") for each in vain[1:]),
+            Related(span=_place(last, vain[0]), message="this value is used"),
         ),
         node=path,
     )
 
 
 def _place(given: Given, other: Given) -> Span:
-    """Where a value is given; calls of one sub-script are told apart by their names."""
+    """Where a value is given; calls of one sub-script differ only in the names of their states."""
     return given.state.span if given.span == other.span else given.span
 
 

@@ -1,4 +1,4 @@
-"""Rules over types: what is written must fit what is read (ir/fitting.py says what fits)."""
+"""The rule on types: a value must fit the type with which it is read (see type_lattice.py)."""
 
 from __future__ import annotations
 
@@ -19,12 +19,13 @@ from smachac.ir.types import Type
 
 @rule("SM304", "type-mismatch", Severity.ERROR)
 def type_mismatch(context: Context) -> Iterator[Finding]:
-    """A value is written as one type and read as another.
+    """A value does not fit the type with which it is read.
 
-    Types are those of the interfaces and of the script, of literals and of what functions return,
-    followed through remaps and containers. An `int` fits a `float`, a `T` a `T?`, an enumeration
-    one with more choices; `any` fits all. What does not fit fails in the middle of the task, or
-    worse, is taken for something else.
+    The state that reads it fails in the middle of the task, or uses the value with a wrong meaning.
+
+    Exactly: types come from interfaces, from the script, from literals and from the results of
+    functions, and are followed through remappings and containers. An `int` fits a `float`, a `T`
+    fits a `T?`, an enumeration fits one with more choices, and `any` fits every type.
 
     Wrong:
         name: sm
@@ -64,11 +65,11 @@ def type_mismatch(context: Context) -> Iterator[Finding]:
 
 
 MOST_PLACES = 6
-"""So many of the other places one finding shows."""
+"""Limit on the related places of a finding."""
 
 
 def clash_findings(clashes: list[Clash]) -> Iterator[Finding]:
-    """One finding for each value that fits none of its readers, else for each reader."""
+    """One finding for each value that fits none of its readers, and else one for each reader."""
     origins = Counter(map(_root, clashes))
     readers = Counter(clash.cell for clash in clashes)
     groups: dict[tuple[str, TypeFlow | Cell], list[Clash]] = {}
@@ -112,6 +113,7 @@ def _finding(group: list[Clash], *, at_origin: bool) -> Finding:
     return Finding(
         span=span,
         message=message + _part(clash),
+        arguments=(about.key, str(widened(clash.misfit.given)), str(clash.misfit.wanted)),
         help=_help(clash),
         related=(*related, *(calls(about.node, span) if about.node is not None else ())),
         node=about.path,
@@ -123,7 +125,7 @@ def _owner(cell: Cell) -> str:
 
 
 def _read(cell: Cell) -> str:
-    """The type that a cell requires, in words."""
+    """The type that a cell requires, as part of a message."""
     wanted = f"`{cell.declared}`"
     match cell.role:
         case "input":
@@ -131,12 +133,12 @@ def _read(cell: Cell) -> str:
         case "output":
             return f"{_owner(cell)} writes `{cell.key}` as {wanted}"
         case "variable":
-            return f"the variable `{cell.key}` of {_owner(cell)} is {wanted}"
+            return f"the variable `{cell.key}` of {_owner(cell)} has the type {wanted}"
     return f"{_owner(cell)} holds `{cell.key}` as {wanted}"
 
 
 def written(flow: TypeFlow) -> str:
-    """What comes, and from whom, in words."""
+    """A value and its origin, as part of a message."""
     cell = flow.cell
     if flow.how == "declared":
         match cell.role:
@@ -146,12 +148,12 @@ def written(flow: TypeFlow) -> str:
                 return f"{_owner(cell)} holds `{cell.key}` as `{flow.type}`"
     what = in_words(flow.type)
     if flow.how == "computed":
-        return f"`{cell.key}` of {_owner(cell)} becomes {what}"
+        return f"{_owner(cell)} computes `{cell.key}` as {what}"
     return f"`{cell.key}` is {what}"
 
 
 def in_words(type_: Type) -> str:
-    """A type as messages name it; literals as they are written."""
+    """A type as part of a message; literals as in the script."""
     match type_.name:
         case "literal":
             texts = (f'"{each}"' if isinstance(each, str) else str(each) for each in type_.args)
@@ -165,11 +167,11 @@ def in_words(type_: Type) -> str:
 
 
 def _part(clash: Clash) -> str:
-    """Which part does not fit, where it is not the whole."""
+    """The part of the value that does not fit; empty if it is the whole value."""
     given, wanted = clash.misfit.given, clash.misfit.wanted
     if given == clash.flow.type or clash.misfit.kind == "unit":
         return ""
-    return f": {in_words(given)} is no `{wanted}`"
+    return f": {in_words(given)} does not fit `{wanted}`"
 
 
 HELP = {
@@ -183,24 +185,24 @@ HELP = {
 def _help(clash: Clash) -> str:
     given, wanted = clash.misfit.given, clash.misfit.wanted
     if clash.misfit.kind == "unit":
-        return f"convert `{given}` to `{wanted}` on the way, or say the right unit at both places"
+        return f"convert `{given}` to `{wanted}`, or correct the unit at one of the two places"
     if wanted.name == "one_of" and given.name == "literal":
         choices = [str(choice) for choice in wanted.args]
         guess = did_you_mean(guesser(choices)(str(given.args[0])))
-        return guess or f"it is one of {', '.join(f'`{choice}`' for choice in choices)}"
+        return guess or f"use one of {', '.join(f'`{choice}`' for choice in choices)}"
     if clash.flow.how == "value" and wanted.name in HELP:
         return HELP[wanted.name]
     if given.name == "none":
-        return f"give it a value, or let the reader take `{wanted}?`"
+        return f"give it a value, or declare it as `{wanted}?` where it is read"
     if given.name == "optional" and fits(inside(given), wanted):
-        return f"it may be absent: let the reader take `{given}`"
+        return f"declare it as `{given}` where it is read, because it can be absent"
     if given.name == "float" and wanted.name == "int":
-        return "a float fits no int: read it as `float`, or round it on the way"
-    return f"write what fits `{wanted}`, or say another type where it is read"
+        return "declare it as `float` where it is read, or convert it with `round(...)`"
+    return f"write a value that fits `{wanted}`, or change the type where it is read"
 
 
 def _remaps(clash: Clash) -> Iterator[tuple[Span, str]]:
-    """The remaps that the value went through."""
+    """The remaps on the path of the value, with a text for each."""
     chain: list[Cell] = [clash.cell]
     flow: TypeFlow | None = clash.flow.before
     while flow is not None:
@@ -214,5 +216,7 @@ def _remaps(clash: Clash) -> Iterator[tuple[Span, str]]:
             for remap in node.remaps:
                 if remap.key == cell.key and remap.span.source is not NOWHERE.source:
                     around = other.node.name if other.node is not None else "the base"
-                    text = f"`{remap.key}` of `{node.name}` is `{remap.to}` of `{around}`"
+                    text = (
+                        f"`{remap.key}` of `{node.name}` is remapped to `{remap.to}` of `{around}`"
+                    )
                     yield remap.span, text

@@ -1,4 +1,4 @@
-"""Rules over the flow of userdata: what is read has to be set before, and get there."""
+"""Rules on the flow of userdata: unset keys, remappings, keys that do not cross a container."""
 
 from __future__ import annotations
 
@@ -26,18 +26,18 @@ from smachac.diagnostics.wording import listed
 from smachac.ir.nodes import Node
 
 MOST_RELATED = 3
-"""More places beside the fault than these help nobody."""
+"""Limit on the related places of one kind in a finding."""
 
 
 @rule("SM301", "read-before-write", Severity.ERROR)
 def read_before_write(context: Context) -> Iterator[Finding]:
-    """A state reads a userdata key that nothing has set on the way to it.
+    """A state reads a userdata key that is unset on at least one path to the state.
 
-    The machine stops there with an error, with the robot wherever it happens to be. If every path
-    leads to that it is an error, if only some do it is a warning.
+    On that path the machine stops with an error, and the robot stops in the middle of its task.
 
-    An output of a state counts as set on every outcome but `preempted`, unless its interface says
-    otherwise (`writes:`). What a state of an unknown type does is not judged.
+    Exactly: an error if the key is unset on every path, a warning if it is unset on some paths
+    only. An output of a state counts as set on every outcome except `preempted`, unless `writes:`
+    in the interface defines other outcomes. States of an unknown type are not checked.
 
     Wrong:
         name: sm
@@ -84,7 +84,7 @@ def read_before_write(context: Context) -> Iterator[Finding]:
 
 
 class _Guesses:
-    """What was meant by a name that no key of a container has."""
+    """The guessers for the keys of containers, by the path of the container."""
 
     def __init__(self) -> None:
         self._known: dict[str, Guesser] = {}
@@ -97,17 +97,16 @@ class _Guesses:
 
 def _unset(missing: Missing, witness: Witness, users: list[Use], guesses: _Guesses) -> Finding:
     scope, reader, name = missing.scope, witness.reader, missing.scope.container.name
-    why = "before anything has set it"
-    help = f"set it on the way, or give `{name}` a first value: `userdata: {{{missing.key}: ...}}`"
+    why = f"which is unset on {'every path' if witness.always else 'some paths'}"
+    value = f"`userdata: {{{missing.key}: ...}}`"
+    help = f"set `{missing.key}` on every path, or give it an initial value in `{name}`: {value}"
     if missing.cause == "nowhere":
         why = f"which nothing in {container_name(scope, reader.span)} sets"
         help = did_you_mean(guesses.of(scope)(missing.key)) or help
-    elif not witness.always:
-        why = "which not every way to it has set"
-    words = reader.words if why.startswith("before") else f"{reader.words},"
     return Finding(
         span=reader.span,
-        message=f"{words} {why}",
+        message=f"{reader.words}, {why}",
+        arguments=(reader.key,),
         help=help,
         related=(
             *_readers(missing, witness),
@@ -121,7 +120,7 @@ def _unset(missing: Missing, witness: Witness, users: list[Use], guesses: _Guess
 
 
 def _keys_of(scope: UserdataScope) -> set[str]:
-    """The keys that a container has, for those that misspell them."""
+    """The keys of a container: the candidates for a misspelt name."""
     keys = {*scope.held, *scope.inputs}
     for steps in scope.steps.values():
         for step in steps:
@@ -130,33 +129,36 @@ def _keys_of(scope: UserdataScope) -> set[str]:
 
 
 def _readers(missing: Missing, witness: Witness) -> Iterator[Related]:
-    """What reads the key inside the place of a finding, and other places that miss it as well."""
+    """The state inside a container that reads the key, and the other readers of the unset key."""
     if witness.inner is not None:
-        yield from other_place(witness.inner.span, f"{witness.inner.words} there")
+        yield from other_place(witness.inner.span, f"{witness.inner.words} here")
     for vertex in witness.also[:MOST_RELATED]:
         reader = reader_at(missing.scope, vertex, missing.key)
         yield from other_place(reader.span, f"{reader.words} as well")
 
 
 def _writers(users: list[Use]) -> Iterator[Related]:
-    """What sets the key, only elsewhere or only sometimes."""
-    writers = [use for use in users if use.kind not in ("reads", "takes in")]
+    """The states that set the key, on other paths or on some outcomes only."""
+    writers = [use for use in users if use.kind not in ("reads", "copies in")]
     for use in writers[:MOST_RELATED]:
         name = use.path.rpartition("/")[2]
-        when = ""
+        text = f"`{name}` sets it here"
         if not use.always and use.outcomes:
-            when = f", but only with {listed(use.outcomes)}"
+            text = f"`{name}` sets it only on {listed(use.outcomes)}"
         elif not use.always:
-            when = " at most sometimes"
-        yield from other_place(use.span, f"`{name}` sets it{when}")
+            text = f"`{name}` can set it, but this is not guaranteed on any outcome"
+        yield from other_place(use.span, text)
 
 
 @rule("SM302", "unknown-remap", Severity.ERROR)
 def unknown_remap(context: Context) -> Iterator[Finding]:
-    """A remapping names a key that the state does not have, or leads to one that nothing has.
+    """A remapping contains a userdata key that does not exist.
 
-    SMACH passes over the entry in silence: the state goes on with the key of its own name, another
-    value than the one meant, or finds nothing.
+    SMACH ignores such an entry without a message: the state uses the key of its own name, which has
+    another value than intended, or is not set at all.
+
+    Exactly: in `remapping: {a: b}`, `a` is not a key of the state, or nothing in the container
+    sets `b`.
 
     Wrong:
         name: sm
@@ -195,10 +197,11 @@ def unknown_remap(context: Context) -> Iterator[Finding]:
 def _unknown_remaps(path: str, node: Node) -> Iterator[Finding]:
     own = list(dict.fromkeys(key.name for key in (*node.inputs, *node.outputs)))
     for remap, meant, certain in unknown_remaps(node):
-        known = f"its keys are {listed(own)}" if own else "it has no keys"
+        known = f"use one of its keys: {listed(own)}" if own else "remove it: the state has no keys"
         yield Finding(
             span=remap.span,
-            message=f"`{node.name}` has no key `{remap.key}` that could stand for `{remap.to}`",
+            message=f"`{node.name}` has no userdata key `{remap.key}` to remap to `{remap.to}`",
+            arguments=(remap.key, remap.to),
             help=did_you_mean(meant) or known,
             related=calls(node, remap.span),
             node=path,
@@ -207,7 +210,7 @@ def _unknown_remaps(path: str, node: Node) -> Iterator[Finding]:
 
 
 def _remapped(missing: Missing, guesses: _Guesses) -> Iterator[Finding]:
-    """The remaps that lead to a key that nothing has."""
+    """The remaps to a key that nothing sets."""
     scope, key = missing.scope, missing.key
     around = scope.container.name
     for child in scope.container.children:
@@ -217,10 +220,11 @@ def _remapped(missing: Missing, guesses: _Guesses) -> Iterator[Finding]:
             guess = guesses.of(scope)(key)
             yield Finding(
                 span=remap.span,
-                message=f"`{child.name}` takes its `{remap.key}` from `{key}`, which nothing in"
+                message=f"`{remap.key}` of `{child.name}` is remapped to `{key}`, which nothing in"
                 f" {container_name(scope, remap.span)} sets",
+                arguments=(remap.key, key),
                 help=did_you_mean(guess)
-                or f"set `{key}` before, or give `{around}` a first value of it",
+                or f"set `{key}` before this state, or give it an initial value in `{around}`",
                 related=calls(child, remap.span),
                 node=f"{scope.path}/{child.name}",
             )
@@ -228,10 +232,10 @@ def _remapped(missing: Missing, guesses: _Guesses) -> Iterator[Finding]:
 
 @rule("SM303", "undeclared-container-key", Severity.ERROR)
 def undeclared_container_key(context: Context) -> Iterator[Finding]:
-    """A state needs a key that its container does not take in, though one around it has the key.
+    """A state reads a key of an outer container, but it is not an input of its own container.
 
-    A container has userdata of its own; what its `input_keys` do not name stays outside. The
-    state finds nothing, and the machine stops there with an error.
+    A container has its own userdata: only the keys in its `input_keys` are copied into it. The
+    state finds the key unset, and the machine stops with an error in the middle of the task.
 
     Wrong:
         name: sm
@@ -277,11 +281,12 @@ def undeclared_container_key(context: Context) -> Iterator[Finding]:
         others = tuple(reader_at(scope, vertex, key) for vertex in missing.vertices[1:])
         yield Finding(
             span=reader.span,
-            message=f"{reader.words}, which `{holder.name}` has but {listed(between)}"
-            f" {'do' if len(between) > 1 else 'does'} not take in",
+            message=f"{reader.words}, which is a key of `{holder.name}` but not an input of"
+            f" {listed(between)}",
+            arguments=(reader.key,),
             help=f"add `{key}` to the `input_keys` of {listed(between)}",
             related=(
-                *other_place(scope.container.span, f"`{between[-1]}` begins here"),
+                *other_place(scope.container.span, f"`{between[-1]}` is defined here"),
                 *(
                     related
                     for each in others[:MOST_RELATED]
@@ -295,7 +300,7 @@ def undeclared_container_key(context: Context) -> Iterator[Finding]:
 
 
 def _taken_in(flow: DataFlow, path: str, holder: str, key: str) -> tuple[Edit, ...]:
-    """What makes every container between the key and its reader take it in."""
+    """The edits that make the key an input of every container between its holder and its reader."""
     edits: list[Edit] = []
     while path != holder:
         added = with_input(flow.scopes[path].container, key)
@@ -307,16 +312,18 @@ def _taken_in(flow: DataFlow, path: str, holder: str, key: str) -> tuple[Edit, .
 
 
 def _between(path: str, holder: str) -> list[str]:
-    """The names of the containers from below the one that holds a key to the one that lacks it."""
+    """The names of the containers between the holder of a key and its reader, outermost first."""
     return path[len(holder) + 1 :].split("/")
 
 
 @rule("SM307", "lost-output", Severity.WARNING)
 def lost_output(context: Context) -> Iterator[Finding]:
-    """A key is written inside a container and read outside, but the container does not hand it out.
+    """A key is set inside a container and read outside, but is not an output key of the container.
 
-    What its `output_keys` do not name stays inside. Who reads the key outside finds nothing, which
-    is an error, or the value from before.
+    Only the keys in `output_keys` are copied out of a container. The state that reads the key
+    outside works with an older value, or finds the key unset, and then the machine stops.
+
+    Exactly: an error if the key is unset outside, a warning if it has an older value.
 
     Wrong:
         name: sm
@@ -364,14 +371,15 @@ def lost_output(context: Context) -> Iterator[Finding]:
     for lost in context.lost_outputs:
         keeper, written = lost.keeper.container, place_of(lost.writer, lost.written)
         inner = f"`{lost.own}`" + (f" (`{lost.key}` outside)" * (lost.own != lost.key))
-        finds = "so it finds nothing" if lost.is_missing else "so it finds an older value"
+        gets = "an unset key" if lost.is_missing else "an older value"
         yield Finding(
             span=keeper.span,
-            message=f"`{keeper.name}` does not hand out {inner}, which `{lost.writer.name}` writes"
-            f" in it; `{lost.reader.node.name}` reads it outside, {finds}",
+            message=f"{inner}, set by `{lost.writer.name}`, is not an output of"
+            f" `{keeper.name}`: `{lost.reader.node.name}` reads {gets}",
+            arguments=(lost.own,),
             help=f"add `{lost.own}` to the `output_keys` of `{keeper.name}`",
             related=(
-                *other_place(written, f"`{lost.writer.name}` writes it"),
+                *other_place(written, f"`{lost.writer.name}` sets it here"),
                 *other_place(lost.reader.span, lost.reader.words),
                 *calls(keeper, keeper.span),
             ),

@@ -84,11 +84,11 @@ _PREFACE = """# What smachac finds
 
 Generated from the docstrings of the rules: `make docs` writes this file, a test compares it.
 
-An error stops a build, a warning does so under `--strict`, an info never does. Some findings
-are milder or graver than their code: the text says when. Errors of a code that is called firm
-leave nothing to print: no comment, setting or option silences them. Each example marked as wrong
-gives exactly its code, and each one marked as right gives nothing above an info; the tests run
-them all. A line `# --- name` begins another file."""
+An error stops a build, a warning stops it under `--strict`, an info never stops it. Some findings
+have another severity than their code; then the text describes when. After an error of a *firm* code
+nothing can be generated, so no comment, setting or option silences it. Each example under "Wrong"
+gives exactly its code, and each example under "Right" gives nothing above an info; the tests run
+all of them. A line `# --- name` begins another file."""
 
 
 def _groups(known: Mapping[str, Code]) -> Iterator[tuple[str, list[Code]]]:

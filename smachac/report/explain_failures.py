@@ -15,7 +15,7 @@ from smachac.report.outline import alternatives, at
 from smachac.report.terminal import visible
 from smachac.report.text import steps
 
-HEADINGS = ("state", "failure", "place", "way", "caught by", "the machine ends with")
+HEADINGS = ("state", "failure", "place", "path", "caught by", "the machine ends with")
 
 _MARKUP = re.compile(r"[\\`*<\[\]|]|\b_|_\b")
 """Characters that are markup in Markdown."""
@@ -23,8 +23,8 @@ _MARKUP = re.compile(r"[\\`*<\[\]|]|\b_|_\b")
 _COUNTED: dict[Answer, str] = {
     "caught": "caught",
     "repeated": "run again",
-    "passed over": "passed over as after a success",
-    "not caught": "caught by nobody",
+    "ignored": "ignored",
+    "not caught": "not caught",
     "lost": "without a transition",
 }
 
@@ -46,7 +46,9 @@ def _text(name: str, found: Sequence[Failure]) -> str:
     for each in found:
         head = f"{each.path} fails with {each.outcome} ({each.span})"
         way = "".join(steps(each.way))
-        parts.append("\n".join(visible(line) for line in (head, f"  {way}", f"  {told(each)}")))
+        parts.append(
+            "\n".join(visible(line) for line in (head, f"  {way}", f"  {_consequence(each)}"))
+        )
     return "\n\n".join(parts) + "\n"
 
 
@@ -55,12 +57,12 @@ def _summary(found: Sequence[Failure]) -> str:
         return "no state can fail"
     answers = Counter(each.answer for each in found)
     count = len({(each.path, each.outcome) for each in found})
-    ways = f" on {len(found)} ways" if len(found) > count else ""
+    paths = f" on {len(found)} paths" if len(found) > count else ""
     counts = [f"{answers[key]} {words}" for key, words in _COUNTED.items() if key in answers]
-    return f"{count} {'failure' if count == 1 else 'failures'}{ways}: {', '.join(counts)}"
+    return f"{count} {'failure' if count == 1 else 'failures'}{paths}: {', '.join(counts)}"
 
 
-def told(failure: Failure) -> str:
+def _consequence(failure: Failure) -> str:
     """The consequence of a failure, in words."""
     next = failure.next.rpartition("/")[2]
     match failure.answer:
@@ -68,13 +70,13 @@ def told(failure: Failure) -> str:
             return f"caught by {next}; then {_end(failure)}"
         case "repeated":
             return f"{next} runs again; then {_end(failure)}"
-        case "passed over":
-            what = f"{next} follows; then {_end(failure)}" if next else _end(failure)
-            return f"passed over: as after a success, {what}"
+        case "ignored":
+            what = f"{next} runs; then {_end(failure)}" if next else _end(failure)
+            return f"ignored: as after a success, {what}"
         case "not caught":
-            success = ", a success" if failure.good else ""
-            return f"caught by nobody: {_end(failure)}{success}"
-    return "nothing is said to follow"
+            success = ", which is a success" if failure.good else ""
+            return f"not caught: {_end(failure)}{success}"
+    return "the outcome has no transition"
 
 
 def _end(failure: Failure) -> str:
@@ -89,9 +91,9 @@ def _caught_by(failure: Failure) -> str:
             return failure.next
         case "repeated":
             return f"{failure.next} (again)"
-        case "passed over":
-            return "nobody (passed over)"
-    return "nobody"
+        case "ignored":
+            return "nothing (ignored)"
+    return "nothing"
 
 
 def _rows(found: Iterable[Failure]) -> Iterator[tuple[str, ...]]:

@@ -78,11 +78,11 @@ def _names_in(scope: UserdataScope) -> Iterator[tuple[str, str]]:
 
 def key_stories(context: Context, pairs: Iterable[tuple[str, str]]) -> Iterator[KeyStory]:
     """The explanations of some keys; keys that are copies of each other share one."""
-    told: set[tuple[str, str]] = set()
+    done: set[tuple[str, str]] = set()
     for pair in pairs:
-        if pair not in told:
+        if pair not in done:
             same = same_key(context.flow, *pair)
-            told.update(same)
+            done.update(same)
             yield tuple(_part(context, path, key) for path, key in same)
 
 
@@ -95,7 +95,7 @@ def _part(context: Context, path: str, key: str) -> KeyPart:
     inside = next(((outer, name) for name in beyond if outer and name), None)
     preset = next((each for each in container.userdata if each.key == key), None)
     found = list(uses(flow, path, key))
-    read = [use for use in found if use.kind in ("reads", "takes in") and use.path != path]
+    read = [use for use in found if use.kind in ("reads", "copies in") and use.path != path]
     followed = frozenset(use.path for use in read[:MOST_READERS])
     return KeyPart(
         container=path,
@@ -110,7 +110,7 @@ def _part(context: Context, path: str, key: str) -> KeyPart:
 
 
 def _met(flow: DataFlow, use: Use, key: str, followed: frozenset[str]) -> Met:
-    if use.path not in followed or use.kind not in ("reads", "takes in"):
+    if use.path not in followed or use.kind not in ("reads", "copies in"):
         return Met(use=use)
     status = key_status(flow, use.path, key)
     without = path_without(flow, use.path, key) if status in ("sometimes", "never") else ()
@@ -122,37 +122,38 @@ def key_text(part: KeyPart) -> tuple[str, list[Paragraph]]:
     words: dict[str, list[str]] = {"is": [], "set": [], "written": [], "read": [], "copied": []}
     if part.inside is not None:
         path, name = part.inside
-        words["is"].append(f"`{name}` of {path}, copied")
+        words["is"].append(f"a copy of `{name}` of {path}")
     if part.given:
-        words["set"].append("by whoever runs the machine")
+        words["set"].append("by the caller of the machine")
     for each in part.met:
-        word, lines = _told(part, each)
+        word, lines = _use_text(part, each)
         words[word] += lines
     if not (words["set"] or words["written"] or words["copied"] or words["is"]):
-        words["set"].append("by nobody")
+        words["set"].append("nowhere")
     if not (words["read"] or words["copied"] or words["is"]):
-        words["read"].append("by nobody")
+        words["read"].append("nowhere")
     type_ = "" if part.type == ANY else f": {part.type}"
     return f"key `{part.key}` of {part.container}{type_}", list(words.items())
 
 
-def _told(part: KeyPart, met: Met) -> tuple[str, list[str]]:
+def _use_text(part: KeyPart, met: Met) -> tuple[str, list[str]]:
+    """The paragraph of a use, and its lines."""
     use = met.use
     name = use.path.rpartition("/")[2]
     called = f" as `{use.key}`" if use.key != part.key else ""
     where = place(use.span)
     status = f": {STATUS[met.status]}" if met.status else ""
-    unset = list(way("  unset on the way ", met.without))
+    unset = list(way("  unset on the path ", met.without))
     match use.kind:
         case "presets":
             return "set", [f"before {name} starts, to {part.value}{where}"]
         case "items":
-            return "set", [f"by {name}, to one item after the other{where}"]
+            return "set", [f"by {name}, to each item in turn{where}"]
         case "reads" if use.path == part.container:
-            return "read", [f"by {name} itself, which goes through its items{where}"]
+            return "read", [f"by {name} itself, which iterates over it{where}"]
         case "reads":
             return "read", [f"by {name}{called}{status}{where}", *unset]
-        case "takes in":
+        case "copies in":
             return "copied", [f"into {name}{called}{status}{where}", *unset]
         case "writes":
             return "written", [f"by {name}{called}{_on(use)}{where}"]
@@ -162,7 +163,9 @@ def _told(part: KeyPart, met: Met) -> tuple[str, list[str]]:
 def _on(use: Use) -> str:
     if use.always:
         return ""
-    return f", on {' and '.join(use.outcomes)} alone" if use.outcomes else ", on no outcome surely"
+    if not use.outcomes:
+        return ", not guaranteed on any outcome"
+    return f", only on {' and '.join(use.outcomes)}"
 
 
 def key_json(story: KeyStory) -> list[dict[str, Any]]:
@@ -183,7 +186,7 @@ def key_json(story: KeyStory) -> list[dict[str, Any]]:
 def _met_json(met: Met) -> dict[str, Any]:
     use = met.use
     found: dict[str, Any] = {"state": use.path, "use": use.kind, "as": use.key, "at": at(use.span)}
-    if use.kind in ("writes", "hands out"):
+    if use.kind in ("writes", "copies out"):
         found |= {"on": list(use.outcomes), "always": use.always}
     if met.status is not None:
         found |= {"set": met.status, "unset_path": list(met.without)}

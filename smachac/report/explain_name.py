@@ -63,20 +63,20 @@ def _unknown(flow: DataFlow, paths: Iterable[str], name: str) -> str:
     keys = key_names(flow)
     near = did_you_mean(name.rpartition("/")[2], [*states, *keys])
     known = near or f"states: {listed(states)}\nkeys: {listed(keys) or 'none'}"
-    return f"there is no state and no key `{name}`\n{known}"
+    return f"there is no state or key `{name}`\n{known}"
 
 
 def _several_states(
     context: Context, name: str, states: list[str], keys: list[tuple[str, str]]
 ) -> str:
-    lines = [f"there are {len(states)} states `{name}`; name one by its path:"]
+    lines = [f"there are {len(states)} states `{name}`; give the path of one of them:"]
     named = [f"  {path} ({context.spans[path]})" for path in states]
     named += [f"  {path}/{key} (a key)" for path, key in keys]
     return "\n".join([*lines, *_few(named)])
 
 
 def _several_keys(name: str, keys: list[tuple[str, str]]) -> str:
-    lines = [f"`{name}` is what states call {len(keys)} keys; name one of those:"]
+    lines = [f"states use the name `{name}` for {len(keys)} keys; give the path of one of them:"]
     return "\n".join([*lines, *_few([f"  {path}/{key}" for path, key in keys])])
 
 

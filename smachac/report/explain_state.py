@@ -144,7 +144,7 @@ def _held(node: Node) -> Iterator[str]:
 
 def _named(taken: Taken) -> str:
     type_ = "" if taken.type == ANY else f" of type {taken.type}"
-    around = f", which is `{taken.outer}` around it" if taken.outer != taken.key.name else ""
+    around = f", remapped to `{taken.outer}`" if taken.outer != taken.key.name else ""
     return f"`{taken.key.name}`{type_}{around}"
 
 
@@ -153,31 +153,31 @@ def _doc(key: Key) -> str:
 
 
 def _read(taken: Taken) -> str:
-    told = f": {STATUS[taken.status]}" if taken.status else ""
+    status = f": {STATUS[taken.status]}" if taken.status else ""
     if taken.key.type.name == "optional" and taken.status in ("sometimes", "never"):
-        told += ", which is fine, as it is optional"
-    return f"{_named(taken)}{told}{_doc(taken.key)}"
+        status += ", which is allowed because it is optional"
+    return f"{_named(taken)}{status}{_doc(taken.key)}"
 
 
 def _written(node: Node, taken: Taken) -> str:
-    told = node.writes if isinstance(node, Leaf) else ()
-    on = [outcome for outcome, keys in told if taken.key.name in keys]
+    writes = node.writes if isinstance(node, Leaf) else ()
+    on = [outcome for outcome, keys in writes if taken.key.name in keys]
     return f"{_named(taken)}{', on ' + ' and '.join(on) if on else ''}{_doc(taken.key)}"
 
 
 def _entered(story: StateStory) -> Iterator[str]:
     container = story.path.rpartition("/")[0].rpartition("/")[2]
     if not story.reachable:
-        yield "never: no path from the start leads there"
+        yield "never: no path from the start leads to this state"
         return
     if not container:
-        yield "first: it is the whole machine"
+        yield "at the start: it is the whole machine"
         return
     for name, outcome in story.entered:
         if name == container and not outcome:
             continue
         yield f"after {name} on {outcome}" if name else f"when {container} starts"
-    yield from way("shortest way: ", story.way)
+    yield from way("shortest path: ", story.way)
 
 
 def _left(story: StateStory, leaving: Exit) -> str:
@@ -189,8 +189,8 @@ def _left(story: StateStory, leaving: Exit) -> str:
         ways = " or ".join(dict.fromkeys(_arrival(story.node, each) for each in leaving.arrivals))
         return f"on {leaving.outcome}: {ways}{where}"
     if leaving.steps:
-        return f"on {leaving.outcome}: to {leaving.steps[0].target}, which there is not{where}"
-    return f"on {leaving.outcome}: nothing is said to follow"
+        return f"on {leaving.outcome}: to {leaving.steps[0].target}, which does not exist{where}"
+    return f"on {leaving.outcome}: it has no transition"
 
 
 def _arrival(node: Node, arrival: Arrival) -> str:

@@ -1,4 +1,4 @@
-"""Layout of explanations: a headline, and labelled paragraphs."""
+"""Layout of explanations: a headline and labelled paragraphs."""
 
 from __future__ import annotations
 
@@ -13,7 +13,7 @@ STATUS: dict[Status, str] = {
     "always": "always set",
     "sometimes": "set on some paths, not on all",
     "never": "never set",
-    "unreachable": "never asked for, as no path leads there",
+    "unreachable": "never read, because no path leads to this state",
 }
 """Whether a key is set when a state is entered, in words."""
 
@@ -26,10 +26,10 @@ Paragraph = tuple[str, list[str]]
 
 def paragraphs(headline: str, parts: Iterable[Paragraph]) -> str:
     """A text that ends in a line feed; paragraphs without lines are left out."""
-    told = [(word, lines) for word, lines in parts if lines]
-    size = max((len(word) for word, _ in told), default=0)
+    filled = [(word, lines) for word, lines in parts if lines]
+    size = max((len(word) for word, _ in filled), default=0)
     lines = [headline]
-    for word, sentences in told:
+    for word, sentences in filled:
         first = True
         for sentence in sentences:
             lines.append(f"  {word if first else '':<{size}}  {sentence}")

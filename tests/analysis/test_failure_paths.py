@@ -31,8 +31,8 @@ def test_failures_of_a_flat_machine() -> None:
         "A aborted: repeated sm/A good|bad",
         "A failed: not caught  bad",
         "A timeout: caught sm/HELP good",
-        "B error: passed over sm/C good",
-        "C failed: passed over  good",
+        "B error: ignored sm/C good",
+        "C failed: ignored  good",
     ]
 
 
@@ -73,8 +73,8 @@ def test_in_a_concurrence_the_rules_say_what_follows() -> None:
 
 def test_a_failure_that_a_concurrence_hides_is_passed_over() -> None:
     assert branches("ok") == [
-        "BOTH/LEFT failed: passed over sm/NEXT good",
-        "BOTH/RIGHT aborted: passed over sm/NEXT good",
+        "BOTH/LEFT failed: ignored sm/NEXT good",
+        "BOTH/RIGHT aborted: ignored sm/NEXT good",
     ]
 
 
@@ -92,7 +92,7 @@ def test_an_iterator_goes_on_or_breaks_off() -> None:
                     to={"done": "good", "error": "bad"})  # fmt: skip
     assert told(machine("sm", "good bad", each)) == [
         "EACH/A failed: repeated sm/EACH/A good|bad",
-        "EACH/A failed: passed over  good",
+        "EACH/A failed: ignored  good",
         "EACH/A error: not caught  bad",
     ]
 

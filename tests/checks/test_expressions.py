@@ -155,5 +155,5 @@ def test_other_code_is_judged_by_itself() -> None:
         " `[1] + 2` adds `int[1]` and `int`",
         " `ud.xs + 1` adds `int[1]` and `int`",
         " `1 + 'a'` adds `int` and `str`",
-        " `-ud.xs` takes `int[1]` for a number",
+        " `-ud.xs` uses `int[1]` as a number",
     ]

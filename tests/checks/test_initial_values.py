@@ -54,7 +54,7 @@ def said(text: str, **files: str) -> list[Diagnostic]:
 def test_both_places_are_told() -> None:
     (item,) = found(one="x: 1", two="x: 2")
     assert item.finding.message == (
-        "`sm` never holds the value that `A` gives `x`: `B` gives it another one"
+        "the initial value of `x` in `A` is never used: `B` overwrites it"
     )
     assert item.span.line == 6
     assert [each.span.line for each in item.finding.related] == [7]
@@ -62,7 +62,7 @@ def test_both_places_are_told() -> None:
 
 def test_the_userdata_of_the_container_itself() -> None:
     (item,) = found(own="x: 1", three="x: [1]")
-    assert "the value that its own `userdata` gives `x`: `C` gives" in item.finding.message
+    assert "value of `x` in `sm` is never used: `C` overwrites it" in item.finding.message
     assert [item.span.line, *(each.span.line for each in item.finding.related)] == [4, 8]
 
 
@@ -113,4 +113,4 @@ def test_calls_of_one_sub_script(one: str, two: str, lines: list[int]) -> None:
     assert len(report) == bool(lines)
     for item in report:
         assert [item.span.line, *(each.span.line for each in item.finding.related)] == lines
-        assert "`A` gives `x`: `B` gives it another one" in item.finding.message
+        assert "value of `x` in `A` is never used: `B` overwrites it" in item.finding.message

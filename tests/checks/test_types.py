@@ -148,9 +148,9 @@ def test_the_writer_the_remaps_and_the_reader_are_shown() -> None:
     shown = [f"{place.span.text}: {place.message}" for place in item.finding.related]
     assert shown == [
         "made: `A` writes `made` as `str`",
-        "read: `read` of `C` is `inner` of `B`",
-        "inner: `inner` of `B` is `k` of `sm`",
-        "made: `made` of `A` is `k` of `sm`",
+        "read: `read` of `C` is remapped to `inner` of `B`",
+        "inner: `inner` of `B` is remapped to `k` of `sm`",
+        "made: `made` of `A` is remapped to `k` of `sm`",
     ]
     assert item.finding.node == "sm/B/C"
 

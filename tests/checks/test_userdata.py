@@ -349,7 +349,7 @@ def test_who_uses_a_key() -> None:
     ]
     assert found == [
         ("writes", "sm/W", "a", ("ok",), False),
-        ("takes in", "sm/C", "b", (), True),
+        ("copies in", "sm/C", "b", (), True),
     ]
     assert same_key(flow, "sm", "a") == (("sm", "a"), ("sm/C", "b"))
     assert key_status(flow, "sm/C/R", "b") == "sometimes"
