@@ -158,7 +158,7 @@ def test_a_block_that_prints_nothing_of_the_states_loses_nothing(built: Built) -
 def test_a_container_that_does_not_print_its_states_is_told(built: Built, name: str) -> None:
     lost = "{% block body %}\n# no body\n{% endblock %}"
     (message,) = errors(built, NESTED, T=CLASS + ADDED, **{name: lost})
-    assert message == "block `body` does not print `{{ body }}`: the states would be lost"
+    assert message == "the block `body` does not print `{{ body }}`, so the states are missing"
 
 
 def test_once_only_code_by_defined_headers(built: Built) -> None:
