@@ -138,8 +138,8 @@ def _shadowed_rules(each: Judged) -> Iterator[Finding]:
         outcomes = sorted({winner.outcome for winner in winners})
         yield Finding(
             span=entry.span,
-            message=f"the rule for `{entry.outcome}` never decides: a rule with more conditions"
-            f" always wins, for {listed(outcomes)}",
+            message=f"the rule for `{entry.outcome}` never decides: a rule with more conditions,"
+            f" for {listed(outcomes)}, always wins",
             arguments=(entry.outcome, *outcomes),
             help="remove the rule, or add conditions to it",
             related=(
@@ -222,7 +222,7 @@ def written(combination: Mapping[str, str]) -> str:
 
 @rule("SM401", "uncovered-combination", Severity.ERROR, firm=True)
 def uncovered_combination(context: Context) -> Iterator[Finding]:
-    """A combination of outcomes matches no rule of the outcome map, without a default outcome.
+    """A combination of outcomes has neither a rule in the outcome map nor a default outcome.
 
     A concurrence without `default_outcome` needs rules for all combinations. If the states end with
     a combination that has no rule, possibly one of a thousand, the robot stops there.

@@ -46,8 +46,8 @@ def no_code_for_target(
 ) -> Finding:
     """A state type has no code in the language of the target.
 
-    A program without this code would skip the state, so the build fails. The interface of a state
-    type names its code for each language under `code`.
+    A program could not run the state, so the build fails. The interface of a state type names its
+    code for each language under `code`.
 
     Wrong:
         name: sm
@@ -139,7 +139,7 @@ def interfaces_differ(
 def stale_code(
     span: Span, state_type: str, name: str, number: Word, differences: Sequence[Word]
 ) -> Finding:
-    """A C++ class was written for an older version of its interface.
+    """A C++ class was written for another version of its interface.
 
     The class may lack an outcome or a key that the interface now has.
 
@@ -187,10 +187,10 @@ def stale_code(
         };
         }
     """
-    old = Related(span=number.span, message="the number of the older version")
+    old = Related(span=number.span, message="the number of that version")
     return Finding(
         span=span,
-        message=f"the class `{name}` was written for an older version of `{state_type}.yml`",
+        message=f"the class `{name}` was written for another version of `{state_type}.yml`",
         arguments=(state_type, name),
         related=(old, *_places(differences)),
         help=f"adapt the class to the interface, then set `smachac_interface` to {number.text}",

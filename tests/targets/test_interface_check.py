@@ -270,7 +270,7 @@ def test_the_number_of_another_interface() -> None:
     finding = item.finding
     assert item.severity is Severity.WARNING
     assert (
-        finding.message == "the class `arm::Grasp` was written for an older version of `Grasp.yml`"
+        finding.message == "the class `arm::Grasp` was written for another version of `Grasp.yml`"
     )
     assert (
         finding.help == f"adapt the class to the interface, then set `smachac_interface` to {right}"
