@@ -600,4 +600,4 @@ def test_what_cannot_be_wrapped_is_told(built: Built, body: str, words: str) -> 
     (message,) = errors(
         built, script, T=f"{META}{FAILING}{{% block body %}}\n{body}\n{{% endblock %}}"
     )
-    assert message == f"the template of `T` {words}, so that `A` cannot end with its exceptions"
+    assert message == f"the template of `T` {words}, so `A` cannot have an outcome for its exceptions"
