@@ -1,4 +1,4 @@
-"""Rules over concurrences: whether there is something to run, and rules that can match."""
+"""Rules over concurrences: missing states, and faults of the outcome map."""
 
 from __future__ import annotations
 
@@ -27,16 +27,16 @@ from smachac.ir.traversal import outcome_names
 
 @rule("SM403", "dead-rule", Severity.ERROR, firm=True)
 def dead_rule(context: Context) -> Iterator[Finding]:
-    """A rule can never decide: it names a child or an outcome that does not exist, or nothing, or
-    larger rules always win over it.
+    """A rule of the outcome map can never decide the outcome.
 
-    The case it was written for ends otherwise; the robot goes on as if that case had never been
-    thought of. SMACH does not even run a concurrence whose rule names an unknown child, and its
-    versions disagree on a rule without conditions.
+    The case that the rule was written for ends with another outcome, and the robot continues with
+    the wrong state. SMACH does not run a concurrence whose rule names an unknown state, and its
+    versions disagree about a rule without conditions.
 
-    A warning where in each combination in which the rule holds, a rule that lists more children
-    holds as well. An outcome that a container declares but never ends with is not told again
-    here.
+    Exactly: an error if the rule has no conditions, or if it names a state or an outcome that does
+    not exist. A warning if a rule with more conditions holds whenever this rule holds. An outcome
+    that a container declares but never ends with is reported by SM203 only. The entries of the
+    final outcome map of an iterator count as rules.
 
     Wrong:
         name: sm
@@ -83,20 +83,21 @@ def dead_rule(context: Context) -> Iterator[Finding]:
 def _dead_rules(path: str, container: Concurrence) -> Iterator[Finding]:
     children = {child.name: child for child in container.children}
     guess = guesser(children)
-    states = f"its states are {listed(children)}" if children else "it has no states"
+    states = f"its states are {listed(children)}" if children else "the concurrence has no states"
     for entry in container.rules:
         if not entry.when:
             yield Finding(
                 span=entry.span,
-                message=f"the rule for `{entry.outcome}` names no child, so it says nothing",
-                help="name the children and their outcomes, or drop the rule",
+                message=f"the rule for `{entry.outcome}` has no conditions",
+                arguments=(entry.outcome,),
+                help="list states and their outcomes in the rule, or remove it",
                 related=calls(container, entry.span),
                 node=path,
             )
         for condition in entry.when:
             child = children.get(condition.child)
             if child is None:
-                message = f"`{condition.child}` is no state of `{container.name}`"
+                message = f"`{condition.child}` is not a state of `{container.name}`"
                 help = did_you_mean(guess(condition.child)) or states
             elif is_open(child) or condition.outcome in outcome_names(child):
                 continue
@@ -105,7 +106,12 @@ def _dead_rules(path: str, container: Concurrence) -> Iterator[Finding]:
                 help = _other_outcome(child, condition.outcome)
             related = calls(container, condition.span)
             yield Finding(
-                span=condition.span, message=message, help=help, related=related, node=path
+                span=condition.span,
+                message=message,
+                arguments=(entry.outcome, condition.child, condition.outcome),
+                help=help,
+                related=related,
+                node=path,
             )
 
 
@@ -116,7 +122,7 @@ def _other_outcome(child: Node, outcome: str) -> str:
 
 
 def _shadowed_rules(each: Judged) -> Iterator[Finding]:
-    """The rules over which larger ones win in every combination."""
+    """The rules that lose to rules with more conditions in every combination."""
     read, rules, whole = each.read, each.read.rules, each.whole
     for number, entry in enumerate(read.written):
         given, larger = rules.conditions[number], read.larger(number)
@@ -129,13 +135,15 @@ def _shadowed_rules(each: Judged) -> Iterator[Finding]:
         except UndecidedError:
             return
         winners = [read.written[rival] for rival in bits(rivals)]
+        outcomes = sorted({winner.outcome for winner in winners})
         yield Finding(
             span=entry.span,
-            message=f"the rule for `{entry.outcome}` never decides: whenever it holds, so does one"
-            f" that lists more children, for {listed(winner.outcome for winner in winners)}",
-            help="take it out, or let it list the children that make it differ",
+            message=f"the rule for `{entry.outcome}` never decides: a rule with more conditions,"
+            f" for {listed(outcomes)}, always wins",
+            arguments=(entry.outcome, *outcomes),
+            help="remove the rule, or add conditions to it",
             related=(
-                *(part for one in winners[:3] for part in other_place(one.span, "wins over it")),
+                *(part for one in winners[:3] for part in other_place(one.span, "this rule wins")),
                 *calls(read.node, entry.span),
             ),
             severity=Severity.WARNING,
@@ -144,8 +152,8 @@ def _shadowed_rules(each: Judged) -> Iterator[Finding]:
 
 
 def _dead_renames(path: str, container: nodes.Iterator) -> Iterator[Finding]:
-    """The entries of an iterator's final map that rename what never comes. Outcomes on which it
-    goes on do come, when it is asked to stop (smach-semantics P9)."""
+    """The entries of an iterator's final map for outcomes that never occur. An outcome that starts
+    the next item does occur: it ends the iterator after a request to stop."""
     if any(is_open(child) for child in container.children):
         return
     endings = [name for child in container.children for name in outcome_names(child)]
@@ -154,9 +162,10 @@ def _dead_renames(path: str, container: nodes.Iterator) -> Iterator[Finding]:
             continue
         yield Finding(
             span=container.span,
-            message=f"the final outcome map of `{container.name}` renames `{name}`,"
-            " with which its child never ends",
-            help=f"its child ends with {listed(endings)}",
+            message=f"the final outcome map of `{container.name}` renames `{name}`, but its state"
+            " never ends with that outcome",
+            arguments=(name,),
+            help=f"the outcomes of its state are {listed(endings)}",
             related=calls(container, container.span),
             node=path,
         )
@@ -166,7 +175,7 @@ def _dead_renames(path: str, container: nodes.Iterator) -> Iterator[Finding]:
 def empty_concurrence(context: Context) -> Iterator[Finding]:
     """A concurrence has no states.
 
-    SMACH for ROS 2 waits for ever for the first child to end, SMACH for Noetic fails.
+    SMACH for ROS 2 waits forever for the first state to end, and SMACH for Noetic fails.
 
     Wrong:
         name: sm
@@ -198,29 +207,30 @@ def empty_concurrence(context: Context) -> Iterator[Finding]:
         if isinstance(container, Concurrence) and not container.children:
             yield Finding(
                 span=container.span,
-                message=f"the concurrence `{container.name}` has no states to start",
-                help="add states, or take it out",
+                message=f"the concurrence `{container.name}` has no states",
+                arguments=(container.name,),
+                help="add states to it, or remove it",
                 related=calls(container, container.span),
                 node=path,
             )
 
 
 def written(combination: Mapping[str, str]) -> str:
-    """A combination as it stands in a script."""
+    """A combination as the script writes its conditions."""
     return ", ".join(f"`{child}: {outcome}`" for child, outcome in combination.items())
 
 
 @rule("SM401", "uncovered-combination", Severity.ERROR, firm=True)
 def uncovered_combination(context: Context) -> Iterator[Finding]:
-    """The children can end in a way that no rule speaks of, and there is no default outcome.
+    """A combination of outcomes has neither a rule in the outcome map nor a default outcome.
 
-    A concurrence without `default_outcome` says that its rules are complete. Where one
-    combination is missing, possibly one of a thousand, the robot stops in it.
+    A concurrence without `default_outcome` needs rules for all combinations. If the states end with
+    a combination that has no rule, possibly one of a thousand, the robot stops there.
 
-    Exactly: every combination counts, those that only a preempt request brings about as well; of
-    a container only the outcomes that something in it brings about. With a default outcome it is
-    only noted, and only where each child ended by itself and none with a failure: those cases
-    somebody may have forgotten, for the others there are defaults.
+    Exactly: every combination counts, also one that only a request to stop can cause; of a
+    container, only the outcomes that its states can cause count. With a default outcome the finding
+    is a note, and only for a combination in which every state ended by itself and none failed: such
+    a combination may have been forgotten, and the default outcome is meant for the others.
 
     Wrong:
         name: sm
@@ -262,19 +272,21 @@ def uncovered_combination(context: Context) -> Iterator[Finding]:
         missed = _missed(each)
         if missed is None:
             continue
-        shown = written(rules.shown(missed, {}, rules.all)) or "every combination"
+        needed = rules.shown(missed, {}, rules.all)
+        shown = written(needed) or "any combination"
         if node.default_outcome:
             severity, span = Severity.INFO, node.default_span
-            message = f"no rule of `{node.name}` speaks of {shown}: it ends with the default"
+            message = f"no rule of `{node.name}` matches {shown}: it ends with the default outcome"
             message += f" `{node.default_outcome}`"
             help = None
         else:
             severity, span = Severity.ERROR, node.span
-            message = f"no rule of `{node.name}` speaks of {shown}, and it has no default outcome"
-            help = "add a rule, or a `default_outcome` for all that no rule speaks of"
+            message = f"no rule of `{node.name}` matches {shown}, and it has no default outcome"
+            help = "add a rule for it, or a `default_outcome` for all other combinations"
         yield Finding(
             span=span,
             message=message,
+            arguments=_names(needed),
             help=help,
             related=calls(node, span),
             severity=severity,
@@ -282,8 +294,13 @@ def uncovered_combination(context: Context) -> Iterator[Finding]:
         )
 
 
+def _names(combination: Mapping[str, str]) -> tuple[str, ...]:
+    """The states and outcomes of a combination, as arguments of a finding."""
+    return tuple(name for pair in sorted(combination.items()) for name in pair)
+
+
 def _missed(each: Judged) -> Combination | None:
-    """A combination that no rule speaks of, of those that count."""
+    """A combination that no rule matches, of those that count."""
     rules = each.read.rules
     spaces = [_unexceptional(each.read, space) for space, _ in each.calm]
     if not each.read.node.default_outcome:
@@ -300,15 +317,15 @@ def _unexceptional(read: Study, space: Space) -> Space:
 
 @rule("SM402", "overlapping-rules", Severity.WARNING)
 def overlapping_rules(context: Context) -> Iterator[Finding]:
-    """Two rules hold at once, and neither lists more children than the other.
+    """Two rules of the outcome map hold for the same combination of outcomes, and neither wins.
 
-    What the robot does next then depends on the framework: SMACH for ROS 2 takes the rule listed
-    last, SMACH for Noetic the one listed first, others refuse to go on. Where one of the rules
-    lists more children, it wins everywhere.
+    The outcome then depends on the framework: SMACH for ROS 2 applies the last rule, SMACH for
+    Noetic the first, and others stop with an error. A rule with more conditions wins in all of
+    them.
 
-    Exactly: there is a combination in which both hold and none that lists more children does.
-    With `join: any`, branches that can be preempted are taken to be so when another one has ended;
-    that two end in the same moment is not counted.
+    Exactly: there is a combination for which both rules hold, with equally many conditions, and no
+    rule with more conditions holds. With `join: any`, a branch that can be preempted counts as
+    preempted when another branch has ended; two branches that end at the same moment do not count.
 
     Wrong:
         name: sm
@@ -356,7 +373,7 @@ def overlapping_rules(context: Context) -> Iterator[Finding]:
 
 
 def _overlaps(each: Judged, spaces: list[Space]) -> Iterator[Finding]:
-    """For each rule that ties with one above it the first of them."""
+    """For each rule that ties with rules above it, the tie with the first of them."""
     read = each.read
     same: dict[int, int] = {}
     for number, conditions in enumerate(read.rules.conditions):
@@ -371,7 +388,7 @@ def _overlaps(each: Judged, spaces: list[Space]) -> Iterator[Finding]:
 def _tie(read: Study, spaces: list[Space], first: int, second: int) -> Combination | None:
     """A combination in which the two rules tie and frameworks differ, if there is one.
 
-    Only what decides is shown of it, unless a third rule has to hold as well.
+    It is reduced to the conditions that decide, unless a third rule has to hold as well.
     """
     rules = read.rules
     given = {**rules.conditions[first], **rules.conditions[second]}
@@ -396,10 +413,11 @@ def _overlapping(each: Judged, number: int, tie: Combination) -> Finding:
     here = each.read.written[number]
     return Finding(
         span=here.span,
-        message=f"the rules for `{above.outcome}` and `{below.outcome}` both hold when"
-        f" {written(tie)}, and list as many children: SMACH for Noetic ends with"
-        f" `{above.outcome}`, SMACH for ROS 2 with `{below.outcome}`",
-        help="let one of them list more children: then it wins everywhere",
+        message=f"the rules for `{above.outcome}` and `{below.outcome}` both hold for"
+        f" {written(tie)}: SMACH for Noetic ends with `{above.outcome}`, SMACH for ROS 2 with"
+        f" `{below.outcome}`",
+        arguments=(above.outcome, below.outcome, *_names(tie)),
+        help="add conditions to one of the two rules: the rule with more conditions wins",
         related=(
             *other_place(above.span, "the other rule"),
             *calls(each.read.node, here.span),

@@ -1,4 +1,4 @@
-"""Edits beyond spelling: what a script lacks, put where it belongs."""
+"""Edits that add a missing key to the `input_keys` or `output_keys` of a state."""
 
 from __future__ import annotations
 
@@ -13,16 +13,16 @@ from smachac.ir.nodes import Container, Key, Node
 _BODY = re.compile(
     r"[ \t]*:[ \t]*(?:(?P<flow>\{)|(?:#[^\n]*)?(?:\r?\n[ \t]*(?:#[^\n]*)?)*(?P<block>\S))"
 )
-"""What follows the name of a state, as far as the first of its variables."""
+"""The text between the name of a state and the first of its fields."""
 
 
 def with_input(container: Container, key: str) -> tuple[Edit, ...]:
-    """The edit that adds a key to the `input_keys` of a container; none if that is not plain."""
+    """The edit that adds a key to the `input_keys` of a container, where its place is certain."""
     return _with_key(container, container.inputs, "input_keys", key)
 
 
 def with_output(node: Node, key: str) -> tuple[Edit, ...]:
-    """The edit that adds a key to the `output_keys` of a state; none if that is not plain."""
+    """The edit that adds a key to the `output_keys` of a state, where its place is certain."""
     return _with_key(node, node.outputs, "output_keys", key)
 
 
@@ -35,7 +35,7 @@ def _with_key(node: Node, known: Iterable[Key], part: str, key: str) -> tuple[Ed
 
 
 def _listed(last: Span, key: str) -> tuple[Edit, ...]:
-    """Another item behind the last one of a list."""
+    """The edit that adds an item after the last one of a list."""
     text = last.source.text
     if last.source is NOWHERE.source or text[last.end :].lstrip(" \t").startswith(":"):
         return ()
@@ -49,7 +49,7 @@ def _listed(last: Span, key: str) -> tuple[Edit, ...]:
 
 
 def _begun(name: Span, part: str, key: str) -> tuple[Edit, ...]:
-    """A list with one item, as the first variable of a state."""
+    """The edit that adds a list with one item as the first field of a state."""
     text = name.source.text
     body = _BODY.match(text, name.end)
     if body is None or name.source is NOWHERE.source:
@@ -67,6 +67,6 @@ def _begun(name: Span, part: str, key: str) -> tuple[Edit, ...]:
 
 
 def _line_end(text: str, at: int) -> str:
-    """What ends the line of an offset: a script has one kind of line ends, as a rule."""
+    """The line end after an offset, used for new lines too."""
     end = text.find("\n", at)
     return "\r\n" if end > 0 and text[end - 1] == "\r" else "\n"

@@ -1,4 +1,4 @@
-"""What findings say beside the fault: the name that was meant, the calls that led there."""
+"""Parts of findings that many rules share: help lines, and the calls of sub-scripts."""
 
 from __future__ import annotations
 
@@ -17,7 +17,7 @@ def did_you_mean(name: str | None) -> str | None:
 
 
 def calls(node: Node, span: Span) -> tuple[Related, ...]:
-    """The calls of sub-scripts that led into the file where `span` lies, outermost first."""
+    """The calls of sub-scripts that lead to the file of `span`, outermost first."""
     outside = takewhile(lambda call: call.source is not span.source, node.via)
     return tuple(Related(span=call, message=CALLED_HERE) for call in outside)
 

@@ -1,4 +1,4 @@
-"""Rules over branches that get in each other's way: keys that both write, resources both hold."""
+"""Rules over the branches of a concurrence: access to the same key, claims of the same resource."""
 
 from __future__ import annotations
 
@@ -10,25 +10,24 @@ from smachac.analysis.resource_claims import Held, prefixes
 from smachac.checks.messages import calls, other_place
 from smachac.checks.rule import rule
 from smachac.diagnostics.diagnostic import Finding, Related, Severity
-from smachac.diagnostics.source import Span
 from smachac.diagnostics.wording import listed
 from smachac.ir.nodes import Concurrence, Node
 
 MOST_PLACES = 4
-"""So many other places a finding shows."""
+"""Limit on the other branches that a finding shows."""
 
 
 @rule("SM405", "data-race", Severity.ERROR)
 def data_race(context: Context) -> Iterator[Finding]:
-    """Two branches that run at the same time write one key, or one writes what another reads.
+    """Two branches of a concurrence write the same key, or one writes a key that another reads.
 
-    Which value is there in the end, or is read, depends on which branch is faster that day: the
-    arm moves to a pose that is sometimes the old one.
+    The branches run at the same time, so the value depends on which one is faster: the arm
+    sometimes moves to an old pose.
 
-    Exactly: leaves write their output keys and read their input keys at any time; a container
-    takes its inputs when it starts and gives its outputs when it ends. What a container takes in
-    but nothing in it reads does not count, nor what it declares as output but nothing sets. Keys
-    count under the names they have in the userdata of the concurrence, after remapping.
+    Exactly: a leaf writes its output keys and reads its input keys at any time; a container reads
+    its input keys when it starts and writes its output keys when it ends. An input key of a
+    container that nothing in it reads does not count, nor does an output key that nothing in it
+    writes. The keys are those in the userdata of the concurrence, after remapping.
 
     Wrong:
         name: sm
@@ -84,7 +83,7 @@ def _races(path: str, container: Concurrence, known: Mapping[str, Accesses]) -> 
             readers.setdefault(key, []).append((child, origin))
     for key, writing in writers.items():
         names = {child.name for child, _ in writing}
-        # Who reads what it writes itself is no reader for the others if it is the only writer.
+        # A branch that only reads its own values does not race with itself.
         reading = [one for one in readers.get(key, ()) if one[0].name not in names]
         if len(writing) > 1 or reading:
             yield _race(path, container, key, writing, reading)
@@ -100,20 +99,24 @@ def _race(
     writers = listed(child.name for child, _ in writing)
     readers = listed(child.name for child, _ in reading)
     if len(writing) == 1:
-        message = f"{writers} writes `{key}` while {readers} reads it"
+        message = f"{writers} writes `{key}`"
     else:
         message = f"{writers} write `{key}` at the same time"
-        message += f", and {readers} reads it" if reading else ""
+    if reading:
+        message += f", and {readers} {'reads' if len(reading) == 1 else 'read'} it"
+        message += " at the same time" if len(writing) == 1 else ""
     here = writing[:2][-1]
     span = here[0].span
+    names = (*sorted(child.name for child, _ in writing), *sorted(one.name for one, _ in reading))
     return Finding(
         span=span,
-        message=f"{message}: they run together in `{container.name}`",
-        help="remap it, so that each has a key of its own, or let one run after the other",
+        message=f"{message}: they are branches of `{container.name}`",
+        arguments=(key, *names),
+        help="remap the key so that each branch has its own, or run one branch after the other",
         related=(
             *_places("writes", key, [one for one in writing if one is not here]),
             *_places("reads", key, reading),
-            *_inner(span, here[1], "here"),
+            *_inner(here[0], here[1], "writes"),
             *calls(here[0], span),
         ),
         node=f"{path}/{here[0].name}",
@@ -123,27 +126,27 @@ def _race(
 def _places(verb: str, key: str, accesses: list[tuple[Node, Node]]) -> Iterator[Related]:
     for child, origin in accesses[:MOST_PLACES]:
         yield from other_place(child.span, f"`{child.name}` {verb} `{key}`")
-        yield from _inner(child.span, origin, f"for `{child.name}`")
+        yield from _inner(child, origin, verb)
 
 
-def _inner(span: Span, origin: Node, whose: str) -> tuple[Related, ...]:
-    """The place inside a branch that is behind its access."""
-    if origin.span == span:
+def _inner(branch: Node, origin: Node, verb: str) -> tuple[Related, ...]:
+    """The node inside a branch that makes its access."""
+    if origin.span == branch.span:
         return ()
-    return other_place(origin.span, f"`{origin.name}` does it {whose}")
+    return other_place(origin.span, f"in `{branch.name}`, `{origin.name}` {verb} it")
 
 
 @rule("SM406", "resource-clash", Severity.ERROR)
 def resource_clash(context: Context) -> Iterator[Finding]:
-    """Two branches that run at the same time hold the same resource.
+    """Two branches of a concurrence claim the same resource.
 
-    Two commands reach one arm at once: it follows neither, or jumps between them.
+    Two commands reach one arm at the same time: the arm follows neither, or jumps between them.
 
-    Exactly: `claims` of a state, and of its type, name what it holds while it runs, in parts with
-    dots: `arm` covers `arm.left`. A part in braces, `arm.{limb}`, is filled in from the variable
-    of that name (left out where that is null), or from the key that the state reads, as long as
-    the key is a constant of the userdata, handed through containers as it may be. What cannot be
-    known before the run is not judged.
+    Exactly: `claims` of a state, and of its type, lists the resources that it holds while it runs,
+    as names with dots: `arm` covers `arm.left`. A name in braces, as in `arm.{limb}`, stands for
+    the value of that variable (it is left out if the value is null), or for the value of that input
+    key if it is a constant of the userdata, also of an outer container. A claim whose value is not
+    known before the run does not count.
 
     Wrong:
         name: sm
@@ -204,22 +207,30 @@ def _clashes(path: str, container: Concurrence, held: Held) -> Iterator[Finding]
         other = next((one for one in holding if one[0] is not first), None)
         if other is None or "{" in resource:
             continue
-        child, _, origin = other
-        names = listed(one.name for one, _, _ in holding)
+        child, own, origin = other
+        names = sorted({one.name for one, _, _ in holding})
         places = [
             place
             for one, what, inner in holding[:MOST_PLACES]
             if one is not child
             for place in (
                 *other_place(one.span, f"`{one.name}` claims `{what}`"),
-                *_inner(one.span, inner, f"for `{one.name}`"),
+                *_inner(one, inner, "claims"),
             )
         ]
         yield Finding(
             span=child.span,
-            message=f"{names} claim `{resource}` at the same time: they run together in"
+            message=f"{listed(names)} claim `{resource}` at the same time: they are branches of"
             f" `{container.name}`",
-            help="let one run after the other",
-            related=(*places, *_inner(child.span, origin, "here"), *calls(child, child.span)),
+            arguments=(_as_written(own, origin), *names),
+            help="run one branch after the other",
+            related=(*places, *_inner(child, origin, "claims"), *calls(child, child.span)),
             node=f"{path}/{child.name}",
         )
+
+
+def _as_written(claim: str, origin: Node) -> str:
+    """A claim with its names in braces, as the script or the state type has it: their values can
+    depend on the caller of a sub-script."""
+    same = (each for each in origin.claims if claim.startswith(each.partition("{")[0]))
+    return claim if claim in origin.claims else next(same, claim)

@@ -1,4 +1,4 @@
-"""Rules over numbers that reach a robot: how many, within the limits, a rotation, in which unit."""
+"""Rules over the values that a robot receives: lengths, joint limits, rotations, units, frames."""
 
 from __future__ import annotations
 
@@ -15,24 +15,25 @@ from smachac.checks.rule import rule
 from smachac.checks.types import clash_findings
 from smachac.diagnostics.diagnostic import Finding, Related, Severity
 from smachac.diagnostics.spelling import guesser
+from smachac.diagnostics.wording import listed
 from smachac.ir.leaf import variable
 from smachac.ir.nodes import Data, Leaf, Machine, Struct
 from smachac.ir.robot import BUILT_IN, DEFAULTS, Joint, Robot
 from smachac.ir.types import Type
 
 ROTATION_TOLERANCE = 1e-3
-"""How far the length of a quaternion may be from 1: what three decimals leave open."""
+"""Tolerance for the length of a quaternion: enough for numbers with three decimals."""
 
 JOINT_TOLERANCE = 1e-4
-"""rad: limits are given with as many decimals."""
+"""Tolerance for joint limits in rad: they are given with four decimals."""
 
 
 @rule("SM501", "wrong-length", Severity.ERROR)
 def wrong_length(context: Context) -> Iterator[Finding]:
-    """A list has more or fewer items than where it is read.
+    """A list has more or fewer items than its reader requires.
 
-    Seven joints take seven numbers: with six the skill fails when its turn comes, with the arm in
-    the middle of the task.
+    Seven joints need seven numbers: with six numbers the skill fails when it starts, and the arm
+    stops in the middle of the task.
 
     Wrong:
         name: sm
@@ -69,8 +70,8 @@ def wrong_length(context: Context) -> Iterator[Finding]:
             assert isinstance(flow.value, tuple)
             if len(flow.value) not in lengths:
                 have = " or ".join(map(str, lengths))
-                message = f"the arm has {have} joints, and `{flow.origin.cell.key}` has"
-                yield at(flow, f"{message} {len(flow.value)} numbers", "give one for each joint")
+                message = f"`{flow.origin.cell.key}` has {len(flow.value)} numbers, but the arm has"
+                yield at(flow, f"{message} {have} joints", "write one number for each joint")
 
 
 ARM_STATES = frozenset(["MoveToJointPositionsState"])
@@ -79,11 +80,13 @@ ARM_STATES = frozenset(["MoveToJointPositionsState"])
 
 @rule("SM502", "joint-limit", Severity.ERROR)
 def joint_limit(context: Context) -> Iterator[Finding]:
-    """A joint position is beyond what the joint of the robot can reach.
+    """A joint position is outside the limits of the joint.
 
-    The arm stops at its limit and the skill fails. `robot:` names a built-in arm (panda, baxter) or
-    a URDF file. Its limits are asked of the literals that a state which claims an arm reads: lists
-    of angles, one for each joint of a limb, and mappings of joint names to angles.
+    The arm stops at its limit and the skill fails.
+
+    Exactly: the limits are those of the robot that `robot:` names, a built-in arm (panda, baxter)
+    or a URDF file. The rule checks the literals that a state with a claim on an arm reads: lists of
+    angles, one for each joint of a limb, and mappings of joint names to angles.
 
     Wrong:
         name: sm
@@ -124,15 +127,16 @@ def joint_limit(context: Context) -> Iterator[Finding]:
             what = f"joint {number}" if isinstance(flow.value, tuple) else f"`{joint.name}`"
             yield at(
                 flow,
-                f"{what} of `{flow.origin.cell.key}` is {angle} rad, beyond its limits"
+                f"{what} of `{flow.origin.cell.key}` is {angle} rad, outside its limits"
                 f" {joint.lower:g} to {joint.upper:g}",
-                "are these degrees?" if abs(_as_float(angle)) > 2 * math.pi else None,
+                "convert the angles to radians" if abs(_as_float(angle)) > 2 * math.pi else None,
+                (str(number) if isinstance(flow.value, tuple) else joint.name,),
                 other_place(joint.span, f"the limits of `{joint.name}`"),
             )
 
 
 def robot_of(machine: Machine) -> Robot | None:
-    """The robot of a machine: as its script was read with, else by its name."""
+    """The robot of a machine: the one that its script names, or that of its base."""
     name: Data = DEFAULTS.get(machine.base)
     for held in machine.variables:
         if held.name == "robot":
@@ -145,8 +149,8 @@ def _within(joint: Joint, angle: float) -> bool:
 
 
 def _angles(value: Data, robot: Robot) -> list[tuple[Joint, Data]]:
-    """The angles of a literal by their joints: of the limb that they suit best, where they are of
-    any limb of that many joints."""
+    """The angles of a literal with their joints; for a list, the joints of the limb of that length
+    with the fewest angles outside the limits."""
     if isinstance(value, Struct):
         joints = {joint.name: joint for joint in robot.joints}
         return [(joints[name], angle) for name, angle in value.entries if name in joints]
@@ -161,8 +165,8 @@ def _misses(pairs: list[tuple[Joint, Data]]) -> int:
 
 
 def moves_arm(flow: TypeFlow) -> bool:
-    """Whether a literal holds angles, in a list or by name, that a state which holds an arm
-    reads."""
+    """Whether a literal holds angles, in a list or by joint name, that a state with a claim on an
+    arm reads."""
     node, wanted = flow.cell.node, present(flow.cell.declared)
     if flow.cell.role != "input" or not isinstance(node, Leaf):
         return False
@@ -175,10 +179,10 @@ def moves_arm(flow: TypeFlow) -> bool:
 
 @rule("SM503", "not-a-rotation", Severity.WARNING)
 def not_a_rotation(context: Context) -> Iterator[Finding]:
-    """A quaternion does not have the length 1, so it is no rotation.
+    """A quaternion does not have the length 1, so it is not a rotation.
 
-    Some programs read the nearest rotation, others refuse it, and others bend the pose: the hand
-    comes from where nobody sent it. Four zeros are read as no rotation at all in the simulation.
+    Some programs use the nearest rotation, others stop with an error, and others distort the pose:
+    the hand moves to an unexpected place. The simulation reads four zeros as no rotation.
 
     Wrong:
         name: sm
@@ -212,11 +216,12 @@ def not_a_rotation(context: Context) -> Iterator[Finding]:
             length = math.hypot(*numbers)
             if abs(length - 1.0) <= ROTATION_TOLERANCE:
                 continue
-            help = "write no rotation as `[0.0, 0.0, 0.0, 1.0]`"
+            help = "write `[0.0, 0.0, 0.0, 1.0]` for no rotation"
             if length > 0.0 and math.isfinite(length):
                 nearest = ", ".join(f"{number / length:.4f}" for number in numbers)
-                help = f"the nearest rotation is `[{nearest}]`"
-            yield at(flow, f"the quaternion {list(rotation)} has the length {length:.4g}", help)
+                help = f"write the nearest rotation, `[{nearest}]`"
+            message = f"the quaternion {list(rotation)} has the length {length:.4g}, not 1"
+            yield at(flow, message, help, tuple(map(str, rotation)))
 
 
 def _rotations(data: Data, wanted: Type) -> Iterator[tuple[Data, ...]]:
@@ -244,8 +249,8 @@ HOLDERS = frozenset(["Pose", "Transform", "Quaternion", "optional", "list", "arr
 def unit_mismatch(context: Context) -> Iterator[Finding]:
     """A number is written in one unit and read in another.
 
-    Ninety degrees read as radians turn a joint fourteen times, or run it into its limit. Numbers
-    without a unit fit every unit.
+    Ninety degrees that are read as radians turn a joint fourteen times, or move it to its limit. A
+    number without a unit fits every unit.
 
     Wrong:
         name: sm
@@ -287,21 +292,33 @@ def _as_float(data: Data) -> float:
         return math.inf
 
 
-def at(flow: TypeFlow, message: str, help: str | None, more: tuple[Related, ...] = ()) -> Finding:
-    """A finding at a literal, with where it is read."""
+def at(
+    flow: TypeFlow,
+    message: str,
+    help: str | None,
+    names: tuple[str, ...] = (),
+    more: tuple[Related, ...] = (),
+) -> Finding:
+    """A finding at a literal, with the place where it is read; its arguments are the key of the
+    literal and `names`."""
     origin, cell = flow.origin, flow.cell
-    reader = cell.node.name if cell.node is not None else "the base"
     related: tuple[Related, ...] = ()
     if cell.span != origin.span and cell is not origin.cell:
-        related = other_place(cell.span, f"`{reader}` reads it here as `{cell.key}`")
+        related = other_place(cell.span, f"{reader(flow)} reads it here as `{cell.key}`")
     node = origin.cell.node
     return Finding(
         span=origin.span,
         message=message,
+        arguments=(origin.cell.key, *names),
         help=help,
         related=(*related, *more, *(calls(node, origin.span) if node is not None else ())),
         node=origin.cell.path,
     )
+
+
+def reader(flow: TypeFlow) -> str:
+    """The state that reads a literal, in a message."""
+    return f"`{flow.cell.node.name}`" if flow.cell.node is not None else "the base"
 
 
 USUAL = frozenset(["base", "base_footprint", "base_link", "earth", "map", "odom", "world"])
@@ -341,14 +358,17 @@ TAME = frozenset(
 
 @rule("SM505", "unknown-frame", Severity.WARNING)
 def unknown_frame(context: Context) -> Iterator[Finding]:
-    """A frame, or a joint, is named that the robot does not have.
+    """A value names a frame or a joint that the robot does not have.
 
-    The transform is waited for in vain, or the hand goes to a place measured from another one.
-    Known are the links of the URDF file that `robot:` names, the frames that the script lists under
-    `frames:`, and the usual ones (`base_link`, `map`, `odom`, `world`); asked are the literals that
-    a state reads as `str` under a key that is called `frame` or `frame_id`, or ends so, and the
-    frames of a PoseStamped. In the simulation the frames are `base`, `world` and the bodies that
-    are loaded, so there it is an error.
+    The state waits for a transform that never comes, or the hand moves to a place that is measured
+    from the wrong frame.
+
+    Exactly: the frames are the links of the URDF file that `robot:` names, those that the script
+    lists under `frames:`, and common ones (`base_link`, `map`, `odom`, `world`). The rule checks
+    the literals that a state reads as `str` from a key whose name is or ends with `frame` or
+    `frame_id`, and the frame of a PoseStamped. In the simulation the frames are `base`, `world` and
+    the loaded bodies, and an unknown one is an error. The rule also checks the joint names in
+    mappings of joint names to angles.
 
     Wrong:
         name: sm
@@ -394,11 +414,12 @@ def unknown_frame(context: Context) -> Iterator[Finding]:
         for name in _frames_in(flow):
             if name.removeprefix("/") in known or not name:
                 continue
-            where = "the simulation" if simulated else f"`{robot.name}`"
-            help = "give it under `frames: [...]` if something else than the robot provides it"
+            where = "the simulation" if simulated else f"the robot `{robot.name}`"
+            help = "add it to `frames: [...]` if it is not a frame of the robot"
             if simulated:
-                help = f"known are {', '.join(f'`{each}`' for each in sorted(known))}"
-            found = at(flow, f"{where} has no frame `{name}`", did_you_mean(guess(name)) or help)
+                help = f"its frames are {', '.join(f'`{each}`' for each in sorted(known))}"
+            message = f"{where} has no frame `{name}`"
+            found = at(flow, message, did_you_mean(guess(name)) or help, (name,))
             yield found if not simulated else _as_error(found)
 
 
@@ -451,7 +472,7 @@ def _holds_frame(flow: TypeFlow) -> bool:
 
 
 def _unknown_joints(context: Context, robot: Robot) -> Iterator[Finding]:
-    """Angles by joint, where one of the joints is not there."""
+    """The unknown joints in mappings of joint names to angles."""
     joints = [joint.name for joint in robot.joints]
     for flow in context.types.constants if joints else ():
         if moves_arm(flow) and isinstance(flow.value, Struct):
@@ -464,8 +485,8 @@ def _strangers(
     names = [name for name, _ in entries]
     strange = [name for name in names if name not in joints]
     if len(strange) == len(names):
-        return  # these are no joints at all
+        return  # the names are not those of joints
     guess = guesser(joints)
     for name in strange:
-        help = did_you_mean(guess(name)) or f"its joints are {', '.join(joints)}"
-        yield at(flow, f"`{robot.name}` has no joint `{name}`", help)
+        help = did_you_mean(guess(name)) or f"its joints are {listed(joints)}"
+        yield at(flow, f"the robot `{robot.name}` has no joint `{name}`", help, (name,))

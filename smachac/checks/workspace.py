@@ -1,4 +1,4 @@
-"""Poses that the arm is to reach, as far as the script gives them as numbers (SM506)."""
+"""The poses of the simulated arm that a script gives as numbers, and a solver that checks them."""
 
 from __future__ import annotations
 
@@ -8,7 +8,7 @@ from typing import TypeAlias
 
 from smachac.analysis.context import Context
 from smachac.analysis.type_inference import Cell, TypeFlow, Types
-from smachac.checks.robot import at, robot_of
+from smachac.checks.robot import at, reader, robot_of
 from smachac.diagnostics.diagnostic import Finding, Problem, Report, Severity, problem
 from smachac.ir.leaf import variable
 from smachac.ir.nodes import Data, Leaf, Machine
@@ -17,7 +17,7 @@ from smachac.ir.traversal import remapping
 Numbers: TypeAlias = "list[Numbers] | float"
 
 REACHING = frozenset(["MoveAlongState", "PoseToJointPositionsState"])
-"""The state types that bring the tool to their `pose`, moved by their `offset`."""
+"""The state types that move the tool to their `pose`, shifted by their `offset`."""
 
 SIMULATED = ("PyBulletBase", "panda")
 """The base and the robot for which there is a solver."""
@@ -25,9 +25,9 @@ SIMULATED = ("PyBulletBase", "panda")
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Reach:
-    """A pose, in the frame of the base, that the tool is to be brought to; `flow` is its literal.
+    """A goal pose of the tool in the frame of the base; `flow` is its literal.
 
-    `grasp`: it is that of a body to be held from above.
+    `grasp`: it is the pose of a body that is grasped from above.
     """
 
     flow: TypeFlow
@@ -38,12 +38,13 @@ class Reach:
 
 @problem("SM506", "out-of-reach", Severity.WARNING)
 def out_of_reach(flow: TypeFlow, point: str) -> Finding:
-    """The simulated arm cannot bring its tool to a pose.
+    """The simulated arm cannot move its tool to a pose.
 
-    The state ends with `aborted`, with the arm where it was. `smachac check --sim` asks the solver
-    of the simulation, once for each pose that the script gives as numbers to a state that moves the
-    arm, with the state's offset if that is given as numbers too. A pose in reach may still lie
-    behind an obstacle.
+    The state ends with `aborted`, and the arm stays where it was.
+
+    Exactly: `smachac check --sim` runs the solver of the simulation for each pose that the script
+    gives as numbers to a state that moves the arm, with the offset of the state if that is given as
+    numbers too. A pose without this finding can still be behind an obstacle.
 
     Wrong:
         name: sm
@@ -67,13 +68,13 @@ def out_of_reach(flow: TypeFlow, point: str) -> Finding:
               remapping: {pose: goal}
               transitions: {succeeded: done, aborted: failed, preempted: failed}
     """
-    reader = flow.cell.node.name if flow.cell.node is not None else "the base"
-    message = f"`{reader}` cannot reach {point}: no joints bring the tool there"
-    return at(flow, message, "metres from the robot's base: nearer, or with another rotation?")
+    message = f"{reader(flow)} cannot reach {point}: no joint positions bring the tool to this pose"
+    help = "move the pose closer to the base of the robot (in metres), or change its rotation"
+    return at(flow, message, help, (reader(flow).strip("`"), point))
 
 
 def poses_to_reach(context: Context) -> Iterator[Reach]:
-    """Every pose that a state surely asks of the simulated arm when its turn comes."""
+    """The poses that states certainly command to the simulated arm."""
     robot = robot_of(context.machine)
     if robot is None or (context.machine.base, robot.name) != SIMULATED:
         return
@@ -98,7 +99,7 @@ def poses_to_reach(context: Context) -> Iterator[Reach]:
 
 
 def _offsets(types: Types, path: str, leaf: Leaf) -> list[Numbers | None]:
-    """The offsets a state may find; none where that cannot be told. The key may be absent."""
+    """The possible offsets of a state (None: the key is absent); empty if they are unknown."""
     cell = types.cells.get((path, remapping(leaf).get("offset", "offset")))
     flows = [flow for alike in cell.flows.values() for flow in alike] if cell is not None else []
     found: list[Numbers | None] = []
@@ -122,13 +123,13 @@ def _numbers(data: Data) -> Numbers | None:
 
 
 class NoSimulationError(Exception):
-    """The simulation is not installed; the words say how to get it."""
+    """The simulation is not installed; the message describes how to install it."""
 
 
 def unreachable(machine: Machine) -> Report:
-    """SM506 for the poses of a machine; one solution is looked for, for each different one.
+    """SM506 for the poses of a machine; the solver runs once for each different pose.
 
-    Raises NoSimulationError. The simulation starts only if there is a pose to ask.
+    Raises NoSimulationError. The simulation starts only if there is a pose to check.
     """
     wanted = list(poses_to_reach(Context(machine)))
     if not wanted:

@@ -23,13 +23,13 @@ MOVING = TURNING | {"prismatic", "planar", "floating"}
 KINDS = MOVING | {"fixed"}
 
 Stretch = tuple[Joint, ...]
-"""Joints in a row, each a child of the one before."""
+"""Consecutive joints, each a child of the previous one."""
 
-XACRO = "it is a macro file: expand it with `xacro`, and name what comes out"
+XACRO = "expand the macro file with `xacro`, and name the resulting file"
 
 
 class UrdfError(Exception):
-    """A text that describes no robot: the message, its span, and a line of help."""
+    """A text that is not a robot description: the message, its span, and a line of help."""
 
     def __init__(self, message: str, span: Span, help: str | None = None) -> None:
         super().__init__(message)
@@ -56,7 +56,7 @@ def read_urdf(source: Source) -> Robot:
     for each in reader.joints.values():
         for link in (each.parent, each.child):
             if link not in links:
-                message = f"joint `{each.joint.name}` hangs on a link `{link}` that is not there"
+                message = f"joint `{each.joint.name}` names the link `{link}`, which does not exist"
                 raise UrdfError(message, each.joint.span)
     joints = {name: replace(each, joint=_limited(each)) for name, each in reader.joints.items()}
     turning = tuple(each.joint for each in joints.values() if each.kind in TURNING)
@@ -84,7 +84,7 @@ class _Reader:
     def read(self) -> None:
         text = self.source.text
         if len(text) > MAX_CHARACTERS:
-            raise self.error(f"the file has {len(text):,} characters, more than any robot needs")
+            raise self.error(f"the file has {len(text):,} characters, more than {MAX_CHARACTERS:,}")
         parser = self._parser
         parser.StartElementHandler = self.start
         parser.EndElementHandler = self.end
@@ -95,7 +95,7 @@ class _Reader:
         except expat.ExpatError as error:
             words = expat.ErrorString(error.code)
             raise UrdfError(
-                f"this is no XML: {words}", self.at(error.lineno, error.offset)
+                f"the file is not valid XML: {words}", self.at(error.lineno, error.offset)
             ) from None
 
     def at(self, line: int, column: int) -> Span:
@@ -116,16 +116,17 @@ class _Reader:
         return UrdfError(message, self.here(name), help)
 
     def refuse(self, *_: object) -> None:
-        message = "a document type is not read: it may hold more than it shows"
-        raise self.error(message, help="take out the lines with `<!DOCTYPE` and `<!ENTITY`")
+        message = "a document type is not allowed: it can expand to a huge text"
+        raise self.error(message, help="remove the lines with `<!DOCTYPE` and `<!ENTITY`")
 
     def start(self, tag: str, given: dict[str, str]) -> None:
         self._count += 1
         depth = len(self._open)
         if self._count > MAX_ELEMENTS or depth > MAX_DEPTH:
-            raise self.error("it is larger, or deeper, than any robot")
+            message = f"it has more than {MAX_ELEMENTS:,} elements, or more than {MAX_DEPTH} levels"
+            raise self.error(message)
         if tag.startswith("xacro:"):
-            raise self.error(f"`<{tag}>` is not part of a robot", help=XACRO)
+            raise self.error(f"`<{tag}>` is not an element of URDF", help=XACRO)
         above = self._open[-1] if self._open else ""
         self._open.append(tag)
         if depth == 0:
@@ -150,9 +151,11 @@ class _Reader:
         kind = given.get("type", "")
         if kind not in KINDS:
             message = (
-                f"joint `{name}` is of type `{kind}`" if kind else f"joint `{name}` has no type"
+                f"joint `{name}` has the unknown type `{kind}`"
+                if kind
+                else f"joint `{name}` has no type"
             )
-            raise self.error(message, name, f"types are {', '.join(sorted(KINDS))}")
+            raise self.error(message, name, f"the types are {', '.join(sorted(KINDS))}")
         self._joint = self.joints[name] = _Link(Joint(name=name, span=self.here(name)), kind)
 
     def detail(self, tag: str, given: dict[str, str], joint: _Link) -> None:
@@ -176,8 +179,12 @@ def _limited(link: _Link) -> Joint:
     if link.kind != "revolute":
         return joint
     if not link.limits:
-        message = f"joint `{joint.name}` turns, and has no `<limit>`"
-        raise UrdfError(message, joint.span, "one without limits is of type `continuous`")
+        message = f"the revolute joint `{joint.name}` has no `<limit>`"
+        raise UrdfError(
+            message,
+            joint.span,
+            "add its limits, or use the type `continuous` for a joint without limits",
+        )
     numbers = []
     for name in ("lower", "upper"):
         word = link.limits.get(name, "0")
@@ -186,12 +193,12 @@ def _limited(link: _Link) -> Joint:
         except ValueError:
             number = math.nan
         if not math.isfinite(number):
-            message = f"the {name} limit of joint `{joint.name}` is `{word}`, which is no number"
+            message = f"the {name} limit of joint `{joint.name}` is `{word}`, which is not a number"
             raise UrdfError(message, joint.span, XACRO if "${" in word else None)
         numbers.append(number)
     low, high = numbers
     if low > high:
-        message = f"the limits of joint `{joint.name}` are {low} to {high}: the first is larger"
+        message = f"the lower limit {low} of joint `{joint.name}` is above its upper limit {high}"
         raise UrdfError(message, joint.span)
     return replace(joint, lower=low, upper=high)
 

@@ -1,4 +1,4 @@
-"""The findings of targets: what a language cannot express, missing code, faults of templates and
+"""The findings of targets: unsupported parts of a script, missing code, faults in the templates and
 classes of the user."""
 
 from __future__ import annotations
@@ -11,12 +11,12 @@ from smachac.diagnostics.source import Span, Word
 
 @problem("SM601", "unsupported-by-target", Severity.ERROR)
 def unsupported_by_target(
-    span: Span, target: str, message: str, help: str | None = None
+    span: Span, target: str, message: str, help: str | None = None, names: tuple[str, ...] = ()
 ) -> Finding:
-    """The target has no way to say what the script says.
+    """The target cannot express a part of the script.
 
-    Python takes any code and any type. Other languages take portable expressions, and have to know
-    the type of a value before they can hold it.
+    Python accepts any code and any type. Other languages accept portable expressions only, and
+    need the type of a value before they can store it.
 
     Wrong:
         name: sm
@@ -36,16 +36,18 @@ def unsupported_by_target(
               output_keys: [total]
               callbacks: {total: 'lambda ud: sum([0, 1, 2])'}
     """
-    return Finding(span=span, message=f"not for {target}: {message}", help=help)
+    message = f"not supported in {target}: {message}"
+    return Finding(span=span, message=message, arguments=(target, *names), help=help)
 
 
 @problem("SM602", "no-code-for-target", Severity.ERROR)
 def no_code_for_target(
     span: Span, target: str, option: str, state_type: str, states: int
 ) -> Finding:
-    """A state has code, but none in the language of the target.
+    """A state type has no code in the language of the target.
 
-    The interface of the state type tells, under `code`, where its code is for each language.
+    A program could not run the state, so the build fails. The interface of a state type names its
+    code for each language under `code`.
 
     Wrong:
         name: sm
@@ -62,22 +64,25 @@ def no_code_for_target(
         states:
           - GRASP: {template: ScriptedState, outcomes: [done]}
     """
-    number = f" ({states} states)" if states > 1 else ""
-    message = f"not for {target}: the state type `{state_type}` has no code in it{number}"
+    number = f" ({states} states use it)" if states > 1 else ""
+    message = f"the state type `{state_type}` has no code for {target}{number}"
     help = f"name its class under `code` in `{state_type}.yml`;"
-    help += f" `smachac new state {state_type} --target {option}` begins one"
-    return Finding(span=span, message=message, help=help)
+    help += f" `smachac new state {state_type} --target {option}` creates one"
+    return Finding(span=span, message=message, arguments=(target, state_type), help=help)
 
 
 @problem("SM603", "interfaces-differ", Severity.ERROR)
 def interfaces_differ(
-    span: Span, state_type: str, name: str, differences: Sequence[Word]
+    span: Span, target: str, state_type: str, name: str, differences: Sequence[Word]
 ) -> Finding:
-    """A class of a state type declares other outcomes or keys than the interface.
+    """The class of a state type and its interface have different outcomes or keys.
 
-    The checker judges by the interface, the robot runs the class. Classes are read, never run: of
-    Python what `__init__` hands to `smach.State`, of C++ the names in `Outcome`, `In` and `Out`;
-    what cannot be read is not judged. `check` warns; a build for the language of the class fails.
+    The rules check the interface, but the robot runs the class: an outcome that only the class has
+    leads nowhere.
+
+    Exactly: a class is read and never run: in Python the lists that `__init__` passes to
+    `smach.State`, in C++ the names in `Outcome`, `In` and `Out`. A part that cannot be read does
+    not count. `check` reports a warning; a build for the language of the class fails.
 
     Wrong:
         name: sm
@@ -120,11 +125,13 @@ def interfaces_differ(
                 return "done"
     """
     others = f" (and {len(differences) - 1} more)" if differences[1:] else ""
+    first = differences[0].text
     return Finding(
         span=span,
-        message=f"`{name}` is not what `{state_type}.yml` says: {differences[0].text}{others}",
+        message=f"the class `{name}` does not match `{state_type}.yml`: {first}{others}",
+        arguments=(target, state_type, name),
         related=_places(differences),
-        help=f"change the class, or the interface in `{state_type}.yml`",
+        help=f"correct the class, or the interface in `{state_type}.yml`",
     )
 
 
@@ -132,11 +139,13 @@ def interfaces_differ(
 def stale_code(
     span: Span, state_type: str, name: str, number: Word, differences: Sequence[Word]
 ) -> Finding:
-    """A class of C++ was written for an interface that has changed since.
+    """A C++ class was written for another version of its interface.
 
-    `smachac_interface` in the class is the number of the interface it was written for. Another
-    number says that somebody has to compare the two. `check` warns; `build --target cpp` fails, as
-    the compiler would.
+    The class may lack an outcome or a key that the interface now has.
+
+    Exactly: `smachac_interface` in the class is the number of the interface that it was written
+    for, and the interface now has another number. `check` reports a warning; `build --target cpp`
+    fails, as the compiler would.
 
     Wrong:
         name: sm
@@ -178,12 +187,13 @@ def stale_code(
         };
         }
     """
-    told = "".join(f"{word.text}; " for word in differences) or "compare the two, "
+    old = Related(span=number.span, message="the number of that version")
     return Finding(
         span=span,
-        message=f"`{name}` was written for another `{state_type}.yml`",
-        related=(Related(span=number.span, message="the number of that"), *_places(differences)),
-        help=f"{told}then set `smachac_interface` to {number.text}",
+        message=f"the class `{name}` was written for another version of `{state_type}.yml`",
+        arguments=(state_type, name),
+        related=(old, *_places(differences)),
+        help=f"adapt the class to the interface, then set `smachac_interface` to {number.text}",
     )
 
 
@@ -192,11 +202,11 @@ def _places(differences: Sequence[Word]) -> tuple[Related, ...]:
 
 
 @problem("SM606", "old-python", Severity.WARNING)
-def python_2_code(span: Span, message: str) -> Finding:
-    """A template holds Python 2; it is printed as Python 3.
+def python_2_code(span: Span, old: str, new: str) -> Finding:
+    """A template contains Python 2; it is printed as Python 3.
 
-    SMACHA's templates were written when ROS ran on Python 2. What can be told from the line alone
-    (`except E, e:`, `print x`, `raise E, x`, `<>`) is translated; all else is SM605.
+    SMACHA's templates were written when ROS used Python 2. Lines that are certainly Python 2
+    (`except E, e:`, `print x`, `raise E, x`, `<>`) are translated; for other code see SM605.
 
     Wrong:
         name: sm
@@ -238,16 +248,22 @@ def python_2_code(span: Span, message: str) -> Finding:
                     return 'aborted'
         {% endblock %}
     """
-    return Finding(span=span, message=message, help="write it so in the template as well")
+    return Finding(
+        span=span,
+        message=f"`{old}` is Python 2; it is printed as `{new}`",
+        arguments=(old,),
+        help="change this line in the template",
+    )
 
 
 @problem("SM607", "defined-twice", Severity.WARNING)
 def defined_twice(
     span: Span, what: str, name: str, states: tuple[tuple[str, Span], tuple[str, Span]]
 ) -> Finding:
-    """Templates define a class or function twice, and not alike.
+    """Templates define a class or a function twice, with different code.
 
-    All states share one module: those printed first run the code that was meant for the last.
+    All states share one module, and its last definition counts: the first state runs the code that
+    was meant for the last one.
 
     Wrong:
         name: sm
@@ -297,11 +313,13 @@ def defined_twice(
     (first, place), (second, other) = states
     return Finding(
         span=span,
-        message=f"{what} `{name}` is defined for `{first}` and otherwise for `{second}`",
-        help="define it once, and give what differs to it as an argument",
+        message=f"the {what} `{name}` is defined twice, with other code for `{second}` than for"
+        f" `{first}`",
+        arguments=(name, first, second),
+        help="define it once, and pass the differences as arguments",
         related=(
-            Related(span=place, message="runs the other's code"),
-            Related(span=other, message="defines it last"),
+            Related(span=place, message=f"`{first}` runs the code for `{second}`"),
+            Related(span=other, message=f"`{second}` defines it last"),
         ),
     )
 

@@ -98,7 +98,7 @@ def type_faults(
     if found.stale is not None:
         yield stale_code(leaf.span, type_.name, found.name, found.stale, differences)
     elif differences:
-        yield interfaces_differ(leaf.span, type_.name, found.name, differences)
+        yield interfaces_differ(leaf.span, target.name, type_.name, found.name, differences)
 
 
 def _differences(type_: StateType, found: Declared) -> Iterator[Word]:
@@ -119,8 +119,8 @@ def _unlike(what: str, words: Words, wanted: Iterable[str], span: Span) -> Itera
     names = [word.text for word in words]
     for name in wanted:
         if name not in names:
-            yield Word(f"it has no {what} `{name}`", words[0].span if words else span)
+            yield Word(f"the {what} `{name}` is missing", words[0].span if words else span)
     known = set(wanted)
     for word in words:
         if word.text not in known:
-            yield Word(f"its {what} `{word.text}` is not in the interface", word.span)
+            yield Word(f"the {what} `{word.text}` is not in the interface", word.span)

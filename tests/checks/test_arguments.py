@@ -1,107 +1,111 @@
-"""Arguments of findings about userdata, types and expressions: what the finding is about."""
+"""The arguments of findings about concurrences, robots and targets: names of the script itself."""
 
 from __future__ import annotations
 
-from collections.abc import Mapping
 from pathlib import Path
 
 import pytest
 
-from smachac.checks import check_machine
-from smachac.diagnostics.diagnostic import Report, Severity
-from smachac.diagnostics.source import Source
-from smachac.driver import CODES, load
-from smachac.frontend.files import disk_library
-from smachac.frontend.loader import memory_library
+from smachac.checks.workspace import unreachable
+from smachac.diagnostics.diagnostic import Report
+from smachac.driver import CODES, analyse, build
+from smachac.frontend.files import disk_library, read_source
 from smachac.report.explain_code import MAIN, explanation
+from smachac.targets import load_target
 
-BUILT_IN = disk_library(Path("main.yml"), [])
-
-EXAMPLES: Mapping[str, list[tuple[str, ...]]] = {
-    "SM016": [("lambda ud: ud.n +",)],
-    "SM301": [("pose",)],
-    "SM302": [("psoe", "block_pose")],
-    "SM303": [("pose",)],
-    "SM304": [("part", "str", "Pose")],
-    "SM305": [("old_pose",)],
-    "SM306": [("input", "speed")],
-    "SM307": [("pose",)],
-    "SM308": [("n",)],
-    "SM310": [("level",)],
-    "SM311": [("ud.limb + 1",)],
-    "SM312": [("ud.gripper == 'shut'",)],
-    "SM313": [("speed",)],
-}
-"""The arguments of the findings in the example of each code."""
-
-
-def checked(text: str, **files: str) -> Report:
-    library = memory_library({f"{name}.yml": each for name, each in files.items()}, BUILT_IN)
-    machine = load(Source(MAIN, text), library, [])
-    assert machine is not None
-    return [item for item in check_machine(machine) if item.severity is not Severity.INFO]
-
-
-@pytest.mark.parametrize("code", EXAMPLES)
-def test_the_example_of_a_code_has_its_names_as_arguments(code: str) -> None:
-    report = checked(explanation(CODES[code]).wrong[MAIN])
-    assert [item.finding.arguments for item in report] == EXAMPLES[code]
-
-
-PART = """
-- PART:
-    template: StateMachine
+SCRIPT = """
+name: sm
+template: Base
+outcomes: [done]
+userdata: {one: ONE, two: TWO}
+states:
+  - A: {script: sub, remapping: {limb: one}, transitions: {done: B}}
+  - B: {script: sub, remapping: {limb: two}, transitions: {done: done}}
+"""
+SUB = """
+- SUB:
+    template: Concurrence
     outcomes: [done]
-    input_keys: [spare]
-    userdata: {left_over: 1, word: left}
+    default_outcome: done
+    input_keys: [limb]
     states:
-      - READ:
-          template: PrintUserdataState
-          input_keys: [goal, never]
-          remapping: {gaol: place}
-          transitions: {succeeded: COUNT}
-      - COUNT:
-          template: CallbacksState
-          input_keys: [word]
-          callbacks: {tries: 'lambda ud: ud.word + 1', more: 'lambda ud: ud.unknown'}
-          transitions: {succeeded: done}
+      - LEFT: {template: Grasp}
+      - RIGHT: {template: Grasp}
 """
-CALLS = """
+GRASP = """
+name: Grasp
+input_keys: {limb: str}
+claims: ["arm.{limb}"]
+outcomes: {done: {}}
+"""
+
+
+def findings(folder: Path, files: dict[str, str], target_name: str = "python") -> Report:
+    """The findings of check, and of a build if there are no errors."""
+    for name, text in files.items():
+        path = folder / name
+        path.parent.mkdir(parents=True, exist_ok=True)
+        path.write_text(text, "utf-8")
+    report: Report = []
+    library = disk_library(folder / MAIN, report)
+    source = read_source(folder / MAIN, report)
+    assert source is not None
+    analysis = analyse(source, library, report, unreachable)
+    target = load_target(target_name)
+    assert target is not None
+    if analysis.checked is not None:
+        build(analysis.checked, target, library, analysis.report)
+    return analysis.report
+
+
+@pytest.mark.parametrize(
+    ("code", "target", "arguments"),
+    [
+        ("SM401", "python", ("LEFT", "done", "RIGHT", "slipped")),
+        ("SM402", "python", ("left", "right", "LEFT", "found", "RIGHT", "found")),
+        ("SM403", "python", ("ready", "RIHGT", "done")),
+        ("SM405", "python", ("pose", "LOOK_LEFT", "LOOK_RIGHT")),
+        ("SM406", "python", ("arm.left", "HOME", "UP")),
+        ("SM408", "python", ("BOTH",)),
+        ("SM502", "python", ("home", "4")),
+        ("SM503", "python", ("grasp", "1.0", "0.0", "0.0", "1.0")),
+        ("SM505", "python", ("from_frame", "hnad")),
+        ("SM506", "python", ("goal", "GO", "(1.900, 0.000, 0.100)")),
+        ("SM601", "cpp", ("C++", "COUNT", "lambda ud: [x for x in range(3)]")),
+        ("SM602", "cpp", ("C++", "Grasp")),
+        ("SM603", "python", ("python", "Grasp", "robot_states.grasp:Grasp")),
+        ("SM604", "cpp", ("Grasp", "robot_states::Grasp")),
+        ("SM606", "python", ("except ValueError, error:",)),
+        ("SM607", "python", ("Say", "FIRST", "SECOND")),
+    ],
+)
+def test_arguments_are_the_names_of_the_fault(
+    code: str, target: str, arguments: tuple[str, ...], tmp_path: Path
+) -> None:
+    if code == "SM506":
+        pytest.importorskip("pybullet")
+    report = findings(tmp_path, dict(explanation(CODES[code]).wrong), target)
+    found = [item.finding.arguments for item in report if item.code == code]
+    assert set(found) == {arguments}
+
+
+def test_a_claim_stands_in_the_arguments_as_it_is_written(tmp_path: Path) -> None:
+    """Two calls of a sub-script fill in two limbs: the messages differ, the fault is one."""
+    files = {MAIN: SCRIPT, "sub.yml": SUB, "templates/Grasp.yml": GRASP}
+    found = [item.finding for item in findings(tmp_path, files) if item.code == "SM406"]
+    assert [each.message.split("`")[5] for each in found] == ["arm.ONE", "arm.TWO"]
+    assert {each.arguments for each in found} == {("arm.{limb}", "LEFT", "RIGHT")}
+
+
+def test_two_keys_that_cpp_cannot_store_differ(tmp_path: Path) -> None:
+    files = {
+        MAIN: """
 name: sm
-template: Base
 outcomes: [done]
-userdata: {a: 1, b: text}
+userdata: {one: 9223372036854775808, two: 9223372036854775808}
 states:
-  - FIRST: {script: part, remapping: {spare: a}, transitions: {done: SECOND}}
-  - SECOND: {script: part, remapping: {spare: b}, transitions: {done: done}}
+  - LOOK: {template: PrintUserdataState, input_keys: [one, two], transitions: {succeeded: done}}
 """
-
-
-def test_arguments_do_not_depend_on_the_caller_of_a_sub_script() -> None:
-    report = [item for item in checked(CALLS, part=PART) if item.span.source.name == "part.yml"]
-    inside: dict[str, set[tuple[object, ...]]] = {"FIRST": set(), "SECOND": set()}
-    for item in report:
-        caller = (item.finding.node or "").split("/")[1]
-        inside[caller].add((item.code.code, item.span, item.finding.arguments))
-    assert inside["FIRST"] == inside["SECOND"]
-    assert {code for code, *_ in inside["FIRST"]} >= {
-        "SM301", "SM302", "SM305", "SM306", "SM308", "SM310", "SM311",
-    }  # fmt: skip
-
-
-def test_two_faults_at_one_place_have_different_arguments() -> None:
-    text = """
-name: sm
-template: Base
-outcomes: [done]
-states:
-  - JUDGE:
-      template: ConditionalOutcomeState
-      outcomes: [done]
-      callbacks: {done: 'lambda ud: ud.one and ud.two'}
-      default_outcome: done
-      transitions: {done: done}
-"""
-    items = [item for item in checked(text) if item.code.code == "SM310"]
-    assert len({item.span for item in items}) == 1
-    assert {item.finding.arguments for item in items} == {("one",), ("two",)}
+    }
+    found = [item.finding for item in findings(tmp_path, files, "cpp") if item.code == "SM601"]
+    assert [each.arguments for each in found] == [("C++", "one"), ("C++", "two")]

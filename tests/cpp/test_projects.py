@@ -142,7 +142,7 @@ def test_a_library_without_a_program(tmp_path: Path) -> None:
     ("script", "options", "told"),
     [
         (ARM, ["main=true"], "`smachac::World &world` and `smachac::Arm &arm`"),
-        (PATROL, ["main=yes"], "main is `true` or `false`, not `yes`"),
+        (PATROL, ["main=yes"], "`main` must be `true` or `false`, not `yes`"),
         (PATROL, ["package=My-Robot"], "not `My-Robot`"),
     ],
 )

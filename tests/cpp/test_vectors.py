@@ -25,10 +25,10 @@ Json = Any
 EVERYTHING = os.environ.get("SMACHAC_CPP") == "all"
 
 REFUSED = {
-    "h089-concurrence-empty": "it has no states",
-    "h116-iterator-items-from-userdata": "`jobs` is `any`, not a list of items",
-    "h120-iterator-items-key-missing": "`nope` is `any`, not a list of items",
-    "h121-iterator-without-child": "it has no states",
+    "h089-concurrence-empty": "the container has no states",
+    "h116-iterator-items-from-userdata": "the items key `jobs` is `any`, not a list",
+    "h120-iterator-items-key-missing": "the items key `nope` is `any`, not a list",
+    "h121-iterator-without-child": "the container has no states",
 }
 """What C++ cannot say, and what it says of it."""
 
@@ -153,4 +153,4 @@ def test_sanitizers_find_nothing(flags: tuple[str, ...], names: list[str], tmp_p
 
 @pytest.mark.parametrize("name", REFUSED)
 def test_what_cpp_cannot_say_is_refused(name: str) -> None:
-    assert part(recorded.CASES[name], "v") == [f"not for C++: {REFUSED[name]}"]
+    assert part(recorded.CASES[name], "v") == [f"not supported in C++: {REFUSED[name]}"]

@@ -254,7 +254,7 @@ def test_comments_and_introspection_are_printed_when_asked_for() -> None:
 
 
 def test_options_are_yes_or_no() -> None:
-    with pytest.raises(ValueError, match="comments: `yes` or `no`, not `maybe`"):
+    with pytest.raises(ValueError, match="`comments` must be `yes` or `no`, not `maybe`"):
         text_of("whole", comments="maybe")
 
 

@@ -158,7 +158,7 @@ def test_a_block_that_prints_nothing_of_the_states_loses_nothing(built: Built) -
 def test_a_container_that_does_not_print_its_states_is_told(built: Built, name: str) -> None:
     lost = "{% block body %}\n# no body\n{% endblock %}"
     (message,) = errors(built, NESTED, T=CLASS + ADDED, **{name: lost})
-    assert message == "block `body` does not print `{{ body }}`: the states would be lost"
+    assert message == "the block `body` does not print `{{ body }}`, so the states are missing"
 
 
 def test_once_only_code_by_defined_headers(built: Built) -> None:
@@ -600,4 +600,6 @@ def test_what_cannot_be_wrapped_is_told(built: Built, body: str, words: str) -> 
     (message,) = errors(
         built, script, T=f"{META}{FAILING}{{% block body %}}\n{body}\n{{% endblock %}}"
     )
-    assert message == f"the template of `T` {words}, so that `A` cannot end with its exceptions"
+    assert (
+        message == f"the template of `T` {words}, so `A` cannot have an outcome for its exceptions"
+    )

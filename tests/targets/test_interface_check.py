@@ -158,13 +158,13 @@ def test_a_stub_of_another_interface_is_found(one: NewStateType, other: NewState
 @pytest.mark.parametrize(
     ("pair", "told"),
     [
-        (("'not-held'", "'lost'"), "it has no outcome `not-held` (and 1 more)"),
-        (("['held', 'not-held']", "('held',)"), "it has no outcome `not-held`"),
-        (("'near', ", ""), "it has no input key `near`"),
-        (("'near', ", "'near', 'far', "), "its input key `far` is not in the interface"),
-        (("            output_keys=['width'],\n", ""), "it has no output key `width`"),
+        (("'not-held'", "'lost'"), "the outcome `not-held` is missing (and 1 more)"),
+        (("['held', 'not-held']", "('held',)"), "the outcome `not-held` is missing"),
+        (("'near', ", ""), "the input key `near` is missing"),
+        (("'near', ", "'near', 'far', "), "the input key `far` is not in the interface"),
+        (("            output_keys=['width'],\n", ""), "the output key `width` is missing"),
         (("['target', 'near', 'two words'],", "['target', 'near'], io_keys=['two words'],"),
-         "its output key `two words` is not in the interface"),
+         "the output key `two words` is not in the interface"),
         (("super().__init__(", "smach.State.__init__(self, "), ""),
         (("super().__init__(", "super(Grasp, self).__init__("), ""),
         (("outcomes=['held', 'not-held']", "['not-held', 'held']"), ""),
@@ -178,7 +178,7 @@ def test_a_class_of_python(pair: tuple[str, str], told: str) -> None:
     report = said(files(changed(PYTHON, pair)))
     if told:
         (message,) = report
-        assert message.startswith("SM603 `arm.grasp:Grasp` is not what `Grasp.yml` says: ")
+        assert message.startswith("SM603 the class `arm.grasp:Grasp` does not match `Grasp.yml`: ")
         assert told in message
     else:
         assert report == []
@@ -220,12 +220,12 @@ def test_a_class_that_may_declare_elsewhere_is_not_judged(pair: tuple[str, str])
 @pytest.mark.parametrize(
     ("pair", "told"),
     [
-        (("{ held, not_held }", "{ held, lost }"), "it has no outcome `not-held` (and 1"),
+        (("{ held, not_held }", "{ held, lost }"), "the outcome `not-held` is missing (and 1"),
         (("{ held, not_held }", "{ held = 3, /* , no */ not_held, }"), ""),
         (("{ held, not_held }", "{ held [[deprecated]] }"), ""),
         (("enum class Outcome { held, not_held };", "using Outcome = smachac::Outcome;"), ""),
-        (("const smachac::Pose &near; ", ""), "it has no input key `near`"),
-        (("int64_t two_words;", "int64_t two_words; bool far;"), "its input key `far` is not in"),
+        (("const smachac::Pose &near; ", ""), "the input key `near` is missing"),
+        (("int64_t two_words;", "int64_t two_words; bool far;"), "the input key `far` is not in"),
         (("&target; const smachac::Pose &near", "&near; const smachac::Pose &target"),
          "the fields of `In` must be in the order `target`, `near`, `two_words`"),
         (("std::int64_t two_words", "double two_words"), "`In::two_words` must be `std::int64_t`"),
@@ -248,7 +248,7 @@ def test_a_class_of_cpp(pair: tuple[str, str], told: str) -> None:
     report = said(files(cpp=changed(CPP, pair)))
     if told:
         (message,) = report
-        assert message.startswith("SM603 `arm::Grasp` is not what `Grasp.yml` says: ")
+        assert message.startswith("SM603 the class `arm::Grasp` does not match `Grasp.yml`: ")
         assert told in message
     else:
         assert report == []
@@ -269,8 +269,12 @@ def test_the_number_of_another_interface() -> None:
     right = stubs(grasp)[1].partition("smachac_interface = ")[2].partition(";")[0]
     finding = item.finding
     assert item.severity is Severity.WARNING
-    assert finding.message == "`arm::Grasp` was written for another `Grasp.yml`"
-    assert finding.help == f"it has no outcome `lost`; then set `smachac_interface` to {right}"
+    assert (
+        finding.message == "the class `arm::Grasp` was written for another version of `Grasp.yml`"
+    )
+    assert (
+        finding.help == f"adapt the class to the interface, then set `smachac_interface` to {right}"
+    )
     assert finding.span.line == 11
     assert [str(each.span) for each in finding.related] == [
         "arm/grasp.hpp:16:54",

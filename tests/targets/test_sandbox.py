@@ -20,9 +20,9 @@ states:
   - A: {template: Bad, outcomes: [done], given: word, transitions: {done: done}}
 """
 
-NO_END = "this template has no end, or makes more text than it may"
-CALLS = "macros, blocks or includes call one another without an end"
-ITSELF = "the template extends, includes or calls itself without an end"
+NO_END = "the template does not end, or prints too much text"
+CALLS = "macros, blocks or includes call one another endlessly"
+ITSELF = "the template extends, includes or calls itself endlessly"
 
 HARMFUL = {
     "nested loops": ("{% for a in range(90000) %}{% for b in range(90000) %}x{% endfor %}{% endfor %}", NO_END),
@@ -110,16 +110,16 @@ def test_harm_ends_in_an_error_at_its_line(harm: str, tmp_path: Path) -> None:
 @pytest.mark.parametrize(
     ("template", "words"),
     [
-        ("{% extends 'Bad.tpl.py' %}", "the template extends, includes or calls itself without an end"),
+        ("{% extends 'Bad.tpl.py' %}", "the template extends, includes or calls itself endlessly"),
         ("{% include 'Bad.tpl.py' %}{% block body %}{% endblock %}", ITSELF),
         ("{% from 'Bad.tpl.py' import m %}{% macro m() %}{% endmacro %}{% block body %}{% endblock %}", ITSELF),
         ("{% block body %}{% endblock %}{{ 'x' * 10**10 }}{% set a = 1 %}", NO_END),
         ("{% block body %}" + "(" * 500, ""),
         ("{% block body %}{{ " + "(" * 5000 + "1" + ")" * 5000 + " }}{% endblock %}", ITSELF),
         ("{% for a in [1] %}" * 30 + "{% endfor %}" * 30 + "{% block body %}{% endblock %}", ""),
-        ("{% block body %}smach.add(\n{% endblock %}", "block `body` makes no Python"),
+        ("{% block body %}smach.add(\n{% endblock %}", "the block `body` does not print valid Python"),
         ("{% block class_defs %}class A\n{% endblock %}{% block body %}pass{% endblock %}",
-         "block `class_defs` makes no Python"),
+         "the block `class_defs` does not print valid Python"),
     ],
 )  # fmt: skip
 def test_templates_that_are_wrong_as_a_whole(template: str, words: str, tmp_path: Path) -> None:

@@ -259,7 +259,9 @@ def bad_robot(
 
 
 @problem("SM605", "template-error", Severity.ERROR)
-def template_error(span: Span, message: str, help: str | None = None) -> Finding:
+def template_error(
+    span: Span, message: str, help: str | None = None, names: tuple[str, ...] = ()
+) -> Finding:
     """A template does not parse or render.
 
     A state whose template fails would be missing in the generated program.
@@ -304,6 +306,7 @@ def template_error(span: Span, message: str, help: str | None = None) -> Finding
     return Finding(
         span=span,
         message=message,
+        arguments=names,
         help=help or "look at this line of the template, and at the block it stands in",
     )
 

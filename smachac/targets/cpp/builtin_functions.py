@@ -41,7 +41,7 @@ def item(owner: Term, place: Term) -> Term:
         found = FLOAT if kind.name in LISTED[:2] else found
         if found is not None:
             return fixed(found, call("item", owner.present(), whole(place).text))
-    raise UnportableError(f"a `{shown(kind)}` has no items by `{shown(index)}`")
+    raise UnportableError(f"`{shown(kind)}` has no items with the index type `{shown(index)}`")
 
 
 def item_of(given: list[Term]) -> Type:
@@ -60,30 +60,30 @@ def items(term: Term) -> Term:
     if kind.name == "dict":
         return fixed(Type("list", (STR,)), call("keys", term.present()))
     if kind.name in LISTED[:2]:
-        raise UnportableError(f"a `{kind}` is no list: name its parts")
+        raise UnportableError(f"`{kind}` is not a list: use its fields, such as `.x`")
     if kind.name not in SEQUENCES:
-        raise UnportableError(f"there is nothing to go through in a `{shown(term.type)}`")
+        raise UnportableError(f"`{shown(term.type)}` has no items")
     return fixed(kind, CppText(term.present()))
 
 
 def _no_names(named: Named, *but: str) -> None:
     for name in named:
         if name not in but:
-            raise UnportableError(f"the argument `{name}` is not for C++")
+            raise UnportableError(f"the argument `{name}` is not supported")
 
 
-def _only(given: list[Term], named: Named, what: str) -> Term:
+def _only(given: list[Term], named: Named) -> Term:
     _no_names(named)
     if len(given) != 1:
-        raise UnportableError(f"{what} of one value alone")
+        raise UnportableError(f"the function has {len(given)} arguments instead of one")
     return given[0]
 
 
 def _abs(given: list[Term], named: Named) -> Term:
-    only = _only(given, named, "the size")
+    only = _only(given, named)
     kind = number(only.type)
     if kind is None:
-        raise UnportableError(f"a `{shown(only.type)}` has no size")
+        raise UnportableError(f"`{shown(only.type)}` is not a number")
     value = f"std::int64_t{{{whole(only).text}}}" if kind == INT else real(only).text
     return fixed(kind, call("absolute", value))
 
@@ -91,7 +91,7 @@ def _abs(given: list[Term], named: Named) -> Term:
 def _bool(given: list[Term], named: Named) -> Term:
     if not given:
         return literal(False)
-    only = _only(given, named, "the truth")
+    only = _only(given, named)
     if only.type == BOOL:
         return only
     return fixed(BOOL, call("truth", only.text()))
@@ -100,51 +100,51 @@ def _bool(given: list[Term], named: Named) -> Term:
 def _dict(given: list[Term], named: Named) -> Term:
     if not given:
         return mapped([(literal(name), value) for name, value in named.items()])
-    only = _only(given, named, "a copy")
+    only = _only(given, named)
     if present(only.type).name != "dict":
-        raise UnportableError(f"a `{shown(only.type)}` is no mapping")
+        raise UnportableError(f"`{shown(only.type)}` is not a mapping")
     return fixed(present(only.type), CppText(only.present()))
 
 
 def _float(given: list[Term], named: Named) -> Term:
     if not given:
         return literal(0.0)
-    only = _only(given, named, "the float")
+    only = _only(given, named)
     if present(only.type) == STR:
         return fixed(FLOAT, call("real", only.present()))
     if number(only.type) is None:
-        raise UnportableError(f"a `{shown(only.type)}` is no number")
+        raise UnportableError(f"`{shown(only.type)}` is not a number")
     return fixed(FLOAT, real(only))
 
 
 def _int(given: list[Term], named: Named) -> Term:
     if not given:
         return literal(0)
-    only = _only(given, named, "the whole number")
+    only = _only(given, named)
     kind = number(only.type)
     if present(only.type) == STR or kind in (FLOAT, NUMBER):
         return fixed(INT, call("whole", only.present()))
     if kind is None:
-        raise UnportableError(f"a `{shown(only.type)}` is no number")
+        raise UnportableError(f"`{shown(only.type)}` is not a number")
     return fixed(INT, CppText(f"std::int64_t{{{whole(only).text}}}"))
 
 
 def _len(given: list[Term], named: Named) -> Term:
-    only = _only(given, named, "the length")
+    only = _only(given, named)
     kind = present(only.type)
     if kind.name in LISTED:
         return literal(len(FIELDS[kind.name]))
     if kind.name not in (*SEQUENCES, "str", "dict"):
-        raise UnportableError(f"a `{shown(only.type)}` has no length")
+        raise UnportableError(f"`{shown(only.type)}` has no length")
     return fixed(INT, call("length", only.present()))
 
 
 def _list(given: list[Term], named: Named, kind: str = "list") -> Term:
     if not given:
         return fixed(Type(kind, (INT,)), CppText(f"{cpp(Type(kind, (INT,)))}{{}}"))
-    only = _only(given, named, "a list")
+    only = _only(given, named)
     if present(only.type).name == "dict":
-        raise UnportableError("C++ does not keep the order of a mapping: write `sorted(...)`")
+        raise UnportableError("a mapping has no order in C++: write `sorted(...)`")
     found = items(only)
     wanted = Type(kind, (inside(found.type),))
     return fixed(wanted, found.spell(wanted))
@@ -154,10 +154,10 @@ def _extreme(name: str) -> Callable[[list[Term], Named], Term]:
     def made(given: list[Term], named: Named) -> Term:
         _no_names(named, "key")
         if not given:
-            raise UnportableError("there is nothing to choose from")
+            raise UnportableError("the function has no arguments")
         if len(given) == 1:
             if named and present(given[0].type).name == "dict":
-                raise UnportableError("C++ does not keep the order of a mapping")
+                raise UnportableError("a mapping has no order in C++")
             source = items(given[0])
             item_type, text = inside(source.type), source.text()
         else:
@@ -174,15 +174,15 @@ def _extreme(name: str) -> Callable[[list[Term], Named], Term]:
 def _check_order(item_type: Type, named: Named) -> None:
     key = inside(named["key"].type) if "key" in named else item_type
     if "key" in named and named["key"].type.name != "function":
-        raise UnportableError("a key is a lambda")
+        raise UnportableError("`key` must be a lambda")
     if not orderable(key):
-        raise UnportableError(f"values of `{shown(key)}` have no order")
+        raise UnportableError(f"values of the type `{shown(key)}` have no order")
 
 
 def _range(given: list[Term], named: Named) -> Term:
     _no_names(named)
     if not 1 <= len(given) <= 3 or any(number(each.type) != INT for each in given):
-        raise UnportableError("a range has one to three whole numbers")
+        raise UnportableError("`range` takes one to three integers")
     return fixed(RANGE, call("range", *(whole(each).text for each in given)))
 
 
@@ -191,12 +191,12 @@ def _round(given: list[Term], named: Named) -> Term:
     number_, *rest = [*given, *named.values()]
     kind = number(number_.type)
     if kind is None or len(rest) > 1:
-        raise UnportableError("a number and perhaps a number of digits are rounded")
+        raise UnportableError("`round` takes a number and optionally a number of digits")
     if not rest or (rest[0].constant is None and rest[0].type.name == "none"):
         return fixed(INT, call("round", real(number_).text)) if kind != INT else _int(given[:1], {})
     digits = rest[0].constant
     if not isinstance(digits, int) or isinstance(digits, bool) or not 0 <= digits <= 1000:
-        raise UnportableError("the number of digits is a constant from 0 to 1000")
+        raise UnportableError("the number of digits must be a constant from 0 to 1000")
     if kind == INT:
         return _int(given[:1], {})
     return fixed(kind, call("round", real(number_).text, str(digits)))
@@ -204,16 +204,16 @@ def _round(given: list[Term], named: Named) -> Term:
 
 def _sorted(given: list[Term], named: Named) -> Term:
     _no_names(named, "key", "reverse")
-    only = _only(given, {}, "the order")
+    only = _only(given, {})
     if named and present(only.type).name == "dict" and "key" in named:
-        raise UnportableError("C++ does not keep the order of a mapping")
+        raise UnportableError("a mapping has no order in C++")
     source = items(only)
     _check_order(inside(source.type), {k: v for k, v in named.items() if k == "key"})
     last: list[str] = []
     if named:
         reverse = named.get("reverse", literal(False))
         if reverse.type != BOOL:
-            raise UnportableError("`reverse` is a truth value")
+            raise UnportableError("`reverse` must be a `bool`")
         last = [reverse.text()]
     last += [named["key"].text()] if "key" in named else []
     return fixed(Type("list", (inside(source.type),)), call("sorted", source.text(), *last))
@@ -222,16 +222,14 @@ def _sorted(given: list[Term], named: Named) -> Term:
 def _str(given: list[Term], named: Named) -> Term:
     if not given:
         return literal("")
-    only = _only(given, named, "the text")
+    only = _only(given, named)
     kind = present(only.type)
     if kind == STR and only.type == STR:
         return only
     if has(only.type, "number"):
-        raise UnportableError(
-            "Python prints whole numbers and floats differently: write `float(...)`"
-        )
+        raise UnportableError("Python prints integers and floats differently: write `float(...)`")
     if kind.name not in ("bool", "int", "float", "str", "never") and not _prints_alike(kind):
-        raise UnportableError(f"how Python prints a `{shown(only.type)}` is not for C++")
+        raise UnportableError(f"C++ cannot print `{shown(only.type)}` as Python does")
     return fixed(STR, call("text", only.text()))
 
 
@@ -245,21 +243,23 @@ def _prints_alike(type_: Type) -> bool:
 def _sum(given: list[Term], named: Named) -> Term:
     _no_names(named, "start")
     if len(given) + len(named) not in (1, 2) or not given:
-        raise UnportableError("the sum of a list, and perhaps of a start")
+        raise UnportableError("`sum` takes a list and optionally a start value")
     source = items(given[0])
     kind = number(inside(source.type))
     if inside(source.type).name == "never":
         kind = INT
     start = [*given[1:], *named.values()]
     if kind is None or inside(source.type).name == "optional":
-        raise UnportableError(f"values of `{shown(inside(source.type))}` have no sum in C++")
+        raise UnportableError(
+            f"values of the type `{shown(inside(source.type))}` have no sum in C++"
+        )
     if not start:
         # The sum of no floats is the whole number 0.
         empty = kind == FLOAT and size_of(source.type) is None
         return fixed(NUMBER if empty else kind, call("sum", source.text()))
     first = number(start[0].type)
     if first is None:
-        raise UnportableError(f"a sum does not start with a `{shown(start[0].type)}`")
+        raise UnportableError(f"the start value is `{shown(start[0].type)}`, not a number")
     type_ = first if kind == first else NUMBER
     if FLOAT in (first,) or (kind == FLOAT and size_of(source.type) is not None):
         type_ = FLOAT

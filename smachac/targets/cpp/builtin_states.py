@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass, replace
+from typing import Protocol
 
 from smachac.analysis.accesses import callbacks
 from smachac.diagnostics.source import Span
@@ -27,8 +28,11 @@ FLOAT = Type("float")
 LARGEST_WORD = 2**32
 
 
-Refuse = Callable[[Span, UnportableError], None]
-"""Reports what C++ cannot express, with its place in the script."""
+class Refuse(Protocol):
+    """Reports what C++ cannot express, with its place in the script and the names it is about."""
+
+    def __call__(self, span: Span, error: UnportableError, *names: str) -> None: ...
+
 
 STOP = "run.stop_for(places, state)"
 """The argument that passes the requests to stop to a state."""
@@ -179,12 +183,14 @@ class _BuiltInLeaf:
                 return cpp_condition(body, names)
             return cpp_expression(body, names, wanted)
         except UnportableError as error:
-            self.refuse(code.span, error)
+            self.refuse(code.span, error, self.leaf.name)
             return Printed(text="", type=BOOL, uses_names=False)
 
     def end(self, outcome: str) -> _Statements:
         if outcome not in own_outcomes(self.leaf):
-            raise UnportableError(f"it ends with `{outcome}`, which is not one of its outcomes")
+            raise UnportableError(
+                f"the state ends with `{outcome}`, which is not one of its outcomes"
+            )
         return _Statements(lines=(f"return Outcome::{identifier(outcome)};",))
 
     def stopping(self) -> _Statements:
@@ -203,7 +209,7 @@ class _BuiltInLeaf:
         found = callbacks(self.leaf)
         data = variable(self.leaf, "callbacks")
         if found is None or (isinstance(data, Struct) and len(found) < len(data.entries)):
-            raise UnportableError("`callbacks` is no mapping of names to functions")
+            raise UnportableError("`callbacks` is not a mapping of names to functions")
         return found
 
     def calls(self) -> _Statements:
@@ -213,7 +219,9 @@ class _BuiltInLeaf:
         functions = self.functions()
         for key in sorted(functions):
             if not self.writes(key):
-                raise UnportableError(f"it writes `{key}`, which is not one of its outputs")
+                raise UnportableError(
+                    f"the state writes `{key}`, which is not one of its output keys"
+                )
             code = functions[key]
             found += self.write(key, lambda type_, code=code: self.function(code, type_).text)  # type: ignore[misc]
         return found
@@ -230,7 +238,7 @@ def _callbacks(leaf: _BuiltInLeaf) -> Code:
 def _conditional(leaf: _BuiltInLeaf) -> Code:
     functions = leaf.functions()
     if leaf.leaf.outputs:
-        raise UnportableError("it writes its outcome under a key")
+        raise UnportableError("the state writes its outcome to a key")
     found = _Statements()
     for outcome in own_outcomes(leaf.leaf):
         if outcome in functions:
@@ -239,7 +247,7 @@ def _conditional(leaf: _BuiltInLeaf) -> Code:
             found += replace(test, uses_userdata=holds.uses_names)
     otherwise = variable(leaf.leaf, "default_outcome")
     if not isinstance(otherwise, str):
-        raise UnportableError("it has no `default_outcome`")
+        raise UnportableError("the state has no `default_outcome`")
     return found + leaf.end(otherwise), ""
 
 
@@ -260,7 +268,7 @@ def _scripted(leaf: _BuiltInLeaf) -> Code:
 def _step(leaf: _BuiltInLeaf, step: Data) -> _Statements:
     given = dict(step.entries) if isinstance(step, Struct) else None
     if given is None:
-        raise UnportableError("a step is no mapping of `outcome` and `set`")
+        raise UnportableError("a step is not a mapping with `outcome` and `set`")
     sets = given.get("set")
     found = _Statements()
     for key, value in sets.entries if isinstance(sets, Struct) else ():
@@ -285,7 +293,7 @@ def _sleep(leaf: _BuiltInLeaf) -> Code:
 
 def _random(leaf: _BuiltInLeaf) -> Code:
     if {key.name for key in leaf.leaf.outputs} - {*leaf.functions()}:
-        raise UnportableError("it writes its outcome under a key")
+        raise UnportableError("the state writes its outcome to a key")
     seed = variable(leaf.leaf, "seed")
     number = abs(seed) if isinstance(seed, int) else 0
     words: list[str] = []

@@ -532,7 +532,7 @@ def _items(plan: ContainerPlan, node: Iterator) -> Lines | None:
     if node.items_key:
         type_ = plan.scope.key(node.items_key)
         if type_.name not in ("list", "array"):
-            raise UnportableError(f"`{node.items_key}` is `{type_}`, not a list of items")
+            raise UnportableError(f"the items key `{node.items_key}` is `{type_}`, not a list")
         need = f"smachac::need(ud.{identifier(node.items_key)}, {cpp_literal(node.items_key)})"
         return [f"const auto items = {need};"]
     if node.items is None or node.items.data == ():
@@ -543,6 +543,6 @@ def _items(plan: ContainerPlan, node: Iterator) -> Lines | None:
         body, names = cpp_function(node.items.data.text, keys)
         return [f"const {cpp_type(listed)} items = {cpp_expression(body, names, listed).text};"]
     if not isinstance(node.items.data, tuple):
-        raise UnportableError("its items are no list")
+        raise UnportableError("the items of the iterator are not a list")
     listed = Type("array", (wanted, len(node.items.data)))
     return [f"const {cpp_type(listed)} items = {cpp_value(node.items.data, listed)};"]

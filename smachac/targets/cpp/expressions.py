@@ -112,7 +112,7 @@ def lowered(expr: Expr, names: Mapping[str, Spelling]) -> Term:
     return _term(expr, _Names(spellings=names))
 
 
-PORTABLE = "docs/cpp.md lists the expressions it knows; for other code write a class"
+PORTABLE = "use an expression that docs/cpp.md lists, or write a class for the state"
 
 
 def cpp_function(code: str, keys: Mapping[str, Spelling]) -> tuple[Expr, dict[str, Spelling]]:
@@ -120,28 +120,25 @@ def cpp_function(code: str, keys: Mapping[str, Spelling]) -> tuple[Expr, dict[st
     above: a lambda, or an expression over `ud` or `userdata`. Raises UnportableError."""
     tree = parse_expression(code)
     if tree is None:
-        error = UnportableError(f"`{code}` is Python code, not a portable expression")
-        error.help = PORTABLE
-        raise error
+        message = f"`{code}` is Python code, not a portable expression"
+        raise UnportableError(message, code, help=PORTABLE)
     parameters: tuple[str, ...] = ("ud", "userdata")
     if isinstance(tree, Lambda):
         parameters = (tree.parameter,) if tree.parameter else ()
         tree = tree.body
     name = dotted(tree)
     if name is not None and name.split(".")[0] not in parameters:
-        error = UnportableError(f"`{name}` is a name of Python code, which C++ does not know")
-        error.help = PORTABLE
-        raise error
+        message = f"`{name}` is defined in Python only"
+        raise UnportableError(message, name, help=PORTABLE)
     return tree, {f"{p}.{key}": spelling for p in parameters for key, spelling in keys.items()}
 
 
 def _located(expr: Expr, error: UnportableError) -> UnportableError:
     """An error whose message names the part of the expression; the innermost part is kept."""
-    if error.told:
+    if error.names:
         return error
-    told = UnportableError(f"`{print_expression(expr)}`: {error}")
-    told.told, told.help = True, error.help
-    return told
+    part = print_expression(expr)
+    return UnportableError(f"`{part}`: {error}", part, help=error.help)
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -186,7 +183,8 @@ def _term(expr: Expr, names: _Names) -> Term:
     except UnportableError as error:
         raise _located(expr, error) from error
     if has(found.type, "any"):
-        raise _located(expr, UnportableError("of this no type is known: declare that of its key"))
+        unknown = UnportableError("the type is unknown", help="declare the types of the keys")
+        raise _located(expr, unknown)
     if found.constant is not None:
         # A constant does not contain the text that it was computed from.
         names.read.intersection_update(before)
@@ -204,7 +202,7 @@ def _form(expr: Expr, names: _Names) -> Term:
         case Call(function, arguments, keywords):
             return _call(function, arguments, keywords, names)
         case Lambda():
-            raise UnportableError("a function is no value in C++")
+            raise UnportableError("a function is not a value in C++")
         case Conditional(test, then, otherwise):
             return _conditional(*(_term(part, names) for part in (test, then, otherwise)))
         case ListDisplay(items):
@@ -238,13 +236,13 @@ def _name(expr: Name | Attribute, names: _Names) -> Term:
         case Attribute(value, name) if not isinstance(value, Name) or value.name in names.spellings:
             owner = _term(value, names)
             return _member(owner, name)
-    raise UnportableError("this is not known here")
+    raise UnportableError("this name is not defined here")
 
 
 def _member(owner: Term, name: str) -> Term:
     fields = FIELDS.get(present(owner.type).name, {})
     if name not in fields:
-        raise UnportableError(f"a `{shown(owner.type)}` has no `{name}`")
+        raise UnportableError(f"`{shown(owner.type)}` has no field `{name}`")
     value = owner.spell(present(owner.type)).at(POSTFIX)
     return fixed(fields[name], CppText(f"{value}.{name}"), simple=owner.simple)
 
@@ -280,9 +278,7 @@ def _call(
     name = dotted(function)
     if name is None or name not in builtin_functions.FUNCTIONS or name in names.spellings:
         known = ", ".join(builtin_functions.FUNCTIONS)
-        error = UnportableError("C++ knows no such function")
-        error.help = f"it knows {known}"
-        raise error
+        raise UnportableError("unknown function", help=f"use one of the functions {known}")
     given = [_term(argument, names) for argument in arguments]
     named: dict[str, Term] = {}
     for key, value in keywords:
@@ -297,7 +293,7 @@ def _call(
 def _function(function: Lambda, item: Type, names: _Names) -> Term:
     """A function of one item of a list."""
     if function.parameter is None:
-        raise UnportableError("a key is a function of an item")
+        raise UnportableError("`key` must be a function of one item")
     name = f"item_{next(names.numbers)}"
     inner = names.with_parameter(function.parameter, Spelling(text=name, type=item))
     body = _term(function.body, inner)

@@ -124,7 +124,7 @@ def _container(printing: _Printing, scope: ContainerScope) -> Lines:
     try:
         blocks += [parts(container), execute(container)]
     except UnportableError as error:
-        plan.refuse(node.span, error)
+        plan.refuse(node.span, error, node.name)
     if node is plan.machine.root:
         blocks.append(_root(plan.machine))
     inner = "\n\n".join("\n".join(block) for block in blocks if block)
@@ -142,14 +142,15 @@ def _leaves(printing: _Printing, scope: ContainerScope) -> Mapping[str, LeafCode
         try:
             code = printing.code_of(leaf, scope)
         except UnportableError as error:
-            plan.refuse(leaf.span, error)
+            plan.refuse(leaf.span, error, leaf.name)
             continue
         if code is None:
             printing.missing.add(leaf.type)
         else:
             found[leaf.name] = code
     if not scope.node.children:
-        plan.refuse(scope.node.span, UnportableError("it has no states"))
+        empty = UnportableError("the container has no states")
+        plan.refuse(scope.node.span, empty, scope.node.name)
         return None
     return found if len(found) == len(leaves) else None
 
@@ -173,7 +174,7 @@ def _userdata(plan: Plan, scope: ContainerScope) -> Lines:
             try:
                 value = f"{{{cpp_value(presets[key].value.data, type_)}}}"
             except UnportableError as error:
-                plan.refuse(presets[key].value.span, error)
+                plan.refuse(presets[key].value.span, error, key)
         try:
             lines.append(f"  smachac::Key<{cpp_type(type_)}> {identifier(key)}{value};")
         except UnportableError:

@@ -37,7 +37,7 @@ def listed(items: list[Term], kind: str) -> Term:
             return converted(CppText(""), own, wanted)
         size = size_of(wanted)
         if size is not None and size != len(items):
-            raise UnportableError(f"this has {len(items)} items, and {size} are wanted")
+            raise UnportableError(f"the list has {len(items)} items instead of {size}")
         texts = [each.spell(inside(wanted)).text for each in items]
         return CppText(braced(cpp(wanted), texts, array=size is not None))
 
@@ -53,7 +53,7 @@ def _struct(wanted: Type, items: list[Term]) -> CppText:
         point = ", ".join(item.spell(Type("float")).text for item in items)
         parts = [f"smachac::Point{{{point}}}", "smachac::Quaternion{}"]
     elif len(items) != len(fields):
-        raise UnportableError(f"a `{wanted}` has {len(fields)} parts, and not {len(items)}")
+        raise UnportableError(f"`{wanted}` has {len(fields)} parts, not {len(items)}")
     return CppText(f"{cpp(wanted)}{{{', '.join(parts)}}}")
 
 
@@ -63,7 +63,7 @@ def mapped(entries: list[tuple[Term, Term]]) -> Term:
     own = item if item.name == "mixed" else Type("dict", (item,))
     for key, _ in entries:
         if key.type != STR:
-            raise UnportableError(f"keys of mappings are texts, and not `{shown(key.type)}`")
+            raise UnportableError(f"the keys of a mapping must be `str`, not `{shown(key.type)}`")
     keys = [key.constant for key, _ in entries]
     apart = None not in keys and len(set(keys)) == len(keys)
 
@@ -85,7 +85,7 @@ def _record(wanted: Type, given: dict[str, Term]) -> CppText:
     fields = FIELDS[wanted.name]
     unknown = [key for key in given if key not in fields]
     if unknown:
-        raise UnportableError(f"a `{wanted}` has no `{unknown[0]}`: it has {', '.join(fields)}")
+        raise UnportableError(f"`{wanted}` has no field `{unknown[0]}`, only {', '.join(fields)}")
     parts = [
         given[key].spell(part).text if key in given else f"{cpp(ground(part))}{{}}"
         for key, part in fields.items()

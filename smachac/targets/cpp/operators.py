@@ -55,7 +55,7 @@ def signed(sign: str, operand: Term) -> Term:
     """`-x` and `+x`."""
     kind = number(operand.type)
     if kind is None:
-        raise UnportableError(f"a `{shown(operand.type)}` has no sign")
+        raise UnportableError(f"`{shown(operand.type)}` is not a number")
     value = whole(operand) if kind == INT else real(operand)
     if kind == INT:
         return fixed(
@@ -95,7 +95,11 @@ def binary(word: str, left: Term, right: Term) -> Term:
             return _repeated(left, right)
         case "*", _, ("str" | "list" | "array" | "tuple") if one == INT:
             return _repeated(right, left)
-    raise UnportableError(f"`{shown(left.type)}` {word} `{shown(right.type)}` has no value")
+    raise UnportableError(_undefined(word, left, right))
+
+
+def _undefined(word: str, left: Term, right: Term) -> str:
+    return f"`{word}` is not defined for `{shown(left.type)}` and `{shown(right.type)}`"
 
 
 def _numbers(word: str, one: Type, other: Type, left: Term, right: Term) -> Term:
@@ -123,9 +127,8 @@ def _power(one: Type, other: Type, left: Term, right: Term) -> Term:
     if one == other == INT:
         exponent = right.constant
         if not isinstance(exponent, int):
-            raise UnportableError(
-                "the sign of the exponent says whether this is a float: write `float(...)`"
-            )
+            message = "the type depends on the sign of the exponent: write `float(...)`"
+            raise UnportableError(message)
         if exponent >= 0:
             return fixed(INT, call("power", *_wholes(left, right)))
     type_ = FLOAT if FLOAT in (one, other) or one == other == INT else NUMBER
@@ -210,8 +213,7 @@ def _ordered(word: str, left: Term, right: Term) -> CppText:
         return direct
     nothing = NONE in (left.type, right.type)
     if nothing or not _have_order(present(left.type), present(right.type)):
-        reason = f"`{shown(left.type)}` {word} `{shown(right.type)}` has no value"
-        raise UnportableError(reason)
+        raise UnportableError(_undefined(word, left, right))
     left, right = there(left), there(right)
     one, other = _side_of(left, right), _side_of(right, left)
     if word in (">", ">="):
@@ -253,7 +255,8 @@ def _equal(word: str, left: Term, right: Term) -> CppText:
             return CppText(f"{one.text(SUM)} {word} std::nullopt", EQUALITY)
         if one.type.name in LISTED and present(other.type).name in SEQUENCES:
             if size_of(other.type) != len(FIELDS[one.type.name]):
-                raise UnportableError(f"a `{one.type}` is compared with a list of as many items")
+                size = len(FIELDS[one.type.name])
+                raise UnportableError(f"`{one.type}` only compares with a list of {size} items")
             return _equality(word, one.text(), other.spell(one.type).text)
     _refuse_kinds(left.type, right.type)
     return _equality(word, _side_of(left, right), _side_of(right, left))
@@ -278,7 +281,7 @@ def _refuse_kinds(one: Type, other: Type) -> None:
     if one.name in SEQUENCES and other.name in SEQUENCES:
         kinds = {"list" if each.name == "array" else each.name for each in (one, other)}
         if len(kinds) > 1:
-            raise UnportableError(f"a {' never equals a '.join(sorted(kinds))}")
+            raise UnportableError(f"a {' is never equal to a '.join(sorted(kinds))}")
         _refuse_kinds(inside(one), inside(other))
     elif one.name == other.name == "dict":
         _refuse_kinds(inside(one), inside(other))
@@ -288,9 +291,9 @@ def _contains(left: Term, right: Term) -> CppText:
     kind = present(right.type)
     if kind == STR or kind.name == "dict":
         if present(left.type) != STR:
-            raise UnportableError(f"a `{shown(left.type)}` is never in a `{shown(kind)}`")
+            raise UnportableError(f"`{shown(kind)}` never contains `{shown(left.type)}`")
         return call("contains", right.present(), left.present())
     if kind.name not in SEQUENCES:
-        raise UnportableError(f"nothing is in a `{shown(kind)}`")
+        raise UnportableError(f"`{shown(kind)}` has no items")
     _refuse_kinds(left.type, inside(kind))
     return call("contains", right.present(), left.text())

@@ -34,7 +34,7 @@ class ContainerScope:
     def key(self, name: str) -> Type:
         """The type of a key. Raises UnportableError where the container cannot have it."""
         if name not in self.keys:
-            raise UnportableError(f"`{name}` is no key that `{self.path}` declares")
+            raise UnportableError(f"`{self.path}` declares no userdata key `{name}`")
         return self.keys[name]
 
     def read(self, name: str, called: str) -> Spelling:
@@ -58,9 +58,10 @@ class Plan:
     scopes: Mapping[str, ContainerScope]
     report: Report = field(default_factory=list)
 
-    def refuse(self, span: Span, error: UnportableError) -> None:
-        found = unsupported_by_target(span, "C++", str(error), error.help)
-        self.report.append(found)
+    def refuse(self, span: Span, error: UnportableError, *names: str) -> None:
+        """Add a refusal to the report; `names` are the state or the keys that it is about."""
+        names = (*names, *error.names)
+        self.report.append(unsupported_by_target(span, "C++", str(error), error.help, names))
 
 
 def plan(machine: Machine) -> Plan:
@@ -97,7 +98,7 @@ def _check(plan: Plan, scope: ContainerScope, around: ContainerScope | None) -> 
         try:
             cpp_type(type_)
         except UnportableError as error:
-            plan.refuse(_place_of(node, key), UnportableError(f"the key `{key}`: {error}"))
+            plan.refuse(_place_of(node, key), UnportableError(f"the key `{key}`: {error}"), key)
     names = [
         *(("state", child.name) for child in node.children),
         *(("key", key) for key in scope.keys),
@@ -105,16 +106,16 @@ def _check(plan: Plan, scope: ContainerScope, around: ContainerScope | None) -> 
     members = [member(child) for child in node.children if not isinstance(child, Leaf)]
     for key in scope.keys:
         if identifier(key) in members:
-            text = f"the key `{key}` and a container in it would both be `{identifier(key)}`"
-            plan.refuse(_place_of(node, key), UnportableError(text))
+            text = f"the key `{key}` and a container would both be named `{identifier(key)}`"
+            plan.refuse(_place_of(node, key), UnportableError(text), key)
     for kind in ("state", "key"):
         for name, other in clashes(name for what, name in names if what == kind):
-            text = f"the {kind}s `{other}` and `{name}` would both be `{identifier(name)}`"
-            plan.refuse(_named(node, name), UnportableError(text))
+            text = f"the {kind}s `{other}` and `{name}` would both be named `{identifier(name)}`"
+            plan.refuse(_named(node, name), UnportableError(text), kind, other, name)
     for each in (node, *(child for child in node.children if isinstance(child, Leaf))):
         for name, other in clashes(outcome_names(each)):
-            text = f"the outcomes `{other}` and `{name}` would both be `{identifier(name)}`"
-            plan.refuse(each.span, UnportableError(text))
+            text = f"the outcomes `{other}` and `{name}` would both be named `{identifier(name)}`"
+            plan.refuse(each.span, UnportableError(text), "outcome", other, name)
     if around is not None:
         _check_borders(plan, scope, around)
 
@@ -130,9 +131,10 @@ def _check_borders(plan: Plan, scope: ContainerScope, around: ContainerScope) ->
         try:
             given, wanted = source.key(ends[id(source)]), target.key(ends[id(target)])
             if not converts(given, wanted):
-                raise UnportableError(f"the key `{key.name}` is `{given}` and becomes `{wanted}`")
+                text = f"the key `{key.name}` is `{given}`, which does not convert to `{wanted}`"
+                raise UnportableError(text)
         except UnportableError as error:
-            plan.refuse(_place_of(scope.node, key.name), error)
+            plan.refuse(_place_of(scope.node, key.name), error, key.name)
 
 
 def converts(given: Type, wanted: Type) -> bool:

@@ -45,14 +45,14 @@ def project(options: Mapping[str, str]) -> Project:
     """The project of the options. Raises OptionError."""
     package = options.get("package", "")
     if package and not re.fullmatch(r"[a-z][a-z0-9_]*", package):
-        raise OptionError(f"package is a name in lower case, letters first, not `{package}`")
+        raise OptionError(f"`package` must match `[a-z][a-z0-9_]*`, not `{package}`")
     return Project(main=_truth(options, "main"), cmake=_truth(options, "cmake"), package=package)
 
 
 def _truth(options: Mapping[str, str], name: str) -> bool:
     value = options.get(name, "false")
     if value not in ("true", "false"):
-        raise OptionError(f"{name} is `true` or `false`, not `{value}`")
+        raise OptionError(f"`{name}` must be `true` or `false`, not `{value}`")
     return value == "true"
 
 
@@ -81,8 +81,8 @@ def project_files(machine: Machine, wanted: Project, header: Header) -> Files:
     name = stem(machine)
     if wanted.main:
         if header.parameters:
-            told = " and ".join(f"`{each}`" for each in header.parameters)
-            raise OptionError(f"main: its states are made with {told}, so write main.cpp yourself")
+            needed = " and ".join(f"`{each}`" for each in header.parameters)
+            raise OptionError(f"`main` is not possible: the states need {needed}; write main.cpp")
         folder = "src/" if wanted.package else ""
         files[f"{folder}main.cpp"] = _main(machine, f"{wanted.package}/" if wanted.package else "")
     if wanted.package:

@@ -179,7 +179,7 @@ def has(type_: Type, name: str) -> bool:
 
 
 def mixed(one: Type, other: Type) -> Type:
-    reason = f"a value is one of two types here, `{shown(one)}` and `{shown(other)}`"
+    reason = f"the value has one of two types, `{shown(one)}` or `{shown(other)}`"
     return Type("mixed", (reason,))
 
 
@@ -247,7 +247,7 @@ def converted(text: CppText, own: Type, wanted: Type) -> CppText:
     if own.name == "mixed" or wanted.name == "mixed":
         ground(own if own.name == "mixed" else wanted)
     if not convertible(own, wanted):
-        raise UnportableError(f"this is a `{shown(own)}`, and a `{shown(wanted)}` is wanted")
+        raise UnportableError(f"the type is `{shown(own)}`, but `{shown(wanted)}` is required")
     if cpp(own) == cpp(wanted):
         return text
     if own == NONE:

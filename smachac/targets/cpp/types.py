@@ -64,13 +64,15 @@ SCALARS = {
 
 
 class UnportableError(Exception):
-    """Something in the script that C++ cannot express; the message is the reason.
+    """A part of the script that C++ cannot express; the message is the reason.
 
-    `told`: the message names the part of the expression. `help`: what the user can do.
+    `names` are those in the message: the part of an expression that is refused, if there is one.
+    `help` is an instruction to the user.
     """
 
-    told = False
-    help: str | None = None
+    def __init__(self, message: str, *names: str, help: str | None = None) -> None:
+        super().__init__(message)
+        self.names, self.help = names, help
 
 
 def cpp_type(type_: Type) -> str:
@@ -89,9 +91,7 @@ def cpp_type(type_: Type) -> str:
             return f"std::map<std::string, {cpp_type(item)}>"
         case "optional", (Type() as item,):
             return f"std::optional<{cpp_type(item)}>"
-    raise UnportableError(
-        f"of the type `{type_}` nothing but its name is known: C++ needs its members"
-    )
+    raise UnportableError(f"the members of the type `{type_}` are unknown")
 
 
 def plain(type_: Type) -> Type:
@@ -148,7 +148,7 @@ def _value(data: Data, type_: Type) -> str:
             return _items(data, type_)
         case name, tuple() | Struct() if name in FIELDS:
             return f"{cpp_type(type_)}{{{', '.join(_members(data, name))}}}"
-    raise UnportableError(f"{_shown(data)} is no `{type_}`")
+    raise UnportableError(f"{_shown(data)} is not of the type `{type_}`")
 
 
 def _inside(type_: Type) -> Type:
@@ -169,23 +169,21 @@ def _any(data: Data) -> str:
             return f"std::any{{{_value(data, Type('list', (ANY,)))}}}"
         case Struct():
             return f"std::any{{{_value(data, Type('dict', (ANY,)))}}}"
-    raise UnportableError(f"{_shown(data)} has no type")
+    raise UnportableError(f"{_shown(data)} has no C++ type")
 
 
 def _items(data: tuple[Data, ...] | Struct, type_: Type) -> str:
     inner = _inside(type_)
     match type_.args, data:
         case (_, int(size)), tuple() if len(data) != size:
-            raise UnportableError(
-                f"{_shown(data)} has {len(data)} items, and not {size} as `{type_}`"
-            )
+            raise UnportableError(f"{_shown(data)} has {len(data)} items, but `{type_}` has {size}")
         case _, tuple() if type_.name != "dict":
             items = [_value(item, inner) for item in data]
             return braced(cpp_type(type_), items, array=type_.name == "array")
         case _, Struct(entries=entries) if type_.name == "dict":
             pairs = [f"{{{cpp_string(key)}, {_value(item, inner)}}}" for key, item in entries]
             return braced(cpp_type(type_), pairs)
-    raise UnportableError(f"{_shown(data)} is no `{type_}`")
+    raise UnportableError(f"{_shown(data)} is not of the type `{type_}`")
 
 
 def braced(name: str, items: list[str], *, array: bool = False) -> str:
@@ -199,17 +197,19 @@ def _members(data: tuple[Data, ...] | Struct, name: str) -> list[str]:
     fields = FIELDS[name]
     if isinstance(data, tuple):
         if name not in LISTED:
-            raise UnportableError(f"a `{name}` is a mapping of {', '.join(fields)}")
+            raise UnportableError(f"`{name}` must be a mapping with the fields {', '.join(fields)}")
         if len(data) == 3 and name in ("Pose", "Transform"):
             # As in the simulation: without a rotation.
             return [_value(data, POINT), "smachac::Quaternion{}"]
         if len(data) != len(fields):
-            raise UnportableError(f"{_shown(data)} is no `{name}`, which has {len(fields)} parts")
+            raise UnportableError(
+                f"{_shown(data)} has {len(data)} items, but `{name}` has {len(fields)} parts"
+            )
         return [_value(item, part) for item, part in zip(data, fields.values(), strict=True)]
     given = dict(data.entries)
     unknown = [key for key in given if key not in fields]
     if unknown:
-        raise UnportableError(f"a `{name}` has no `{unknown[0]}`: it has {', '.join(fields)}")
+        raise UnportableError(f"`{name}` has no field `{unknown[0]}`, only {', '.join(fields)}")
     return [
         _value(given[key], part) if key in given else f"{cpp_type(part)}{{}}"
         for key, part in fields.items()
@@ -227,7 +227,7 @@ def _computed(expression: Expression) -> Data:
     try:
         return script_data(evaluate(tree, {}))
     except EvaluationError as error:
-        raise UnportableError(f"`{expression.text}` is no constant: {error}") from error
+        raise UnportableError(f"`{expression.text}` is not a constant: {error}") from error
 
 
 def script_data(value: object) -> Data:
@@ -239,7 +239,7 @@ def script_data(value: object) -> Data:
             return tuple(script_data(item) for item in value)
         case dict() if all(isinstance(key, str) for key in value):
             return Struct(entries=tuple((key, script_data(item)) for key, item in value.items()))
-    raise UnportableError(f"{value!r} is no value of C++")
+    raise UnportableError(f"`{value!r}` is not a value in C++")
 
 
 def _shown(data: Data) -> str:
@@ -259,7 +259,7 @@ def cpp_bool(value: bool) -> str:
 def cpp_int(value: int) -> str:
     """C++ text of an integer. Raises UnportableError beyond 64 bits."""
     if not SMALLEST <= value <= LARGEST:
-        raise UnportableError(f"{value} is too large for the 64 bits of a whole number in C++")
+        raise UnportableError(f"{value} does not fit into an integer of 64 bits")
     return str(value) if value != SMALLEST else f"({SMALLEST + 1} - 1)"
 
 
@@ -267,7 +267,7 @@ def cpp_float(value: float) -> str:
     """C++ text of a float. Raises UnportableError for an integer that no float equals."""
     if isinstance(value, int):
         if abs(value) > EXACT and not (abs(value) < 2**1000 and float(value) == value):
-            raise UnportableError(f"no float is the whole number {value}")
+            raise UnportableError(f"{value} has no exact value as a float")
         value = float(value)
     if math.isnan(value):
         return "std::numeric_limits<double>::quiet_NaN()"
@@ -287,7 +287,9 @@ def cpp_literal(value: str) -> str:
     try:
         data = value.encode("utf-8")
     except UnicodeEncodeError as error:
-        raise UnportableError(f"{value!r} holds half a code point, which is no UTF-8") from error
+        raise UnportableError(
+            f"{value!r} contains a surrogate, which UTF-8 cannot encode"
+        ) from error
     text = "".join(
         _ESCAPES.get(chr(byte)) or (chr(byte) if 32 <= byte < 127 else f"\\{byte:03o}")
         for byte in data

@@ -58,7 +58,8 @@ def class_leaf(code: ClassCode, leaf: Leaf, scope: ContainerScope) -> LeafCode:
     left = left_to_scripts(type_)
     if left:
         what = ", ".join(left)
-        raise UnportableError(f"`{type_.name}` leaves its {what} to scripts, a class cannot")
+        message = f"`{type_.name}` leaves its {what} to scripts, which a C++ class cannot"
+        raise UnportableError(message)
     state = f"states.{identifier(leaf.name)}"
     names = scope.names(leaf)
     inputs = [_input(scope, key, names.get(key.name, key.name)) for key in type_.input_keys]
@@ -94,7 +95,9 @@ def stops(type_: StateType) -> bool:
 def _input(scope: ContainerScope, key: Key, outer: str) -> str:
     given, wanted = scope.key(outer), plain(key.type)
     if not converts(given, wanted):
-        raise UnportableError(f"its input `{key.name}` is `{wanted}`, `{outer}` is `{given}`")
+        raise UnportableError(
+            f"the input `{key.name}` is `{wanted}`, but the key `{outer}` is `{given}`"
+        )
     spelt = scope.read(outer, key.name).text
     if wanted.name == "optional" and outer not in scope.sure:
         return f"smachac::maybe<{cpp_type(wanted)}>(ud.{identifier(outer)})"
@@ -104,7 +107,9 @@ def _input(scope: ContainerScope, key: Key, outer: str) -> str:
 def _output(scope: ContainerScope, key: Key, outer: str) -> str:
     given, wanted = plain(key.type), scope.key(outer)
     if given != wanted:
-        raise UnportableError(f"its output `{key.name}` is `{given}`, `{outer}` is `{wanted}`")
+        raise UnportableError(
+            f"the output `{key.name}` is `{given}`, but the key `{outer}` is `{wanted}`"
+        )
     return f"ud.{identifier(outer)}"
 
 
@@ -118,7 +123,7 @@ def _variables(type_: StateType, leaf: Leaf) -> list[str]:
         try:
             found.append(cpp_value(set_.get(name), plain(variable.type)))
         except UnportableError as error:
-            raise UnportableError(f"its variable `{name}`: {error}") from error
+            raise UnportableError(f"the variable `{name}`: {error}") from error
     return found
 
 

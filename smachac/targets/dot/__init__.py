@@ -17,10 +17,10 @@ def emit(machine: Checked, context: BuildContext, report: Report) -> Files:
     """
     depth = context.options.get("depth")
     if depth is not None and not (depth.isdecimal() and int(depth) > 0):
-        raise OptionError(f"depth={depth}: a number of levels from 1 is due")
+        raise OptionError(f"`depth` must be a number of levels, 1 or more, not `{depth}`")
     rankdir = context.options.get("rankdir", "TB")
     if rankdir not in DIRECTIONS:
-        raise OptionError(f"rankdir={rankdir}: one of {', '.join(DIRECTIONS)} is due")
+        raise OptionError(f"`rankdir` must be one of {', '.join(DIRECTIONS)}, not `{rankdir}`")
     lines = picture(machine, depth=int(depth) if depth else None, rankdir=rankdir)
     return {f"{stem(machine)}.dot": "\n".join([f"// {made_by(machine)}", *lines, ""])}
 

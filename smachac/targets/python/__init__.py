@@ -26,7 +26,7 @@ def emit(machine: Checked, context: BuildContext, report: Report) -> Files:
 
     for name, value in context.options.items():
         if value not in ("yes", "no"):
-            raise OptionError(f"{name}: `yes` or `no`, not `{value}`")
+            raise OptionError(f"`{name}` must be `yes` or `no`, not `{value}`")
     text = module_text(machine, context, report)
     return {} if text is None else {f"{stem(machine)}.py": text}
 

@@ -6,7 +6,7 @@ import ast
 from collections.abc import Callable, Iterator, Mapping
 from dataclasses import dataclass, field, replace
 
-from smachac.diagnostics.diagnostic import Diagnostic, Related, Report
+from smachac.diagnostics.diagnostic import Diagnostic, Related, Report, identity
 from smachac.diagnostics.source import Span
 from smachac.frontend.errors.references import template_error
 from smachac.ir.nodes import Node, StateType
@@ -76,8 +76,7 @@ class ModuleParts:
         self.note(found)
 
     def note(self, found: Diagnostic) -> None:
-        same = (found.span, found.finding.message)
-        if all((known.span, known.finding.message) != same for known in self.faults):
+        if identity(found) not in map(identity, self.faults):
             self.faults.append(found)
 
     def gather(self, page: Page, node: Node) -> None:
@@ -114,19 +113,20 @@ class ModuleParts:
     def code(self, page: Page, block: str, node: Node, *, alone: bool = False) -> str:
         """A block of Python as Python 3; `alone`: without the blocks of included templates."""
         text, changes = modern(page.render(block, alone=alone))
-        for line, change in changes:
-            self.note(python_2_code(self._place(page, block, line) or node.span, change))
+        for old, new in changes:
+            span = self._place(page, block, old) or node.span
+            self.note(python_2_code(span, old.strip(), new.strip()))
         try:
             ast.parse(text)
         except (SyntaxError, ValueError, RecursionError, MemoryError) as error:
-            words = getattr(error, "msg", None) or str(error) or "it is nested too deep"
+            words = getattr(error, "msg", None) or str(error) or "it is nested too deeply"
             number = getattr(error, "lineno", None) or 1
             lines = text.splitlines() or [""]
             line = lines[min(number, len(lines)) - 1]
             span = self._place(page, block, line) or node.span
-            message = f"block `{block}` makes no Python: {words}"
-            help = f"the line it prints is `{line.strip()}`"
-            self.fault(BlockError(template_error(span, message, help)), node)
+            message = f"the block `{block}` does not print valid Python: {words}"
+            help = f"correct the printed line `{line.strip()}`"
+            self.fault(BlockError(template_error(span, message, help, (block, line.strip()))), node)
         return text
 
     def _place(self, page: Page, block: str, line: str) -> Span | None:

@@ -125,7 +125,7 @@ def _text(machine: Machine, context: BuildContext, module: ModuleParts) -> str |
     text = _rendered(template, variables, imports, module) + "\n"
     if lost(states, text):
         span = module.blocks.block_span(template, "body") or machine.root.span
-        raise BlockError(template_error(span, *NO_BODY))
+        raise BlockError(template_error(span, *NO_BODY, ("body",)))
     return _checked(text, template, machine, module)
 
 
@@ -164,7 +164,8 @@ def _base_template(machine: Machine, context: BuildContext, module: ModuleParts)
     file = type_.code.get("python", "") if type_ is not None else ""
     if not file or module.blocks.source(file) is None:
         message = f"the base `{machine.base}` has no template for Python"
-        raise BlockError(template_error(machine.root.span, message))
+        help = f"name a template under `code` in `{machine.base}.yml`"
+        raise BlockError(template_error(machine.root.span, message, help, (machine.base,)))
     return file
 
 
@@ -172,20 +173,21 @@ def _checked(text: str, template: str, machine: Machine, module: ModuleParts) ->
     """The module, without surplus blank lines and trailing spaces. Raises BlockError if it is no
     Python."""
     text, changes = modern(text)
-    for line, change in changes:
-        place = module.blocks.line_span(template, line) or machine.root.span
-        module.note(python_2_code(place, change))
+    for old, new in changes:
+        place = module.blocks.line_span(template, old) or machine.root.span
+        module.note(python_2_code(place, old.strip(), new.strip()))
     try:
         tree = ast.parse(text)
     except (SyntaxError, ValueError, RecursionError, MemoryError) as error:
         lines = text.splitlines()
         number = min(getattr(error, "lineno", None) or 1, len(lines))
-        words = getattr(error, "msg", None) or str(error) or "it is nested too deep"
+        words = getattr(error, "msg", None) or str(error) or "it is nested too deeply"
         line = lines[number - 1]
         place = module.blocks.line_span(template, line) or machine.root.span
-        message = f"the base `{machine.base}` makes no Python: {words}"
-        help = f"the line it prints is `{line.strip()}`"
-        raise BlockError(template_error(place, message, help)) from error
+        message = f"the template of the base `{machine.base}` does not print valid Python: {words}"
+        help = f"correct the printed line `{line.strip()}`"
+        names = (machine.base, line.strip())
+        raise BlockError(template_error(place, message, help, names)) from error
     text = with_fallback(text, tree)
     tree = ast.parse(text)
     tidy = _TRAILING.sub("", _BLANKS.sub("\n\n\n", text))

@@ -6,7 +6,7 @@ import ast
 import re
 
 Change = tuple[str, str]
-"""A line before its change, and a description of the change."""
+"""A line before and after its translation."""
 
 _EXCEPT = re.compile(r"^(\s*except\s+(?:\([^()]*\)|[\w.]+))\s*,\s*(\w+)\s*:(.*)$")
 _PRINT = re.compile(r"^(\s*)print(?:\s+(?!\()|(?=[\"']))([^>\s].*?)(,?)\s*$")
@@ -27,7 +27,7 @@ def modern(text: str) -> tuple[str, list[Change]]:
     for number, line in enumerate(lines):
         if _EXCEPT.match(line):
             lines[number] = translated(line) or line
-            changes.append((line, f"`{line.strip()}` is Python 2; it is printed with `as`"))
+            changes.append((line, lines[number]))
     text = "\n".join(lines)
     if _is_python(text):
         return text, changes
@@ -36,7 +36,7 @@ def modern(text: str) -> tuple[str, list[Change]]:
         new = _line(line)
         if new is not None and new != line:
             lines[number] = new
-            more.append((line, f"`{line.strip()}` is Python 2; it is printed as `{new.strip()}`"))
+            more.append((line, new))
     tried = "\n".join(lines)
     return (tried, [*changes, *more]) if more and _is_python(tried) else (text, changes)
 

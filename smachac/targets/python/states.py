@@ -163,7 +163,7 @@ def _by_template(
         text = _adapted(module.code(page, "body", node), node, parent)
         if lost(states, text):
             span = module.blocks.block_span(template, "body") or node.span
-            raise BlockError(template_error(span, *NO_BODY))
+            raise BlockError(template_error(span, *NO_BODY, ("body",)))
         return f"# {structure.place(node)}\n{text}"
     finally:
         _pass_on(module.buffers, outer)
@@ -178,8 +178,8 @@ def lost(inner: str, text: str) -> bool:
 
 
 NO_BODY = (
-    "block `body` does not print `{{ body }}`: the states would be lost",
-    "print `{{ body | indent(4) }}` in the `with` of the container",
+    "the block `body` does not print `{{ body }}`, so the states are missing",
+    "print `{{ body | indent(4) }}` inside the `with` statement of the container",
 )
 """Message and help for a template of a container or base that omits the states."""
 
@@ -267,8 +267,9 @@ def _used(leaf: Leaf, module: ModuleParts) -> UsedType:
         module.buffers["imports"][f"from {path} import {class_name}"] = None
         used = UsedType(type=type_, class_name=class_name)
     elif module.blocks.source(code) is None:
-        message = f"state type `{leaf.type}` has no code for Python"
-        raise BlockError(template_error(leaf.span, message, f"`{code}` was looked for"))
+        message = f"the state type `{leaf.type}` has no code for Python"
+        help = f"add the template `{code}`, or name a class under `code` in `{leaf.type}.yml`"
+        raise BlockError(template_error(leaf.span, message, help, (leaf.type,)))
     else:
         found = module.blocks.names(code)
         used = UsedType(
@@ -310,11 +311,15 @@ def _adapted(text: str, node: Node, inside: EmittedContainer) -> str:
     try:
         return adapted(text, node, inside.node, inside.depth + 1)
     except NotAddedError as error:
-        message = f"the template of `{node.type}` {error}, so that `{node.name}` cannot"
-        message += " stand in an Iterator" if isinstance(inside.node, Iterator) else ""
-        message += "" if isinstance(inside.node, Iterator) else " end with its exceptions"
-        help = "let it extend `State.tpl.py` without a block `body`, or print that line"
-        raise BlockError(template_error(node.span, message, help)) from error
+        message = f"the template of `{node.type}` {error}, so `{node.name}` cannot"
+        message += " be in an Iterator" if isinstance(inside.node, Iterator) else ""
+        message += (
+            "" if isinstance(inside.node, Iterator) else " have an outcome for its exceptions"
+        )
+        help = "extend `State.tpl.py` without a block `body`, or print this line in the template"
+        raise BlockError(
+            template_error(node.span, message, help, (node.type, node.name))
+        ) from error
 
 
 def _headers(page: Page, inside: EmittedContainer, node: Node, module: ModuleParts) -> None:

@@ -293,7 +293,8 @@ class _Located:
         if error is None or isinstance(error, BlockError) or not isinstance(error, Exception):
             return
         span = self._place(error, trace)
-        raise BlockError(template_error(span, *_words(error))) from error
+        message, help = _words(error)
+        raise BlockError(template_error(span, message, help, (message,))) from error
 
     def _place(self, error: Exception, trace: Any) -> Span:
         """The line of the template that an exception comes from."""
@@ -324,13 +325,13 @@ def _words(error: Exception) -> tuple[str, str | None]:
     words = getattr(error, "message", None) or str(error) or type(error).__name__
     words = words.split(". ")[0].rstrip(".")  # Jinja explains at length
     if isinstance(error, RecursionError):
-        return "the template extends, includes or calls itself without an end", None
+        return "the template extends, includes or calls itself endlessly", None
     if isinstance(error, MemoryError):
-        return "the template needs more memory than there is", None
+        return "the template needs too much memory", None
     if isinstance(error, TemplateNotFound):
-        help = "templates are looked for in the folders of templates, and nowhere else"
+        help = "put the template into one of the template folders"
         return f"there is no template `{words}`", help
     if isinstance(error, SecurityError):
-        help = "templates see the variables of their state, not the insides of Python"
+        help = "use the variables of the state: a template has no access to Python itself"
         return words, help
     return words, None

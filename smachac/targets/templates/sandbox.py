@@ -72,7 +72,7 @@ class Meter:
     def charge(self, amount: int) -> None:
         self.left -= amount
         if self.left < 0:
-            raise TooMuchError("this template has no end, or makes more text than it may")
+            raise TooMuchError("the template does not end, or prints too much text")
 
     def size(self, value: object) -> int:
         """The size of a value in characters; counting stops when the budget is exceeded."""
@@ -180,7 +180,7 @@ class BoundedEnvironment(SandboxedEnvironment):
     def call(__self, __context: Context, __obj: Any, *args: Any, **kwargs: Any) -> Any:  # noqa: N805
         meter = __self.meter
         if meter.depth >= MOST_CALLS_DEEP:
-            raise TooMuchError("macros, blocks or includes call one another without an end")
+            raise TooMuchError("macros, blocks or includes call one another endlessly")
         function = getattr(__obj, "__func__", None)
         own = getattr(__obj, "__self__", None) is __self and function is not None
         if not own:
