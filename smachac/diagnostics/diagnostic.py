@@ -1,7 +1,7 @@
 """Codes, findings, diagnostics, and problems: the faults that are found outside the rules.
 
-A *problem* is a function that makes the finding of one code. Its docstring is the explanation of the
-code (`smachac explain`, docs/rules.md), and the examples in it are a test, as for the rules
+A *problem* is a function that makes the finding of one code. Its docstring is the explanation of
+the code (`smachac explain`, docs/rules.md), and the examples in it are a test, as for the rules
 (smachac/checks).
 """
 
@@ -91,7 +91,7 @@ class Finding:
     baselines use them instead of the message.
     `path` is a witness: the states that are entered, in order, and the outcomes between them.
     `severity` overrides that of the code. `node` is the path of the state that it is about.
-    `edits` correct the fault, all of them together; there are none if the correction is not certain.
+    `edits` correct the fault, all of them together; empty if the correction is not certain.
     """
 
     span: Span

@@ -26,6 +26,8 @@ NAMES = frozenset(["timeout", "retry", "for_each"])
 MOST_TRIES = 10_000
 """The most tries of a `retry`; each is an item of an iterator."""
 
+NO_OUTCOMES = "add `outcomes: [...]` to this state"
+
 SECONDS = {"": 1.0, "ms": 0.001, "s": 1.0, "min": 60.0, "h": 3600.0}
 _DURATION = re.compile(r"(\d+(?:\.\d+)?|\.\d+)\s*([a-z]*)")
 
@@ -65,13 +67,13 @@ def _check_outcomes(sugar: Sugar, own: tuple[str, ...], report: Report) -> None:
         for word in part.on if part is not None else ():
             if word.text not in (*outcomes, ERROR):
                 message = f"this state has no outcome `{word.text}`"
-                help = did_you_mean(word.text, outcomes)
-                help = help or f"use one of its outcomes: {listed(outcomes)}"
+                known = f"use one of its outcomes: {listed(outcomes)}" if outcomes else NO_OUTCOMES
+                help = did_you_mean(word.text, outcomes) or known
                 arguments = ("outcome", word.text)
                 report.append(wrong_shape(word.span, message, help, arguments=arguments))
     if sugar.for_each and not sugar.for_each.on and not set(second) & set(GOOD_OUTCOMES):
         message = "`on` is missing: no outcome of this state is known to continue the loop"
-        help = f"add `on: [...]` with one or more of {listed(second)}"
+        help = f"add `on: [...]` with one or more of {listed(second)}" if second else NO_OUTCOMES
         report.append(wrong_shape(sugar.for_each.span, message, help, arguments=("on",)))
 
 
