@@ -9,7 +9,6 @@ from __future__ import annotations
 
 import difflib
 import hashlib
-import re
 from collections.abc import Callable, Iterable
 from dataclasses import dataclass, field
 from enum import Enum
@@ -190,16 +189,9 @@ def problem(
 
 
 def identity(item: Diagnostic) -> tuple[object, ...]:
-    """What two findings have in common that say the same, met through different calls: in a
-    sub-script all but the names of the states around, which calls give."""
-    finding, message = item.finding, item.finding.message
-    if any(each.span.source is not finding.span.source for each in finding.related):
-        names = set((finding.node or "").split("/"))
-        message = _QUOTED.sub(lambda found: "``" if found[1] in names else found[0], message)
-    return item.code, item.severity, item.span, message
-
-
-_QUOTED = re.compile("`([^`]*)`")
+    """What makes a finding one fault: equal for a fault of a sub-script that is found through each
+    of its calls."""
+    return item.code, item.severity, item.span, item.finding.arguments
 
 
 def in_order(report: Iterable[Diagnostic]) -> Report:
@@ -218,20 +210,21 @@ def in_order(report: Iterable[Diagnostic]) -> Report:
             files[item.span.source],
             item.span.start,
             item.code,
-            item.finding.message,
+            item.finding.arguments,
         ),
     )
 
 
 def fingerprint(item: Diagnostic) -> str:
-    """What stays of a finding when the lines around it move: 16 hexadecimal digits.
+    """What stays of a finding when the lines around it move or its message is reworded: 16
+    hexadecimal digits.
 
-    Taken over its code and message, the name of its file and that of its state; not over the
+    Taken over its code and arguments, the name of its file and that of its state; not over the
     path of the state, which depends on the caller.
     """
     file = PurePath(item.span.source.name).name
     state = (item.finding.node or "").rpartition("/")[2]
-    text = "\0".join((item.code, file, state, item.finding.message))
+    text = "\0".join((item.code, file, state, *item.finding.arguments))
     return hashlib.sha256(text.encode("utf-8", "surrogatepass")).hexdigest()[:16]
 
 
