@@ -181,6 +181,6 @@ def build(
 def merged(report: Report, built: Report) -> Report:
     """The findings of a script, then those of a target. A finding that both have is taken from the
     target, which decides its severity."""
-    repeated = {(item.code, item.message, item.span) for item in built}
-    rest = [item for item in report if (item.code, item.message, item.span) not in repeated]
+    repeated = {(item.code, item.span, item.finding.arguments) for item in built}
+    rest = [i for i in report if (i.code, i.span, i.finding.arguments) not in repeated]
     return [*rest, *built]

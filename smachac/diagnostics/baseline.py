@@ -8,11 +8,12 @@ from pathlib import PurePath
 
 from smachac.diagnostics.diagnostic import Report, fingerprint
 
-VERSION = 1
+VERSION = 2
+"""The version of the fingerprints: it increases when they are computed in another way."""
 
 
 class BaselineError(Exception):
-    """A text is no baseline; the message has the reason."""
+    """A text is not a baseline; the message has the reason."""
 
 
 def render(report: Report) -> str:
@@ -39,10 +40,13 @@ def read(text: str) -> Counter[str]:
     try:
         data = json.loads(text)
         if data["version"] != VERSION:
-            raise BaselineError(f"its version is {data['version']!r}, not {VERSION}")
+            raise BaselineError(
+                f"the baseline has version {data['version']!r}, but version {VERSION} is required;"
+                " run `smachac check` with `--write-baseline` to write it again"
+            )
         return Counter({str(each["fingerprint"]): int(each["count"]) for each in data["findings"]})
     except (ValueError, TypeError, KeyError, RecursionError) as error:
-        raise BaselineError("it was not render by --write-baseline") from error
+        raise BaselineError("the file was not written by --write-baseline") from error
 
 
 def compare(report: Report, known: Counter[str]) -> tuple[Report, int, int]:

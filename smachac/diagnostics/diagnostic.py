@@ -1,15 +1,14 @@
-"""Codes, findings and diagnostics, and problems: the faults that no rule over the IR finds.
+"""Codes, findings, diagnostics, and problems: the faults that are found outside the rules.
 
-A *problem* is a function that words one fault; its docstring is the explanation of its code
-(`smachac explain`, docs/rules.md), and the examples in it are a test. So it is for the rules over
-the IR (smachac/checks).
+A *problem* is a function that makes the finding of one code. Its docstring is the explanation of
+the code (`smachac explain`, docs/rules.md), and the examples in it are a test, as for the rules
+(smachac/checks).
 """
 
 from __future__ import annotations
 
 import difflib
 import hashlib
-import re
 from collections.abc import Callable, Iterable
 from dataclasses import dataclass, field
 from enum import Enum
@@ -46,7 +45,7 @@ class Code:
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Related:
-    """Another place that a finding speaks of."""
+    """Another place of a finding, with a message of its own."""
 
     span: Span
     message: str
@@ -54,7 +53,7 @@ class Related:
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Edit:
-    """A stretch of a source, and the text that is to stand there instead."""
+    """A range of a source, and the text that replaces it."""
 
     span: Span
     text: str
@@ -90,8 +89,8 @@ class Finding:
     where it stands: they do not depend on who calls a sub-script. Identity, fingerprints and
     baselines use them instead of the message.
     `path` is a witness: the states that are entered, in order, and the outcomes between them.
-    `severity` overrides that of the code. `node` is the path of the state it is about.
-    `edits` mend the fault, all of them together; none where the cure is not certain.
+    `severity` overrides that of the code. `node` is the path of the state that it is about.
+    `edits` correct the fault, all of them together; empty if the correction is not certain.
     """
 
     span: Span
@@ -152,14 +151,14 @@ Report = list[Diagnostic]
 
 
 def diagnostic(code: Code, finding: Finding, steps: tuple[Span | None, ...] = ()) -> Diagnostic:
-    """A finding with its code, in the severity that it has."""
+    """The diagnostic of a finding: its own severity, or else that of the code."""
     severity = finding.severity or code.severity
     return Diagnostic(kind=code, severity=severity, finding=finding, steps=steps)
 
 
 @dataclass(frozen=True, slots=True)
 class Problem(Generic[P]):
-    """A code, and the function that words its finding; a call of it gives the diagnostic."""
+    """A code, and the function that makes its finding; a call returns the diagnostic."""
 
     code: Code
     function: Callable[P, Finding]
@@ -171,9 +170,9 @@ class Problem(Generic[P]):
 def problem(
     code: str, name: str, severity: Severity
 ) -> Callable[[Callable[P, Finding]], Problem[P]]:
-    """Make a problem of the function that words its finding.
+    """Make a problem of the function that makes its finding.
 
-    As an error it is firm: without what is wrong the script has no meaning.
+    An error is firm: a script with such a fault has no meaning.
     """
 
     def declare(function: Callable[P, Finding]) -> Problem[P]:
@@ -190,16 +189,9 @@ def problem(
 
 
 def identity(item: Diagnostic) -> tuple[object, ...]:
-    """What two findings have in common that say the same, met through different calls: in a
-    sub-script all but the names of the states around, which calls give."""
-    finding, message = item.finding, item.finding.message
-    if any(each.span.source is not finding.span.source for each in finding.related):
-        names = set((finding.node or "").split("/"))
-        message = _QUOTED.sub(lambda found: "``" if found[1] in names else found[0], message)
-    return item.code, item.severity, item.span, message
-
-
-_QUOTED = re.compile("`([^`]*)`")
+    """What makes a finding one fault: equal for a fault of a sub-script that is found through each
+    of its calls."""
+    return item.code, item.severity, item.span, item.finding.arguments
 
 
 def in_order(report: Iterable[Diagnostic]) -> Report:
@@ -218,20 +210,21 @@ def in_order(report: Iterable[Diagnostic]) -> Report:
             files[item.span.source],
             item.span.start,
             item.code,
-            item.finding.message,
+            item.finding.arguments,
         ),
     )
 
 
 def fingerprint(item: Diagnostic) -> str:
-    """What stays of a finding when the lines around it move: 16 hexadecimal digits.
+    """What stays of a finding when the lines around it move or its message is reworded: 16
+    hexadecimal digits.
 
-    Taken over its code and message, the name of its file and that of its state; not over the
+    Taken over its code and arguments, the name of its file and that of its state; not over the
     path of the state, which depends on the caller.
     """
     file = PurePath(item.span.source.name).name
     state = (item.finding.node or "").rpartition("/")[2]
-    text = "\0".join((item.code, file, state, item.finding.message))
+    text = "\0".join((item.code, file, state, *item.finding.arguments))
     return hashlib.sha256(text.encode("utf-8", "surrogatepass")).hexdigest()[:16]
 
 
@@ -241,8 +234,8 @@ def has_errors(report: Iterable[Diagnostic]) -> bool:
 
 MOST_CANDIDATES = 1000
 LONGEST_WORD = 100
-"""Beyond so many names, and for longer ones than this, only a difference in case is looked for, so
-that no run is quadratic."""
+"""With more names, and for longer ones, only a difference in case is considered: a comparison takes
+quadratic time."""
 
 
 def did_you_mean(word: str, candidates: Iterable[str]) -> str | None:

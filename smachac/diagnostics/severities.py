@@ -16,8 +16,8 @@ class Policy:
 
 
 def is_firm(item: Diagnostic) -> bool:
-    """Whether a finding is an error that cannot be disabled: no target could print such a
-    machine."""
+    """Whether a finding is an error that cannot be disabled: no program can be generated from such
+    a machine."""
     return item.kind.firm and item.severity is Severity.ERROR
 
 

@@ -49,7 +49,9 @@ def read_project(
     try:
         data = toml.loads(source.text)
     except toml.TOMLDecodeError as error:
-        report.append(unreadable_file(Span(source, 0, 0), f"not TOML: {error}"))
+        message = f"the project file is not valid TOML: {error}"
+        help = "correct the syntax: strings have quotes, lists have brackets"
+        report.append(unreadable_file(Span(source, 0, 0), message, help, arguments=("toml",)))
         return Project()
     settings = data if path.name == "smachac.toml" else data.get("tool", {}).get("smachac")
     if not isinstance(settings, dict):
@@ -59,12 +61,15 @@ def read_project(
     policy = Policy()
     for key, value in settings.items():
         if key not in SETTINGS:
-            _wrong(source, key, f"unknown setting `{key}`", _near(key, SETTINGS, "it has"), report)
+            message = f"`{key}` is not a setting of smachac"
+            _wrong(source, key, message, _near(key, SETTINGS), report, ("setting", key))
         elif key == "severity":
             policy = Policy(severities=_severities(source, value, report, codes))
         elif not isinstance(value, list) or not all(isinstance(item, str) for item in value):
             kind = "patterns" if key == "exclude" else "folders"
-            _wrong(source, key, f"`{key}` must be a list of {kind}", None, report)
+            message = f"`{key}` must be a list of {kind}"
+            help = f'write it as `{key} = ["..."]`'
+            _wrong(source, key, message, help, report, ("list", key))
         elif key == "exclude":
             texts[key] = tuple(value)
         else:
@@ -84,33 +89,36 @@ def _severities(
 ) -> dict[str, Severity | None]:
     if not isinstance(value, dict):
         help = 'write `[severity]`, and below it lines such as `SM204 = "error"`'
-        _wrong(source, "severity", "`severity` must be a table", help, report)
+        _wrong(source, "severity", "`severity` must be a table", help, report, ("table",))
         return {}
     found: dict[str, Severity | None] = {}
     for code, word in value.items():
         if codes is not None and not any(known.startswith(code) for known in codes):
-            help = _near(code, codes, "known are")
-            _wrong(source, code, f"there is no code `{code}`", help, report)
+            message = f"no code begins with `{code}`"
+            _wrong(source, code, message, _near(code, codes), report, ("code", code))
         elif not isinstance(word, str) or word not in LEVELS:
-            help = _near(str(word), LEVELS, "it is one of")
-            _wrong(source, code, f"{word!r} is not a severity", help, report)
+            message = f"`{word}` is not a severity"
+            arguments = ("severity", code, str(word))
+            _wrong(source, code, message, _near(str(word), LEVELS), report, arguments)
         elif codes and code in codes and codes[code].firm and word != "error":
-            help = "remove the line: no code could be made of a machine with such a fault"
-            _wrong(source, code, f"{code} is always an error", help, report)
+            help = "remove the line: no program can be generated with this fault"
+            _wrong(source, code, f"{code} is always an error", help, report, ("firm", code))
         else:
             found[code] = LEVELS[word]
     return found
 
 
-def _near(word: str, known: Iterable[str], lead: str) -> str:
+def _near(word: str, known: Iterable[str]) -> str:
     names = list(known)
-    return did_you_mean(word, names) or f"{lead} {listed(names)}"
+    return did_you_mean(word, names) or f"use one of {listed(names)}"
 
 
-def _wrong(source: Source, key: str, message: str, help: str | None, report: Report) -> None:
+def _wrong(
+    source: Source, key: str, message: str, help: str, report: Report, arguments: tuple[str, ...]
+) -> None:
     """SM007 at the key, if a search finds it: TOML parsers give no positions."""
     found = re.search(
         rf"^[ \t]*(?:\[[^\]\n]*?)?([\"']?{re.escape(key)}\b[\"']?)", source.text, re.M
     )
     span = Span(source, *found.span(1)) if found else Span(source, 0, 0)
-    report.append(unreadable_file(span, message, help))
+    report.append(unreadable_file(span, message, help, arguments=arguments))

@@ -123,7 +123,7 @@ def _retried(node: Node, retry: Retry) -> Iterator:
     item = _fresh("pause" if retry.delay else "attempt", keys)
     child = _inside(node)
     items: tuple[float, ...] = tuple(range(1, retry.most + 1))
-    if retry.delay:
+    if retry.delay and own:
         child = _after_pause(child, item, on)
         items = (0.0, *(retry.delay,) * (retry.most - 1))
     kept = tuple(outcome for outcome in node.outcomes if outcome.name not in on)

@@ -39,11 +39,29 @@ def kind_of(tree: Tree) -> str:
     return "a string"
 
 
-def wrong(tree: Tree, wanted: str, report: Report, help: str | None = None) -> None:
-    """Report that a tree is not what is wanted, unless that was reported before."""
+SHAPES = {
+    "name": ("a name", None),
+    "names": ("a list of names", "write it as `[a, b]`"),
+    "keys": ("a list of keys", "write it as `[a, b]` or `{a: float}`"),
+    "map": ("a mapping", None),
+    "text": ("a text", None),
+    "flag": ("`true` or `false`", None),
+    "duration": ("a duration", "write it as `20s`, `500ms`, `1.5min` or `1h`"),
+    "state": ("a state", "write it as `- NAME: {template: ...}`"),
+    "states": ("a list of states", "write each state as `- NAME: {...}`"),
+}
+"""Each shape of a value, as messages name it, and how it is written."""
+
+
+def wrong(tree: Tree, shape: str, report: Report, help: str | None = None) -> None:
+    """SM004 for a tree that does not have a shape of SHAPES, unless it was reported before."""
     if is_known_wrong(tree):
         return
-    report.append(wrong_shape(tree.span, f"{wanted} is due here, not {kind_of(tree)}", help))
+    expected, example = SHAPES[shape]
+    found = kind_of(tree)
+    message = f"expected {expected}, found {found}"
+    arguments = (shape, found)
+    report.append(wrong_shape(tree.span, message, help or example, arguments=arguments))
 
 
 def name_of(tree: Tree) -> Word | None:
@@ -56,21 +74,22 @@ def name_of(tree: Tree) -> Word | None:
 def as_name(tree: Tree, report: Report) -> Word | None:
     """A name: of a state, an outcome, a key, a script, a template."""
     if not isinstance(tree, Scalar):
-        wrong(tree, "a name", report)
+        wrong(tree, "name", report)
         return None
     value = tree.value
     if isinstance(value, str) and (value not in _YAML_1_1_BOOLEANS or not tree.plain):
         return Word(value, tree.span)
     if value is None:
-        wrong(tree, "a name", report)
+        wrong(tree, "name", report)
         return None
     if isinstance(value, (str, bool)):
         text = tree.span.text
         report.append(
             wrong_shape(
                 tree.span,
-                f"`{text}` is a boolean to many YAML parsers, not a name",
-                f"write it in quotes: '{text}', or choose another name",
+                f"`{text}` is a boolean for many YAML parsers, not a name",
+                f"write it in quotes: '{text}', or use another name",
+                arguments=("boolean", text),
             )
         )
         return Word(text, tree.span)
@@ -81,7 +100,7 @@ def as_name(tree: Tree, report: Report) -> Word | None:
 def as_names(tree: Tree, report: Report) -> tuple[Word, ...]:
     """A list of names, each once."""
     if not isinstance(tree, Seq):
-        wrong(tree, "a list of names", report, "write it as `[a, b]`")
+        wrong(tree, "names", report)
         return ()
     found: dict[str, Word] = {}
     for item in tree.items:
@@ -98,7 +117,7 @@ def as_map(tree: Tree, report: Report) -> tuple[Entry, ...]:
     """A mapping of names to anything; a null block (`userdata:` with nothing) is an error."""
     if not isinstance(tree, Map):
         nothing = isinstance(tree, Scalar) and tree.value is None
-        wrong(tree, "a mapping", report, "write `{}` or leave it out" if nothing else None)
+        wrong(tree, "map", report, "write `{}`, or remove the key" if nothing else None)
         return ()
     return tuple([entry for entry in tree.entries if _names(entry.key, report)])
 
@@ -145,7 +164,7 @@ def as_keys(tree: Tree, report: Report) -> Keys:
         return tuple((word, None) for word in as_names(tree, report))
     if isinstance(tree, Map):
         return tuple((key, parse_type(type_.text)) for key, type_ in as_pairs(tree, report))
-    wrong(tree, "a list of keys", report, "write it as `[a, b]` or `{a: float}`")
+    wrong(tree, "keys", report)
     return ()
 
 
@@ -191,7 +210,7 @@ def as_text(tree: Tree, report: Report) -> str:
     """A text on one or more lines."""
     if isinstance(tree, Scalar) and tree.value is not None:
         return str(tree.value)
-    wrong(tree, "a text", report)
+    wrong(tree, "text", report)
     return ""
 
 
@@ -199,7 +218,7 @@ def as_flag(tree: Tree, report: Report) -> bool:
     """`true` or `false`."""
     if isinstance(tree, Scalar) and isinstance(tree.value, bool):
         return tree.value
-    wrong(tree, "`true` or `false`", report)
+    wrong(tree, "flag", report)
     return False
 
 

@@ -27,19 +27,23 @@ def read_source(path: Path, report: Report) -> Source | None:
     try:
         if path.stat().st_size > MAX_BYTES:
             place = Span(Source(str(path), ""), 0, 0)
-            report.append(too_big(place, f"the file has {path.stat().st_size:,} bytes"))
+            size = f"{path.stat().st_size:,} bytes; the limit is {MAX_BYTES:,}"
+            help = "split it into smaller files"
+            report.append(too_big(place, f"the file has {size}", help, arguments=("bytes",)))
             return None
         return Source(str(path), decoded(path.read_bytes()))
     except OSError as error:
         span = Span(Source(str(path), ""), 0, 0)
         words = (error.strerror or str(error)).lower()
         near = did_you_mean(path.name, _names_beside(path))
-        report.append(unreadable_file(span, f"this file cannot be read: {words}", near))
+        message = f"this file cannot be read: {words}"
+        report.append(unreadable_file(span, message, near, arguments=("read",)))
     except UnicodeDecodeError as error:
         text = error.object[: error.start].decode("utf-8", "replace")
         span = Span(Source(str(path), text), len(text), len(text))
         byte = error.object[error.start]
-        report.append(unreadable_file(span, f"byte 0x{byte:02x} is not UTF-8: is it a text file?"))
+        message = f"the byte 0x{byte:02x} is not valid in {error.encoding.upper()}"
+        report.append(unreadable_file(span, message, arguments=("byte", f"{byte:02x}")))
     return None
 
 
@@ -183,10 +187,7 @@ def disk_library(
         own_template=lambda name: template(name, template_folders[: -len(BUILT_IN)]),
         code=lambda name: template(name, code_folders),
         script_folders=lambda caller: [str(folder) for folder in script_folders(caller)],
-        template_folders=lambda: [
-            *(str(folder) for folder in template_folders[: -len(BUILT_IN)]),
-            "the built-in ones",
-        ],
+        template_folders=lambda: [str(folder) for folder in template_folders[: -len(BUILT_IN)]],
         script_names=lambda caller: _stems(script_folders(caller), (".yml", ".yaml")),
         template_names=lambda: _stems(template_folders[:-1], (".tpl.py", ".tpl", ".yml")),
         parse=disk.parse,

@@ -106,9 +106,8 @@ def _joined(items: tuple[Tree, ...], tree: Seq, report: Report) -> Tree | None:
         parts.append(str(item.value))
     text = "".join(parts)
     if len(text) > MAX_TEXT:
-        report.append(
-            too_big(tree.span, f"this string construct makes {len(text):,} characters", None)
-        )
+        message = f"this string construct has {len(text):,} characters; the limit is {MAX_TEXT:,}"
+        report.append(too_big(tree.span, message, "use shorter params", arguments=("text",)))
         return known_wrong(tree.span)
     # A call may need quotes in YAML; quotes around a dotted word mean that it is text.
     quoted = any(isinstance(item, Scalar) and not item.plain for item in tree.items)
@@ -123,7 +122,9 @@ def child_scope(scope: Scope, own: Tree | None, report: Report) -> Scope:
     for entry in own.entries:
         value = fill_in(entry.value, inner, report)
         if value is not entry.value and _size_beyond(value, MAX_NODES):
-            report.append(too_big(entry.value.span, "this param grows beyond the limit", None))
+            message = f"the look-ups in this param give it more than {MAX_NODES:,} nodes"
+            help = "use smaller params"
+            report.append(too_big(entry.value.span, message, help, arguments=("param",)))
             value = known_wrong(entry.value.span)
         inner[str(entry.key.value)] = value
     return inner

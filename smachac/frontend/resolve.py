@@ -18,7 +18,13 @@ from smachac.frontend.errors.references import (
     script_not_found,
     template_not_found,
 )
-from smachac.frontend.errors.script import duplicate_key, missing_variable, too_big, wrong_shape
+from smachac.frontend.errors.script import (
+    Owner,
+    duplicate_key,
+    missing_variable,
+    too_big,
+    wrong_shape,
+)
 from smachac.frontend.fields import as_name, kind_of, pairs_of, wrong
 from smachac.frontend.loader import Library
 from smachac.frontend.params import (
@@ -46,6 +52,9 @@ MAX_NESTED = 1_000
 """The most states of a script with its sub-scripts, and the most levels of containers."""
 
 CALLED_HERE = "in the sub-script called here"
+
+SCRIPT_HELP = "write a mapping with `name:`, `outcomes:` and `states:`"
+SUB_SCRIPT_HELP = "write one state: `- NAME: {template: ...}`"
 
 
 @dataclass(frozen=True, slots=True)
@@ -75,22 +84,16 @@ def resolve(source: Source, tree: Tree | None, library: Library, report: Report)
         if not report:
             span = Span(source, 0, 0)
             report.append(
-                wrong_shape(
-                    span, "the script is empty", "a script begins with `name:` and has `states:`"
-                )
+                wrong_shape(span, "the script is empty", SCRIPT_HELP, arguments=("empty",))
             )
         return None
     if not isinstance(tree, Map):
-        sub_script = isinstance(tree, Seq)
-        report.append(
-            wrong_shape(
-                Span(source, tree.span.start, tree.span.start + 1),
-                "a script is a mapping; this is a sub-script"
-                if sub_script
-                else f"a script is a mapping, not {kind_of(tree)}",
-                "check or build the script that calls it" if sub_script else None,
-            )
-        )
+        span = Span(source, tree.span.start, tree.span.start + 1)
+        message, help = f"a script must be a mapping, not {kind_of(tree)}", SCRIPT_HELP
+        if isinstance(tree, Seq):
+            message = "a script must be a mapping; this list is a sub-script"
+            help = "check or build the script that calls it"
+        report.append(wrong_shape(span, message, help, arguments=("script", kind_of(tree))))
         return None
     return _Resolver(library, report).script(source, tree)
 
@@ -178,8 +181,10 @@ class _Resolver:
             self.state_type(TIMER)
         children: tuple[State, ...] = ()
         if "states" in entries and around.depth >= MAX_NESTED:
-            message = f"more than {MAX_NESTED} containers stand inside one another here"
-            self.report.append(too_big(entries["states"].key.span, message))
+            message = f"containers are nested deeper than {MAX_NESTED:,} levels"
+            span = entries["states"].key.span
+            help = "use fewer levels of containers"
+            self.report.append(too_big(span, message, help, arguments=("containers",)))
             return _unknown(name, fields.get("transitions", ()), around)
         if "states" in entries and owner != "state":
             inside = _Environment(around.source, scope, around.calls, around.depth + 1)
@@ -187,9 +192,12 @@ class _Resolver:
         self.uses.params(params, begin, self.report, around.via)
         if around.iterated and "remapping" in entries:
             span = entries["remapping"].key.span
-            message = "the state of an Iterator has no remapping: it sees the Iterator's keys"
-            help = "rename the keys, or put it into a StateMachine and remap there"
-            self.report.append(wrong_shape(span, message, help))
+            message = (
+                "the state of an Iterator cannot have a remapping: it uses the Iterator's keys"
+            )
+            help = "rename the keys, or put the state into a StateMachine and remap there"
+            arguments = ("remapping",)
+            self.report.append(wrong_shape(span, message, help, arguments=arguments))
         return State(owner=owner, type=type_, via=around.via, states=children, **fields)
 
     def filled(self, key: str, entry: Entry, scope: Scope) -> Entry:
@@ -204,12 +212,14 @@ class _Resolver:
 
     def small(self, entry: Entry, new: Tree) -> Entry:
         """The entry with a new value, unless the limit of look-ups is exceeded."""
-        room = MAX_FILLED + MAX_FILLED_BY_STATE * self.count - self.looked_up
+        limit = MAX_FILLED + MAX_FILLED_BY_STATE * self.count
+        room = limit - self.looked_up
         own = size_up_to(entry.value, room)
         grown = size_up_to(new, room + own) - own
         if grown > room:
-            message = "the look-ups of this script stand for more than the limit of nodes"
-            self.report.append(too_big(entry.value.span, message, None))
+            message = f"the look-ups of this script add more than {limit:,} nodes"
+            help = "use smaller params"
+            self.report.append(too_big(entry.value.span, message, help, arguments=("look-ups",)))
             return Entry(entry.key, known_wrong(entry.value.span))
         self.looked_up += max(0, grown)
         return Entry(entry.key, new)
@@ -219,36 +229,39 @@ class _Resolver:
         if not is_too_deep(entry.value):
             return entry
         span = Span(entry.value.span.source, entry.value.span.start, entry.value.span.start + 1)
-        message = f"a value is nested deeper than {MAX_LEVELS} levels"
-        self.report.append(too_big(span, message))
+        message = f"this value is nested deeper than {MAX_LEVELS} levels"
+        help = "use fewer levels of lists and mappings"
+        self.report.append(too_big(span, message, help, arguments=("levels",)))
         return Entry(entry.key, known_wrong(span))
 
     def children(self, tree: Tree, owner: str, around: _Environment) -> tuple[State, ...]:
         """The states of a list. An Iterator has one, which sees the Iterator's keys as they are."""
         if not isinstance(tree, Seq):
-            wrong(tree, "a list of states", self.report, "write each as `- NAME: {...}`")
+            wrong(tree, "states", self.report)
             return ()
         found: list[State] = []
         for item in tree.items:
             if self.count >= MAX_STATES:
                 message = f"the script has more than {MAX_STATES:,} states"
-                self.report.append(too_big(item.span, message))
+                help = "split the task into several scripts"
+                self.report.append(too_big(item.span, message, help, arguments=("states",)))
                 break
             iterated = owner == "Iterator" and not found
             state = self.item(item, replace(around, iterated=True) if iterated else around)
             if state is None:
                 continue
             if owner == "Iterator" and found:
-                message = "an Iterator holds one state; this is one more"
-                help = "put them into a StateMachine, and iterate over that"
-                self.report.append(wrong_shape(state.name.span, message, help))
+                message = "an Iterator must contain exactly one state; this is another one"
+                help = "put the states into a StateMachine inside the Iterator"
+                arguments = ("iterator", state.name.text)
+                self.report.append(wrong_shape(state.name.span, message, help, arguments=arguments))
             found.append(state)
         return tuple(found)
 
     def item(self, tree: Tree, around: _Environment) -> State | None:
         """The state of one item of a list: `- NAME: {...}`, or `- NAME:` with fields beside."""
         if not isinstance(tree, Map) or not tree.entries:
-            wrong(tree, "a state", self.report, "write it as `- NAME: {template: ...}`")
+            wrong(tree, "state", self.report)
             return None
         first, rest = tree.entries[0], tree.entries[1:]
         name = as_name(first.key, self.report)
@@ -258,21 +271,23 @@ class _Resolver:
         if nothing and rest:
             return self.called(name, self.expand(rest), around)
         if nothing or not isinstance(first.value, Map):
-            message = f"`{name.text}` must be followed by the variables of the state"
-            if not nothing:
-                message += f", not by {kind_of(first.value)}"
+            found = kind_of(first.value)
+            message = f"the state `{name.text}` must be a mapping of variables, not {found}"
+            message = f"the state `{name.text}` is empty" if nothing else message
             help = f"write `- {name.text}: {{template: ...}}`"
-            self.report.append(wrong_shape(name.span, message, help))
+            arguments = ("variables", name.text, found)
+            self.report.append(wrong_shape(name.span, message, help, arguments=arguments))
             return _unknown(name, (), around)
         if rest:
             other = rest[0].key
             self.report.append(
                 wrong_shape(
                     other.span,
-                    f"this item holds `{name.text}` and `{other.value}`; a state item has one key",
+                    f"this item has two keys, `{name.text}` and `{other.value}`; a state has one",
                     f"begin another item with `- {other.value}:`, or indent it below"
                     f" `{name.text}:`",
                     (Related(span=name.span, message="the first key"),),
+                    arguments=("item", name.text, str(other.value)),
                 )
             )
         return self.called(name, self.expand(first.value.entries), around)
@@ -324,9 +339,11 @@ class _Resolver:
         self.sources.setdefault(source)
         if tree is None:
             if not broken:
-                message = "the sub-script is empty"
-                report_at = Span(source, 0, 0)
-                self.report.append(bad_sub_script(report_at, message, word.span))
+                found_at = bad_sub_script(
+                    Span(source, 0, 0), "the sub-script is empty", word.span, SUB_SCRIPT_HELP,
+                    arguments=("empty",),
+                )  # fmt: skip
+                self.report.append(found_at)
             return None
         found_state = sub_script_state(tree, word, self.report)
         return None if found_state is None else (source, *found_state)
@@ -355,8 +372,8 @@ class _Resolver:
             held = around.inner or name
             calls = around.via if around.inner is not None else ()
             related = tuple(Related(span=each, message=CALLED_HERE) for each in calls)
-            whose = f"`{held.text}`"
-            self.report.append(missing_variable(held.span, "template", whose, related))
+            owner = Owner(held.text, f"`{held.text}`")
+            self.report.append(missing_variable(held.span, "template", owner, related))
         nested = "StateMachine" if "states" in entries else "state"
         if word is None or not word.text:
             return StateType(name="", open=True), role or nested
@@ -383,19 +400,22 @@ def sub_script_state(
     tree: Tree, call: Word, report: Report
 ) -> tuple[Word, tuple[Entry, ...]] | None:
     """The name and the fields of the one state of a sub-script; SM014 if it is not one state."""
+
+    def refuse(at: Span, fault: str, message: str, help: str = SUB_SCRIPT_HELP) -> None:
+        report.append(bad_sub_script(at, message, call.span, help, arguments=(fault,)))
+
     start = Span(tree.span.source, tree.span.start, tree.span.start + 1)
-    if isinstance(tree, Map):
-        message = "a sub-script is a list with one state; this is a mapping"
-        report.append(bad_sub_script(start, message, call.span))
+    if not isinstance(tree, Seq):
+        refuse(start, "shape", f"a sub-script must be a list with one state, not {kind_of(tree)}")
         return None
-    if not isinstance(tree, Seq) or len(tree.items) != 1:
-        count = f"{len(tree.items)} states" if isinstance(tree, Seq) else kind_of(tree)
-        message = f"a sub-script is a list with one state; this is {count}"
-        report.append(bad_sub_script(start, message, call.span))
+    if len(tree.items) != 1:
+        message = f"a sub-script must have one state; this one has {len(tree.items)}"
+        help = "put the states into one container: `- NAME: {template: StateMachine, ...}`"
+        refuse(start, "states", message, help if tree.items else SUB_SCRIPT_HELP)
         return None
     item = tree.items[0]
     if not isinstance(item, Map) or not item.entries:
-        report.append(bad_sub_script(start, "the sub-script's item is no state", call.span))
+        refuse(start, "item", "the item of a sub-script must be a state")
         return None
     first, rest = item.entries[0], item.entries[1:]
     name = Word(str(first.key.value), first.key.span)
@@ -403,8 +423,7 @@ def sub_script_state(
         return name, first.value.entries
     if isinstance(first.value, Scalar) and first.value.value is None and rest:
         return name, rest
-    message = "a sub-script is a list with one state that has one key: its name"
-    report.append(bad_sub_script(first.key.span, message, call.span))
+    refuse(first.key.span, "key", "the state of a sub-script must have one key: its name")
     return None
 
 

@@ -37,29 +37,31 @@ def _named(
     if "robot" not in base.variables and not base.open and "variables" not in base.given:
         known = ", ".join(f"`{name}`" for name in BUILT_IN)
         help = did_you_mean(word.text, BUILT_IN)
-        help = help or f"known are {known}; for any other name its URDF file, `arm.urdf`"
-        report.append(bad_robot(word, f"there is no robot `{word.text}`", help))
+        help = help or f"use one of {known}, or the name of a URDF file such as `arm.urdf`"
+        message = f"`{word.text}` is not a known robot"
+        report.append(bad_robot(word, message, help, arguments=("name", word.text)))
     return None
 
 
 def _described(word: Word, source: Source, library: Library, report: Report) -> Robot | None:
     if word.text.lower().endswith(".xacro"):
-        message = f"`{word.text}` describes no robot yet"
-        report.append(bad_robot(word, message, XACRO))
+        message = f"`{word.text}` is a xacro file, not a URDF file"
+        report.append(bad_robot(word, message, XACRO, arguments=("xacro", word.text)))
         return None
     before = len(report)
     text = library.script(word.text, source.name)
     if text is None:
         if len(report) == before:
             folders = ", ".join(f"`{folder}`" for folder in library.script_folders(source.name))
-            help = f"searched in {folders}; a path stands for itself below such a folder"
-            message = f"there is no file `{word.text}`"
-            report.append(bad_robot(word, message, help))
+            help = f"give its path relative to a folder that is searched: {folders}"
+            message = f"the file `{word.text}` was not found"
+            report.append(bad_robot(word, message, help, arguments=("file", word.text)))
         return None
     try:
         return read_urdf(text)
     except UrdfError as error:
-        message = f"`{word.text}` describes no robot: {error.message}"
-        related = (Related(span=error.span, message="here"),)
-        report.append(bad_robot(word, message, error.help, related))
+        message = f"`{word.text}` does not describe a robot: {error.message}"
+        related = (Related(span=error.span, message="found here"),)
+        arguments = ("urdf", word.text, error.span.text)
+        report.append(bad_robot(word, message, error.help, related, arguments=arguments))
         return None

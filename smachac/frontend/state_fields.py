@@ -11,8 +11,9 @@ from typing import Any
 from smachac.diagnostics.diagnostic import Related, Report, did_you_mean
 from smachac.diagnostics.source import Word
 from smachac.diagnostics.spelling import guesser_of
+from smachac.diagnostics.wording import listed
 from smachac.frontend import schema
-from smachac.frontend.errors.script import missing_variable, unknown_variable, wrong_shape
+from smachac.frontend.errors.script import Owner, missing_variable, unknown_variable, wrong_shape
 from smachac.frontend.fields import READERS, listed_keys, name_of
 from smachac.frontend.params import Scope
 from smachac.frontend.script import Keys, State
@@ -86,11 +87,12 @@ def _known_fields(
             if type_.used is not None and key not in type_.used:
                 words = [*schema.names_for(owner), *type_.used]
                 word = Word(str(entry.key.value), entry.key.span)
-                report.append(unknown_variable(word, f"`{type_.name}`", words, anything=True))
+                template = Owner(type_.name, f"`{type_.name}`")
+                report.append(unknown_variable(word, template, words, anything=True))
         else:
             known = [*schema.names_for(owner), *type_.variables]
             word = Word(str(entry.key.value), entry.key.span)
-            whose = f"state type `{type_.name}`" if owner == "state" else _owner_text(owner)
+            whose = _owner_of(owner, type_, of_type=owner == "state")
             report.append(unknown_variable(word, whose, known))
             meant.add(guesser_of(tuple(known))(word.text))
     return read, meant
@@ -110,10 +112,10 @@ def _check_required(
     required += [key for key, variable in type_.variables.items() if variable.required]
     for key in required:
         if key not in entries and key not in meant:
-            whose = f"state type `{type_.name}`" if key in type_.variables else _owner_text(owner)
+            whose = _owner_of(owner, type_, of_type=key in type_.variables)
             related: tuple[Related, ...] = ()
             if inner is not None:
-                related = (Related(span=inner.span, message="nor does the sub-script give it"),)
+                related = (Related(span=inner.span, message="the sub-script does not set it"),)
             report.append(missing_variable(name.span, key, whose, related))
 
 
@@ -136,9 +138,12 @@ def _check_interface(read: Mapping[str, Any], type_: StateType, report: Report) 
             if word.text not in known:
                 what = part.replace("_", " ").removesuffix("s")
                 message = f"state type `{type_.name}` has no {what} `{word.text}`"
-                listed = ", ".join(f"`{name}`" for name in known) or "none"
-                help = did_you_mean(word.text, known) or f"it has {listed}"
-                report.append(wrong_shape(word.span, message, help))
+                help = did_you_mean(word.text, known)
+                help = help or (
+                    f"use one of its {what}s: {listed(known)}" if known else "remove it"
+                )
+                arguments = (part, type_.name, word.text)
+                report.append(wrong_shape(word.span, message, help, arguments=arguments))
 
 
 def _listed_keys(entries: Entries, type_: StateType) -> Iterator[tuple[str, Keys]]:
@@ -172,7 +177,10 @@ def _written(name: Word, entries: Entries, scope: Scope) -> Iterator[Variable]:
         yield Variable(name="params", value=value, span=name.span)
 
 
-def _owner_text(owner: str) -> str:
+def _owner_of(owner: str, type_: StateType, *, of_type: bool) -> Owner:
+    """The owner of a variable: the state type, or an owner of the schema."""
+    if of_type:
+        return Owner(type_.name, f"state type `{type_.name}`")
     if owner == "base":
-        return "the script"
-    return "a state" if owner == "state" else f"a container of type `{owner}`"
+        return Owner(owner, "the script")
+    return Owner(owner, "a state" if owner == "state" else f"a container of type `{owner}`")

@@ -14,7 +14,7 @@ from typing import TypeAlias
 from smachac.diagnostics.diagnostic import Report, did_you_mean
 from smachac.diagnostics.source import Source, Span, Word
 from smachac.frontend import smacha_meta
-from smachac.frontend.errors.script import unknown_variable, wrong_shape
+from smachac.frontend.errors.script import Owner, unknown_variable, wrong_shape
 from smachac.frontend.fields import as_flag, as_map, as_name, as_names, as_text
 from smachac.frontend.loader import Library
 from smachac.frontend.python_source import python_body
@@ -69,7 +69,9 @@ def _read_interface(name: str, source: Source, library: Library, report: Report)
     tree = library.parse(source, report)
     if not isinstance(tree, Map):
         span = tree.span if tree is not None else Span(source, 0, 0)
-        report.append(wrong_shape(span, f"the interface of `{name}` must be a mapping"))
+        message = f"the interface of `{name}` must be a mapping"
+        help = "write it with fields such as `outcomes:`"
+        report.append(wrong_shape(span, message, help, arguments=("interface", name)))
         return StateType(name=name, open=True)
     fields: dict[str, Tree] = {}
     for entry in as_map(tree, report):
@@ -78,7 +80,7 @@ def _read_interface(name: str, source: Source, library: Library, report: Report)
             fields[key] = entry.value
         else:
             word = Word(key, entry.key.span)
-            report.append(unknown_variable(word, "an interface", _FIELDS))
+            report.append(unknown_variable(word, Owner("interface", "an interface"), _FIELDS))
     if "name" in fields:
         as_name(fields["name"], report)
     sections = {key: as_map(fields[key], report) if key in fields else () for key in _SECTIONS}
@@ -141,9 +143,10 @@ def _code(section: Section, report: Report) -> dict[str, str]:
             found[language] = str(value.value)
             names = found[language].replace(":", ".", 1).split(".")
             if language == "python" and ":" in found[language] and not all(map(_is_name, names)):
-                message = f"`{value.value}` names no class of a module"
-                help = "write it as `my_robot.states:Grasp`, or name the file of a template"
-                report.append(wrong_shape(value.span, message, help))
+                message = f"`{value.value}` is not the name of a class in a Python module"
+                help = "write it as `my_robot.states:Grasp`, or give the file name of a template"
+                arguments = ("class", str(value.value))
+                report.append(wrong_shape(value.span, message, help, arguments=arguments))
     return found
 
 
@@ -158,14 +161,16 @@ def _classes(section: Section, report: Report) -> dict[str, dict[str, str]]:
             name = str(entry.key.value)
             if name not in CLASS_FIELDS:
                 word = Word(name, entry.key.span)
-                report.append(unknown_variable(word, "the code of a state", CLASS_FIELDS))
+                owner = Owner("code", "the code of a state type")
+                report.append(unknown_variable(word, owner, CLASS_FIELDS))
             elif isinstance(entry.value, Scalar):
                 given[name] = str(entry.value.value)
         missing = [name for name in CLASS_FIELDS[:2] if name not in given]
         if missing:
-            message = f"the code for `{language}` names no `{missing[0]}`"
+            message = f"the code for `{language}` has no `{missing[0]}`"
             help = "write it as `{header: my_robot/grasp.hpp, class: my_robot::Grasp}`"
-            report.append(wrong_shape(value.span, message, help))
+            arguments = ("code", language, missing[0])
+            report.append(wrong_shape(value.span, message, help, arguments=arguments))
         else:
             found[language] = given
     return found
@@ -186,7 +191,9 @@ def _kind(tree: Tree | None, report: Report) -> StateKind:
         case "state":
             return "state"
     assert word is not None
-    report.append(wrong_shape(word.span, "the kind is one of `state`, `container`, `base`"))
+    message = f"`{word.text}` is not a kind of state type"
+    help = "use `state`, `container` or `base`"
+    report.append(wrong_shape(word.span, message, help, arguments=("kind", word.text)))
     return "state"
 
 
@@ -251,20 +258,21 @@ def _writes(
     for entry in sections["writes"]:
         outcome = Word(str(entry.key.value), entry.key.span)
         keys = as_names(entry.value, report)
-        _check_declared(sections["outcomes"], "outcome", outcome, report)
+        _check_declared(sections, "outcomes", outcome, report)
         for word in keys:
-            _check_declared(sections["output_keys"], "output key", word, report)
+            _check_declared(sections, "output_keys", word, report)
         if keys:
             found.append((outcome.text, tuple(word.text for word in keys)))
     return tuple(found)
 
 
-def _check_declared(section: Section, what: str, word: Word, report: Report) -> None:
-    names = [name for name, _ in _declared(section)]
-    if word.text in names or _is_starred(section):
+def _check_declared(sections: Mapping[str, Section], part: str, word: Word, report: Report) -> None:
+    names = [name for name, _ in _declared(sections[part])]
+    if word.text in names or _is_starred(sections[part]):
         return
-    message = f"`{word.text}` is no {what} of the interface"
-    report.append(wrong_shape(word.span, message, did_you_mean(word.text, names)))
+    message = f"`{word.text}` is not in the `{part}` of the interface"
+    help = did_you_mean(word.text, names) or f"add it to `{part}`, or remove it here"
+    report.append(wrong_shape(word.span, message, help, arguments=(part, word.text)))
 
 
 def _prints_itself(file: str, library: Library) -> bool:

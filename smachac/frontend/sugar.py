@@ -12,7 +12,7 @@ from collections.abc import Mapping
 from smachac.diagnostics.diagnostic import Report, did_you_mean
 from smachac.diagnostics.source import Word
 from smachac.diagnostics.wording import listed
-from smachac.frontend.errors.script import missing_variable, unknown_variable, wrong_shape
+from smachac.frontend.errors.script import Owner, missing_variable, unknown_variable, wrong_shape
 from smachac.frontend.fields import as_name, as_names, wrong
 from smachac.frontend.script import ERROR, EXHAUSTED, TIMEOUT, ForEach, Retry, Sugar, Timeout
 from smachac.frontend.values import as_value
@@ -25,6 +25,8 @@ NAMES = frozenset(["timeout", "retry", "for_each"])
 
 MOST_TRIES = 10_000
 """The most tries of a `retry`; each is an item of an iterator."""
+
+NO_OUTCOMES = "add `outcomes: [...]` to this state"
 
 SECONDS = {"": 1.0, "ms": 0.001, "s": 1.0, "min": 60.0, "h": 3600.0}
 _DURATION = re.compile(r"(\d+(?:\.\d+)?|\.\d+)\s*([a-z]*)")
@@ -65,13 +67,14 @@ def _check_outcomes(sugar: Sugar, own: tuple[str, ...], report: Report) -> None:
         for word in part.on if part is not None else ():
             if word.text not in (*outcomes, ERROR):
                 message = f"this state has no outcome `{word.text}`"
-                help = did_you_mean(word.text, outcomes)
-                help = help or f"its outcomes are {listed(outcomes)}"
-                report.append(wrong_shape(word.span, message, help))
+                known = f"use one of its outcomes: {listed(outcomes)}" if outcomes else NO_OUTCOMES
+                help = did_you_mean(word.text, outcomes) or known
+                arguments = ("outcome", word.text)
+                report.append(wrong_shape(word.span, message, help, arguments=arguments))
     if sugar.for_each and not sugar.for_each.on and not set(second) & set(GOOD_OUTCOMES):
-        message = "nothing says after which outcome of this state the next item comes"
-        help = f"add `on: [...]`; the outcomes are {listed(second)}"
-        report.append(wrong_shape(sugar.for_each.span, message, help))
+        message = "`on` is missing: no outcome of this state is known to continue the loop"
+        help = f"add `on: [...]` with one or more of {listed(second)}" if second else NO_OUTCOMES
+        report.append(wrong_shape(sugar.for_each.span, message, help, arguments=("on",)))
 
 
 def duration(tree: Tree, report: Report) -> float | None:
@@ -80,7 +83,7 @@ def duration(tree: Tree, report: Report) -> float | None:
         found = _DURATION.fullmatch(str(tree.value).strip())
         if found is not None and found.group(2) in SECONDS and not isinstance(tree.value, bool):
             return float(found.group(1)) * SECONDS[found.group(2)]
-    wrong(tree, "a duration", report, "write it as `20s`, `500ms`, `1.5min` or `1h`")
+    wrong(tree, "duration", report)
     return None
 
 
@@ -89,8 +92,9 @@ def _timeout(entry: Entry, report: Report) -> Timeout | None:
     if seconds:
         return Timeout(seconds=seconds, span=entry.key.span)
     if seconds == 0:
-        message = "a time limit of nothing is over before the state begins"
-        report.append(wrong_shape(entry.value.span, message, "write it as `20s`, or leave it out"))
+        message = "the time limit must be longer than zero"
+        help = "write it as `20s`, or remove it"
+        report.append(wrong_shape(entry.value.span, message, help, arguments=("zero",)))
     return None
 
 
@@ -99,18 +103,18 @@ def _parts(
 ) -> dict[str, Tree] | None:
     """The entries of a mapping with known keys; None where a required one is missing."""
     if not isinstance(entry.value, Map):
-        wrong(entry.value, "a mapping", report, f"it has {listed(known)}")
+        wrong(entry.value, "map", report, f"write a mapping with {listed(known)}")
         return None
+    owner = Owner(str(entry.key.value), f"`{entry.key.value}`")
     parts: dict[str, Tree] = {}
     for each in entry.value.entries:
         word = Word(str(each.key.value), each.key.span)  # `on` is fine here, unlike in names
         if word.text not in known:
-            report.append(unknown_variable(word, f"`{entry.key.value}`", known))
+            report.append(unknown_variable(word, owner, known))
         parts[word.text] = each.value
     for name in required:
         if name not in parts:
-            whose = f"`{entry.key.value}`"
-            report.append(missing_variable(entry.key.span, name, whose))
+            report.append(missing_variable(entry.key.span, name, owner))
     return parts if all(name in parts for name in required) else None
 
 
@@ -123,8 +127,9 @@ def _retry(entry: Entry, report: Report) -> Retry | None:
     delay = duration(parts["delay"], report) if "delay" in parts else 0.0
     whole = isinstance(most, Scalar) and type(most.value) is int
     if not whole or not 1 <= int(str(most.value)) <= MOST_TRIES:  # type: ignore[union-attr]
-        message = f"`max` is how often it is tried: a whole number from 1 to {MOST_TRIES:,}"
-        report.append(wrong_shape(most.span, message, "leave `retry` out for one try"))
+        message = f"`max`, the number of tries, must be a whole number from 1 to {MOST_TRIES:,}"
+        help = "remove `retry` if one try is enough"
+        report.append(wrong_shape(most.span, message, help, arguments=("max",)))
         return None
     number = int(str(most.value))  # type: ignore[union-attr]
     return Retry(on=on, most=number, delay=delay or 0.0, span=entry.key.span)

@@ -127,6 +127,7 @@ def parse(source: Source, report: Report) -> Tree | None:
                 f"the script has {len(source.text):,} characters;"
                 f" the limit is {MAX_CHARACTERS - 1:,}",
                 "split it into sub-scripts",
+                arguments=("characters",),
             )
         )
         return None
@@ -137,7 +138,8 @@ def parse(source: Source, report: Report) -> Tree | None:
             yaml_syntax(
                 span,
                 f"the character {bad.group()!a} is not allowed in YAML",
-                "is this a text file?",
+                "remove it, and check that the file is a text file",
+                arguments=("character", f"U+{ord(bad.group()):04X}"),
             )
         )
         return None
@@ -218,9 +220,9 @@ def _syntax_error(source: Source, error: Any) -> Diagnostic:
     parts = [getattr(error, name, None) for name in ("problem", "context")]
     words = ", ".join(" ".join(str(part).split()) for part in parts if part)
     here = source.text[at : at + 1]
-    advice = "indent with spaces: YAML allows no tabs there" if here == "\t" else None
+    advice = "indent with spaces: YAML allows no tabs here" if here == "\t" else None
     span = Span(source, at, at + (here not in ("", "\n")))
-    return yaml_syntax(span, words or "this is not YAML", advice)
+    return yaml_syntax(span, words or "this is not YAML", advice, arguments=("syntax", here))
 
 
 class _Open:
@@ -275,7 +277,8 @@ class _Builder:
                     wrong_shape(
                         span,
                         "a second YAML document begins here",
-                        "a script is one document: remove the `---`",
+                        "remove the `---`: a script is one document",
+                        arguments=("document",),
                     )
                 )
                 break
@@ -299,8 +302,9 @@ class _Builder:
         self.report.append(
             wrong_shape(
                 span,
-                "YAML tags other than `!!str` mean nothing here",
+                "YAML tags other than `!!str` are not supported",
                 "write the value without a tag",
+                arguments=("tag", str(event.tag)),
             )
         )
 
@@ -310,7 +314,8 @@ class _Builder:
         if event.tag is not None:
             self._unknown_tag(event)
         if len(self.stack) >= MAX_DEPTH:
-            self._stop(start, f"nesting is deeper than {MAX_DEPTH} levels")
+            message = f"the nesting is deeper than {MAX_DEPTH:,} levels"
+            self._stop(start, message, "split the script into sub-scripts", "depth")
         self.deepest = max(self.deepest, len(self.stack))
         self.stack.append(_Open(mapping, bool(event.flow_style), start, event.anchor))
         self.end = event.end_mark.index
@@ -332,11 +337,15 @@ class _Builder:
         known = self.anchors.get(event.anchor)
         if known is None:
             name = event.anchor
-            self.report.append(yaml_syntax(span, f"the alias `*{name}` has no anchor"))
+            message = f"the alias `*{name}` has no anchor"
+            help = f"put the anchor `&{name}` before this alias"
+            self.report.append(yaml_syntax(span, message, help, arguments=("alias", name)))
             raise _BeyondLimitError
         self.aliased += known[1]
-        if self.aliased > max(MAX_ALIASED, len(self.source.text)):
-            self._stop(span.start, "aliases expand to more than the limit of nodes")
+        limit = max(MAX_ALIASED, len(self.source.text))
+        if self.aliased > limit:
+            message = f"the aliases of this script add more than {limit:,} nodes"
+            self._stop(span.start, message, "use fewer aliases, or smaller ones", "aliases")
         self._add(known[0], known[1], None)
 
     def _add(self, node: Tree, size: int, anchor: str | None) -> None:
@@ -349,10 +358,9 @@ class _Builder:
         around.items.append(node)
         around.size += size
 
-    def _stop(self, at: int, message: str) -> None:
-        self.report.append(
-            too_big(Span(self.source, at, at + 1), message, "split it into sub-scripts")
-        )
+    def _stop(self, at: int, message: str, help: str, limit: str) -> None:
+        span = Span(self.source, at, at + 1)
+        self.report.append(too_big(span, message, help, arguments=(limit,)))
         raise _BeyondLimitError
 
     def _entries(self, items: list[Tree]) -> tuple[Entry, ...]:
@@ -362,9 +370,9 @@ class _Builder:
         pairs = iter(items)
         for key, value in zip(pairs, pairs, strict=True):
             if not isinstance(key, Scalar):
-                self.report.append(
-                    wrong_shape(key.span, "a key must be a single word, not a collection")
-                )
+                message = "a key must be a name, not a list or a mapping"
+                help = "write a name before the colon"
+                self.report.append(wrong_shape(key.span, message, help, arguments=("key",)))
                 continue
             if key.value == "<<" and key.plain:
                 merged.extend(self._merge(value))
@@ -385,4 +393,6 @@ class _Builder:
             if isinstance(item, Map):
                 yield from item.entries
             else:
-                self.report.append(wrong_shape(item.span, "`<<` merges mappings; this is none"))
+                message = "the value of `<<` must be a mapping"
+                help = "write the alias of a mapping: `<<: *defaults`"
+                self.report.append(wrong_shape(item.span, message, help, arguments=("merge",)))

@@ -22,7 +22,8 @@ SCHEMA = "https://json.schemastore.org/sarif-2.1.0.json"
 BASE = "%SRCROOT%"
 """The conventional name of the folder that file names are relative to; readers define its path."""
 
-FINGERPRINT = "smachac/v1"
+FINGERPRINT = "smachac/v2"
+"""The name of the fingerprints, with the version of their computation (3.27.17)."""
 
 _LEVELS = {Severity.ERROR: "error", Severity.WARNING: "warning", Severity.INFO: "note"}
 

@@ -162,7 +162,7 @@ def test_a_baseline_knows_what_was_there(folder: Path, capsys: pytest.CaptureFix
     assert capsys.readouterr().out == "no findings (1 of the baseline no longer found)\n"
 
 
-@pytest.mark.parametrize("text", [None, "{", "[]", '{"version": 2}', '{"version": 1}', "[" * 9999])
+@pytest.mark.parametrize("text", [None, "{", "[]", '{"version": 1}', '{"version": 2}', "[" * 9999])
 def test_what_is_no_baseline_is_wrong_usage(
     text: str | None, folder: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:
@@ -171,6 +171,18 @@ def test_what_is_no_baseline_is_wrong_usage(
     assert main(["check", "main.yml", "--baseline", "b.json"]) == 2
     assert "--baseline b.json: " in capsys.readouterr().err
     assert main(["check", "main.yml", "--write-baseline"]) == 2
+
+
+def test_an_old_baseline_is_refused_with_the_remedy(
+    folder: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    (folder / "b.json").write_text('{"version": 1, "findings": []}')
+    assert main(["check", "main.yml", "--baseline", "b.json"]) == 2
+    error = capsys.readouterr().err
+    assert "has version 1, but version 2 is required" in error
+    assert "run `smachac check` with `--write-baseline`" in error
+    assert main(["check", "main.yml", "--baseline", "b.json", "--write-baseline"]) == 0
+    assert main(["check", "main.yml", "--baseline", "b.json"]) == 0
 
 
 def git(*words: str) -> None:

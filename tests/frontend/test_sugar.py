@@ -170,6 +170,21 @@ def test_no_durations(text: str) -> None:
     assert [item.code for item in report] == ["SM004"]
 
 
+@pytest.mark.parametrize(
+    "sugar", ["retry: {on: [bad], max: 2, delay: 1s}", "for_each: {item: one, in: [1]}"]
+)
+def test_sugar_of_a_container_without_outcomes_is_an_error(tmp_path: Path, sugar: str) -> None:
+    (tmp_path / "main.yml").write_text(
+        f"name: sm\ntemplate: Base\noutcomes: [done]\nstates:\n"
+        f"  - A:\n      template: StateMachine\n      {sugar}\n      states:\n"
+        "        - B: {template: ScriptedState, outcomes: [ok], transitions: {ok: done}}\n",
+        encoding="utf-8",
+    )
+    report = smachac.check(tmp_path / "main.yml")
+    (item,) = [item for item in report if item.code == "SM004"]
+    assert item.help == "add `outcomes: [...]` to this state"
+
+
 def test_a_variable_of_the_state_type_comes_first(tmp_path: Path) -> None:
     templates = tmp_path / "templates"
     templates.mkdir()

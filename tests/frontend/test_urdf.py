@@ -188,18 +188,20 @@ states:
     [
         ("panda", []),
         ("baxter", []),
-        ("pnada", ["there is no robot `pnada`"]),
+        ("pnada", ["`pnada` is not a known robot"]),
         ("sub/arm.urdf", []),
         (
             "sub/broken.urdf",
-            ["`sub/broken.urdf` describes no robot: the file is not valid XML: mismatched tag"],
+            [
+                "`sub/broken.urdf` does not describe a robot: the file is not valid XML: mismatched tag"
+            ],
         ),
-        ("sub/none.urdf", ["there is no file `sub/none.urdf`"]),
-        ("../arm.urdf", ["there is no file `../arm.urdf`"]),
-        ("/etc/passwd.urdf", ["there is no file `/etc/passwd.urdf`"]),
-        ("package://my_robot/arm.urdf", ["there is no file `package://my_robot/arm.urdf`"]),
-        ("arm.urdf.xacro", ["`arm.urdf.xacro` describes no robot yet"]),
-        ("sub/odd.urdf", ["byte 0xff is not UTF-8: is it a text file?"]),
+        ("sub/none.urdf", ["the file `sub/none.urdf` was not found"]),
+        ("../arm.urdf", ["the file `../arm.urdf` was not found"]),
+        ("/etc/passwd.urdf", ["the file `/etc/passwd.urdf` was not found"]),
+        ("package://my_robot/arm.urdf", ["the file `package://my_robot/arm.urdf` was not found"]),
+        ("arm.urdf.xacro", ["`arm.urdf.xacro` is a xacro file, not a URDF file"]),
+        ("sub/odd.urdf", ["the byte 0xff is not valid in UTF-16-LE"]),
     ],
 )
 def test_the_robot_of_a_script(tmp_path: Path, name: str, expected: list[str]) -> None:

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+from dataclasses import replace
 from functools import cache
 from pathlib import Path
 from typing import Any
@@ -48,6 +49,7 @@ FULL = diagnostic(
     Finding(
         span=Span(SCRIPT, 26, 27),
         message="`B` is [nothing](x)",
+        arguments=("B",),
         help="100 %: did you mean `A`?",
         related=(
             Related(span=Span(SCRIPT, 6, 10), message="of this machine"),
@@ -107,12 +109,16 @@ def test_the_steps_of_a_path_stand_where_their_states_are(tmp_path: Path) -> Non
 
 def test_fingerprints_follow_a_finding_and_tell_twins_apart() -> None:
     moved = Source(SCRIPT.name, "# a comment\n" + SCRIPT.text)
-    later = diagnostic(Finding(span=Span(moved, 38, 39), message=FULL.finding.message, node="sm/A"))
+    later = diagnostic(
+        Finding(span=Span(moved, 38, 39), message="reworded", arguments=("B",), node="sm/A")
+    )
+    other = diagnostic(replace(FULL.finding, arguments=("C",)))
 
     def marks(report: Report) -> list[str]:
-        return [item["partialFingerprints"]["smachac/v1"] for item in log(report)["results"]]
+        return [item["partialFingerprints"]["smachac/v2"] for item in log(report)["results"]]
 
     assert marks([FULL]) == marks([later])
+    assert marks([FULL]) != marks([other])
     first, second = marks([FULL, later])
     assert first.endswith(":1")
     assert second == f"{first[:-1]}2"

@@ -111,17 +111,24 @@ def own_lines(site: Site, text: Written) -> set[int]:
     return found if site.path else found | {1}
 
 
-def judge(subject: Subject, mutant: Mutant) -> Verdict:
-    """Whether a right code comes at a right line; if not, whether there is a fault at all."""
+def files_of(subject: Subject, mutant: Mutant) -> dict[str, str]:
+    """The files of a changed project, by name."""
     printed = texts(subject.project)
     files = {name: each.text for name, each in printed.items()}
+    if mutant.edit is not None:
+        ((file, steps),) = mutant.places
+        rows = files[file].split("\n")
+        mutant.edit(rows, printed[file].lines[steps][0] - 1)
+        files[file] = "\n".join(rows)
+    return files
+
+
+def judge(subject: Subject, mutant: Mutant) -> Verdict:
+    """Whether a right code comes at a right line; if not, whether there is a fault at all."""
+    printed, files = texts(subject.project), files_of(subject, mutant)
     right = {(file, printed[file].lines[steps][0]) for file, steps in mutant.places}
     if mutant.edit is not None:
-        ((file, line),) = right
-        rows = files[file].split("\n")
-        mutant.edit(rows, line - 1)
-        files[file] = "\n".join(rows)
-        right = {(file, line), (file, line + 1)}
+        right |= {(file, line + 1) for file, line in right}
     for site in mutant.owners:
         right |= {(site.file, line) for line in own_lines(site, printed[site.file])}
     analysis = analysed(files)

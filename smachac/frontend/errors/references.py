@@ -1,8 +1,9 @@
-"""The faults of names that lead to other files: sub-scripts, params, templates."""
+"""Errors of names that refer to other files or to params: sub-scripts, templates, robots."""
 
 from __future__ import annotations
 
 from collections.abc import Iterable, Sequence
+from pathlib import PurePath
 
 from smachac.diagnostics.diagnostic import (
     Finding,
@@ -18,20 +19,20 @@ from smachac.diagnostics.spelling import guesser_of, respelt
 from smachac.diagnostics.wording import listed
 
 
-def _searched(word: Word, searched: Sequence[str], known: Sequence[str]) -> str:
-    # Not every place is a folder of the user: "the built-in ones" is none to be quoted.
-    once = dict.fromkeys(searched)
-    folders = ", ".join(at if at.startswith("the ") else f"`{at}`" for at in once)
-    where = f"searched in {folders}" if folders else "there was no folder to search in"
+def _where(word: Word, searched: Sequence[str], known: Sequence[str]) -> str:
+    """The help for a file that was not found: the folders that were searched, and a near name."""
+    folders = ", ".join(f"`{folder}`" for folder in dict.fromkeys(searched))
+    where = f"put it in one of the folders that were searched: {folders}"
+    where = where if folders else "add a folder for it to the project file"
     guess = did_you_mean(word.text, known)
-    return f"{where}; {guess}" if guess else where
+    return f"{guess} (searched in {folders})" if guess and folders else guess or where
 
 
 @problem("SM011", "script-not-found", Severity.ERROR)
 def script_not_found(word: Word, searched: Sequence[str], known: Iterable[str]) -> Finding:
-    """A state calls a sub-script that is in none of the folders.
+    """A state calls a sub-script that is in none of the searched folders.
 
-    A part of the task is missing; nothing may run in its place.
+    A part of the task is missing, and nothing else may run in its place.
 
     Wrong:
         name: sm
@@ -54,18 +55,19 @@ def script_not_found(word: Word, searched: Sequence[str], known: Iterable[str]) 
     names = sorted(known)
     return Finding(
         span=word.span,
-        message=f"there is no script `{word.text}`",
-        help=_searched(word, searched, names),
+        message=f"the sub-script `{word.text}` was not found",
+        arguments=(word.text,),
+        help=_where(word, searched, names),
         edits=respelt(word, guesser_of(tuple(names)).sure(word.text)),
     )
 
 
 @problem("SM012", "recursive-include", Severity.ERROR)
 def recursive_include(chain: Sequence[tuple[str, Span]]) -> Finding:
-    """A sub-script calls itself, directly or through others.
+    """A script calls itself, directly or through other sub-scripts.
 
-    A call is replaced by what it calls, so the machine would have no end; what is to be done
-    again needs a transition back.
+    A call is replaced by the state that it calls, so the machine would be infinitely large. To
+    repeat a part of the task, a script needs a transition back.
 
     Wrong:
         name: sm
@@ -95,13 +97,14 @@ def recursive_include(chain: Sequence[tuple[str, Span]]) -> Finding:
     """
     *before, (name, place) = chain
     names = [other for other, _ in before]
-    # The script that is checked is called by none: it opens the circle, but is not in the chain.
+    # The chain has no call of the main script; a circle through that script begins with it.
     circle = [*(names[names.index(name) :] if name in names else [name, *names]), name]
     way = " > ".join(f"`{other}`" for other in circle)
     return Finding(
         span=place,
         message=f"the script `{name}` calls itself" + (f": {way}" if circle[2:] else ""),
-        help="to do a part again, lead a transition back to it",
+        arguments=tuple(PurePath(other).name for other in circle),
+        help="remove this call; to repeat a part of the task, add a transition back to it",
         related=tuple(
             Related(span=at, message=f"`{other}` is called here") for other, at in before
         ),
@@ -111,9 +114,9 @@ def recursive_include(chain: Sequence[tuple[str, Span]]) -> Finding:
 
 @problem("SM013", "template-not-found", Severity.ERROR)
 def template_not_found(word: Word, searched: Sequence[str], known: Iterable[str]) -> Finding:
-    """A state is of a type that has neither an interface nor a template in any folder.
+    """The type of a state has neither an interface nor a template in any folder.
 
-    There is no code for this skill: the robot could not do it.
+    There is no code for this skill, so the robot could not execute it.
 
     Wrong:
         name: sm
@@ -132,17 +135,20 @@ def template_not_found(word: Word, searched: Sequence[str], known: Iterable[str]
     names = sorted(known)
     return Finding(
         span=word.span,
-        message=f"there is no template `{word.text}`",
-        help=_searched(word, searched, names),
+        message=f"the template `{word.text}` was not found",
+        arguments=(word.text,),
+        help=_where(word, searched, names),
         edits=respelt(word, guesser_of(tuple(names)).sure(word.text)),
     )
 
 
 @problem("SM014", "bad-sub-script", Severity.ERROR)
-def bad_sub_script(span: Span, message: str, call: Span | None = None) -> Finding:
-    """What is called is not a sub-script: a list that holds one state.
+def bad_sub_script(
+    span: Span, message: str, call: Span, help: str, *, arguments: tuple[str, ...]
+) -> Finding:
+    """A called file is not a sub-script, that is, a list with one state.
 
-    The call stands for exactly one state; of two, one would be lost.
+    A call stands for exactly one state. If the file had two states, one of them would be lost.
 
     Wrong:
         name: sm
@@ -171,16 +177,18 @@ def bad_sub_script(span: Span, message: str, call: Span | None = None) -> Findin
     return Finding(
         span=span,
         message=message,
-        help="put states that belong together into one: `- NAME: {template: StateMachine, ...}`",
-        related=(Related(span=call, message="called here"),) if call else (),
+        arguments=arguments,
+        help=help,
+        related=(Related(span=call, message="called here"),),
     )
 
 
 @problem("SM015", "unresolved-look-up", Severity.ERROR)
 def unresolved_look_up(word: Word, scope: Iterable[str]) -> Finding:
-    """A look-up names a parameter that neither the state nor anything around it has.
+    """A look-up names a param that is not in scope.
 
-    The value is unknown; printed as it stands it would become broken code or a wrong constant.
+    The value is unknown. In the generated program the look-up would be a wrong constant or invalid
+    code. In scope are the params of the state, of its containers, and of the calls around it.
 
     Wrong:
         name: sm
@@ -206,23 +214,32 @@ def unresolved_look_up(word: Word, scope: Iterable[str]) -> Finding:
               transitions: {done: done}
     """
     names = sorted(scope)
-    params = f"in scope are the params {listed(names)}" if names else "no params are in scope here"
+    params = f"use one of the params in scope: {listed(names)}"
+    params = params if names else f"add `params: {{{word.text}: ...}}` to the state or around it"
     return Finding(
         span=word.span,
-        message=f"the look-up of `{word.text}` finds nothing",
+        message=f"the param `{word.text}` is not in scope here",
+        arguments=(word.text,),
         help=did_you_mean(word.text, names) or params,
     )
 
 
 @problem("SM018", "bad-robot", Severity.ERROR)
 def bad_robot(
-    word: Word, message: str, help: str | None = None, related: tuple[Related, ...] = ()
+    word: Word,
+    message: str,
+    help: str | None = None,
+    related: tuple[Related, ...] = (),
+    *,
+    arguments: tuple[str, ...],
 ) -> Finding:
-    """The robot that a script names is not known, or its description cannot be read.
+    """The robot of a script is not known, or its description cannot be read.
 
-    Nothing that reaches the robot could be held against it: joint limits, lengths, frames. A
-    description is a URDF file below the script's folder, without macros and without a document
-    type.
+    Without a description, values for the robot are not compared with its joint limits, lengths and
+    frames.
+
+    Exactly: a description is a URDF file in or below the script's folder, without macros and
+    without a document type.
 
     Wrong:
         name: sm
@@ -255,7 +272,7 @@ def bad_robot(
           </joint>
         </robot>
     """
-    return Finding(span=word.span, message=message, help=help, related=related)
+    return Finding(span=word.span, message=message, arguments=arguments, help=help, related=related)
 
 
 @problem("SM605", "template-error", Severity.ERROR)

@@ -1,8 +1,12 @@
-"""The faults of texts and shapes: what is no YAML, and what stands where it cannot."""
+"""Errors of texts and fields: YAML, duplicate keys, unknown and missing variables, shapes, types.
+
+The arguments of a code with several faults begin with a word for the fault, which is never printed.
+"""
 
 from __future__ import annotations
 
 from collections.abc import Iterable
+from typing import NamedTuple
 
 from smachac.diagnostics.diagnostic import (
     Finding,
@@ -17,12 +21,22 @@ from smachac.diagnostics.spelling import Guesser, respelt
 from smachac.diagnostics.wording import listed
 
 
+class Owner(NamedTuple):
+    """The owner of variables: its name in the language or in the script, and its name in messages,
+    such as `MoveArm` and "state type `MoveArm`"."""
+
+    name: str
+    text: str
+
+
 @problem("SM001", "yaml-syntax", Severity.ERROR)
-def yaml_syntax(span: Span, message: str, help: str | None = None) -> Finding:
+def yaml_syntax(
+    span: Span, message: str, help: str | None = None, *, arguments: tuple[str, ...] = ()
+) -> Finding:
     """The text is not YAML.
 
-    Nothing can be said of a script that cannot be read, and a parser that guesses would move
-    a robot by a guess.
+    A text that cannot be parsed has no meaning. A parser that guesses could move the robot to
+    a wrong place.
 
     Wrong:
         name: sm
@@ -41,16 +55,17 @@ def yaml_syntax(span: Span, message: str, help: str | None = None) -> Finding:
     return Finding(
         span=span,
         message=message,
-        help=help or "look at the brackets, quotes and indentation just before this place",
+        arguments=arguments,
+        help=help or "check the brackets, quotes and indentation before this place",
     )
 
 
 @problem("SM002", "duplicate-key", Severity.ERROR)
 def duplicate_key(key: Word, first: Span) -> Finding:
-    """One mapping holds the same key twice.
+    """A mapping or a list of names has the same name twice.
 
-    Most YAML readers keep the last entry and drop the first in silence: a recovery that stands
-    in the script is then never run.
+    Most YAML parsers keep the last entry and drop the first one without a message. A recovery
+    transition in the first entry would then never be taken.
 
     Wrong:
         name: sm
@@ -83,21 +98,21 @@ def duplicate_key(key: Word, first: Span) -> Finding:
     """
     return Finding(
         span=key.span,
-        message=f"the key `{key.text}` stands here for the second time",
-        help="keep one of the two, or merge them",
+        message=f"`{key.text}` is given twice",
+        arguments=(key.text,),
+        help="remove one of the two, or merge them",
         related=(Related(span=first, message="first given here"),),
     )
 
 
 @problem("SM003", "unknown-variable", Severity.ERROR)
 def unknown_variable(
-    word: Word, owner: str, known: Iterable[str], *, anything: bool = False
+    word: Word, owner: Owner, known: Iterable[str], *, anything: bool = False
 ) -> Finding:
-    """A variable is set that neither the language nor the state type has.
+    """A script sets a variable that neither the language nor the state type has.
 
-    It would be ignored: the speed, the limit or the transition that was meant never reaches
-    the robot. A template of SMACHA's kind takes any variable; one that it does not use is a
-    warning.
+    The value would be ignored: a speed, a limit or a transition would have no effect on the robot.
+    A template of SMACHA's kind accepts any variable; one that it does not use is a warning.
 
     Wrong:
         name: sm
@@ -114,18 +129,21 @@ def unknown_variable(
           - PICK: {template: ScriptedState, outcomes: [done], transitions: {done: done}}
     """
     names = sorted(known)
-    variables = f"its variables are {listed(names)}" if names else "it has no variables"
+    owned = f"use one of its variables: {listed(names)}"
+    variables = owned if names else f"remove it: {owner.text} has no variables"
     sure = Guesser(names).sure(word.text)
     if anything:
         return Finding(
             span=word.span,
-            message=f"the template of {owner} does not use the variable `{word.text}`",
-            help=f"did you mean `{sure}`?" if sure else "take it out, or use it in the template",
+            message=f"the template of {owner.text} does not use the variable `{word.text}`",
+            arguments=(word.text, owner.name),
+            help=f"did you mean `{sure}`?" if sure else "remove it, or use it in the template",
             severity=Severity.WARNING,
         )
     return Finding(
         span=word.span,
-        message=f"`{word.text}` is not a variable of {owner}",
+        message=f"`{word.text}` is not a variable of {owner.text}",
+        arguments=(word.text, owner.name),
         help=did_you_mean(word.text, [sure] if sure else names) or variables,
         edits=respelt(word, sure),
     )
@@ -133,12 +151,17 @@ def unknown_variable(
 
 @problem("SM004", "wrong-shape", Severity.ERROR)
 def wrong_shape(
-    span: Span, message: str, help: str | None = None, related: tuple[Related, ...] = ()
+    span: Span,
+    message: str,
+    help: str | None = None,
+    related: tuple[Related, ...] = (),
+    *,
+    arguments: tuple[str, ...] = (),
 ) -> Finding:
-    """A value has another shape than the language asks for at this place.
+    """A value has a shape that the language does not allow at this place.
 
-    A block that was left empty, or a list where a mapping is due, says nothing; read as if it
-    said something, the state would end where nobody sent it.
+    An empty block, or a list in place of a mapping, has no defined meaning. With a guessed meaning
+    the robot could take a transition that nobody wrote.
 
     Wrong:
         name: sm
@@ -160,16 +183,16 @@ def wrong_shape(
               outcomes: [done]
               transitions: {done: done}
     """
-    return Finding(span=span, message=message, help=help, related=related)
+    return Finding(span=span, message=message, arguments=arguments, help=help, related=related)
 
 
 @problem("SM005", "missing-variable", Severity.ERROR)
 def missing_variable(
-    span: Span, name: str, owner: str, related: tuple[Related, ...] = ()
+    span: Span, name: str, owner: Owner, related: tuple[Related, ...] = ()
 ) -> Finding:
-    """A variable is missing that the language or the state type cannot do without.
+    """A variable is missing that the language or the state type requires.
 
-    Without it the state has no meaning, or a skill would start without the value it needs.
+    Without it the state has no meaning, or a skill would start without a value that it needs.
 
     Wrong:
         name: sm
@@ -185,8 +208,13 @@ def missing_variable(
         states:
           - PICK: {template: ScriptedState, outcomes: [done], transitions: {done: done}}
     """
-    message = f"{owner} lacks the variable `{name}`"
-    return Finding(span=span, message=message, help=f"add `{name}:` here", related=related)
+    return Finding(
+        span=span,
+        message=f"the variable `{name}` is missing: {owner.text} requires it",
+        arguments=(name, owner.name),
+        help=f"add `{name}:` here",
+        related=related,
+    )
 
 
 OTHER_NAMES = {
@@ -208,15 +236,15 @@ OTHER_NAMES = {
     "text": "str",
     "tuple": "list",
 }
-"""What other languages call these types."""
+"""The names of other languages, with the types that correspond to them."""
 
 
 @problem("SM017", "bad-type", Severity.ERROR)
 def bad_type(place: Word, known: Iterable[str], unknown: str = "") -> Finding:
-    """A type cannot be read, or a word in it names no type.
+    """A type cannot be parsed, or contains the name of an unknown type.
 
-    What nobody can read checks nothing, and a wrong value travels on to the robot. A word that
-    only names no known type is a warning: it counts as `any`.
+    Without a type, values are not checked, and a wrong value can reach the robot. An unknown name
+    is a warning: it counts as `any`.
 
     Wrong:
         name: sm
@@ -250,22 +278,25 @@ def bad_type(place: Word, known: Iterable[str], unknown: str = "") -> Finding:
     if unknown:
         return Finding(
             span=place.span,
-            message=f"`{unknown}` names no type: nothing is checked of it",
-            help=help or "give it under `types:`; a type of ROS is `pkg/Name`, with its package",
+            message=f"`{unknown}` is not a known type: its values are not checked",
+            arguments=(place.text, unknown),
+            help=help or "declare it under `types:`, or write a type of ROS as `pkg/Name`",
             severity=Severity.WARNING,
         )
     return Finding(
         span=place.span,
-        message=f"`{place.text}` is not a type",
-        help=help or "types read like float, float<rad>[7], list[Pose], one_of[open, close]",
+        message=f"`{place.text}` is not a valid type",
+        arguments=(place.text,),
+        help=help or "write it like float, float<rad>[7], list[Pose] or one_of[open, close]",
     )
 
 
 @problem("SM006", "too-big", Severity.ERROR)
-def too_big(span: Span, message: str, help: str | None = None) -> Finding:
-    """The text is larger, deeper, or grows further by its aliases than any real script.
+def too_big(span: Span, message: str, help: str, *, arguments: tuple[str, ...]) -> Finding:
+    """The text, its nesting, or its aliases and look-ups exceed a limit of smachac.
 
-    A check must end on every text, also on one that somebody else sent.
+    A check must end for every text, also for one from an unknown author. The limits are larger
+    than any real script needs.
 
     Wrong:
         name: sm
@@ -290,14 +321,17 @@ def too_big(span: Span, message: str, help: str | None = None) -> Finding:
         states:
           - PICK: {template: ScriptedState, outcomes: [done], transitions: {done: done}}
     """
-    return Finding(span=span, message=message, help=help)
+    return Finding(span=span, message=message, arguments=arguments, help=help)
 
 
 @problem("SM007", "unreadable-file", Severity.ERROR)
-def unreadable_file(span: Span, message: str, help: str | None = None) -> Finding:
-    """A file is missing, is a folder, is not text, or may not be read.
+def unreadable_file(
+    span: Span, message: str, help: str | None = None, *, arguments: tuple[str, ...]
+) -> Finding:
+    """A file cannot be read, or the project file has a wrong setting.
 
-    A robot must not start on half of its script, so nothing is compiled.
+    A robot must not start with a part of its script, so nothing is compiled. A file is unreadable
+    if it is missing, is a folder, is not text, or if its permissions forbid it.
 
     Wrong:
         name: sm
@@ -320,18 +354,21 @@ def unreadable_file(span: Span, message: str, help: str | None = None) -> Findin
     return Finding(
         span=span,
         message=message,
-        help=help or "check the path, and that it is a text file in UTF-8",
+        arguments=arguments,
+        help=help or "check the path, and check that the file is text in UTF-8",
     )
 
 
 @problem("SM019", "undefined-name", Severity.ERROR)
 def undefined_name(span: Span, name: str, code: str, by_look: bool) -> Finding:
-    """Code of the script uses a name that nothing in its program defines.
+    """An expression of the script uses a name that the generated program does not define.
 
-    Text with a dot or a call in it is code, as it was for SMACHA; made from params it may become
-    some by accident. The program would fail with a NameError when it builds its machine, or at the
-    first visit of the state. Names are defined by the templates of a script, which are searched for
-    the word, by Python and its library; the common names of ROS are imported.
+    The program would stop with a NameError when it builds its machine, or at the first visit of
+    the state. A text that contains a dot or a call is an expression, as in SMACHA; a text that is
+    joined from params can become an expression by accident.
+
+    Exactly: a name is defined if Python or its library has it, if it is a common name of ROS, or if
+    a template of the script contains the word.
 
     Wrong:
         name: sm
@@ -353,18 +390,17 @@ def undefined_name(span: Span, name: str, code: str, by_look: bool) -> Finding:
     """
     if not by_look:
         help = "import or define it in a template of the script, such as that of the base"
-        return Finding(
-            span=span, message=f"nothing defines `{name}`, which is used here", help=help
-        )
+        message = f"`{name}` is used here but is not defined"
+        return Finding(span=span, message=message, arguments=(name,), help=help)
     why = "a call" if code.endswith(")") else "a dot"
-    message = f"nothing defines `{name}`: `{code}` is code, for it has {why} in it"
+    message = f"`{name}` is not defined: `{code}` is an expression because it contains {why}"
     if span.text.startswith("[") and code.endswith(")"):
         help = f"import or define `{name}` in a template of the script, such as that of the base"
     elif span.text.startswith("["):
-        help = "quote a part of it, as in `['block_', [params, number], '.left']`, if it is text"
+        help = "if it is text, quote a part of it: `['block_', [params, number], '.left']`"
     else:
-        help = f'write `"{code}"` if it is text, or define `{name}` in the template of the base'
-    return Finding(span=span, message=message, help=help)
+        help = f'if it is text, write `"{code}"`; if not, define `{name}` in the base template'
+    return Finding(span=span, message=message, arguments=(name, code), help=help)
 
 
 PROBLEMS: tuple[Problem[...], ...] = (

@@ -1,4 +1,4 @@
-"""The faults of the comments that allow findings."""
+"""Errors of suppressions, the comments that allow findings."""
 
 from __future__ import annotations
 
@@ -23,11 +23,11 @@ _BEHIND = re.compile(r"[,:]?[^\S\n]*")
 
 @problem("SM021", "unused-allowance", Severity.WARNING)
 def unused_allowance(code: Word, edits: tuple[Edit, ...] = ()) -> Finding:
-    """A comment allows what is not found on its line.
+    """A comment allows a finding that does not occur on its line.
 
-    The fault it was written for is mended, or never was there; left alone, the comment would hide
-    the next fault of that kind from everybody. In a sub-script this is told only when a folder
-    is checked, for another script may need it.
+    The fault was corrected or never existed, and the comment would hide the next fault of that
+    kind. In a sub-script this is reported only when a folder is checked, because another script may
+    need the comment.
 
     Wrong:
         name: sm
@@ -47,14 +47,15 @@ def unused_allowance(code: Word, edits: tuple[Edit, ...] = ()) -> Finding:
     """  # noqa: E501 (the comment stands behind its line)
     return Finding(
         span=code.span,
-        message=f"{code.text} is allowed here, and not found here",
-        help="remove it, or put it behind the line that it is meant for",
+        message=f"{code.text} is allowed here but is not found here",
+        arguments=(code.text,),
+        help="remove it, or move it to the line on which the finding occurs",
         edits=edits,
     )
 
 
 def unused_allowances(codes: Iterable[Word]) -> list[Diagnostic]:
-    """SM021 for each of these, with the edits that remove all of its comment's."""
+    """SM021 for each of these codes. The edits of one remove all unused codes of its comment."""
     lines: dict[tuple[int, int], list[Span]] = {}
     known = [(code, (id(code.span.source), code.span.line)) for code in codes]
     for code, line in known:
@@ -88,11 +89,11 @@ def _without(codes: list[Span]) -> tuple[Edit, ...]:
 
 
 @problem("SM022", "bad-allowance", Severity.WARNING)
-def bad_allowance(span: Span, message: str, help: str) -> Finding:
-    """A comment for smachac lacks its reason, is misspelt, or allows what cannot be allowed.
+def bad_allowance(span: Span, message: str, help: str, arguments: tuple[str, ...]) -> Finding:
+    """A comment for smachac has no reason, is misspelt, or allows a finding that it must not allow.
 
-    A silenced finding without a reason is a riddle to the next reader, who must decide whether
-    the robot is safe. Findings that leave no machine to print cannot be allowed.
+    Without a reason, the next reader cannot decide whether the robot is safe. A finding that makes
+    it impossible to generate a program cannot be allowed.
 
     Wrong:
         name: sm
@@ -112,32 +113,35 @@ def bad_allowance(span: Span, message: str, help: str) -> Finding:
           # smachac: allow SM201 the operator starts here after a stop
           - PLACE: {template: ScriptedState, outcomes: [ok], transitions: {ok: done}}
     """
-    return Finding(span=span, message=message, help=help)
+    return Finding(span=span, message=message, arguments=arguments, help=help)
 
 
 def unfounded_allowance(span: Span, *, named: bool) -> Diagnostic:
-    """SM022 for a comment without a reason or, where none is `named`, without a code."""
-    what = "the reason is missing" if named else "it names no code"
-    help = "say why: `# smachac: allow SM201 the operator starts it`"
-    return bad_allowance(span, f"this comment allows something, but {what}", help)
+    """SM022 for a comment without a reason or, if no code is `named`, without a code."""
+    missing = "reason" if named else "code"
+    help = f"add the {missing}: `# smachac: allow SM201 the operator starts it`"
+    return bad_allowance(span, f"this comment has no {missing}", help, ("missing", missing))
 
 
 def bad_comment(verb: Word) -> Diagnostic:
     """SM022 for a comment with another word than `allow`."""
     help = did_you_mean(verb.text, ["allow"]) or "write `# smachac: allow CODE reason`"
-    return bad_allowance(verb.span, f"comments for smachac say `allow`, not `{verb.text}`", help)
+    message = f"a comment for smachac must begin with `allow`, not with `{verb.text}`"
+    return bad_allowance(verb.span, message, help, ("verb", verb.text))
 
 
 def unknown_code(code: Word, known: Iterable[str]) -> Diagnostic:
-    """SM022 for a code that there is not."""
-    help = did_you_mean(code.text, known) or "docs/rules.md lists the codes"
-    return bad_allowance(code.span, f"there is no code `{code.text}`", help)
+    """SM022 for a code that does not exist."""
+    help = did_you_mean(code.text, known) or "use one of the codes in docs/rules.md"
+    message = f"the code `{code.text}` does not exist"
+    return bad_allowance(code.span, message, help, ("code", code.text))
 
 
 def vain_allowance(code: Word) -> Diagnostic:
-    """SM022 for an allowance of what must be mended."""
-    message = f"{code.text} cannot be allowed here: no code could be made of such a machine"
-    return bad_allowance(code.span, message, "mend the fault, and remove the comment")
+    """SM022 for an allowance of a firm finding."""
+    message = f"{code.text} cannot be allowed: no program can be generated with this fault"
+    help = "correct the fault, and remove the comment"
+    return bad_allowance(code.span, message, help, ("firm", code.text))
 
 
 PROBLEMS: tuple[Problem[...], ...] = (
