@@ -82,8 +82,8 @@ def _name_at(flow: DataFlow, scope: UserdataScope, own: str, missing: Missing) -
 
 
 def _kept(scope: UserdataScope) -> Iterator[tuple[Node, Key, str]]:
-    """What leaves of a container write by the word of the script, and it does not hand out: where
-    it reads that itself only what it has also taken in, for that goes by the same name outside."""
+    """The keys that leaves of a container write and that are no outputs of it. A key that is also
+    read in the container counts only if it is an input, because then it has one name outside."""
     container = scope.container
     read = {
         remapping(child).get(key.name, key.name)
