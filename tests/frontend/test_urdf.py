@@ -193,7 +193,8 @@ states:
         (
             "sub/broken.urdf",
             [
-                "`sub/broken.urdf` does not describe a robot: the file is not valid XML: mismatched tag"
+                "`sub/broken.urdf` does not describe a robot: "
+                + "the file is not valid XML: mismatched tag"
             ],
         ),
         ("sub/none.urdf", ["the file `sub/none.urdf` was not found"]),

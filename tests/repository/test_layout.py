@@ -16,7 +16,7 @@ LINKS = ("ir", "targets", "grammars")
 """The table of contents at the root: links to the parts of the compiler."""
 
 LONGEST_FUNCTION = 70
-"""In lines. What grows beyond holds two things."""
+"""In lines, without the docstring. A longer function does two things."""
 
 TOUCHES = {
     "smachac/frontend/files.py": "reads scripts, templates and project files",
@@ -143,7 +143,8 @@ def test_functions_fit_a_screen() -> None:
     for path in modules():
         text = path.read_text("utf-8")
         for function in functions(parsed(text)):
-            lines = (function.end_lineno or function.lineno) - function.lineno + 1
+            last = function.end_lineno or function.lineno
+            lines = last - function.lineno + 1 - (ast.get_docstring(function) or "").count("\n")
             if lines > LONGEST_FUNCTION:
                 faults.append(f"{name(path)}:{function.lineno}: {function.name}, {lines} lines")
     assert faults == []
