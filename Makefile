@@ -8,10 +8,10 @@ SMACHAC := .venv/bin/smachac
 DEMO := examples/08_pick_and_place/main.yml
 
 .DEFAULT_GOAL := help
-.PHONY: help demo test test-all test-ros check golden docs bench build clean
+.PHONY: help demo test test-all test-ros test-lowest check golden docs bench build clean
 
 help: ## Print this list
-	@awk -F ':.*## ' '/^[a-z-]+:.*## / {printf "  make %-8s %s\n", $$1, $$2}' Makefile
+	@awk -F ':.*## ' '/^[a-z-]+:.*## / {printf "  make %-11s %s\n", $$1, $$2}' Makefile
 
 demo: ## From YAML to a robot that moves: compile, check, simulate, draw; everything lands in out/
 	@scripts/setup.sh sim
@@ -35,6 +35,9 @@ test-ros: ## Install ROS from Debian and run the tests with live nodes
 	@scripts/setup.sh dev
 	@scripts/setup.sh ros || test -z "$$SMACHAC_REQUIRE_ROS"
 	$(RUN) pytest -n 4 -m ros -rs $(ARGS)
+
+test-lowest: ## Run core tests with the lowest versions of the dependencies that pyproject.toml states
+	@scripts/lowest.sh $(ARGS)
 
 check: ## Lint, formatting and types; a warning fails
 	@scripts/setup.sh dev
@@ -62,4 +65,4 @@ build: ## Make the source archive and the wheel in dist/
 	$(RUN) build --outdir dist
 
 clean: ## Remove everything that the other targets made
-	rm -rf .venv out dist build smachac.egg-info .mypy_cache .ruff_cache .pytest_cache .hypothesis
+	rm -rf .venv .venv-lowest out dist build smachac.egg-info .mypy_cache .ruff_cache .pytest_cache .hypothesis

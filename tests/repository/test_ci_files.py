@@ -7,6 +7,7 @@ import os
 import re
 import subprocess
 import sys
+import zipfile
 from importlib.resources import files
 from pathlib import Path
 from typing import Any
@@ -58,12 +59,19 @@ def test_files_and_snippets_fit_their_schemas() -> None:
     assert set(uses["with"]) <= set(action["inputs"])
 
 
-def commands(folder: Path) -> dict[str, str]:
-    """An environment in which `smachac` is what is tested here."""
+def installed(folder: Path) -> Path:
+    """The program `smachac` as pip installs it: a script of Python that imports the package."""
     program = folder / "bin" / "smachac"
     program.parent.mkdir()
-    program.write_text(f'#!/bin/sh\nexec "{sys.executable}" -m smachac "$@"\n')
+    lines = [f"#!{sys.executable}", "import sys", "from smachac.commands.cli import main"]
+    program.write_text("\n".join([*lines, "sys.exit(main())", ""]))
     program.chmod(0o755)
+    return program
+
+
+def commands(folder: Path) -> dict[str, str]:
+    """An environment in which `smachac` is what is tested here."""
+    program = installed(folder)
     path = f"{program.parent}{os.pathsep}{os.environ['PATH']}"
     return {**os.environ, "PATH": path, "PYTHONPATH": str(ROOT)}
 
@@ -97,7 +105,7 @@ def test_the_step_of_the_action(
          load(text)["runs"]["steps"][1]["run"]],
         cwd=tmp_path,
         env={**commands(tmp_path), **checked(text, sarif="my report.sarif", **inputs),
-             "SMACHAC_PYTHON": sys.executable},
+             "SMACHAC": str(tmp_path / "bin" / "smachac")},
         capture_output=True, text=True, check=False, timeout=120,
     )  # fmt: skip
     assert done.returncode == ended, done.stderr
@@ -105,6 +113,81 @@ def test_the_step_of_the_action(
         report = json.loads((tmp_path / "my report.sarif").read_text())
         assert bool(report["runs"][0]["results"]) == bool(ended)
         assert ("file=main.yml,line=" in done.stdout) == bool(ended)
+
+
+PASSES = "print('bypassed')\nraise SystemExit(0)\n"
+"""A module of a hostile repository: it ends the program that imports it with success."""
+
+
+def make_hostile(folder: Path) -> None:
+    """A repository with an error in its script and modules of the names that a check imports."""
+    folder.mkdir()
+    (folder / "main.yml").write_text(BROKEN)
+    for name in ("argparse", "json", "re", "venv", "pip", "ruamel", "sitecustomize", "typing"):
+        (folder / f"{name}.py").write_text(PASSES)
+    for package in ("smachac", "smachac/commands"):
+        (folder / package).mkdir()
+        for name in ("__init__", "__main__", "cli"):
+            (folder / package / f"{name}.py").write_text(PASSES)
+
+
+def run_step(number: int, repository: Path, environment: dict[str, str]) -> tuple[int, str]:
+    """The exit code and output of a step of the action in a repository."""
+    text = load((ROOT / "action.yml").read_text("utf-8"))["runs"]["steps"][number]["run"]
+    done = subprocess.run(
+        ["bash", "--noprofile", "--norc", "-eo", "pipefail", "-c", text],
+        cwd=repository, env=environment, capture_output=True, text=True, check=False, timeout=300,
+    )  # fmt: skip
+    return done.returncode, done.stdout + done.stderr
+
+
+def test_a_hostile_repository_does_not_pass_the_check(tmp_path: Path) -> None:
+    make_hostile(tmp_path / "repository")
+    environment = {
+        **commands(tmp_path),
+        **checked((ROOT / "action.yml").read_text("utf-8")),
+        "SMACHAC": str(tmp_path / "bin" / "smachac"),
+    }
+    code, output = run_step(1, tmp_path / "repository", environment)
+    assert (code, "bypassed" in output) == (1, False), output
+    assert "SM101" in output
+
+
+def test_no_step_of_the_action_imports_modules_of_the_repository() -> None:
+    text = (ROOT / "action.yml").read_text("utf-8")
+    runs = re.findall(r"-m \w+", text)
+    assert len(runs) == text.count("-I -m ") == 2
+
+
+@pytest.mark.slow
+def test_a_hostile_repository_does_not_take_part_in_the_installation(tmp_path: Path) -> None:
+    make_hostile(tmp_path / "repository")
+    wheel = tmp_path / "smachac-0-py3-none-any.whl"
+    with zipfile.ZipFile(wheel, "w") as archive:
+        archive.writestr("smachac/__init__.py", "def main():\n    print('installed')\n")
+        folder = "smachac-0.dist-info"
+        archive.writestr(f"{folder}/METADATA", "Metadata-Version: 2.1\nName: smachac\nVersion: 0\n")
+        tag = "Root-Is-Purelib: true\nTag: py3-none-any\n"
+        archive.writestr(f"{folder}/WHEEL", f"Wheel-Version: 1.0\nGenerator: test\n{tag}")
+        points = "[console_scripts]\nsmachac = smachac:main\n"
+        archive.writestr(f"{folder}/entry_points.txt", points)
+        archive.writestr(f"{folder}/RECORD", "")
+    variables = tmp_path / "variables"
+    environment = {
+        **os.environ,
+        "ACTION": str(wheel),
+        "RUNNER_TEMP": str(tmp_path / "runner"),
+        "GITHUB_ENV": str(variables),
+        "PIP_NO_INDEX": "1",
+    }
+    code, output = run_step(0, tmp_path / "repository", environment)
+    assert (code, "bypassed" in output) == (0, False), output
+    name, _, program = variables.read_text().strip().partition("=")
+    assert name == "SMACHAC"
+    environment.pop("PYTHONPATH", None)
+    done = subprocess.run([program], cwd=tmp_path / "repository", env=environment,
+                          capture_output=True, text=True, check=False, timeout=60)  # fmt: skip
+    assert done.stdout == "installed\n", done.stderr
 
 
 def test_the_script_of_gitlab(tmp_path: Path) -> None:

@@ -1,0 +1,24 @@
+#!/usr/bin/env bash
+# Runs core tests with the lowest versions of the dependencies that pyproject.toml states, in a virtual
+# environment of its own. PYTHON=... chooses the interpreter, VENV=... the folder of the environment.
+set -euo pipefail
+CDPATH='' cd -- "$(dirname -- "${BASH_SOURCE[0]}")/.."
+
+python=${PYTHON:-$(command -v python3.11 || command -v python3)}
+venv=${VENV:-.venv-lowest}
+[[ -x $venv/bin/python ]] || "$python" -m venv "$venv"
+mapfile -t lowest < <("$venv/bin/python" - <<'END'
+import re, sys
+text = open("pyproject.toml", encoding="utf-8").read()
+rows = re.search(r"^dependencies = \[\n(.*?)^\]", text, re.M | re.S)[1]
+for name, version, rest in re.findall(r'"([\w.]+)>=([\d.]+)([^"]*)"', rows):
+    print(f"{name}=={version}{rest}")
+END
+)
+echo "lowest versions: ${lowest[*]}"
+"$venv/bin/python" -m pip install -q --disable-pip-version-check "${lowest[@]}" \
+  'pytest>=8' 'pytest-xdist>=3.6' 'hypothesis>=6.100' 'jsonschema>=4.20'
+tests=("$@")
+((${#tests[@]})) || tests=(tests/diagnostics tests/frontend tests/ir tests/analysis tests/checks tests/interpreter
+  tests/targets tests/report tests/refactor tests/pipeline)
+PYTHONPATH=$PWD "$venv/bin/python" -m pytest -q -n 2 -m "not slow and not ros" "${tests[@]}"
