@@ -45,7 +45,7 @@ def leaf_reads(leaf: Leaf, *, raw: bool = False) -> tuple[str, ...]:
 
     These are its declared inputs except optional ones; where the leaf has callbacks, they are the
     keys that the callbacks read. `raw`: the leaf sees every key of its container, as the child of
-    an iterator does (smach-semantics I7).
+    an iterator does (docs/semantics.md, Iterator).
     """
     if leaf.open or not (leaf.inputs or raw):
         return ()
@@ -226,7 +226,7 @@ def accesses(states: Sequence[tuple[str, Node]]) -> dict[str, Accesses]:
     """The accesses of every state, by path.
 
     A leaf may read and write the keys it declares, at any time. A container copies its inputs when
-    it starts, and its outputs when it ends (smach-semantics V1, V4); it counts as reading
+    it starts, and its outputs when it ends (docs/semantics.md, Userdata); it counts as reading
     the inputs that something in it reads, and as writing the outputs that it takes in or that
     something in it writes.
     """

@@ -46,7 +46,7 @@ def search(
 
     `states` are the states of the key at the start. Sure writes count; with `stops`, trusted writes
     count, and a leaf that reads the unset key ends the path. A container that can be entered again
-    keeps what was set before (smach-semantics V3).
+    keeps what was set before (docs/semantics.md, Userdata).
     """
     found: dict[Reached, tuple[Reached, str] | None] = {
         Reached(START, state): None for state in states

@@ -1,10 +1,10 @@
 """Definite assignment: the userdata keys that are surely set at each state of the hierarchy.
 
-Keys are only ever added to a container's userdata (smach-semantics V3, V4), so a key is surely set
-at a vertex if and only if every path from the container's start writes it. So each container is
-analysed once, inner ones first, as if nothing were passed in; an input that is set at its entry is
-set everywhere in it. The summary of a container is the keys that it needs and the keys that it
-writes. Linear in the number of states; sets of keys are bits of integers.
+Keys are only ever added to a container's userdata (docs/semantics.md, Userdata). So a key is
+surely set at a vertex if and only if every path from the container's start writes it. Each
+container is analysed once, inner ones first, as if nothing were passed in: an input that is set at
+its entry is set everywhere in it. The summary of a container is the keys that it needs and the keys
+that it writes. Linear in the number of states; sets of keys are bits of integers.
 """
 
 from __future__ import annotations
@@ -154,7 +154,7 @@ def _scope(
 def _endings(
     outputs: Mapping[str, str], held: AbstractSet[str], steps: KeySteps, order: Order
 ) -> Mapping[str, Writes]:
-    """The keys around a container that each possible outcome sets (smach-semantics V4)."""
+    """The keys around a container that each possible outcome sets (docs/semantics.md, Userdata)."""
     exits = [vertex for vertex in order if isinstance(vertex, tuple) and vertex != START]
     if not outputs:
         return {vertex[1]: NOTHING for vertex in exits}

@@ -163,7 +163,7 @@ class _Inference:
             inputs[key.name] = cell
         written = _written(leaf)
         if isinstance(around.node, nodes.Iterator):
-            # Its child writes every key as it is (smach-semantics I7).
+            # Its child writes every key as it is (docs/semantics.md, Iterator).
             for name in sorted(written.keys() - {key.name for key in leaf.outputs}):
                 self.unknown(around.at(name))
         for key in leaf.outputs:

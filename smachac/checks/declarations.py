@@ -71,7 +71,7 @@ def dead_key(context: Context) -> Iterator[Finding]:
         for key, node, span in _set_by_the_script(scope):
             if key in read or (scope.path, key) in told:
                 continue
-            # After the run the machine's own userdata can be read (smach-semantics M14).
+            # The userdata of the machine can be read after the run.
             is_result = container is flow.machine.root and node is not container
             where = container_name(scope, span)
             yield Finding(

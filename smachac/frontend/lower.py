@@ -228,7 +228,10 @@ def _node(state: State) -> Node:
 
 
 def _linked(children: tuple[Node, ...], connector: str) -> tuple[Node, ...]:
-    """The states of a sequence, each linked to the next by the connector (smach-semantics Q2)."""
+    """The states of a sequence, each linked to the next by the connector outcome.
+
+    docs/semantics.md, Sequence.
+    """
     linked = []
     for child, after in zip(children, (*children[1:], None), strict=False):
         has = any(outcome.name == connector for outcome in child.outcomes)
@@ -243,7 +246,10 @@ def _linked(children: tuple[Node, ...], connector: str) -> tuple[Node, ...]:
 
 
 def _with_implicit(child: Node, outcomes: frozenset[str]) -> Node:
-    """The child with the edges that its container's outcomes imply (smach-semantics M6)."""
+    """The child with the edges that its container's outcomes imply.
+
+    docs/semantics.md, Steps and transitions.
+    """
     own = {transition.outcome for transition in child.transitions}
     implied = tuple(
         Transition(outcome=o.name, target=o.name, origin="implicit", span=child.span)
@@ -283,7 +289,7 @@ def _concurrence(state: State, fields: dict[str, Any], children: tuple[Node, ...
 
 
 def _iterator(state: State, fields: dict[str, Any], children: tuple[Node, ...]) -> nodes.Iterator:
-    """An iterator with all its looping outcomes (smach-semantics I1, I3)."""
+    """An iterator with all its looping outcomes (docs/semantics.md, Iterator)."""
     words = [*state.loop_outcomes, *state.break_outcomes]
     words += [key for key, _ in state.final_outcome_map]
     children = tuple(_with_error(child, words) for child in children)

@@ -382,7 +382,7 @@ def read_a_key_that_is_no_input(subject: Subject) -> Mutant | None:
     site, name, key = subject.draw.choice(found)
     code = str(site.body["callbacks"][name]).replace(f"ud.{key}", f"ud.{swap_letters(key)}")
     site.body["callbacks"][name] = Quoted(code)
-    # What an iterator runs sees every key (smach-semantics I7): there it is just not set.
+    # What an iterator runs sees every key (docs/semantics.md, Iterator): there it is just not set.
     codes = ("SM301",) if in_iterator(site) else ("SM310",)
     return Mutant(codes=codes, owners=(site,))
 

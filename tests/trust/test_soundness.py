@@ -40,8 +40,8 @@ def fault(machine: Machine, report: Report, result: RunResult, asked: bool) -> s
     """How a run failed that must not fail; None where all is well.
 
     A key that is perhaps missing has been told, as such or as a race; one that goes round is cut
-    short. An iterator that is asked to stop ends as its state does (smach-semantics P9), perhaps
-    with an outcome that it does not have: that has been told as well.
+    short. An iterator that is asked to stop ends as its state does (docs/semantics.md, Iterator),
+    perhaps with an outcome that it does not have: that has been told as well.
     """
     if result.error is None or result.error.kind == "no-end":
         return None
