@@ -1,6 +1,6 @@
 """Userdata accesses: the keys that each state reads and writes.
 
-The accesses of a leaf follow from its interface, or from its built-in state type.
+The accesses of a leaf follow from its interface and from the functions and steps of the script.
 """
 
 from __future__ import annotations
@@ -12,14 +12,11 @@ from functools import lru_cache
 from typing import NamedTuple
 
 from smachac.ir import nodes
-from smachac.ir.leaf import CALLING, default_outcome, variable
-from smachac.ir.nodes import Expression, Leaf, Node, Struct
+from smachac.ir.leaf import default_outcome, functions, key_names, variable_of
+from smachac.ir.nodes import Leaf, Node, Struct
 from smachac.ir.traversal import PREEMPTED, remapping
 
 NONE: frozenset[str] = frozenset()
-
-_ALL_CODE = ("CallbacksState", "ConditionalOutcomeState")
-"""State types that read nothing but what the functions of the script read."""
 
 
 class Writes(NamedTuple):
@@ -43,24 +40,24 @@ ANYTHING = Writes(anything=True)
 def leaf_reads(leaf: Leaf, *, raw: bool = False) -> tuple[str, ...]:
     """The keys, under the leaf's names, that must be set when it is entered.
 
-    These are its declared inputs except optional ones; where the leaf has callbacks, they are the
-    keys that the callbacks read. `raw`: the leaf sees every key of its container, as the child of
-    an iterator does (docs/semantics.md, Iterator).
+    These are its declared inputs except optional ones; keys with the role `argument` only if a
+    function of the script reads them. `raw`: the leaf sees every key of its container, as the child
+    of an iterator does (docs/semantics.md, Iterator).
     """
     if leaf.open or not (leaf.inputs or raw):
         return ()
     needed = tuple(key.name for key in leaf.inputs if key.type.name != "optional")
-    functions = callbacks(leaf)
-    if functions is not None and leaf.type in CALLING:
-        order = sorted(functions)
-    elif functions is not None and leaf.type == "ConditionalOutcomeState":
-        order = [name for name in _names(leaf) if name in functions]
-    else:
+    arguments = key_names(leaf.inputs, "argument")
+    if not leaf.variables:
+        return tuple(key for key in needed if key not in arguments) if arguments else needed
+    callbacks, conditions = functions(leaf, "callbacks"), functions(leaf, "conditions")
+    if callbacks is None or conditions is None:
         return needed
+    order = [(key, callbacks[key]) for key in sorted(callbacks)]
+    order += [(name, conditions[name]) for name in _names(leaf) if name in conditions]
     found: dict[str, None] = {}
     written: set[str] = set()
-    for name in order:
-        code = functions[name]
+    for name, code in order:
         fields = userdata_fields(code.text)
         reads = needed if fields is None else fields.read
         optional = NONE if fields is None else fields.tested
@@ -69,9 +66,9 @@ def leaf_reads(leaf: Leaf, *, raw: bool = False) -> tuple[str, ...]:
             for key in reads
             if key not in written and key not in optional and (raw or key in needed)
         }
-        written.add(name)
-    if leaf.type not in _ALL_CODE:
-        found |= {key: None for key in needed if key not in written}
+        if name in callbacks:
+            written.add(name)
+    found |= {key: None for key in needed if key not in written and key not in arguments}
     return tuple(found)
 
 
@@ -89,18 +86,18 @@ def leaf_writes(leaf: Leaf, outcome: str, *, raw: bool = False) -> Writes:
         if raw:
             begun.update(callback_names(leaf), *(keys for _, keys in scripted_steps(leaf)))
         return Writes(perhaps=frozenset(begun))
-    outputs = frozenset(key.name for key in leaf.outputs)
-    called = callback_names(leaf) if leaf.type in CALLING else NONE
-    if leaf.type == "ScriptedState":
+    outputs = frozenset([key.name for key in leaf.outputs])
+    if leaf.stand_in:
         return _scripted(leaf, outcome, outputs, raw)
-    called = called if raw else called & outputs
-    if leaf.type == "CallbacksState" and callbacks(leaf) is not None:
-        return Writes(called, called, called)
+    called = callback_names(leaf) if raw else callback_names(leaf) & outputs
     if not outputs and not called:
         return NOTHING
     told = frozenset(key for _, keys in leaf.writes for key in keys)
     here = frozenset(key for name, keys in leaf.writes for key in keys if name == outcome)
     untold = outputs - told
+    results = key_names(leaf.outputs, "result")
+    if results and functions(leaf, "callbacks") is not None:
+        untold -= results
     sure = called | (here & outputs)
     if outcome != PREEMPTED:
         sure |= untold
@@ -108,8 +105,7 @@ def leaf_writes(leaf: Leaf, outcome: str, *, raw: bool = False) -> Writes:
 
 
 def _scripted(leaf: Leaf, outcome: str, outputs: frozenset[str], raw: bool) -> Writes:
-    """What the steps of a ScriptedState set. A key that no step sets can be set by the real
-    state."""
+    """What the steps of a stand-in set. A key that no step sets can be set by the real state."""
     steps = list(scripted_steps(leaf))
     ever = frozenset(key for _, keys in steps for key in keys)
     sets = [frozenset(keys) for name, keys in steps if name == outcome]
@@ -124,8 +120,9 @@ def _scripted(leaf: Leaf, outcome: str, outputs: frozenset[str], raw: bool) -> W
 
 
 def scripted_steps(leaf: Leaf) -> Iterable[tuple[str, tuple[str, ...]]]:
-    """The outcome and the keys of each step of a ScriptedState."""
-    data = variable(leaf, "steps")
+    """The outcome and the keys of each step of a leaf."""
+    held = variable_of(leaf, "steps")
+    data = held.value.data if held is not None else ()
     for step in data if isinstance(data, tuple) else ():
         told = dict(step.entries) if isinstance(step, Struct) else {}
         outcome, sets = told.get("outcome"), told.get("set")
@@ -137,19 +134,10 @@ def _names(leaf: Leaf) -> tuple[str, ...]:
     return tuple(outcome.name for outcome in leaf.outcomes)
 
 
-def callbacks(leaf: Leaf) -> Mapping[str, Expression] | None:
-    """The functions of a leaf by key or outcome; None where they are not known."""
-    data = variable(leaf, "callbacks")
-    if data is None:
-        return {}
-    if not isinstance(data, Struct):
-        return None
-    return {key: code for key, code in data.entries if isinstance(code, Expression)}
-
-
 def callback_names(leaf: Leaf) -> frozenset[str]:
-    """The names in the `callbacks` of a leaf, also those whose value is no code."""
-    data = variable(leaf, "callbacks")
+    """The keys for which a leaf has callbacks, also those whose value is no code."""
+    held = variable_of(leaf, "callbacks")
+    data = held.value.data if held is not None else None
     return frozenset(key for key, _ in data.entries) if isinstance(data, Struct) else NONE
 
 

@@ -7,11 +7,11 @@ from collections.abc import Sequence as PathSequence
 from dataclasses import replace
 from typing import NamedTuple, cast
 
-from smachac.analysis.accesses import callbacks, scripted_steps, userdata_fields
+from smachac.analysis.accesses import scripted_steps, userdata_fields
 from smachac.analysis.control_flow import is_open, mended
 from smachac.diagnostics.spelling import guesser
 from smachac.ir import nodes
-from smachac.ir.leaf import CALLING
+from smachac.ir.leaf import functions
 from smachac.ir.nodes import Container, Key, Leaf, Machine, Node, Remap, Sequence, StateMachine
 from smachac.ir.traversal import outcome_names
 from smachac.ir.types import ANY, Type
@@ -40,23 +40,24 @@ def unknown_remaps(node: Node) -> list[UnknownRemap]:
 
 def undeclared_writes(leaf: Leaf) -> tuple[str, ...]:
     """The keys that the script makes a leaf write although they are not among its outputs."""
-    written: list[str] = []
-    if leaf.type in CALLING:
-        written = sorted(callbacks(leaf) or ())
-    elif leaf.type == "ScriptedState":
-        written = [key for _, keys in scripted_steps(leaf) for key in keys]
+    written = sorted(functions(leaf, "callbacks") or ())
+    written += [key for _, keys in scripted_steps(leaf) for key in keys]
     outputs = {key.name for key in leaf.outputs}
     return tuple(key for key in dict.fromkeys(written) if key not in outputs)
 
 
 def undeclared_reads(leaf: Leaf) -> Iterator[tuple[str, nodes.Expression]]:
     """The keys that code of the script reads although they are not among the leaf's inputs."""
-    if leaf.type not in CALLING and leaf.type != "ConditionalOutcomeState":
+    called = sorted((functions(leaf, "callbacks") or {}).items())
+    conditions = functions(leaf, "conditions")
+    if conditions:
+        outcomes = outcome_names(leaf)
+        called += sorted(item for item in conditions.items() if item[0] in outcomes)
+    if not called:
         return
     inputs = {key.name for key in leaf.inputs}
-    order = outcome_names(leaf) if leaf.type == "ConditionalOutcomeState" else None
-    for name, code in sorted((callbacks(leaf) or {}).items()):
-        fields = userdata_fields(code.text) if order is None or name in order else None
+    for _, code in called:
+        fields = userdata_fields(code.text)
         for key in fields.read if fields is not None else ():
             if key not in inputs:
                 inputs.add(key)

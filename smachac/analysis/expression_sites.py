@@ -5,13 +5,12 @@ from __future__ import annotations
 from collections.abc import Iterable, Iterator
 from dataclasses import dataclass, field
 
-from smachac.analysis.accesses import callbacks
 from smachac.analysis.expression_errors import Fault, expression_faults, function_faults
 from smachac.analysis.expression_types import keys_read, parsed
 from smachac.analysis.type_inference import Cell, Types
 from smachac.analysis.type_lattice import join, record
 from smachac.ir import nodes
-from smachac.ir.leaf import CALLING
+from smachac.ir.leaf import functions
 from smachac.ir.nodes import Expression, Leaf, Node, Struct
 from smachac.ir.traversal import expressions, expressions_in, outcome_names, remapping
 from smachac.ir.types import ANY, Type
@@ -74,31 +73,32 @@ def _expressions(
         for expression in expressions(node):
             yield expression, {} if expression is items else None
         return
-    called = _called(path, node, types)
+    called = _called(path, node, types) if node.variables else {}
     for held in node.variables:
         data = held.value.data
-        if held.name == "callbacks" and isinstance(data, Struct):
+        if held.role in ("callbacks", "conditions") and isinstance(data, Struct):
             for key, value in data.entries:
                 for expression in expressions_in(value):
                     yield expression, called.get(key) if expression is value else None
         else:
-            is_time = held.name == "time" and node.type == "SleepState"
+            called_alone = held.role == "function"
             for expression in expressions_in(data):
-                yield expression, {} if is_time and expression is data else None
+                yield expression, {} if called_alone and expression is data else None
 
 
 def _called(path: str, leaf: Leaf, types: Types) -> dict[str, Written]:
-    """By name of a callback the keys that are written before it is called."""
-    functions = callbacks(leaf) or {}
-    if leaf.type == "ConditionalOutcomeState":
-        return {name: {} for name in outcome_names(leaf) if name in functions}
+    """By name of a callback or condition the keys that are written before it is called."""
+    callbacks = functions(leaf, "callbacks") or {}
+    conditions = functions(leaf, "conditions") or {}
     found: dict[str, Written] = {}
-    if leaf.type in CALLING:
-        names = remapping(leaf)
-        written: Written = {}
-        for key in sorted(functions):
-            found[key] = dict(written)
-            written[names.get(key, key)] = types.outputs.get((path, key), ANY)
+    names = remapping(leaf)
+    written: Written = {}
+    for key in sorted(callbacks):
+        found[key] = dict(written)
+        written[names.get(key, key)] = types.outputs.get((path, key), ANY)
+    for name in outcome_names(leaf) if conditions else ():
+        if name in conditions:
+            found[name] = written
     return found
 
 

@@ -37,7 +37,7 @@ from smachac.analysis.type_lattice import (
 )
 from smachac.diagnostics.source import NOWHERE, Span
 from smachac.ir import nodes
-from smachac.ir.leaf import variable
+from smachac.ir.leaf import functions, key_names, variable_of
 from smachac.ir.nodes import Container, Data, Expression, Key, Leaf, Machine, Node, Struct, Variable
 from smachac.ir.traversal import remapping
 from smachac.ir.types import ANY, Type
@@ -172,7 +172,7 @@ class _Inference:
             self.declare(cell, key.type, cell.span)
             if key.name in written:
                 for span, data in written[key.name]:
-                    if isinstance(data, Expression) and leaf.type in _BY_CODE:
+                    if isinstance(data, Expression) and not leaf.stand_in:
                         reads = {k: inputs[k] for k in keys_read(data) if k in inputs}
                         self.computation(
                             Computation(cell=cell, span=span, reads=reads, expression=data)
@@ -343,26 +343,23 @@ class _Inference:
         )
 
 
-_BY_CODE = ("CallbacksState", "DeleteFileState", "RandomOutcomeState")
-"""State types that write nothing but what functions of the script give, and `outcome`."""
-
-
 def _written(leaf: Leaf) -> dict[str, list[tuple[Span, Data]]]:
-    """What the script itself says that leaves of some built-in types write, by key."""
+    """The values that the script gives to the outputs of a leaf, by key: results of callbacks, for
+    keys that nothing else writes, and data of steps."""
     found: dict[str, list[tuple[Span, Data]]] = {}
-    if leaf.type in _BY_CODE:
-        callbacks = variable(leaf, "callbacks")
-        for key, data in callbacks.entries if isinstance(callbacks, Struct) else ():
-            own = key == "outcome" and leaf.type == "RandomOutcomeState"
-            if isinstance(data, Expression) and not own:
-                found.setdefault(key, []).append((data.span, data))
-    elif leaf.type == "ScriptedState":
-        for held in leaf.variables:
-            steps = held.value.data if held.name == "steps" else ()
-            for step in steps if isinstance(steps, tuple) else ():
-                told = dict(step.entries).get("set") if isinstance(step, Struct) else None
-                for key, data in told.entries if isinstance(told, Struct) else ():
-                    found.setdefault(key, []).append((held.value.span, data))
+    callbacks = functions(leaf, "callbacks")
+    if callbacks:
+        others = {key.name for key in leaf.outputs} - key_names(leaf.outputs, "result")
+        for key, code in callbacks.items():
+            if key not in others:
+                found.setdefault(key, []).append((code.span, code))
+    held = variable_of(leaf, "steps")
+    if held is None or not isinstance(held.value.data, tuple):
+        return found
+    for step in held.value.data:
+        values = dict(step.entries).get("set") if isinstance(step, Struct) else None
+        for key, data in values.entries if isinstance(values, Struct) else ():
+            found.setdefault(key, []).append((held.value.span, data))
     return found
 
 

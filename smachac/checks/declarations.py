@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterable, Iterator
 from typing import Literal
 
-from smachac.analysis.accesses import callback_names, callbacks, userdata_fields
+from smachac.analysis.accesses import callback_names, userdata_fields
 from smachac.analysis.context import Context
 from smachac.analysis.control_flow import is_open
 from smachac.analysis.def_use import place_of
@@ -22,7 +22,7 @@ from smachac.diagnostics.spelling import guesser
 from smachac.diagnostics.wording import listed
 from smachac.ir import nodes
 from smachac.ir.graph import START
-from smachac.ir.leaf import variable
+from smachac.ir.leaf import functions, variable, variable_of
 from smachac.ir.nodes import Body, Key, Leaf, Machine, Node
 from smachac.ir.traversal import outcome_names, remapping
 
@@ -132,7 +132,7 @@ def _set_by_the_script(scope: UserdataScope) -> Iterator[tuple[str, Node, Span]]
 
 def _sets(node: Node, key: Key) -> bool:
     """Whether a state can set one of its outputs (if not: SM306)."""
-    if not isinstance(node, Leaf) or node.type != "CallbacksState":
+    if not isinstance(node, Leaf) or key.role != "result":
         return True
     return key.name in callback_names(node)
 
@@ -230,27 +230,29 @@ def _unused_by_the_script(machine: Machine) -> Iterator[Finding]:
 
 def _unused_by_code(path: str, leaf: Leaf) -> Iterator[Finding]:
     """The declared keys and outcomes of a leaf that its code in the script does not use."""
-    functions = callbacks(leaf)
-    if leaf.type not in ("CallbacksState", "ConditionalOutcomeState") or functions is None:
+    callbacks, conditions = functions(leaf, "callbacks"), functions(leaf, "conditions")
+    chooses = variable_of(leaf, "conditions") is not None
+    if callbacks is None or conditions is None or not (callbacks or chooses):
         return
-    if not functions and leaf.type == "CallbacksState":
-        return
-    known = [userdata_fields(code.text) for code in functions.values()]
+    called = [*callbacks.values(), *conditions.values()]
+    known = [userdata_fields(code.text) for code in called]
     fields = [each for each in known if each is not None]
     if len(fields) == len(known):
         used = {key for each in fields for key in (*each.read, *each.tested)}
         used |= _meant_keys((key for key, _ in undeclared_reads(leaf)), leaf.inputs)
-        yield from _unused_keys(path, leaf, leaf.inputs, used, "input")
-    if leaf.type == "ConditionalOutcomeState" and not [*unknown_endings(path, leaf)]:
-        yield from _unused_outcomes(path, leaf, functions)
-    if leaf.type == "CallbacksState":
+        arguments = [key for key in leaf.inputs if key.role == "argument"]
+        yield from _unused_keys(path, leaf, arguments, used, "input")
+    if chooses and not [*unknown_endings(path, leaf)]:
+        yield from _unused_outcomes(path, leaf, conditions)
+    results = [key for key in leaf.outputs if key.role == "result"] if callbacks else []
+    if results:
         made = callback_names(leaf) | _meant_keys(undeclared_writes(leaf), leaf.outputs)
-        yield from _unused_keys(path, leaf, leaf.outputs, made, "output")
+        yield from _unused_keys(path, leaf, results, made, "output")
 
 
-def _unused_outcomes(path: str, leaf: Leaf, functions: Iterable[str]) -> Iterator[Finding]:
+def _unused_outcomes(path: str, leaf: Leaf, conditions: Iterable[str]) -> Iterator[Finding]:
     """The declared outcomes without a condition."""
-    possible = {*functions, variable(leaf, "default_outcome"), leaf.catches}
+    possible = {*conditions, variable(leaf, "default_outcome"), leaf.catches}
     for outcome in leaf.outcomes:
         if outcome.name not in possible:
             yield Finding(
@@ -343,10 +345,10 @@ def _meant(key: str, known: Iterable[Key]) -> str | None:
 
 
 def _place_of_write(leaf: Leaf, key: str) -> Span:
-    code = (callbacks(leaf) or {}).get(key)
+    code = (functions(leaf, "callbacks") or {}).get(key)
     if code is not None:
         return code.span
-    steps = next((each for each in leaf.variables if each.name == "steps"), None)
+    steps = variable_of(leaf, "steps")
     return steps.value.span if steps is not None else leaf.span
 
 

@@ -6,7 +6,6 @@ import ast
 import warnings
 from collections.abc import Iterator
 
-from smachac.analysis.accesses import callbacks
 from smachac.analysis.context import Context
 from smachac.analysis.expression_errors import Fault, FaultKind
 from smachac.analysis.expression_sites import ExpressionSite
@@ -18,6 +17,7 @@ from smachac.diagnostics.source import Word
 from smachac.diagnostics.spelling import guesser
 from smachac.diagnostics.wording import listed
 from smachac.ir.expressions import print_expression
+from smachac.ir.leaf import functions, variable_of
 from smachac.ir.nodes import Expression, Leaf, Struct
 from smachac.ir.traversal import expressions, outcome_names
 
@@ -101,7 +101,9 @@ def _is_deeper(tree: ast.AST) -> bool:
 def _missing_code(leaf: Leaf, path: str) -> Iterator[Finding]:
     """Entries of `callbacks` that are not code, such as a number or a list."""
     for variable in leaf.variables:
-        if variable.name != "callbacks" or not isinstance(variable.value.data, Struct):
+        if variable.role not in ("callbacks", "conditions") and variable.name != "callbacks":
+            continue
+        if not isinstance(variable.value.data, Struct):
             continue
         for key, value in variable.value.data.entries:
             if not isinstance(value, Expression):
@@ -134,16 +136,15 @@ def unknown_endings(path: str, leaf: Leaf) -> Iterator[Finding]:
 
 def _endings(leaf: Leaf) -> Iterator[tuple[Word, str]]:
     """The outcomes in the conditions and steps of a leaf, each with the start of its message."""
-    if leaf.type == "ConditionalOutcomeState":
-        for outcome, site in (callbacks(leaf) or {}).items():
-            yield Word(outcome, site.span), f"a condition of `{leaf.name}` leads to"
-    elif leaf.type == "ScriptedState":
-        for held in leaf.variables:
-            steps = held.value.data if held.name == "steps" else ()
-            for step in steps if isinstance(steps, tuple) else ():
-                end = dict(step.entries).get("outcome") if isinstance(step, Struct) else None
-                if isinstance(end, str) and end:
-                    yield Word(end, held.value.span), f"a step of `{leaf.name}` ends with"
+    for outcome, site in (functions(leaf, "conditions") or {}).items():
+        yield Word(outcome, site.span), f"a condition of `{leaf.name}` leads to"
+    held = variable_of(leaf, "steps")
+    if held is None or not isinstance(held.value.data, tuple):
+        return
+    for step in held.value.data:
+        end = dict(step.entries).get("outcome") if isinstance(step, Struct) else None
+        if isinstance(end, str) and end:
+            yield Word(end, held.value.span), f"a step of `{leaf.name}` ends with"
 
 
 MOST_SOURCES = 3

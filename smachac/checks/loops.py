@@ -184,7 +184,7 @@ def _waiting(context: Context) -> frozenset[str]:
     found: set[str] = set()
     for path, node in reversed(context.states):
         if isinstance(node, Leaf):
-            waits = node.blocking or node.open or node.type == "SleepState"
+            waits = node.blocking or node.open
         else:
             waits = any(f"{path}/{child.name}" in found for child in node.children)
         if waits:

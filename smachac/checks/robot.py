@@ -7,7 +7,7 @@ from collections.abc import Iterable, Iterator
 from dataclasses import replace
 
 from smachac.analysis.context import Context
-from smachac.analysis.type_inference import TypeFlow
+from smachac.analysis.type_inference import Cell, TypeFlow
 from smachac.analysis.type_lattice import inside, present, unit_of
 from smachac.checks.expressions import mixed_units
 from smachac.checks.messages import calls, did_you_mean, other_place
@@ -17,8 +17,8 @@ from smachac.diagnostics.diagnostic import Finding, Related, Severity
 from smachac.diagnostics.spelling import guesser
 from smachac.diagnostics.wording import listed
 from smachac.ir.leaf import variable
-from smachac.ir.nodes import Data, Leaf, Machine, Struct
-from smachac.ir.robot import BUILT_IN, DEFAULTS, Joint, Robot
+from smachac.ir.nodes import Data, Leaf, Struct
+from smachac.ir.robot import Joint, Robot
 from smachac.ir.types import Type
 
 ROTATION_TOLERANCE = 1e-3
@@ -62,20 +62,16 @@ def wrong_length(context: Context) -> Iterator[Finding]:
               transitions: {done: done}
     """
     yield from clash_findings(context.clashes["length"])
-    robot = robot_of(context.machine)
+    robot = context.machine.robot
     limbs = robot.limbs if robot is not None else ()
     lengths = sorted({len(limb) for limb in limbs})
     for flow in context.types.constants if lengths else ():
-        if moves_arm(flow) and flow.cell.node and flow.cell.node.type in ARM_STATES:
+        if moves_arm(flow) and _role(flow.cell) == "joint_positions":
             assert isinstance(flow.value, tuple)
             if len(flow.value) not in lengths:
                 have = " or ".join(map(str, lengths))
                 message = f"`{flow.origin.cell.key}` has {len(flow.value)} numbers, but the arm has"
                 yield at(flow, f"{message} {have} joints", "write one number for each joint")
-
-
-ARM_STATES = frozenset(["MoveToJointPositionsState"])
-"""State types whose list of angles is that of all joints of an arm, however many it has."""
 
 
 @rule("SM502", "joint-limit", Severity.ERROR)
@@ -112,7 +108,7 @@ def joint_limit(context: Context) -> Iterator[Finding]:
               remapping: {positions: home}
               transitions: {succeeded: done, aborted: failed, preempted: failed}
     """
-    robot = robot_of(context.machine)
+    robot = context.machine.robot
     for flow in context.types.constants if robot is not None else ():
         assert robot is not None
         if not moves_arm(flow):
@@ -133,15 +129,6 @@ def joint_limit(context: Context) -> Iterator[Finding]:
                 (str(number) if isinstance(flow.value, tuple) else joint.name,),
                 other_place(joint.span, f"the limits of `{joint.name}`"),
             )
-
-
-def robot_of(machine: Machine) -> Robot | None:
-    """The robot of a machine: the one that its script names, or that of its base."""
-    name: Data = DEFAULTS.get(machine.base)
-    for held in machine.variables:
-        if held.name == "robot":
-            name = held.value.data
-    return machine.robot or (BUILT_IN.get(name) if isinstance(name, str) else None)
 
 
 def _within(joint: Joint, angle: float) -> bool:
@@ -325,35 +312,7 @@ USUAL = frozenset(["base", "base_footprint", "base_link", "earth", "map", "odom"
 """Frames that no description has and every robot may: REP 105 (ros.org/reps/rep-0105.html), and
 `base`, as robots of the industry and our simulation call it."""
 
-FRAME_KEYS = {"TF2ListenerState": frozenset(["source", "target"])}
-"""Keys of state types that hold frames though they are not called so."""
-
 STAMPED = frozenset(["PoseStamped", "geometry_msgs/PoseStamped", "geometry_msgs/msg/PoseStamped"])
-
-LOADING = "LoadModelState"
-
-SIMULATED = "PyBulletBase"
-
-TAME = frozenset(
-    [
-        "CallbacksState",
-        "CheckGraspState",
-        "CheckPlacedState",
-        "ConditionalOutcomeState",
-        "DeleteFileState",
-        "GripperState",
-        "LoadModelState",
-        "MoveAlongState",
-        "MoveToJointPositionsState",
-        "PoseToJointPositionsState",
-        "PrintUserdataState",
-        "RandomOutcomeState",
-        "ScriptedState",
-        "SleepState",
-        "WriteCSVFileState",
-    ]
-)
-"""The state types of ours: none but LoadModelState puts a body into the simulated world."""
 
 
 @rule("SM505", "unknown-frame", Severity.WARNING)
@@ -401,11 +360,12 @@ def unknown_frame(context: Context) -> Iterator[Finding]:
         == arm.urdf ==
         <robot name="arm"><link name="base"/><link name="hand"/></robot>
     """
-    robot = robot_of(context.machine)
+    robot = context.machine.robot
     if robot is None:
         return
     yield from _unknown_joints(context, robot)
-    simulated = context.machine.base == SIMULATED
+    base = context.machine.state_types.get(context.machine.base)
+    simulated = base is not None and base.simulation
     known = _simulated(context, robot) if simulated else _known(robot)
     if not known:
         return
@@ -438,13 +398,14 @@ def _simulated(context: Context, robot: Robot) -> frozenset[str]:
     for _, node in context.states:
         if not isinstance(node, Leaf):
             continue
-        if node.type not in TAME:
+        if node.adds_frames is None:
             return frozenset()
-        if node.type == LOADING:
-            body = variable(node, "body") or variable(node, "model_name")
-            if not isinstance(body, str):
+        if node.adds_frames:
+            given = (variable(node, name) for name in node.adds_frames)
+            frame = next((value for value in given if value), None)
+            if not isinstance(frame, str):
                 return frozenset()
-            found.add(body)
+            found.add(frame)
     return frozenset(found)
 
 
@@ -467,8 +428,15 @@ def _holds_frame(flow: TypeFlow) -> bool:
     if cell.role not in ("input", "variable"):
         return False
     last = cell.key.removesuffix("_id").rpartition("_")[2]
-    type_ = cell.node.type if cell.node is not None else ""
-    return last == "frame" or cell.key in FRAME_KEYS.get(type_, ())
+    return last == "frame" or _role(cell) == "frame"
+
+
+def _role(cell: Cell) -> str:
+    """The role of the key or variable of a cell."""
+    if not isinstance(cell.node, Leaf):
+        return ""
+    held = cell.node.inputs if cell.role == "input" else cell.node.variables
+    return next((each.role for each in held if each.name == cell.key), "")
 
 
 def _unknown_joints(context: Context, robot: Robot) -> Iterator[Finding]:

@@ -2,25 +2,22 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Iterator
+from collections.abc import Iterable, Iterator, Mapping
 from dataclasses import dataclass
 from typing import TypeAlias
 
 from smachac.analysis.context import Context
 from smachac.analysis.type_inference import Cell, TypeFlow, Types
-from smachac.checks.robot import at, reader, robot_of
+from smachac.checks.robot import at, reader
 from smachac.diagnostics.diagnostic import Finding, Problem, Report, Severity, problem
-from smachac.ir.leaf import variable
-from smachac.ir.nodes import Data, Leaf, Machine
+from smachac.ir.leaf import key_names, variable_of
+from smachac.ir.nodes import Data, Leaf, Machine, Node
 from smachac.ir.traversal import remapping
 
 Numbers: TypeAlias = "list[Numbers] | float"
 
-REACHING = frozenset(["MoveAlongState", "PoseToJointPositionsState"])
-"""The state types that move the tool to their `pose`, shifted by their `offset`."""
-
-SIMULATED = ("PyBulletBase", "panda")
-"""The base and the robot for which there is a solver."""
+SOLVED = "panda"
+"""The robot for which there is a solver."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -75,8 +72,10 @@ def out_of_reach(flow: TypeFlow, point: str) -> Finding:
 
 def poses_to_reach(context: Context) -> Iterator[Reach]:
     """The poses that states certainly command to the simulated arm."""
-    robot = robot_of(context.machine)
-    if robot is None or (context.machine.base, robot.name) != SIMULATED:
+    robot = context.machine.robot
+    base = context.machine.state_types.get(context.machine.base)
+    simulated = base is not None and base.simulation
+    if not simulated or robot is None or robot.name != SOLVED:
         return
     types = context.types
     literals: dict[Cell, list[TypeFlow]] = {}
@@ -84,23 +83,35 @@ def poses_to_reach(context: Context) -> Iterator[Reach]:
         literals.setdefault(flow.cell, []).append(flow)
     for path, container in context.containers:
         for leaf in container.children:
-            if not isinstance(leaf, Leaf) or leaf.type not in REACHING:
-                continue
-            cell = types.cells.get((f"{path}/{leaf.name}", "pose"))
-            offsets = _offsets(types, path, leaf)
-            limb = variable(leaf, "limb")
-            if cell is None or len(offsets) != 1 or limb not in (None, "arm"):
-                continue
-            for flow in literals.get(cell, ()):
-                pose = _numbers(flow.value)
-                if pose is not None:
-                    grasp = variable(leaf, "grasp") is True
-                    yield Reach(flow=flow, pose=pose, offset=offsets[0], grasp=grasp)
+            for key in leaf.inputs if isinstance(leaf, Leaf) else ():
+                if key.role == "goal_pose":
+                    yield from _reaches(types, literals, path, leaf, key.name)
+
+
+def _reaches(
+    types: Types, literals: Mapping[Cell, list[TypeFlow]], path: str, leaf: Node, goal: str
+) -> Iterator[Reach]:
+    """The poses that the input `goal` of a leaf brings it to."""
+    assert isinstance(leaf, Leaf)
+    cell = types.cells.get((f"{path}/{leaf.name}", goal))
+    offsets = _offsets(types, path, leaf)
+    limb, grasp = variable_of(leaf, "limb"), variable_of(leaf, "grasp")
+    if cell is None or len(offsets) != 1:
+        return
+    if limb is not None and limb.value.data not in (None, "arm"):
+        return
+    for flow in literals.get(cell, ()):
+        pose = _numbers(flow.value)
+        if pose is not None:
+            held = grasp is not None and grasp.value.data is True
+            yield Reach(flow=flow, pose=pose, offset=offsets[0], grasp=held)
 
 
 def _offsets(types: Types, path: str, leaf: Leaf) -> list[Numbers | None]:
     """The possible offsets of a state (None: the key is absent); empty if they are unknown."""
-    cell = types.cells.get((path, remapping(leaf).get("offset", "offset")))
+    names, cell = remapping(leaf), None
+    for key in key_names(leaf.inputs, "goal_offset"):
+        cell = types.cells.get((path, names.get(key, key)))
     flows = [flow for alike in cell.flows.values() for flow in alike] if cell is not None else []
     found: list[Numbers | None] = []
     for flow in flows:

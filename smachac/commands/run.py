@@ -94,14 +94,14 @@ NO_ARM = "--record and --gui need a program that uses the simulated arm; this ru
 def _run_program(arguments: Namespace, analysis: Analysis) -> int:
     """Generate the Python program and run it; the exit code."""
     from smachac.targets.python import TARGET
-    from smachac.targets.python.template_sources import uses_simulation
 
     files, report = compile_script(analysis, TARGET)
     print_report(without_notes(report), arguments, sys.stderr)
     machine, library = analysis.checked, analysis.library
     if machine is None or library is None or not files:
         return FINDINGS
-    if (arguments.gui or arguments.record) and not uses_simulation(machine, library):
+    simulated = any(type_.simulation for type_ in machine.state_types.values())
+    if (arguments.gui or arguments.record) and not simulated:
         return usage(NO_ARM)
     ((name, text),) = files.items()
     return _observed(arguments, lambda observe: perform(name, text, machine, arguments, observe))

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import hashlib
 import re
-from collections.abc import Iterable
+from collections.abc import Iterable, Mapping
 from dataclasses import replace
 from pathlib import PurePath
 from typing import Any
@@ -22,6 +22,7 @@ from smachac.ir.nodes import (
     Expression,
     Given,
     Key,
+    KeyRole,
     Leaf,
     Machine,
     Node,
@@ -35,6 +36,7 @@ from smachac.ir.nodes import (
     Transition,
     Value,
     Variable,
+    VariableType,
 )
 from smachac.ir.traversal import outcome_names
 from smachac.ir.types import ANY
@@ -64,8 +66,8 @@ def lower(script: Script) -> Machine:
     )
 
 
-def _keys(listed: Keys, known: tuple[Key, ...]) -> tuple[Key, ...]:
-    """The keys of an interface and those that the script lists."""
+def _keys(listed: Keys, known: tuple[Key, ...], roles: Mapping[str, KeyRole]) -> tuple[Key, ...]:
+    """The keys of an interface and those that the script lists, which have `roles` by name."""
     if not listed:
         return known
     keys = {key.name: key for key in known}
@@ -75,6 +77,7 @@ def _keys(listed: Keys, known: tuple[Key, ...]) -> tuple[Key, ...]:
             name=word.text,
             type=type_ or (declared.type if declared else ANY),
             doc=declared.doc if declared else "",
+            role=declared.role if declared else roles.get(word.text, roles.get("*", "")),
             span=word.span,
         )
     return tuple(keys.values())
@@ -87,8 +90,8 @@ def _interface(state: State) -> dict[str, Any]:
         "name": state.name.text,
         "type": type_.name,
         "doc": state.doc.strip(),
-        "inputs": _keys(state.input_keys, type_.input_keys),
-        "outputs": _keys(state.output_keys, type_.output_keys),
+        "inputs": _keys(state.input_keys, type_.input_keys, type_.listed_inputs),
+        "outputs": _keys(state.output_keys, type_.output_keys, type_.listed_outputs),
         "transitions": tuple(
             Transition(outcome=key.text, target=target.text, span=key.span, target_span=target.span)
             for key, target in state.transitions
@@ -142,8 +145,14 @@ def _leaf(state: State) -> Leaf:
         open=type_.open,
         blocking=type_.blocking,
         body=type_.body,
+        built_in=type_.built_in,
+        stand_in=type_.stand_in,
+        adds_frames=type_.adds_frames,
     )
-    return with_conditions(leaf) if leaf.type == "ConditionalOutcomeState" else leaf
+    for known in type_.variables.values():
+        if known.role == "conditions":
+            return _with_conditions(leaf, known)
+    return leaf
 
 
 def _given_outcomes(state: State) -> list[Word]:
@@ -173,7 +182,13 @@ def _defaults(state: State) -> Iterable[Variable]:
     if known is None or known.default is None:
         return
     if all(variable.name != known.name for variable in state.variables):
-        yield Variable(name=known.name, type=known.type, value=known.default, span=state.name.span)
+        yield Variable(
+            name=known.name,
+            type=known.type,
+            role=known.role,
+            value=known.default,
+            span=state.name.span,
+        )
 
 
 def _without_optional(child: Node, state: State, outcomes: frozenset[str]) -> Node:
@@ -375,22 +390,23 @@ def _with_error_transition(node: Node, target: Word) -> Node:
     return replace(node, transitions=(*node.transitions, step))
 
 
-def with_conditions(leaf: Leaf) -> Leaf:
-    """A ConditionalOutcomeState, in which the input key named like an outcome is its condition, if
-    it has no other: SMACHA's rule."""
+def _with_conditions(leaf: Leaf, conditions: VariableType) -> Leaf:
+    """A leaf whose outcomes have conditions: the input key named like an outcome is its condition,
+    if it has no other (SMACHA's rule)."""
     known = {each.name: each for each in leaf.variables}
-    given = known["callbacks"].value.data if "callbacks" in known else Struct(entries=())
+    held = known.get(conditions.name)
+    given = held.value.data if held is not None else Struct(entries=())
     if leaf.open or not isinstance(given, Struct):
         return leaf
     inputs = {key.name for key in leaf.inputs} - {name for name, _ in given.entries}
     keyed = [each for each in leaf.outcomes if each.name in inputs and each.name.isidentifier()]
-    if not keyed and "callbacks" in known:
+    if not keyed and held is not None:
         return leaf
     code = [
         (each.name, Expression(text=f"lambda ud: ud.{each.name}", span=each.span)) for each in keyed
     ]
     span = keyed[0].span if keyed else leaf.span
     value = Value(data=Struct(entries=(*given.entries, *code)), span=span)
-    made = Variable(name="callbacks", value=value, span=span)
-    others = [each for each in leaf.variables if each.name != "callbacks"]
+    made = Variable(name=conditions.name, role=conditions.role, value=value, span=span)
+    others = [each for each in leaf.variables if each.name != conditions.name]
     return replace(leaf, variables=(made, *others))

@@ -11,7 +11,7 @@ from smachac.frontend.loader import Library
 from smachac.frontend.script import State
 from smachac.frontend.urdf import XACRO, UrdfError, read_urdf
 from smachac.ir.nodes import StateType
-from smachac.ir.robot import BUILT_IN, DEFAULTS, Robot
+from smachac.ir.robot import BUILT_IN, Robot
 
 SUFFIXES = (".urdf", ".xml", ".xacro")
 """The endings of files; any other text is the name of a robot."""
@@ -19,12 +19,19 @@ SUFFIXES = (".urdf", ".xml", ".xacro")
 
 def robot_of(base: State, source: Source, library: Library, report: Report) -> Robot | None:
     """The robot of a script; None if it names none, or one that only its base type defines."""
-    found = BUILT_IN.get(DEFAULTS.get(base.type.name, ""))
+    found = default_robot(base.type)
     if base.robot is not None:
         found = _named(base.robot, base.type, source, library, report)
     if found is None:
         return None
     return replace(found, added=frozenset(word.text for word in base.frames))
+
+
+def default_robot(base: StateType) -> Robot | None:
+    """The robot that the interface of a base presets in its variable `robot`."""
+    held = base.variables.get("robot")
+    name = held.default.data if held is not None and held.default is not None else None
+    return BUILT_IN.get(name) if isinstance(name, str) else None
 
 
 def _named(

@@ -37,6 +37,7 @@ class Meta:
     input_keys: tuple[Word, ...]
     output_keys: tuple[Word, ...]
     outcomes: tuple[Outcome, ...]
+    simulation: bool
 
 
 def has_body(template: Source) -> bool:
@@ -72,6 +73,7 @@ def read_meta(template: Source) -> Meta | None:
             for word in listed("outcomes", optional=True)
             if re.fullmatch(r"\w+", word.text)  # some have a sentence in place of the names
         ),
+        simulation=_text(tree, "simulation") == "True",
     )
 
 

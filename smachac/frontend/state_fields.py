@@ -161,9 +161,11 @@ def _variables(entries: Entries, owner: str, type_: StateType) -> Iterator[Varia
         if entry is None or (of_schema and not (name in NAMES and is_own(name, type_))):
             continue
         known = type_.variables.get(name)
-        value = as_value(entry.value, code=name == "callbacks")
+        role = known.role if known is not None else ""
+        called = name == "callbacks" or role in ("callbacks", "conditions")
+        value = as_value(entry.value, code=called)
         declared = known.type if known is not None else ANY
-        yield Variable(name=name, type=declared, value=value, span=entry.key.span)
+        yield Variable(name=name, type=declared, role=role, value=value, span=entry.key.span)
 
 
 def _written(name: Word, entries: Entries, scope: Scope) -> Iterator[Variable]:

@@ -9,7 +9,7 @@ from __future__ import annotations
 from collections.abc import Mapping
 from dataclasses import replace
 from keyword import iskeyword
-from typing import TypeAlias
+from typing import TypeAlias, TypeVar, get_args
 
 from smachac.diagnostics.diagnostic import Report, did_you_mean
 from smachac.diagnostics.source import Source, Span, Word
@@ -21,7 +21,16 @@ from smachac.frontend.python_source import python_body
 from smachac.frontend.type_annotations import read_type
 from smachac.frontend.values import as_value
 from smachac.frontend.yaml_tree import Entry, Map, Scalar, Tree
-from smachac.ir.nodes import Body, Key, Outcome, StateKind, StateType, VariableType
+from smachac.ir.nodes import (
+    Body,
+    Key,
+    KeyRole,
+    Outcome,
+    StateKind,
+    StateType,
+    VariableRole,
+    VariableType,
+)
 from smachac.ir.types import ANY, Type, optional
 
 TEMPLATE_FILES = ("{}.tpl.py", "{}.tpl")
@@ -35,8 +44,12 @@ _ALL_GIVEN = frozenset(["variables", "input_keys", "output_keys", "outcomes"])
 _SECTIONS = ("variables", "input_keys", "output_keys", "outcomes", "writes", "code")
 """The fields of an interface that are mappings of names."""
 
-_FIELDS = ("name", "doc", "kind", *_SECTIONS[:5], "claims", "blocking", "code")
+_FIELDS = ("name", "doc", "kind", *_SECTIONS[:5], "claims", "blocking", "stand_in",
+           "simulation", "adds_frames", "code")  # fmt: skip
 """All fields of an interface."""
+
+_VARIABLE_ROLES: tuple[VariableRole, ...] = get_args(VariableRole)
+_KEY_ROLES: tuple[KeyRole, ...] = get_args(KeyRole)
 
 Section: TypeAlias = tuple[Entry, ...]
 
@@ -56,7 +69,8 @@ def _find(name: str, library: Library, report: Report, below: frozenset[str]) ->
     for find in (library.own_template, library.template):
         interface = find(f"{name}.yml")
         if interface is not None:
-            return _read_interface(name, interface, library, report)
+            found = _read_interface(name, interface, library, report)
+            return replace(found, built_in=name if find is library.template else "")
         for pattern in TEMPLATE_FILES:
             template = find(pattern.format(name))
             if template is not None:
@@ -89,6 +103,10 @@ def _read_interface(name: str, source: Source, library: Library, report: Report)
     given = frozenset(part for part in parts if _is_starred(sections[part]))
     optional = _optional_outcomes(sections["outcomes"])
     claims = as_names(fields["claims"], report) if "claims" in fields else ()
+
+    def flag(name: str) -> bool:
+        return name in fields and as_flag(fields[name], report)
+
     return StateType(
         name=name,
         kind=_kind(fields.get("kind"), report),
@@ -105,7 +123,12 @@ def _read_interface(name: str, source: Source, library: Library, report: Report)
         writes=_writes(sections, report),
         given=given,
         claims=tuple(word.text for word in claims),
-        blocking="blocking" in fields and as_flag(fields["blocking"], report),
+        blocking=flag("blocking"),
+        stand_in=flag("stand_in"),
+        simulation=flag("simulation"),
+        adds_frames=_frame_variables(fields.get("adds_frames"), sections, report),
+        listed_inputs=_listed_roles(sections["input_keys"], report),
+        listed_outputs=_listed_roles(sections["output_keys"], report),
         code=code,
         classes=_classes(sections["code"], report),
         body=_body(
@@ -118,7 +141,46 @@ def _read_interface(name: str, source: Source, library: Library, report: Report)
 
 def _optional_outcomes(section: Section) -> frozenset[str]:
     """Outcomes with `optional: true`."""
-    return frozenset(key for key, value in _declared(section) if _text(value, "optional") == "True")
+    return frozenset(key for key, value in _declared(section) if _is_set(value, "optional"))
+
+
+def _frame_variables(
+    tree: Tree | None, sections: Mapping[str, Section], report: Report
+) -> tuple[str, ...] | None:
+    """The variables that name a frame which the state adds; None if the interface has no list."""
+    if tree is None:
+        return None
+    words = as_names(tree, report)
+    for word in words:
+        _check_declared(sections, "variables", word, report)
+    return tuple(word.text for word in words)
+
+
+def _listed_roles(section: Section, report: Report) -> dict[str, KeyRole]:
+    """The roles of the keys that a script adds: optional ones by name, and all others."""
+    return {
+        str(entry.key.value): _role(entry.value, _KEY_ROLES, report)
+        for entry in section
+        if entry.key.value == "*" or _is_set(entry.value, "optional")
+    }
+
+
+_Role = TypeVar("_Role", VariableRole, KeyRole)
+
+
+def _role(tree: Tree, roles: tuple[_Role, ...], report: Report) -> _Role:
+    """The role that the entry of a key or variable gives; the empty one by default."""
+    entry = tree.get("role") if isinstance(tree, Map) else None
+    word = as_name(entry.value, report) if entry is not None else None
+    for role in roles:
+        if role == (word.text if word is not None else ""):
+            return role
+    assert word is not None
+    known = ", ".join(f"`{role}`" for role in roles if role)
+    help = did_you_mean(word.text, roles) or f"the roles are {known}"
+    message = f"`{word.text}` is not a role here"
+    report.append(wrong_shape(word.span, message, help, arguments=("role", word.text)))
+    return roles[0]
 
 
 def _body(name: str, file: str, given: frozenset[str], library: Library) -> Body | None:
@@ -213,6 +275,11 @@ def _text(tree: Tree, name: str) -> str:
     return str(entry.value.value) if entry and isinstance(entry.value, Scalar) else ""
 
 
+def _is_set(tree: Tree, name: str) -> bool:
+    """Whether a mapping has `name: true`."""
+    return _text(tree, name) == "True"
+
+
 def _doc(tree: Tree) -> str:
     return _text(tree, "doc")
 
@@ -236,17 +303,26 @@ def _variable(name: str, tree: Tree, report: Report) -> VariableType:
     return VariableType(
         name=name,
         type=type_,
+        role=_role(tree, _VARIABLE_ROLES, report),
         required=default is None,
         doc=_doc(tree),
         default=as_value(default.value) if default is not None else None,
         keys=_text(tree, "keys"),
+        called_first=_is_set(tree, "called_first"),
     )
 
 
 def _keys(section: Section, report: Report) -> tuple[Key, ...]:
     return tuple(
-        Key(name=key, type=_type(value, report), doc=_doc(value), span=value.span)
+        Key(
+            name=key,
+            type=_type(value, report),
+            doc=_doc(value),
+            role=_role(value, _KEY_ROLES, report),
+            span=value.span,
+        )
         for key, value in _declared(section)
+        if not _is_set(value, "optional")
     )
 
 
@@ -302,7 +378,7 @@ def _read_template(
     outcomes = outcomes or (known.outcomes if known is not None else ())
     outcomes = outcomes or smacha_meta.outcomes_in_code(template)
     if found is None:
-        known = known or StateType(name=name, open=True)
+        known = _without_facts(known) if known else StateType(name=name, open=True)
         return replace(
             known, name=name, outcomes=outcomes, code={"python": file}, prints_itself=whole,
             body=None, given=known.given if known.open else _ALL_GIVEN,
@@ -321,4 +397,22 @@ def _read_template(
         prints_itself=whole,
         used=smacha_meta.words_used(file, library.template),
         open=found.kind == "state" and not outcomes,
+        simulation=found.simulation or (known is not None and known.simulation),
+    )
+
+
+def _without_facts(type_: StateType) -> StateType:
+    """A state type of which only the interface is known, as a template that extends its template
+    may do something else. It still uses the simulation."""
+    variables = type_.variables.items()
+    return replace(
+        type_,
+        built_in="",
+        stand_in=False,
+        adds_frames=None,
+        variables={name: replace(held, role="", called_first=False) for name, held in variables},
+        input_keys=tuple(replace(key, role="") for key in type_.input_keys),
+        output_keys=tuple(replace(key, role="") for key in type_.output_keys),
+        listed_inputs={},
+        listed_outputs={},
     )

@@ -7,8 +7,8 @@ from collections.abc import Callable
 
 from smachac.interpreter.result import Behaviour
 from smachac.interpreter.userdata import BehaviourError, Userdata, call_function, python_data
-from smachac.ir.leaf import CALLING, default_outcome, variable
-from smachac.ir.nodes import Expression, Leaf, Struct
+from smachac.ir.leaf import default_outcome, variable, variable_of
+from smachac.ir.nodes import Expression, Leaf, Struct, VariableRole
 from smachac.ir.traversal import PREEMPTED, outcome_names, own_outcomes
 
 
@@ -22,9 +22,9 @@ def builtin_behaviour(seed: int = 0) -> Behaviour:
     behaviours = {**_BEHAVIOURS, "RandomOutcomeState": _random_outcome(seed)}
 
     def behave(path: str, leaf: Leaf, visit: int, userdata: Userdata) -> str:
-        behaviour = behaviours.get(leaf.type, preemptible(_default))
-        if leaf.type in CALLING:
-            callbacks = _callbacks(leaf)
+        behaviour = behaviours.get(leaf.built_in, preemptible(_default))
+        if variable_of(leaf, "callbacks") is not None:
+            callbacks = _functions(leaf, "callbacks")
             for key in sorted(callbacks):
                 userdata[key] = call_function(callbacks[key], userdata)
         return behaviour(path, leaf, visit, userdata)
@@ -62,13 +62,14 @@ def _scripted(path: str, leaf: Leaf, visit: int, userdata: Userdata) -> str:
     return str(step.get("outcome") or default_outcome(leaf))
 
 
-def _callbacks(leaf: Leaf) -> dict[str, Expression]:
+def _functions(leaf: Leaf, role: VariableRole) -> dict[str, Expression]:
     """The functions of a leaf by key or outcome."""
-    data = variable(leaf, "callbacks")
-    if data is None:
+    held = variable_of(leaf, role)
+    data = held.value.data if held is not None else None
+    if held is None or data is None:
         return {}
     if not isinstance(data, Struct):
-        raise BehaviourError("`callbacks` is no mapping")
+        raise BehaviourError(f"`{held.name}` is no mapping")
     found = {key: value for key, value in data.entries if isinstance(value, Expression)}
     for key, _ in data.entries:
         if key not in found:
@@ -78,9 +79,9 @@ def _callbacks(leaf: Leaf) -> dict[str, Expression]:
 
 def _conditional(path: str, leaf: Leaf, visit: int, userdata: Userdata) -> str:
     """ConditionalOutcomeState: the first outcome whose condition holds, else `default_outcome`."""
-    callbacks = _callbacks(leaf)
+    conditions = _functions(leaf, "conditions")
     for outcome in own_outcomes(leaf):
-        if outcome in callbacks and call_function(callbacks[outcome], userdata):
+        if outcome in conditions and call_function(conditions[outcome], userdata):
             return _publish_outcome(leaf, outcome, userdata)
     otherwise = variable(leaf, "default_outcome")
     if not isinstance(otherwise, str):
@@ -125,4 +126,12 @@ _BEHAVIOURS: dict[str, Callable[[str, Leaf, int, Userdata], str]] = {
     "ConditionalOutcomeState": _conditional,
     "SleepState": preemptible(_sleep),
 }
-"""By state type. PrintUserdataState uses the default: the interpreter prints nothing."""
+"""By built-in state type. PrintUserdataState uses the default: the interpreter prints nothing."""
+
+_MADE_OF_FUNCTIONS = frozenset(["CallbacksState", "ConditionalOutcomeState"])
+"""The built-in state types that do nothing but call functions of the script."""
+
+
+def is_made_of_functions(leaf: Leaf) -> bool:
+    """Whether a leaf of a built-in type does nothing but call functions of the script."""
+    return leaf.built_in in _MADE_OF_FUNCTIONS

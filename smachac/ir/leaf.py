@@ -1,26 +1,12 @@
-"""Leaves: the values of their variables, their default outcome, and the state types with
-callbacks."""
+"""Leaves: the values of their variables, their functions and their default outcome."""
 
 from __future__ import annotations
 
-from smachac.ir.nodes import Data, Leaf
+from collections.abc import Mapping
+
+from smachac.ir.nodes import Data, Expression, Key, Leaf, Struct, Variable, VariableRole
 from smachac.ir.outcome_names import GOOD_OUTCOMES
 from smachac.ir.traversal import own_outcomes
-
-CALLING = frozenset(
-    [
-        "CallbacksState",
-        "DeleteFileState",
-        "PublishMsgState",
-        "PublishObserverMsgState",
-        "RandomOutcomeState",
-        "ReadTopicState",
-        "RecordROSBagState",
-        "TransformMsgState",
-        "WriteCSVFileState",
-    ]
-)
-"""The state types that call the functions of `callbacks` first, each for the key of its name."""
 
 
 def default_outcome(leaf: Leaf) -> str:
@@ -37,3 +23,27 @@ def variable(leaf: Leaf, name: str) -> Data:
         if candidate.name == name:
             return candidate.value.data
     return None
+
+
+def variable_of(leaf: Leaf, role: VariableRole) -> Variable | None:
+    """The variable of a leaf with a role; None if the script does not set it."""
+    for candidate in leaf.variables:
+        if candidate.role == role:
+            return candidate
+    return None
+
+
+def functions(leaf: Leaf, role: VariableRole) -> Mapping[str, Expression] | None:
+    """The functions in the variable with a role, by name; None where they are not known."""
+    for held in leaf.variables:
+        if held.role == role and held.value.data is not None:
+            if not isinstance(held.value.data, Struct):
+                return None
+            entries = held.value.data.entries
+            return {key: code for key, code in entries if isinstance(code, Expression)}
+    return {}
+
+
+def key_names(keys: tuple[Key, ...], *roles: str) -> frozenset[str]:
+    """The names of the keys with one of these roles."""
+    return frozenset([key.name for key in keys if key.role in roles])

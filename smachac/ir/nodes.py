@@ -43,23 +43,35 @@ class Value:
     span: Span = field(compare=False, repr=False)
 
 
+VariableRole = Literal["", "callbacks", "conditions", "function", "steps", "limb", "grasp", "frame"]
+"""The meaning of a variable's value for a state (docs/state_types.md, Facts)."""
+
+KeyRole = Literal[
+    "", "argument", "result", "listed", "joint_positions", "goal_pose", "goal_offset", "frame"
+]
+"""The meaning of a userdata key for a state (docs/state_types.md, Facts)."""
+
+
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Variable:
-    """A variable of a state type with its value in the script and its type in the interface."""
+    """A variable of a state type with its value in the script, and its type and role in the
+    interface."""
 
     name: str
     value: Value
     type: Type = ANY
+    role: VariableRole = field(default="", compare=False, repr=False)
     span: Span = field(compare=False, repr=False)
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Key:
-    """A typed userdata key that a state or container declares."""
+    """A typed userdata key that a state or container declares, and its role in the interface."""
 
     name: str
     type: Type = ANY
     doc: str = ""
+    role: KeyRole = field(default="", compare=False, repr=False)
     span: Span = field(compare=False, repr=False)
 
 
@@ -197,6 +209,9 @@ class Leaf(_State):
     waits for the outside world, as its interface declares. `writes` are pairs of an outcome and
     output keys: an output in it is written on those outcomes only, any other output on all outcomes
     except `preempted`. `body` has facts about the code, if it was read.
+
+    The other fields are facts of the state type (docs/state_types.md, Facts). `built_in` is the
+    name of the built-in state type; it is empty for a type of the user, also for one of that name.
     """
 
     variables: tuple[Variable, ...] = ()
@@ -204,6 +219,9 @@ class Leaf(_State):
     open: bool = False
     blocking: bool = False
     body: Body | None = field(default=None, compare=False, repr=False)
+    built_in: str = field(default="", compare=False, repr=False)
+    stand_in: bool = field(default=False, compare=False, repr=False)
+    adds_frames: tuple[str, ...] | None = field(default=None, compare=False, repr=False)
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -290,14 +308,20 @@ StateKind = Literal["base", "container", "state"]
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class VariableType:
-    """A variable of a state type. `keys`: it lists userdata keys, "input" or "output" ones."""
+    """A variable of a state type. `keys`: it lists userdata keys, "input" or "output" ones.
+
+    `called_first`: generated programs call its functions before the state, whose class does not
+    receive the variable.
+    """
 
     name: str
     type: Type = ANY
+    role: VariableRole = ""
     required: bool = True
     doc: str = ""
     default: Value | None = None
     keys: str = ""
+    called_first: bool = False
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -311,6 +335,12 @@ class StateType:
     `prints_itself`: the Python template adds the state to its container, as SMACHA's templates do.
     A state has an outcome of `optional` only if its container or one of its transitions names it.
     `used` are the words in the template of a type that accepts any variable; None: not known.
+
+    Facts (docs/state_types.md): `built_in` is the name of a built-in type and empty for all others.
+    `stand_in`: it takes the place of a state that does not exist yet. `simulation`: its code uses
+    the simulated world. `adds_frames`: the variables of which the first that has a value names a
+    frame that the state adds to that world; None: not known. `listed_inputs`
+    and `listed_outputs` are the roles of keys that a script adds, by name; `"*"` is any other name.
     """
 
     name: str
@@ -331,6 +361,12 @@ class StateType:
     prints_itself: bool = False
     optional: frozenset[str] = frozenset()
     used: frozenset[str] | None = None
+    built_in: str = ""
+    stand_in: bool = False
+    simulation: bool = False
+    adds_frames: tuple[str, ...] | None = None
+    listed_inputs: Mapping[str, KeyRole] = field(default_factory=dict)
+    listed_outputs: Mapping[str, KeyRole] = field(default_factory=dict)
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)

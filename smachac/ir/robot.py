@@ -83,6 +83,3 @@ BUILT_IN: Mapping[str, Robot] = {
     ),
 }
 """The built-in robots by name. Baxter has no frames here: its files define different sets."""
-
-DEFAULTS = {"PyBulletBase": "panda"}
-"""The robot of a base template if the script names none."""

@@ -12,6 +12,7 @@ from collections.abc import Callable, Iterable, Iterator
 
 from smachac.diagnostics.source import Source, Span
 from smachac.ir import nodes
+from smachac.ir.leaf import variable_of
 from smachac.ir.nodes import Container, Leaf, Machine, Node
 from smachac.ir.traversal import leads_to_child, remapping
 from smachac.refactor.cst import Atom, Collection, Item
@@ -193,9 +194,10 @@ def _rename_in_state(renaming: Renaming, node: Node) -> None:
                 for atom in (atom for each in inner for atom in _values(each)):
                     renaming.atom(editor, atom)
     if isinstance(node, Leaf):
-        if node.type == "ConditionalOutcomeState":
-            renaming.keys(bodies, "callbacks")
-        for atom, editor in step_words(bodies, "outcome"):
+        conditions = variable_of(node, "conditions")
+        if conditions is not None:
+            renaming.keys(bodies, conditions.name)
+        for atom, editor in _step_words(bodies, node, "outcome"):
             renaming.atom(editor, atom)
         return
     if node.sugar:
@@ -247,12 +249,13 @@ def _rename_in_container(renaming: Renaming, container: Container, child: Node) 
             renaming.keys(bodies, "final_outcome_map")
 
 
-def step_words(
-    bodies: Iterable[tuple[ScriptEditor, Collection]], what: str
+def _step_words(
+    bodies: Iterable[tuple[ScriptEditor, Collection]], leaf: Leaf, what: str
 ) -> Iterator[tuple[Atom, ScriptEditor]]:
-    """The outcomes, or the keys set, in the steps of a scripted state."""
+    """The outcomes, or the keys set, in the steps of a state."""
+    steps = variable_of(leaf, "steps")
     for editor, body in bodies:
-        item = variable(body, "steps")
+        item = variable(body, steps.name) if steps is not None else None
         for step in item.value.items if item and isinstance(item.value, Collection) else ():
             for each in step.value.items if isinstance(step.value, Collection) else ():
                 if each.key is None or each.key.text != what:
@@ -265,13 +268,8 @@ def step_words(
 
 # --- keys
 
-PORTABLE_TYPES = (
-    "PrintUserdataState",
-    "ScriptedState",
-    "CallbacksState",
-    "ConditionalOutcomeState",
-)
-"""State types whose use of keys is completely visible in the script."""
+_NAMED_BY_SCRIPT = frozenset(["argument", "result", "listed"])
+"""Roles of keys whose names stand in the script only, not in the code of the state type."""
 
 
 def rename_key(renaming: Renaming, machine: Machine, declared: Span) -> None:
@@ -353,11 +351,7 @@ def _rename_in_scope(renaming: Renaming, scope: Container, scopes: dict[int, Con
             continue
         if renaming.old not in _names(child):
             continue
-        if (
-            isinstance(child, Leaf)
-            and child.type in PORTABLE_TYPES
-            and _rename_in_leaf(renaming, child)
-        ):
+        if isinstance(child, Leaf) and _rename_in_leaf(renaming, child):
             continue
         renaming.add(child, "remapping", renaming.old, renaming.new)
 
@@ -366,6 +360,8 @@ def _rename_in_leaf(renaming: Renaming, leaf: Leaf) -> bool:
     """Rename a key of a state that declares it in the script, in its code too; False if that is not
     possible."""
     own = [key for key in (*leaf.inputs, *leaf.outputs) if key.name == renaming.old]
+    if any(key.role not in _NAMED_BY_SCRIPT for key in own):
+        return False
     if any(key.span.text.strip("'\"") != renaming.old for key in own):
         return False
     places = []
@@ -380,9 +376,10 @@ def _rename_in_leaf(renaming: Renaming, leaf: Leaf) -> bool:
     for place in places:
         renaming.replace_word(place)
     bodies = renaming.bodies(leaf)
-    if leaf.type == "CallbacksState":
-        renaming.keys(bodies, "callbacks")
-    for atom, editor in step_words(bodies, "set"):
+    callbacks = variable_of(leaf, "callbacks")
+    if callbacks is not None:
+        renaming.keys(bodies, callbacks.name)
+    for atom, editor in _step_words(bodies, leaf, "set"):
         renaming.atom(editor, atom)
     return True
 

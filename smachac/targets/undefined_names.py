@@ -13,12 +13,11 @@ import sys
 import warnings
 from collections.abc import Iterator
 
-from smachac.analysis.accesses import callbacks
 from smachac.diagnostics.diagnostic import Diagnostic
 from smachac.frontend.errors.script import undefined_name
 from smachac.frontend.loader import Library
 from smachac.ir.expressions import looks_like_expression
-from smachac.ir.nodes import Expression, Leaf, Machine, Node
+from smachac.ir.nodes import Data, Expression, Leaf, Machine, Node, Struct
 from smachac.ir.traversal import expressions, walk
 
 USERDATA = ("ud", "userdata")
@@ -48,11 +47,19 @@ def undefined_names(machine: Machine, library: Library) -> Iterator[Diagnostic]:
 
 def _by_look(node: Node, expression: Expression) -> bool:
     """Whether a string of the script counts as code only because of its form."""
-    if isinstance(node, Leaf) and expression in (callbacks(node) or {}).values():
+    if isinstance(node, Leaf) and expression in _functions(node):
         return False
     written = expression.span.text
     made = written.startswith("[") and "`" not in written  # a string construct
     return made or (written == expression.text and looks_like_expression(written))
+
+
+def _functions(leaf: Leaf) -> Iterator[Data]:
+    """The values in the mappings of a leaf whose strings are all code."""
+    for held in leaf.variables:
+        if held.name == "callbacks" or held.role in ("callbacks", "conditions"):
+            entries = held.value.data.entries if isinstance(held.value.data, Struct) else ()
+            yield from (value for _, value in entries)
 
 
 def _free(text: str) -> list[str]:

@@ -11,7 +11,7 @@ from collections.abc import Callable, Sequence
 from dataclasses import dataclass, field
 from typing import Literal, NamedTuple
 
-from smachac.interpreter.behaviours import builtin_behaviour
+from smachac.interpreter.behaviours import builtin_behaviour, is_made_of_functions
 from smachac.interpreter.interpreter import run
 from smachac.interpreter.result import Event
 from smachac.interpreter.scenario import Scenario, Step, perform_step
@@ -24,9 +24,6 @@ from smachac.verify.coverage import Coverage
 from smachac.verify.guidance import Goals, Planner, possible_leaf_outcomes
 from smachac.verify.sample_values import SampleValues, sample_inputs
 from smachac.verify.shared_keys import contended_keys
-
-LIVE_TYPES = ("CallbacksState", "ConditionalOutcomeState")
-"""State types that run their own code on live paths: all of it is portable."""
 
 FAILURE = "a failure of the scenario"
 """The message of an error that a path raises in a leaf."""
@@ -61,8 +58,8 @@ the path."""
 class Path:
     """One path through a machine, as a scenario.
 
-    `live`: states of LIVE_TYPES are not in the scenario and run their own code. `ends`: the path
-    ends with an outcome, not with an error. `visits` counts visits of leaves.
+    `live`: states made of functions are not in the scenario and run their own code. `ends`: the
+    path ends with an outcome, not with an error. `visits` counts visits of leaves.
     """
 
     kind: Kind
@@ -118,8 +115,9 @@ class PathRunner:
 
     def _is_live(self, path: str) -> bool:
         node = self._tree[path]
+        made = isinstance(node, Leaf) and is_made_of_functions(node)
         portable = all(parse_expression(each.text) is not None for each in expressions(node))
-        return node.type in LIVE_TYPES and portable and not self._enclosing[path]
+        return made and portable and not self._enclosing[path]
 
     def make(
         self, kind: Kind, strategy: Strategy, *, live: bool = False, stop: int = -1

@@ -24,6 +24,7 @@ from smachac.ir.traversal import walk
 from smachac.ir.types import Type, parse_type
 from tests.strategies.expressions import NAMES_OF_VALUES, VALUES, computations
 from tests.strategies.machines import machines, valid_machines
+from tests.support.typed_machines import with_state_types
 
 
 def a(text: str) -> Type:
@@ -118,7 +119,7 @@ def test_what_is_outside_the_subset_is_any() -> None:
 
 def lines(text: str) -> Machine:
     """A machine from its text, with `; ` for the ends of lines."""
-    return parse_machine(text.replace("; ", "\n"))
+    return with_state_types(parse_machine(text.replace("; ", "\n")))
 
 
 def known(text: str) -> dict[str, str]:

@@ -5,6 +5,7 @@ import pytest
 from smachac.checks import check_machine
 from smachac.diagnostics.diagnostic import Diagnostic, Severity
 from smachac.ir.parser import parse_machine
+from tests.support.typed_machines import with_state_types
 
 CODES = ("SM311", "SM312", "SM504")
 
@@ -31,7 +32,11 @@ def found(code: str, keys: str = "", first: str = "", reads: str = "input x") ->
     text = MACHINE.format(
         code=code, keys=keys, first=first or PYTHON.format(""), reads=reads
     ).replace("; ", "\n")
-    return [item for item in check_machine(parse_machine(text, "m.smir")) if item.code in CODES]
+    return [
+        item
+        for item in check_machine(with_state_types(parse_machine(text, "m.smir")))
+        if item.code in CODES
+    ]
 
 
 def callback(key: str, code: str) -> str:
@@ -104,7 +109,7 @@ def test_callbacks_see_what_those_before_them_have_written() -> None:
     }}"""
 
     def codes(key: str) -> list[str]:
-        report = check_machine(parse_machine(text.format(key=key), "m.smir"))
+        report = check_machine(with_state_types(parse_machine(text.format(key=key), "m.smir")))
         return [item.code for item in report if item.code in CODES]
 
     assert codes("a") == []
@@ -149,7 +154,7 @@ def test_other_code_is_judged_by_itself() -> None:
         on succeeded -> done
       }
     }"""
-    report = check_machine(parse_machine(text.replace("; ", "\n"), "m.smir"))
+    report = check_machine(with_state_types(parse_machine(text.replace("; ", "\n"), "m.smir")))
     said = [item.finding.message.partition(":")[2] for item in report if item.code in CODES]
     assert said == [
         " `[1] + 2` adds `int[1]` and `int`",

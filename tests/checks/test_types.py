@@ -1,18 +1,26 @@
 from __future__ import annotations
 
+from dataclasses import replace
 from xml.etree import ElementTree
 
 import pytest
 
 from smachac.checks import check_machine
 from smachac.diagnostics.diagnostic import Diagnostic
+from smachac.frontend.robots import default_robot
 from smachac.ir.parser import parse_machine
 from smachac.ir.robot import BUILT_IN
+from tests.support.typed_machines import with_state_types
 
 
 def found(text: str) -> list[Diagnostic]:
     """What the rules over types find in a machine; `; ` ends a line."""
-    report = check_machine(parse_machine(text.replace("; ", "\n"), "main.smir"))
+    machine = with_state_types(parse_machine(text.replace("; ", "\n"), "main.smir"))
+    robot = default_robot(machine.state_types[machine.base])
+    for each in machine.variables:
+        if each.name == "robot":
+            robot = BUILT_IN.get(str(each.value.data))
+    report = check_machine(replace(machine, robot=robot))
     codes = ("SM304", "SM501", "SM502", "SM503", "SM504")
     return [item for item in report if item.code in codes]
 

@@ -31,6 +31,7 @@ from smachac.ir.nodes import (
 )
 from smachac.ir.traversal import outcome_names, walk
 from tests.strategies.machines import BOOLEANS, FEW, Building, keys_of, outcomes_of, transition
+from tests.support.typed_machines import as_built_in
 
 NUMBERS = ["a", "b", "c"]
 SOME_NUMBERS = st.lists(st.sampled_from(NUMBERS), max_size=3, unique=True)
@@ -95,7 +96,7 @@ class _Busy(Building):
         for key in sorted({*ins, *outs}) if not self.calm else ():
             if self.draw(BOOLEANS):
                 remaps.append(Remap(key=key, to=self.draw(NUMBER), span=NOWHERE))
-        return Leaf(
+        leaf = Leaf(
             name=self.fresh(),
             type=kind,
             outcomes=outcomes_of(exits),
@@ -108,6 +109,7 @@ class _Busy(Building):
             ),
             span=NOWHERE,
         )
+        return as_built_in(leaf)
 
     def expression(self, shapes: st.SearchStrategy[str]) -> Expression:
         text = self.draw(shapes).format(self.draw(NUMBER), self.draw(NUMBER))

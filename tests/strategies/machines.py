@@ -37,6 +37,7 @@ from smachac.ir.nodes import (
 )
 from smachac.ir.traversal import outcome_names
 from smachac.ir.types import ANY, Type
+from tests.support.typed_machines import as_built_in
 
 T = TypeVar("T")
 
@@ -262,7 +263,7 @@ class Building:
         key = "value" if self.draw(BOOLEANS) else STORED
         steps = [self.step(name, key if writes else None) for name in self.visits(exits)]
         remap = Remap(key=key, to=STORED, span=NOWHERE)
-        return Leaf(
+        leaf = Leaf(
             name=self.fresh(),
             type="ScriptedState",
             outcomes=outcomes_of(exits),
@@ -274,6 +275,7 @@ class Building:
             ),
             span=NOWHERE,
         )
+        return as_built_in(leaf)
 
     def visits(self, exits: list[str]) -> list[str]:
         """The outcome of each visit; the last one, which is repeated, is the first of `exits`."""

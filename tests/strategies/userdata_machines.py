@@ -37,6 +37,7 @@ from smachac.ir.nodes import (
     Variable,
 )
 from smachac.ir.traversal import containers, outcome_names, remapping
+from tests.support.typed_machines import as_built_in
 
 NAMES = ("a", "b", "c")
 OUTCOMES = ("done", "failed", "preempted")
@@ -87,7 +88,7 @@ class _Building:
             sets = tuple((key, 1) for key in self.draw(_sets))
             steps.append(Struct(entries=(("outcome", name), ("set", Struct(entries=sets)))))
         told = Variable(name="steps", value=value(tuple(steps)), span=NOWHERE)
-        return Leaf(type="ScriptedState", variables=(told,), **common)
+        return as_built_in(Leaf(type="ScriptedState", variables=(told,), **common))
 
     def container(self, depth: int, kind: int) -> Container:
         common = self.common()

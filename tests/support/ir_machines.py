@@ -30,6 +30,7 @@ from smachac.ir.nodes import (
     Value,
     Variable,
 )
+from tests.support.typed_machines import as_built_in
 
 
 def data(value: Any) -> Data:
@@ -88,7 +89,7 @@ def leaf(
     **variables: Any,
 ) -> Leaf:
     """A leaf; `to` maps outcomes to targets (`=target` for an implicit edge)."""
-    return Leaf(
+    made = Leaf(
         name=name,
         type=type,
         open=open,
@@ -97,6 +98,7 @@ def leaf(
         ),
         **_common(outcomes or " ".join(to), to, ins, outs, remaps),
     )
+    return as_built_in(made)
 
 
 def machine(

@@ -37,7 +37,7 @@ def has_code(type_: StateType, _: Library) -> bool:
     """Whether a header can contain states of a type; it can contain every container."""
     if type_.kind != "state":
         return type_.kind == "container"
-    if is_built_in(type_.name):
+    if is_built_in(type_):
         return True
     return class_code(type_) is not None and not left_to_scripts(type_)
 

@@ -6,10 +6,9 @@ from collections.abc import Callable, Mapping
 from dataclasses import dataclass, replace
 from typing import Protocol
 
-from smachac.analysis.accesses import callbacks
 from smachac.diagnostics.source import Span
-from smachac.ir.leaf import default_outcome, variable
-from smachac.ir.nodes import Data, Expression, Iterator, Leaf, Struct
+from smachac.ir.leaf import default_outcome, functions, variable, variable_of
+from smachac.ir.nodes import Data, Expression, Iterator, Leaf, StateType, Struct, VariableRole
 from smachac.ir.traversal import PREEMPTED, own_outcomes
 from smachac.ir.types import Type
 from smachac.targets.cpp.expressions import (
@@ -92,9 +91,9 @@ class _Statements:
         }
 
 
-def is_built_in(type_: str) -> bool:
+def is_built_in(type_: StateType) -> bool:
     """Whether the code of leaves of a type is made from the script."""
-    return type_ in _STATEMENTS
+    return type_.built_in in _STATEMENTS
 
 
 def built_in(leaf: Leaf, scope: ContainerScope, refuse: Refuse) -> LeafCode | None:
@@ -103,7 +102,7 @@ def built_in(leaf: Leaf, scope: ContainerScope, refuse: Refuse) -> LeafCode | No
     An expression that C++ cannot express is refused at its place, and the struct lacks it. Raises
     UnportableError for other faults.
     """
-    make = _STATEMENTS.get(leaf.type)
+    make = _STATEMENTS.get(leaf.built_in)
     if make is None:
         return None
     statements, member = make(_BuiltInLeaf(leaf=leaf, scope=scope, refuse=refuse))
@@ -204,25 +203,27 @@ class _BuiltInLeaf:
         service = _Statements(lines=("stop.service();",), uses_stop=True)
         return (service + self.end(PREEMPTED)).within(f"if ({test}) {{", "}")
 
-    def functions(self) -> Mapping[str, Expression]:
-        """The functions of the variable `callbacks`, by name."""
-        found = callbacks(self.leaf)
-        data = variable(self.leaf, "callbacks")
+    def functions(self, role: VariableRole) -> Mapping[str, Expression]:
+        """The functions of the variable with a role, by name."""
+        found, held = functions(self.leaf, role), variable_of(self.leaf, role)
+        data = held.value.data if held is not None else None
         if found is None or (isinstance(data, Struct) and len(found) < len(data.entries)):
-            raise UnportableError("`callbacks` is not a mapping of names to functions")
+            raise UnportableError(
+                f"`{held.name if held else role}` is not a mapping of names to functions"
+            )
         return found
 
     def calls(self) -> _Statements:
         """The statements that call the functions of the script and write each result to the key of
         its name."""
         found = _Statements()
-        functions = self.functions()
-        for key in sorted(functions):
+        callbacks = self.functions("callbacks")
+        for key in sorted(callbacks):
             if not self.writes(key):
                 raise UnportableError(
                     f"the state writes `{key}`, which is not one of its output keys"
                 )
-            code = functions[key]
+            code = callbacks[key]
             found += self.write(key, lambda type_, code=code: self.function(code, type_).text)  # type: ignore[misc]
         return found
 
@@ -236,13 +237,13 @@ def _callbacks(leaf: _BuiltInLeaf) -> Code:
 
 
 def _conditional(leaf: _BuiltInLeaf) -> Code:
-    functions = leaf.functions()
+    conditions = leaf.functions("conditions")
     if leaf.leaf.outputs:
         raise UnportableError("the state writes its outcome to a key")
     found = _Statements()
     for outcome in own_outcomes(leaf.leaf):
-        if outcome in functions:
-            holds = leaf.function(functions[outcome])
+        if outcome in conditions:
+            holds = leaf.function(conditions[outcome])
             test = leaf.end(outcome).within(f"if ({holds.text}) {{", "}")
             found += replace(test, uses_userdata=holds.uses_names)
     otherwise = variable(leaf.leaf, "default_outcome")
@@ -292,7 +293,7 @@ def _sleep(leaf: _BuiltInLeaf) -> Code:
 
 
 def _random(leaf: _BuiltInLeaf) -> Code:
-    if {key.name for key in leaf.leaf.outputs} - {*leaf.functions()}:
+    if {key.name for key in leaf.leaf.outputs} - {*leaf.functions("callbacks")}:
         raise UnportableError("the state writes its outcome to a key")
     seed = variable(leaf.leaf, "seed")
     number = abs(seed) if isinstance(seed, int) else 0

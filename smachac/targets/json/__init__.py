@@ -19,6 +19,12 @@ VERSION = 2
 """The version of the format; it increases with every change of the schema."""
 
 
+_NOT_IN_THE_GRAPH = frozenset(
+    ["body", "given", "written", "role", "built_in", "stand_in", "adds_frames"]
+)
+"""Fields for rules and templates, which are not part of the state graph."""
+
+
 def emit(machine: Checked, context: BuildContext, report: Report) -> Files:
     """One JSON file, named after the machine. It is ASCII, and equal machines give equal bytes."""
     return {f"{stem(machine)}.json": json.dumps(to_json(machine), indent=2) + "\n"}
@@ -47,8 +53,7 @@ def _node(path: str, node: Node) -> dict[str, Any]:
 def _entries(value: Any) -> Iterator[tuple[str, Any]]:
     """The fields of a value of the IR; spans are places, children are names."""
     for field in fields(value):
-        if field.name in ("body", "given", "written"):
-            # These fields are for rules and templates, not part of the state graph.
+        if field.name in _NOT_IN_THE_GRAPH:
             continue
         content = getattr(value, field.name)
         if isinstance(content, Span):

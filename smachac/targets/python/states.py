@@ -9,8 +9,8 @@ from textwrap import indent
 
 from smachac.frontend import schema
 from smachac.frontend.errors.references import template_error
-from smachac.ir.leaf import CALLING, variable
-from smachac.ir.nodes import Container, Data, Iterator, Leaf, Node, StateType
+from smachac.ir.leaf import variable_of
+from smachac.ir.nodes import Container, Iterator, Leaf, Node, StateType, Variable
 from smachac.ir.traversal import own_outcomes
 from smachac.targets.python import structure
 from smachac.targets.python.add_call import NotAddedError, adapted
@@ -38,7 +38,7 @@ WITH_CALLBACKS = '''def with_callbacks(state, callbacks):
 
     execute, state.execute = state.execute, call_and_execute
     return state'''
-"""The function that a module contains if a state of another built-in type has callbacks."""
+"""The function that a module contains if a state has callbacks that its class does not call."""
 
 DEFINED = "\n\n\n"
 """The text between two definitions."""
@@ -231,29 +231,28 @@ def _leaf(leaf: Leaf, inside: EmittedContainer, path: str, module: ModuleParts) 
     dropped = len(own_outcomes(leaf)) < len(used.type.outcomes)
     if "outcomes" in used.type.given or (used.type.optional and dropped):
         arguments.append(("outcomes=", names(own_outcomes(leaf))))
-    callbacks = _called_first(leaf, used, module)
+    called = _called_first(leaf, used, module)
     arguments += [
-        (f"{one.name}=", literal(one.value.data))
-        for one in leaf.variables
-        if callbacks is None or one.name != "callbacks"
+        (f"{one.name}=", literal(one.value.data)) for one in leaf.variables if one is not called
     ]
     given = used.type.given
     arguments += structure.key_arguments(
         leaf.inputs if "input_keys" in given else (),
         leaf.outputs if "output_keys" in given else (),
     )
+    callbacks = called.value.data if called is not None else None
     made = structure.made(leaf, call(used.class_name, arguments), callbacks)
     return f"# {structure.place(leaf)}\n{structure.add(leaf, inside.node, made, inside.depth + 1)}"
 
 
-def _called_first(leaf: Leaf, used: UsedType, module: ModuleParts) -> Data:
-    """The functions that are called before a built-in state that has no callbacks of its own."""
-    data = variable(leaf, "callbacks")
-    own = module.context.library.own_template(used.template) is not None
-    if own or data is None or leaf.type not in CALLING or leaf.type == "CallbacksState":
+def _called_first(leaf: Leaf, used: UsedType, module: ModuleParts) -> Variable | None:
+    """The functions that are called before a state whose class does not call them itself."""
+    held = variable_of(leaf, "callbacks")
+    known = used.type.variables.get(held.name) if held is not None else None
+    if held is None or held.value.data is None or known is None or not known.called_first:
         return None
     module.buffers["defs"][WITH_CALLBACKS] = None
-    return data
+    return held
 
 
 def _used(leaf: Leaf, module: ModuleParts) -> UsedType:
@@ -297,7 +296,8 @@ def _whole(
     variables["defined_headers"] = module.defined_headers
     if not own:  # built-in templates take the keys of the interface beside those of the script
         variables["inputs"] = [key.name for key in leaf.inputs]
-    callbacks = _called_first(leaf, used, module)
+    called = _called_first(leaf, used, module)
+    callbacks = called.value.data if called is not None else None
     variables["add"] = adding(leaf, inside.node, inside.depth + 1, callbacks)
     page = module.blocks.page(used.template, variables)
     module.gather(page, leaf)

@@ -12,10 +12,6 @@ from smachac.ir.nodes import Machine
 from smachac.ir.traversal import walk
 
 _OTHERS = re.compile(r"\{%[-+]?\s*(?:extends|include|import|from)\s+[\"']([^\"']+)[\"']")
-_SIMULATION = re.compile(
-    r"^\s*(?:from\s+smachac\s+import\s[^#\n]*\bsim\b|from\s+smachac\.sim\b|import\s+smachac\.sim\b)",
-    re.M,
-)
 
 
 def template_sources(machine: Machine, library: Library) -> Iterator[tuple[str, Source]]:
@@ -38,9 +34,3 @@ def _files(name: str, machine: Machine) -> list[str]:
     type_ = machine.state_types.get(name)
     code = [type_.code["python"]] if type_ is not None and "python" in type_.code else []
     return [*code, *(pattern.format(name) for pattern in TEMPLATE_FILES)]
-
-
-def uses_simulation(machine: Machine, library: Library) -> bool:
-    """Whether a template of the machine imports the simulation, `smachac.sim`."""
-    sources = (source for _, source in template_sources(machine, library))
-    return any(_SIMULATION.search(source.text) for source in sources)

@@ -14,6 +14,7 @@ from dataclasses import dataclass, field, replace
 from importlib import resources
 
 from smachac.diagnostics.diagnostic import Report, in_order
+from smachac.interpreter.behaviours import is_made_of_functions
 from smachac.interpreter.scenario import PlainStep
 from smachac.ir.nodes import Key, Leaf, Node, Outcome, StateMachine, StateType
 from smachac.ir.traversal import PREEMPTED, containers, own_outcomes, walk
@@ -25,7 +26,6 @@ from smachac.targets.cpp.plan import ContainerScope, Plan, place, scope_name
 from smachac.targets.cpp.types import cpp_literal, cpp_type, cpp_value, plain, script_data
 from smachac.targets.cpp.user_classes import interface_hash, parameter_type
 from smachac.verify.guidance import possible_leaf_outcomes
-from smachac.verify.paths import LIVE_TYPES
 from smachac.verify.test_case import OPAQUE, TestCase
 
 
@@ -77,7 +77,7 @@ class Program:
         """What C++ cannot express of the machine. The code of its states matters only if test cases
         can be live."""
         live = frozenset(
-            path for path, leaf in self._leaves.items() if leaf.leaf.type in LIVE_TYPES
+            path for path, leaf in self._leaves.items() if is_made_of_functions(leaf.leaf)
         )
         return self._machine(live)[1]
 
@@ -159,7 +159,9 @@ class CppLeaf:
         outcomes = self.leaf.outcomes or tuple(
             Outcome(name=name, span=span) for name in possible_leaf_outcomes(self.leaf)
         )
-        return replace(self.leaf, type=self.type, outcomes=outcomes, open=False, variables=())
+        return replace(
+            self.leaf, type=self.type, built_in="", outcomes=outcomes, open=False, variables=()
+        )
 
     def keys(self) -> dict[str, dict[str, Type]]:
         """The inputs and outputs that exist in C++, with their types; inputs are optional."""

@@ -1,0 +1,32 @@
+"""The names of built-in state types stand in the modules that implement them, and nowhere else."""
+
+from __future__ import annotations
+
+import ast
+from pathlib import Path
+
+import smachac
+
+PACKAGE = Path(smachac.__file__).parent
+
+ALLOWED = {
+    "interpreter/behaviours.py": "their behaviour in the interpreter",
+    "targets/cpp/builtin_states.py": "their code in C++",
+    "frontend/script.py": "the timer, which sugar adds to a machine",
+    "refactor/smacha/template_differences.py": "the templates that templates of SMACHA extend",
+}
+
+NAMES = {path.stem for path in PACKAGE.joinpath("stdlib").glob("*.yml")} - {"Base"}
+"""All built-in types but `Base`, the word of the language for a script without a base."""
+
+
+def test_no_module_names_a_built_in_state_type() -> None:
+    assert len(NAMES) > 20
+    naming = set()
+    for path in PACKAGE.rglob("*.py"):
+        if path.name.endswith(".tpl.py") or "runtime" in path.parts:
+            continue
+        tree = ast.parse(path.read_text("utf-8"))
+        if any(isinstance(node, ast.Constant) and node.value in NAMES for node in ast.walk(tree)):
+            naming.add(path.relative_to(PACKAGE).as_posix())
+    assert naming == set(ALLOWED)
