@@ -384,7 +384,7 @@ def test_fixes_never_make_it_worse(damage: list[tuple[int, str, int]]) -> None:
 def edit(number: int, start: int, end: int, text: str, source: Source) -> Diagnostic:
     edits = (Edit(span=Span(source, start, end), text=text),)
     template = look({"main.yml": "name: sm\n"}).report[0]
-    finding = Finding(span=edits[0].span, message=f"{number}", edits=edits)
+    finding = Finding(span=edits[0].span, message="", arguments=(f"{number}",), edits=edits)
     return Diagnostic(kind=template.kind, severity=Severity.ERROR, finding=finding)
 
 
