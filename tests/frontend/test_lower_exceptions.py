@@ -163,5 +163,5 @@ def test_a_template_that_prints_itself_is_refused(tmp_path: Path) -> None:
         tmp_path,
         "- A: {template: Old, outcomes: [done], transitions: {done: succeeded, error: failed}}",
     )
-    with pytest.raises(smachac.ScriptError, match="cannot end with its exceptions"):
+    with pytest.raises(smachac.ScriptError, match="cannot have an outcome for its exceptions"):
         smachac.compile(tmp_path / "main.yml", "python")
