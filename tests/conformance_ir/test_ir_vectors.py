@@ -84,6 +84,7 @@ DEVIATIONS: dict[str, tuple[str, list[tuple[str | None, str | None]]]] = {
     "h060-keys-under-remap": ("keys() lists what can be read", [("done", None)]),
     "h089-concurrence-empty": ("no hang: an error", [(None, "other")]),
     "h097-concurrence-child-none": ("no hang: an error", [(None, "other")]),
+    "h134-preempt-iterator-before": (EARLY, [("preempted", None), ("exhausted", None)]),
     "h137-preempt-concurrence-before": (EARLY, [("no", None)]),
     "h138-preempt-concurrence-in-machine": (EARLY, [("no", None)]),
 }

@@ -535,7 +535,7 @@ def test_sugar_around_a_state_that_its_template_adds(
 ) -> None:
     script = (
         "name: SM\ntemplate: Base\noutcomes: [good, bad]\nuserdata: {three: [1, 2, 3]}\nstates:\n"
-        f"  - A: {{template: T, {more}, transitions: {{{transitions}}}}}\n"
+        f"  - A: {{template: T, {more}, transitions: {{{transitions}, preempted: bad}}}}\n"
     )
     assert ran(built(script, T=META + SAYS + FAILING + ADDED)) == outcome
 

@@ -7,7 +7,7 @@ from collections.abc import Callable, Iterable, Mapping, Sequence
 from typing import Any, TypeVar
 
 from smachac.runtime.smach import settings
-from smachac.runtime.smach.container import Container, open_container, withdraw
+from smachac.runtime.smach.container import Container, needs_request, open_container, withdraw
 from smachac.runtime.smach.exceptions import (
     InvalidStateError,
     InvalidTransitionError,
@@ -230,7 +230,7 @@ class Concurrence(Container):
         for label in list(branches.active):
             state = self._states[label]
             try:
-                if not state.preempt_requested():
+                if needs_request(state):
                     state.request_preempt()
             except Exception:
                 settings.logerr(f"request_preempt failed:\n{traceback.format_exc()}")
@@ -249,5 +249,7 @@ class Concurrence(Container):
         """Recall the requests that children got in an earlier run that failed."""
         if self._left_flagged:
             self._left_flagged = False
+            if settings.compat:
+                return
             for state in self._states.values():
                 withdraw(state)

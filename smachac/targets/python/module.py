@@ -9,7 +9,7 @@ from textwrap import indent
 from smachac.diagnostics.diagnostic import Report, has_errors
 from smachac.frontend.errors.references import template_error
 from smachac.ir.nodes import Machine
-from smachac.ir.traversal import walk
+from smachac.ir.traversal import ends_preempted, walk
 from smachac.targets import BuildContext, made_by
 from smachac.targets.errors import python_2_code
 from smachac.targets.python.buffers import PREPENDED, ModuleParts
@@ -58,6 +58,35 @@ CATCHING = '''def error_as_outcome(state, outcome):
 a scenario replaces `attempted`."""
 
 
+STOPPING = '''def ends_preempted(container):
+    """Let a time limit or loop end as preempted after a request to stop, whatever its state did."""
+    run, request, recall = container.execute, container.request_preempt, container.recall_preempt
+
+    def request_preempt():
+        container.stopped = True
+        request()
+
+    def recall_preempt():
+        container.stopped = False
+        recall()
+
+    def execute(*userdata):
+        container.stopped = container.stopped or container.preempt_requested()
+        try:
+            outcome = run(*userdata)
+            if container.stopped:
+                container.service_preempt()
+                outcome = "preempted"
+            return outcome
+        finally:
+            container.stopped = False
+
+    container.execute, container.stopped = execute, False
+    container.request_preempt, container.recall_preempt = request_preempt, recall_preempt
+    return container'''
+"""The function that a module contains if a state has a time limit, retries or a loop."""
+
+
 def module_text(machine: Machine, context: BuildContext, report: Report) -> str | None:
     """The text of the module; None if templates have errors, which are reported."""
     shown = frozenset(
@@ -87,6 +116,8 @@ def _text(machine: Machine, context: BuildContext, module: ModuleParts) -> str |
     states = children(inside, module)
     if has_errors(module.faults):
         return None
+    if any(ends_preempted(node) for _, node in walk(machine.root)):
+        module.buffers["defs"][STOPPING] = None
     if any(node.catches for _, node in walk(machine.root)):
         module.buffers["imports"]["import traceback"] = None
         module.buffers["defs"][CATCHING] = None

@@ -18,6 +18,7 @@ from smachac.ir.nodes import (
     Transition,
 )
 from smachac.ir.nodes import Iterator as IteratorNode
+from smachac.ir.traversal import ends_preempted
 from smachac.targets.python.formatter import (
     WIDTH,
     Doc,
@@ -32,7 +33,7 @@ from smachac.targets.python.formatter import (
 )
 
 OURS = (
-    *("smach", "build", "main", "error_as_outcome", "with_callbacks"),
+    *("smach", "build", "main", "error_as_outcome", "with_callbacks", "ends_preempted"),
     *("rospy", "smach_ros", "start_node", "preempt_at_shutdown", "server", "sis"),
 )
 """Names of the module that variables of containers must not have."""
@@ -150,9 +151,12 @@ def initial(node: Container, variable: str) -> list[str]:
 
 
 def made(node: Node, state: Doc, callbacks: Data = None) -> Doc:
-    """The expression for a state, wrapped for `callbacks` and for exceptions that it catches."""
+    """The expression for a state, wrapped for `callbacks`, for exceptions that it catches, and for
+    requests to stop that end a time limit, retry or loop."""
     if callbacks is not None:
         state = call("with_callbacks", [("", state), ("", literal(callbacks))])
+    if ends_preempted(node):
+        state = call("ends_preempted", [("", state)])
     if not node.catches:
         return state
     return call("error_as_outcome", [("", state), ("", string(node.catches))])

@@ -1,4 +1,4 @@
-# Made by smachac 0.1.0 from main.yml (sha256 a418811d56b433b3).
+# Made by smachac 0.1.0 from main.yml (sha256 0eed65aba39ca33b).
 """The state machine `fetch`."""
 
 import threading
@@ -8,6 +8,34 @@ try:
     import smach
 except ImportError:  # no ROS on this machine: the same names without it
     from smachac.runtime import smach
+
+
+def ends_preempted(container):
+    """Let a time limit or loop end as preempted after a request to stop, whatever its state did."""
+    run, request, recall = container.execute, container.request_preempt, container.recall_preempt
+
+    def request_preempt():
+        container.stopped = True
+        request()
+
+    def recall_preempt():
+        container.stopped = False
+        recall()
+
+    def execute(*userdata):
+        container.stopped = container.stopped or container.preempt_requested()
+        try:
+            outcome = run(*userdata)
+            if container.stopped:
+                container.service_preempt()
+                outcome = "preempted"
+            return outcome
+        finally:
+            container.stopped = False
+
+    container.execute, container.stopped = execute, False
+    container.request_preempt, container.recall_preempt = request_preempt, recall_preempt
+    return container
 
 
 def error_as_outcome(state, outcome):
@@ -179,7 +207,7 @@ def build():
 
         # main.yml:28
         sm_carry = smach.Iterator(
-            outcomes=["succeeded", "exhausted", "error"],
+            outcomes=["succeeded", "exhausted", "preempted", "error"],
             it=[1, 2, 3],
             it_label="attempt",
             exhausted_outcome="exhausted",
@@ -199,13 +227,18 @@ def build():
                     "error",
                 ),
                 loop_outcomes=["error"],
-                final_outcome_map={"error": "exhausted"},
+                final_outcome_map={"error": "preempted"},
             )
 
         smach.StateMachine.add(
             "CARRY",
-            error_as_outcome(sm_carry, "error"),
-            transitions={"succeeded": "BOTH", "exhausted": "BOTH", "error": "LET_GO"},
+            error_as_outcome(ends_preempted(sm_carry), "error"),
+            transitions={
+                "succeeded": "BOTH",
+                "exhausted": "BOTH",
+                "preempted": "aborted",
+                "error": "LET_GO",
+            },
         )
 
         # main.yml:35

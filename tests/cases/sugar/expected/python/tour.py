@@ -1,4 +1,4 @@
-# Made by smachac 0.1.0 from main.yml (sha256 bbfdefbffce19a50).
+# Made by smachac 0.1.0 from main.yml (sha256 20f3bf8389600712).
 """The state machine `tour`."""
 
 import threading
@@ -7,6 +7,34 @@ try:
     import smach
 except ImportError:  # no ROS on this machine: the same names without it
     from smachac.runtime import smach
+
+
+def ends_preempted(container):
+    """Let a time limit or loop end as preempted after a request to stop, whatever its state did."""
+    run, request, recall = container.execute, container.request_preempt, container.recall_preempt
+
+    def request_preempt():
+        container.stopped = True
+        request()
+
+    def recall_preempt():
+        container.stopped = False
+        recall()
+
+    def execute(*userdata):
+        container.stopped = container.stopped or container.preempt_requested()
+        try:
+            outcome = run(*userdata)
+            if container.stopped:
+                container.service_preempt()
+                outcome = "preempted"
+            return outcome
+        finally:
+            container.stopped = False
+
+    container.execute, container.stopped = execute, False
+    container.request_preempt, container.recall_preempt = request_preempt, recall_preempt
+    return container
 
 
 class SleepState(smach.State):
@@ -149,7 +177,7 @@ def build():
 
                 smach.StateMachine.add(
                     "LOOK",
-                    sm_look_2,
+                    ends_preempted(sm_look_2),
                     transitions={
                         "succeeded": "succeeded",
                         "aborted": "aborted",
@@ -167,7 +195,7 @@ def build():
 
         smach.StateMachine.add(
             "LOOK",
-            sm_look,
+            ends_preempted(sm_look),
             transitions={
                 "succeeded": "VISIT",
                 "exhausted": "failed",
@@ -177,7 +205,7 @@ def build():
 
         # main.yml:13
         sm_visit = smach.Iterator(
-            outcomes=["succeeded"],
+            outcomes=["succeeded", "preempted"],
             it=lambda: sm_visit.userdata["waypoints"],
             it_label="goal",
             exhausted_outcome="exhausted",
@@ -194,13 +222,17 @@ def build():
                     output_keys=["total"],
                 ),
                 loop_outcomes=["succeeded"],
-                final_outcome_map={"exhausted": "succeeded", "succeeded": "succeeded"},
+                final_outcome_map={"exhausted": "succeeded", "succeeded": "preempted"},
             )
 
         smach.StateMachine.add(
             "VISIT",
-            sm_visit,
-            transitions={"succeeded": "HASTE", "exhausted": "HASTE"},
+            ends_preempted(sm_visit),
+            transitions={
+                "succeeded": "HASTE",
+                "preempted": "stopped",
+                "exhausted": "HASTE",
+            },
             remapping={"total": "count"},
         )
 
@@ -223,7 +255,7 @@ def build():
 
         smach.StateMachine.add(
             "HASTE",
-            sm_haste,
+            ends_preempted(sm_haste),
             transitions={
                 "timeout": "TRIES",
                 "succeeded": "failed",
@@ -233,7 +265,7 @@ def build():
 
         # main.yml:27
         sm_tries = smach.Iterator(
-            outcomes=["good", "exhausted"],
+            outcomes=["good", "exhausted", "preempted"],
             it=[1, 2],
             it_label="attempt",
             exhausted_outcome="exhausted",
@@ -253,13 +285,17 @@ def build():
                 "TRIES",
                 sm_tries_2,
                 loop_outcomes=["again"],
-                final_outcome_map={"again": "exhausted"},
+                final_outcome_map={"again": "preempted"},
             )
 
         smach.StateMachine.add(
             "TRIES",
-            sm_tries,
-            transitions={"good": "failed", "exhausted": "WITHOUT"},
+            ends_preempted(sm_tries),
+            transitions={
+                "good": "failed",
+                "exhausted": "WITHOUT",
+                "preempted": "stopped",
+            },
         )
 
         # main.yml:36
@@ -280,7 +316,7 @@ def build():
 
         smach.StateMachine.add(
             "WITHOUT",
-            sm_without,
+            ends_preempted(sm_without),
             transitions={
                 "succeeded": "EACH",
                 "preempted": "stopped",
@@ -321,7 +357,7 @@ def build():
 
             smach.Iterator.set_contained_state(
                 "EACH",
-                sm_each_2,
+                ends_preempted(sm_each_2),
                 loop_outcomes=["exhausted"],
                 final_outcome_map={
                     "exhausted_2": "exhausted",
@@ -331,7 +367,7 @@ def build():
 
         smach.StateMachine.add(
             "EACH",
-            sm_each,
+            ends_preempted(sm_each),
             transitions={
                 "found": "SHOW",
                 "exhausted": "failed",
