@@ -223,8 +223,13 @@ class Concurrence(Container):
     def request_preempt(self) -> None:
         """Request that the running children end early; if none runs, those of the next run."""
         super().request_preempt()
-        if self._branches is not None:
-            self._branches.request()
+        branches = self._branches
+        if branches is None:
+            return
+        if settings.compat or not branches.take_over():
+            branches.request()
+        else:
+            self._preempt(branches)
 
     def _preempt(self, branches: Branches) -> None:
         for label in list(branches.active):
