@@ -383,8 +383,9 @@ def _concurrence(
             break
         if not stopping and (node.join == "any" or isinstance(end, RunFailure)):
             stopping = True
-            for other in live:
-                run.preemption.request(other)
+            if path not in run.preemption.requested:  # else every branch has a request already
+                for other in live:
+                    run.preemption.request(other)
     stopped = node.sugar and path in run.preemption.requested
     run.preemption.after_all(path, children)
     for end in ended.values():

@@ -96,9 +96,10 @@ class Branches:
             return released
 
     def stop(self) -> None:
-        """Add a preempt request of the concurrence itself; only the first one counts."""
+        """Add a preempt request of the concurrence itself; only the first one counts, and none
+        after a request from outside, which has reached all children."""
         with self._changed:
-            self._stopping = True
+            self._stopping = not self.passed_on
             self._changed.notify_all()
 
     def take_request(self) -> bool:

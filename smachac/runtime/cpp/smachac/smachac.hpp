@@ -843,9 +843,13 @@ private:
       const std::lock_guard<std::mutex> hold(stops_[i].lock_);
       stops_[i].ended_ = true;
     }
-    if (ask && !asked_.exchange(true)) {
+    if (ask && !asked_.exchange(true) && !asked_from_outside()) {
       ask_others();
     }
+  }
+  /// Whether every branch has a request already, which came from outside.
+  bool asked_from_outside() const {
+    return stopped_ || around_.stop.requests() != before_;
   }
   void ask_others() {
     for (Stop &each : stops_) {
@@ -859,7 +863,7 @@ private:
     if (around_.stop.branches_ == nullptr) {
       return;
     }
-    stopped_ = stopped_ || around_.stop.requests() != before_;
+    stopped_ = asked_from_outside();
     around_.stop.branches_ = nullptr;
     bool open = false;
     for (std::size_t i = 0; i < N; ++i) {
