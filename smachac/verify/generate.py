@@ -198,9 +198,10 @@ class PathGenerator:
             if path in self.runner.entries:
                 choices, count = self.runner.entries[path]
                 places.append(([choice.taken for choice in choices[:count]], count))
+        most = None if self._most is None else (self.runner.made + self._most) // 2
         for further in ((), (1,), (2,)):
             for prefix, at in places:
-                if not self._within():
+                if not self._within() or self.runner.made == most:
                     return
                 strategy = self._prefix_strategy(prefix, self._to_end)
                 stops = (at, *(at + number for number in further))
