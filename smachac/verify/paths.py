@@ -16,9 +16,9 @@ from smachac.interpreter.interpreter import run
 from smachac.interpreter.result import Event
 from smachac.interpreter.scenario import Scenario, Step, perform_step
 from smachac.interpreter.userdata import Userdata
+from smachac.ir import nodes
 from smachac.ir.expressions import parse_expression
 from smachac.ir.leaf import default_outcome
-from smachac.ir import nodes
 from smachac.ir.nodes import Concurrence, Leaf, Machine, Node, StateMachine
 from smachac.ir.traversal import PREEMPTED, containers, expressions, outcome_names, walk
 from smachac.verify.coverage import Coverage

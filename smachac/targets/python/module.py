@@ -30,6 +30,7 @@ from smachac.targets.python.states import (
     joined,
     lost,
 )
+from smachac.targets.python.structure import loses_requests
 from smachac.targets.templates.engine import BlockError, Blocks
 
 ONE_FUNCTION = {"Program.tpl.py": "Base.tpl.py", "ROSProgram.tpl.py": "ROSBase.tpl.py"}
@@ -57,6 +58,70 @@ CATCHING = '''def error_as_outcome(state, outcome):
 """The function that a module contains if a state catches its exceptions. A trace reads `caught`;
 a scenario replaces `attempted`."""
 
+
+PASSING_ON = '''def withdraw(state):
+    """Take back the unanswered stop requests of a state and of the states inside."""
+    if state.preempt_requested():
+        state.recall_preempt()
+        for child in getattr(state, "get_children", dict)().values():
+            withdraw(child)
+
+
+def stoppable(container):
+    """Let a container pass on every stop request, also an early one and a second one."""
+    if not getattr(smach, "compat", True):  # the bundled runtime does so itself
+        return container
+    run, request, children = container.execute, container.request_preempt, container.get_children
+    concurrent = isinstance(container, smach.Concurrence)
+    container.busy = container.asked = False
+
+    def pass_on():
+        for label in container.get_active_states() or list(children()):
+            child = children().get(label)
+            if hasattr(child, "get_children") or (child and not child.preempt_requested()):
+                child.request_preempt()
+
+    def request_machine():
+        again = container.preempt_requested()
+        request()
+        if again:
+            pass_on()
+
+    def request_preempt():
+        if not container.busy:
+            return request()
+        container.asked = True
+        if not concurrent:
+            smach.State.request_preempt(container)
+        pass_on()
+
+    def execute(*userdata):
+        container.busy, container.asked = True, container.preempt_requested()
+        if container.asked:
+            pass_on()
+        if concurrent:  # SMACH for ROS 1 ends as preempted where it finds its own request answered
+            container.service_preempt()
+        unanswered = True
+        try:
+            outcome = run(*userdata)
+            unanswered = any(child.preempt_requested() for child in children().values())
+            return outcome
+        finally:
+            container.busy = False
+            for child in children().values():
+                withdraw(child)
+            if concurrent and container.asked and unanswered:
+                request()
+
+    if isinstance(container, smach.StateMachine):
+        container.request_preempt = request_machine
+        return container
+    if concurrent and container._child_termination_cb:
+        ends = container._child_termination_cb
+        container._child_termination_cb = lambda ended: not container.asked and ends(ended)
+    container.execute, container.request_preempt = execute, request_preempt
+    return container'''
+"""The functions that a module contains if SMACH does not pass on every request to stop in it."""
 
 STOPPING = '''def ends_preempted(container):
     """Let a time limit or loop end as preempted after a request to stop, whatever its state did."""
@@ -116,6 +181,8 @@ def _text(machine: Machine, context: BuildContext, module: ModuleParts) -> str |
     states = children(inside, module)
     if has_errors(module.faults):
         return None
+    if any(loses_requests(node) for _, node in walk(machine.root)):
+        module.buffers["defs"][PASSING_ON] = None
     if any(ends_preempted(node) for _, node in walk(machine.root)):
         module.buffers["defs"][STOPPING] = None
     if any(node.catches for _, node in walk(machine.root)):

@@ -12,6 +12,7 @@ from smachac.ir.nodes import (
     Container,
     Data,
     Key,
+    Leaf,
     Node,
     Sequence,
     StateMachine,
@@ -33,7 +34,8 @@ from smachac.targets.python.formatter import (
 )
 
 OURS = (
-    *("smach", "build", "main", "error_as_outcome", "with_callbacks", "ends_preempted"),
+    *("smach", "build", "main", "error_as_outcome", "with_callbacks"),
+    *("ends_preempted", "stoppable", "withdraw"),
     *("rospy", "smach_ros", "start_node", "preempt_at_shutdown", "server", "sis"),
 )
 """Names of the module that variables of containers must not have."""
@@ -89,7 +91,19 @@ def construct(node: Container, variable: str, depth: int) -> str:
         if node.join == "any":
             arguments.append(("child_termination_cb=", "lambda outcomes: True"))
     head = f"{variable} = "
-    return head + laid_out(call(f"smach.{kind(node)}", arguments), width(depth), len(head))
+    made = call(f"smach.{kind(node)}", arguments)
+    if loses_requests(node):
+        made = call("stoppable", [("", made)])
+    return head + laid_out(made, width(depth), len(head))
+
+
+def loses_requests(node: Node) -> bool:
+    """Whether SMACH itself does not pass on some requests to stop in a container: one before an
+    Iterator or Concurrence runs, a second one to a container inside (rules P2, P9, P10)."""
+    if isinstance(node, Leaf):
+        return False
+    inside = any(not isinstance(child, Leaf) for child in node.children)
+    return inside or isinstance(node, Concurrence | IteratorNode)
 
 
 def kind(node: Container) -> str:

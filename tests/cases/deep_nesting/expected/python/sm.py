@@ -7,6 +7,70 @@ except ImportError:  # no ROS on this machine: the same names without it
     from smachac.runtime import smach
 
 
+def withdraw(state):
+    """Take back the unanswered stop requests of a state and of the states inside."""
+    if state.preempt_requested():
+        state.recall_preempt()
+        for child in getattr(state, "get_children", dict)().values():
+            withdraw(child)
+
+
+def stoppable(container):
+    """Let a container pass on every stop request, also an early one and a second one."""
+    if not getattr(smach, "compat", True):  # the bundled runtime does so itself
+        return container
+    run, request, children = container.execute, container.request_preempt, container.get_children
+    concurrent = isinstance(container, smach.Concurrence)
+    container.busy = container.asked = False
+
+    def pass_on():
+        for label in container.get_active_states() or list(children()):
+            child = children().get(label)
+            if hasattr(child, "get_children") or (child and not child.preempt_requested()):
+                child.request_preempt()
+
+    def request_machine():
+        again = container.preempt_requested()
+        request()
+        if again:
+            pass_on()
+
+    def request_preempt():
+        if not container.busy:
+            return request()
+        container.asked = True
+        if not concurrent:
+            smach.State.request_preempt(container)
+        pass_on()
+
+    def execute(*userdata):
+        container.busy, container.asked = True, container.preempt_requested()
+        if container.asked:
+            pass_on()
+        if concurrent:  # SMACH for ROS 1 ends as preempted where it finds its own request answered
+            container.service_preempt()
+        unanswered = True
+        try:
+            outcome = run(*userdata)
+            unanswered = any(child.preempt_requested() for child in children().values())
+            return outcome
+        finally:
+            container.busy = False
+            for child in children().values():
+                withdraw(child)
+            if concurrent and container.asked and unanswered:
+                request()
+
+    if isinstance(container, smach.StateMachine):
+        container.request_preempt = request_machine
+        return container
+    if concurrent and container._child_termination_cb:
+        ends = container._child_termination_cb
+        container._child_termination_cb = lambda ended: not container.asked and ends(ended)
+    container.execute, container.request_preempt = execute, request_preempt
+    return container
+
+
 class ScriptedState(smach.State):
     """Ends as it is told: visit n does step n, the last step is repeated.
 
@@ -36,38 +100,42 @@ class ScriptedState(smach.State):
 def build():
     """Build the state machine `sm`."""
     # main.yml:2
-    sm = smach.StateMachine(outcomes=["done"])
+    sm = stoppable(smach.StateMachine(outcomes=["done"]))
     with sm:
         # main.yml:6
-        sm_c0 = smach.StateMachine(outcomes=["done"])
+        sm_c0 = stoppable(smach.StateMachine(outcomes=["done"]))
         with sm_c0:
             # main.yml:10
-            sm_c1 = smach.StateMachine(outcomes=["done"])
+            sm_c1 = stoppable(smach.StateMachine(outcomes=["done"]))
             with sm_c1:
                 # main.yml:14
-                sm_c2 = smach.StateMachine(outcomes=["done"])
+                sm_c2 = stoppable(smach.StateMachine(outcomes=["done"]))
                 with sm_c2:
                     # main.yml:18
-                    sm_c3 = smach.StateMachine(outcomes=["done"])
+                    sm_c3 = stoppable(smach.StateMachine(outcomes=["done"]))
                     with sm_c3:
                         # main.yml:22
-                        sm_c4 = smach.StateMachine(outcomes=["done"])
+                        sm_c4 = stoppable(smach.StateMachine(outcomes=["done"]))
                         with sm_c4:
                             # main.yml:26
-                            sm_c5 = smach.StateMachine(outcomes=["done"])
+                            sm_c5 = stoppable(smach.StateMachine(outcomes=["done"]))
                             with sm_c5:
                                 # main.yml:30
-                                sm_c6 = smach.StateMachine(outcomes=["done"])
+                                sm_c6 = stoppable(smach.StateMachine(outcomes=["done"]))
                                 with sm_c6:
                                     # main.yml:34
-                                    sm_c7 = smach.StateMachine(outcomes=["done"])
+                                    sm_c7 = stoppable(
+                                        smach.StateMachine(outcomes=["done"]),
+                                    )
                                     with sm_c7:
                                         # main.yml:38
-                                        sm_c8 = smach.StateMachine(outcomes=["done"])
+                                        sm_c8 = stoppable(
+                                            smach.StateMachine(outcomes=["done"]),
+                                        )
                                         with sm_c8:
                                             # main.yml:42
-                                            sm_c9 = smach.StateMachine(
-                                                outcomes=["done"],
+                                            sm_c9 = stoppable(
+                                                smach.StateMachine(outcomes=["done"]),
                                             )
                                             with sm_c9:
                                                 smach.StateMachine.add(
@@ -125,28 +193,30 @@ def build():
 def _sm_c21():
     """The container `sm/C0/C1/C2/C3/C4/C5/C6/C7/C8/C9/C10/C11/C12/C13/C14/C15/C16/C17/C18/C19/C20/C21`."""
     # main.yml:90
-    sm_c21 = smach.StateMachine(outcomes=["done"])
+    sm_c21 = stoppable(smach.StateMachine(outcomes=["done"]))
     with sm_c21:
         # main.yml:94
-        sm_c22 = smach.StateMachine(outcomes=["done"])
+        sm_c22 = stoppable(smach.StateMachine(outcomes=["done"]))
         with sm_c22:
             # main.yml:98
-            sm_c23 = smach.StateMachine(outcomes=["done"])
+            sm_c23 = stoppable(smach.StateMachine(outcomes=["done"]))
             with sm_c23:
                 # main.yml:102
-                sm_c24 = smach.StateMachine(outcomes=["done"])
+                sm_c24 = stoppable(smach.StateMachine(outcomes=["done"]))
                 with sm_c24:
                     # main.yml:106
-                    sm_c25 = smach.StateMachine(outcomes=["done"])
+                    sm_c25 = stoppable(smach.StateMachine(outcomes=["done"]))
                     with sm_c25:
                         # main.yml:110
-                        sm_c26 = smach.StateMachine(outcomes=["done"])
+                        sm_c26 = stoppable(smach.StateMachine(outcomes=["done"]))
                         with sm_c26:
                             # main.yml:114
-                            sm_c27 = smach.StateMachine(outcomes=["done"])
+                            sm_c27 = stoppable(smach.StateMachine(outcomes=["done"]))
                             with sm_c27:
                                 # main.yml:118
-                                sm_c28 = smach.StateMachine(outcomes=["done"])
+                                sm_c28 = stoppable(
+                                    smach.StateMachine(outcomes=["done"]),
+                                )
                                 with sm_c28:
                                     # main.yml:122
                                     sm_c29 = smach.StateMachine(outcomes=["done"])
@@ -195,38 +265,44 @@ def _sm_c21():
 def _sm_c10():
     """The container `sm/C0/C1/C2/C3/C4/C5/C6/C7/C8/C9/C10`."""
     # main.yml:46
-    sm_c10 = smach.StateMachine(outcomes=["done"])
+    sm_c10 = stoppable(smach.StateMachine(outcomes=["done"]))
     with sm_c10:
         # main.yml:50
-        sm_c11 = smach.StateMachine(outcomes=["done"])
+        sm_c11 = stoppable(smach.StateMachine(outcomes=["done"]))
         with sm_c11:
             # main.yml:54
-            sm_c12 = smach.StateMachine(outcomes=["done"])
+            sm_c12 = stoppable(smach.StateMachine(outcomes=["done"]))
             with sm_c12:
                 # main.yml:58
-                sm_c13 = smach.StateMachine(outcomes=["done"])
+                sm_c13 = stoppable(smach.StateMachine(outcomes=["done"]))
                 with sm_c13:
                     # main.yml:62
-                    sm_c14 = smach.StateMachine(outcomes=["done"])
+                    sm_c14 = stoppable(smach.StateMachine(outcomes=["done"]))
                     with sm_c14:
                         # main.yml:66
-                        sm_c15 = smach.StateMachine(outcomes=["done"])
+                        sm_c15 = stoppable(smach.StateMachine(outcomes=["done"]))
                         with sm_c15:
                             # main.yml:70
-                            sm_c16 = smach.StateMachine(outcomes=["done"])
+                            sm_c16 = stoppable(smach.StateMachine(outcomes=["done"]))
                             with sm_c16:
                                 # main.yml:74
-                                sm_c17 = smach.StateMachine(outcomes=["done"])
+                                sm_c17 = stoppable(
+                                    smach.StateMachine(outcomes=["done"]),
+                                )
                                 with sm_c17:
                                     # main.yml:78
-                                    sm_c18 = smach.StateMachine(outcomes=["done"])
+                                    sm_c18 = stoppable(
+                                        smach.StateMachine(outcomes=["done"]),
+                                    )
                                     with sm_c18:
                                         # main.yml:82
-                                        sm_c19 = smach.StateMachine(outcomes=["done"])
+                                        sm_c19 = stoppable(
+                                            smach.StateMachine(outcomes=["done"]),
+                                        )
                                         with sm_c19:
                                             # main.yml:86
-                                            sm_c20 = smach.StateMachine(
-                                                outcomes=["done"],
+                                            sm_c20 = stoppable(
+                                                smach.StateMachine(outcomes=["done"]),
                                             )
                                             with sm_c20:
                                                 smach.StateMachine.add(

@@ -10,6 +10,70 @@ except ImportError:  # no ROS on this machine: the same names without it
     from smachac.runtime import smach
 
 
+def withdraw(state):
+    """Take back the unanswered stop requests of a state and of the states inside."""
+    if state.preempt_requested():
+        state.recall_preempt()
+        for child in getattr(state, "get_children", dict)().values():
+            withdraw(child)
+
+
+def stoppable(container):
+    """Let a container pass on every stop request, also an early one and a second one."""
+    if not getattr(smach, "compat", True):  # the bundled runtime does so itself
+        return container
+    run, request, children = container.execute, container.request_preempt, container.get_children
+    concurrent = isinstance(container, smach.Concurrence)
+    container.busy = container.asked = False
+
+    def pass_on():
+        for label in container.get_active_states() or list(children()):
+            child = children().get(label)
+            if hasattr(child, "get_children") or (child and not child.preempt_requested()):
+                child.request_preempt()
+
+    def request_machine():
+        again = container.preempt_requested()
+        request()
+        if again:
+            pass_on()
+
+    def request_preempt():
+        if not container.busy:
+            return request()
+        container.asked = True
+        if not concurrent:
+            smach.State.request_preempt(container)
+        pass_on()
+
+    def execute(*userdata):
+        container.busy, container.asked = True, container.preempt_requested()
+        if container.asked:
+            pass_on()
+        if concurrent:  # SMACH for ROS 1 ends as preempted where it finds its own request answered
+            container.service_preempt()
+        unanswered = True
+        try:
+            outcome = run(*userdata)
+            unanswered = any(child.preempt_requested() for child in children().values())
+            return outcome
+        finally:
+            container.busy = False
+            for child in children().values():
+                withdraw(child)
+            if concurrent and container.asked and unanswered:
+                request()
+
+    if isinstance(container, smach.StateMachine):
+        container.request_preempt = request_machine
+        return container
+    if concurrent and container._child_termination_cb:
+        ends = container._child_termination_cb
+        container._child_termination_cb = lambda ended: not container.asked and ends(ended)
+    container.execute, container.request_preempt = execute, request_preempt
+    return container
+
+
 def ends_preempted(container):
     """Let a time limit or loop end as preempted after a request to stop, whatever its state did."""
     run, request, recall = container.execute, container.request_preempt, container.recall_preempt
@@ -156,7 +220,7 @@ class SleepState(smach.State):
 def build():
     """Build the state machine `fetch`."""
     # main.yml:2
-    fetch = smach.StateMachine(outcomes=["succeeded", "aborted"])
+    fetch = stoppable(smach.StateMachine(outcomes=["succeeded", "aborted"]))
     fetch.userdata.n = 0
     fetch.userdata.parts = [1, 2]
     with fetch:
@@ -206,13 +270,15 @@ def build():
         )
 
         # main.yml:28
-        sm_carry = smach.Iterator(
-            outcomes=["succeeded", "exhausted", "preempted", "error"],
-            it=[1, 2, 3],
-            it_label="attempt",
-            exhausted_outcome="exhausted",
-            input_keys=["n"],
-            output_keys=["width"],
+        sm_carry = stoppable(
+            smach.Iterator(
+                outcomes=["succeeded", "exhausted", "preempted", "error"],
+                it=[1, 2, 3],
+                it_label="attempt",
+                exhausted_outcome="exhausted",
+                input_keys=["n"],
+                output_keys=["width"],
+            ),
         )
         with sm_carry:
             # main.yml:28
@@ -242,11 +308,13 @@ def build():
         )
 
         # main.yml:35
-        sm_both = smach.Concurrence(
-            outcomes=["succeeded", "failed", "error"],
-            default_outcome="succeeded",
-            input_keys=["n"],
-            outcome_map={"failed": {"LEFT": "error"}},
+        sm_both = stoppable(
+            smach.Concurrence(
+                outcomes=["succeeded", "failed", "error"],
+                default_outcome="succeeded",
+                input_keys=["n"],
+                outcome_map={"failed": {"LEFT": "error"}},
+            ),
         )
         with sm_both:
             # main.yml:43
@@ -273,12 +341,14 @@ def build():
         )
 
         # main.yml:50
-        sm_each = smach.Iterator(
-            outcomes=["succeeded", "error"],
-            it=lambda: sm_each.userdata["parts"],
-            it_label="part",
-            exhausted_outcome="succeeded",
-            input_keys=["parts"],
+        sm_each = stoppable(
+            smach.Iterator(
+                outcomes=["succeeded", "error"],
+                it=lambda: sm_each.userdata["parts"],
+                it_label="part",
+                exhausted_outcome="succeeded",
+                input_keys=["parts"],
+            ),
         )
         with sm_each:
             # main.yml:60

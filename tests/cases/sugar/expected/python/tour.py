@@ -9,6 +9,70 @@ except ImportError:  # no ROS on this machine: the same names without it
     from smachac.runtime import smach
 
 
+def withdraw(state):
+    """Take back the unanswered stop requests of a state and of the states inside."""
+    if state.preempt_requested():
+        state.recall_preempt()
+        for child in getattr(state, "get_children", dict)().values():
+            withdraw(child)
+
+
+def stoppable(container):
+    """Let a container pass on every stop request, also an early one and a second one."""
+    if not getattr(smach, "compat", True):  # the bundled runtime does so itself
+        return container
+    run, request, children = container.execute, container.request_preempt, container.get_children
+    concurrent = isinstance(container, smach.Concurrence)
+    container.busy = container.asked = False
+
+    def pass_on():
+        for label in container.get_active_states() or list(children()):
+            child = children().get(label)
+            if hasattr(child, "get_children") or (child and not child.preempt_requested()):
+                child.request_preempt()
+
+    def request_machine():
+        again = container.preempt_requested()
+        request()
+        if again:
+            pass_on()
+
+    def request_preempt():
+        if not container.busy:
+            return request()
+        container.asked = True
+        if not concurrent:
+            smach.State.request_preempt(container)
+        pass_on()
+
+    def execute(*userdata):
+        container.busy, container.asked = True, container.preempt_requested()
+        if container.asked:
+            pass_on()
+        if concurrent:  # SMACH for ROS 1 ends as preempted where it finds its own request answered
+            container.service_preempt()
+        unanswered = True
+        try:
+            outcome = run(*userdata)
+            unanswered = any(child.preempt_requested() for child in children().values())
+            return outcome
+        finally:
+            container.busy = False
+            for child in children().values():
+                withdraw(child)
+            if concurrent and container.asked and unanswered:
+                request()
+
+    if isinstance(container, smach.StateMachine):
+        container.request_preempt = request_machine
+        return container
+    if concurrent and container._child_termination_cb:
+        ends = container._child_termination_cb
+        container._child_termination_cb = lambda ended: not container.asked and ends(ended)
+    container.execute, container.request_preempt = execute, request_preempt
+    return container
+
+
 def ends_preempted(container):
     """Let a time limit or loop end as preempted after a request to stop, whatever its state did."""
     run, request, recall = container.execute, container.request_preempt, container.recall_preempt
@@ -126,22 +190,26 @@ class PrintUserdataState(smach.State):
 def build():
     """Build the state machine `tour`."""
     # main.yml:1
-    tour = smach.StateMachine(outcomes=["done", "failed", "stopped"])
+    tour = stoppable(smach.StateMachine(outcomes=["done", "failed", "stopped"]))
     tour.userdata.waypoints = [1, 2, 3]
     tour.userdata.count = 0
     with tour:
         # main.yml:6
-        sm_look = smach.Iterator(
-            outcomes=["succeeded", "preempted", "exhausted"],
-            it=[0.0, 0.1, 0.1],
-            it_label="pause",
-            exhausted_outcome="exhausted",
+        sm_look = stoppable(
+            smach.Iterator(
+                outcomes=["succeeded", "preempted", "exhausted"],
+                it=[0.0, 0.1, 0.1],
+                it_label="pause",
+                exhausted_outcome="exhausted",
+            ),
         )
         with sm_look:
             # main.yml:6
-            sm_try = smach.StateMachine(
-                outcomes=["succeeded", "aborted", "preempted", "timeout"],
-                input_keys=["pause"],
+            sm_try = stoppable(
+                smach.StateMachine(
+                    outcomes=["succeeded", "aborted", "preempted", "timeout"],
+                    input_keys=["pause"],
+                ),
             )
             with sm_try:
                 # main.yml:6
@@ -152,15 +220,17 @@ def build():
                 )
 
                 # main.yml:6
-                sm_look_2 = smach.Concurrence(
-                    outcomes=["succeeded", "aborted", "preempted", "timeout"],
-                    default_outcome="timeout",
-                    outcome_map={
-                        "succeeded": {"LOOK": "succeeded", "TIMER": "preempted"},
-                        "aborted": {"LOOK": "aborted", "TIMER": "preempted"},
-                        "preempted": {"LOOK": "preempted", "TIMER": "preempted"},
-                    },
-                    child_termination_cb=lambda outcomes: True,
+                sm_look_2 = stoppable(
+                    smach.Concurrence(
+                        outcomes=["succeeded", "aborted", "preempted", "timeout"],
+                        default_outcome="timeout",
+                        outcome_map={
+                            "succeeded": {"LOOK": "succeeded", "TIMER": "preempted"},
+                            "aborted": {"LOOK": "aborted", "TIMER": "preempted"},
+                            "preempted": {"LOOK": "preempted", "TIMER": "preempted"},
+                        },
+                        child_termination_cb=lambda outcomes: True,
+                    ),
                 )
                 with sm_look_2:
                     # main.yml:6
@@ -204,13 +274,15 @@ def build():
         )
 
         # main.yml:13
-        sm_visit = smach.Iterator(
-            outcomes=["succeeded", "preempted"],
-            it=lambda: sm_visit.userdata["waypoints"],
-            it_label="goal",
-            exhausted_outcome="exhausted",
-            input_keys=["total", "waypoints"],
-            output_keys=["total"],
+        sm_visit = stoppable(
+            smach.Iterator(
+                outcomes=["succeeded", "preempted"],
+                it=lambda: sm_visit.userdata["waypoints"],
+                it_label="goal",
+                exhausted_outcome="exhausted",
+                input_keys=["total", "waypoints"],
+                output_keys=["total"],
+            ),
         )
         with sm_visit:
             # main.yml:13
@@ -237,14 +309,16 @@ def build():
         )
 
         # main.yml:21
-        sm_haste = smach.Concurrence(
-            outcomes=["succeeded", "preempted", "timeout"],
-            default_outcome="timeout",
-            outcome_map={
-                "succeeded": {"HASTE": "succeeded", "TIMER": "preempted"},
-                "preempted": {"HASTE": "preempted", "TIMER": "preempted"},
-            },
-            child_termination_cb=lambda outcomes: True,
+        sm_haste = stoppable(
+            smach.Concurrence(
+                outcomes=["succeeded", "preempted", "timeout"],
+                default_outcome="timeout",
+                outcome_map={
+                    "succeeded": {"HASTE": "succeeded", "TIMER": "preempted"},
+                    "preempted": {"HASTE": "preempted", "TIMER": "preempted"},
+                },
+                child_termination_cb=lambda outcomes: True,
+            ),
         )
         with sm_haste:
             # main.yml:21
@@ -264,11 +338,13 @@ def build():
         )
 
         # main.yml:27
-        sm_tries = smach.Iterator(
-            outcomes=["good", "exhausted", "preempted"],
-            it=[1, 2],
-            it_label="attempt",
-            exhausted_outcome="exhausted",
+        sm_tries = stoppable(
+            smach.Iterator(
+                outcomes=["good", "exhausted", "preempted"],
+                it=[1, 2],
+                it_label="attempt",
+                exhausted_outcome="exhausted",
+            ),
         )
         with sm_tries:
             # main.yml:27
@@ -299,11 +375,13 @@ def build():
         )
 
         # main.yml:36
-        sm_without = smach.Iterator(
-            outcomes=["succeeded", "preempted"],
-            it=[],
-            it_label="unused",
-            exhausted_outcome="exhausted",
+        sm_without = stoppable(
+            smach.Iterator(
+                outcomes=["succeeded", "preempted"],
+                it=[],
+                it_label="unused",
+                exhausted_outcome="exhausted",
+            ),
         )
         with sm_without:
             # main.yml:36
@@ -325,19 +403,23 @@ def build():
         )
 
         # main.yml:41
-        sm_each = smach.Iterator(
-            outcomes=["found", "preempted", "exhausted"],
-            it=["a", "b"],
-            it_label="unused",
-            exhausted_outcome="exhausted_2",
+        sm_each = stoppable(
+            smach.Iterator(
+                outcomes=["found", "preempted", "exhausted"],
+                it=["a", "b"],
+                it_label="unused",
+                exhausted_outcome="exhausted_2",
+            ),
         )
         with sm_each:
             # main.yml:41
-            sm_each_2 = smach.Iterator(
-                outcomes=["found", "preempted", "exhausted"],
-                it=[1, 2],
-                it_label="attempt",
-                exhausted_outcome="exhausted",
+            sm_each_2 = stoppable(
+                smach.Iterator(
+                    outcomes=["found", "preempted", "exhausted"],
+                    it=[1, 2],
+                    it_label="attempt",
+                    exhausted_outcome="exhausted",
+                ),
             )
             with sm_each_2:
                 # main.yml:41
