@@ -208,7 +208,7 @@ def test_generated_code_does_what_smach_did(name: str, runtime: str) -> None:
 def test_both_deviate_as_stated(name: str) -> None:
     case = CASES[name]
     why, instead = DEVIATIONS[name]
-    assert {"quirk", "hang"} & set(case["tags"])
+    assert {"quirk", "hang", "preempt"} & set(case["tags"])
     generated = expected(case, generated_vectors.replay(case))
     replayed = replay(case)
     assert [(run["outcome"], run["category"]) for run in replayed] == instead, why

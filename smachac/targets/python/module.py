@@ -30,7 +30,7 @@ from smachac.targets.python.states import (
     joined,
     lost,
 )
-from smachac.targets.python.structure import loses_requests
+from smachac.targets.python.structure import stoppable
 from smachac.targets.templates.engine import BlockError, Blocks
 
 ONE_FUNCTION = {"Program.tpl.py": "Base.tpl.py", "ROSProgram.tpl.py": "ROSBase.tpl.py"}
@@ -81,12 +81,6 @@ def stoppable(container):
             if hasattr(child, "get_children") or (child and not child.preempt_requested()):
                 child.request_preempt()
 
-    def request_machine():
-        again = container.preempt_requested()
-        request()
-        if again:
-            pass_on()
-
     def request_preempt():
         if not container.busy:
             return request()
@@ -113,15 +107,29 @@ def stoppable(container):
             if concurrent and container.asked and unanswered:
                 request()
 
-    if isinstance(container, smach.StateMachine):
-        container.request_preempt = request_machine
-        return container
     if concurrent and container._child_termination_cb:
         ends = container._child_termination_cb
         container._child_termination_cb = lambda ended: not container.asked and ends(ended)
     container.execute, container.request_preempt = execute, request_preempt
     return container'''
-"""The functions that a module contains if SMACH does not pass on every request to stop in it."""
+"""The functions that a module contains if it has Iterators or Concurrences: SMACH itself does not
+pass on a request to stop that comes before they run (rules P9, P10)."""
+
+SECOND_REQUEST = '''def stoppable_again(machine):
+    """Let a machine pass on a second stop request while the same container in it runs."""
+    request, children = machine.request_preempt, machine.get_children
+
+    def request_preempt():
+        again = machine.preempt_requested() and getattr(smach, "compat", True)
+        request()
+        for label in machine.get_active_states() if again else ():
+            if hasattr(children().get(label), "get_children"):
+                children()[label].request_preempt()
+
+    machine.request_preempt = request_preempt
+    return machine'''
+"""The function that a module contains if a machine has a container in it: SMACH itself does not
+pass on a second request (rule P2)."""
 
 STOPPING = '''def ends_preempted(container):
     """Let a time limit or loop end as preempted after a request to stop, whatever its state did."""
@@ -181,8 +189,10 @@ def _text(machine: Machine, context: BuildContext, module: ModuleParts) -> str |
     states = children(inside, module)
     if has_errors(module.faults):
         return None
-    if any(loses_requests(node) for _, node in walk(machine.root)):
-        module.buffers["defs"][PASSING_ON] = None
+    wrappers = {stoppable(node) for _, node in walk(machine.root)}
+    for wrapper, text in (("stoppable", PASSING_ON), ("stoppable_again", SECOND_REQUEST)):
+        if wrapper in wrappers:
+            module.buffers["defs"][text] = None
     if any(ends_preempted(node) for _, node in walk(machine.root)):
         module.buffers["defs"][STOPPING] = None
     if any(node.catches for _, node in walk(machine.root)):

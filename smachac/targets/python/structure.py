@@ -35,7 +35,7 @@ from smachac.targets.python.formatter import (
 
 OURS = (
     *("smach", "build", "main", "error_as_outcome", "with_callbacks"),
-    *("ends_preempted", "stoppable", "withdraw"),
+    *("ends_preempted", "stoppable", "stoppable_again", "withdraw"),
     *("rospy", "smach_ros", "start_node", "preempt_at_shutdown", "server", "sis"),
 )
 """Names of the module that variables of containers must not have."""
@@ -92,18 +92,19 @@ def construct(node: Container, variable: str, depth: int) -> str:
             arguments.append(("child_termination_cb=", "lambda outcomes: True"))
     head = f"{variable} = "
     made = call(f"smach.{kind(node)}", arguments)
-    if loses_requests(node):
-        made = call("stoppable", [("", made)])
+    if wrapper := stoppable(node):
+        made = call(wrapper, [("", made)])
     return head + laid_out(made, width(depth), len(head))
 
 
-def loses_requests(node: Node) -> bool:
-    """Whether SMACH itself does not pass on some requests to stop in a container: one before an
-    Iterator or Concurrence runs, a second one to a container inside (rules P2, P9, P10)."""
-    if isinstance(node, Leaf):
-        return False
-    inside = any(not isinstance(child, Leaf) for child in node.children)
-    return inside or isinstance(node, Concurrence | IteratorNode)
+def stoppable(node: Node) -> str:
+    """The function of the module that lets a container pass on the requests to stop that SMACH
+    itself does not pass on; empty where it passes on all."""
+    if isinstance(node, Concurrence | IteratorNode):
+        return "stoppable"
+    if isinstance(node, Leaf) or all(isinstance(child, Leaf) for child in node.children):
+        return ""
+    return "stoppable_again"
 
 
 def kind(node: Container) -> str:

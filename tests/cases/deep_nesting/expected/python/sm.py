@@ -7,68 +7,19 @@ except ImportError:  # no ROS on this machine: the same names without it
     from smachac.runtime import smach
 
 
-def withdraw(state):
-    """Take back the unanswered stop requests of a state and of the states inside."""
-    if state.preempt_requested():
-        state.recall_preempt()
-        for child in getattr(state, "get_children", dict)().values():
-            withdraw(child)
-
-
-def stoppable(container):
-    """Let a container pass on every stop request, also an early one and a second one."""
-    if not getattr(smach, "compat", True):  # the bundled runtime does so itself
-        return container
-    run, request, children = container.execute, container.request_preempt, container.get_children
-    concurrent = isinstance(container, smach.Concurrence)
-    container.busy = container.asked = False
-
-    def pass_on():
-        for label in container.get_active_states() or list(children()):
-            child = children().get(label)
-            if hasattr(child, "get_children") or (child and not child.preempt_requested()):
-                child.request_preempt()
-
-    def request_machine():
-        again = container.preempt_requested()
-        request()
-        if again:
-            pass_on()
+def stoppable_again(machine):
+    """Let a machine pass on a second stop request while the same container in it runs."""
+    request, children = machine.request_preempt, machine.get_children
 
     def request_preempt():
-        if not container.busy:
-            return request()
-        container.asked = True
-        if not concurrent:
-            smach.State.request_preempt(container)
-        pass_on()
+        again = machine.preempt_requested() and getattr(smach, "compat", True)
+        request()
+        for label in machine.get_active_states() if again else ():
+            if hasattr(children().get(label), "get_children"):
+                children()[label].request_preempt()
 
-    def execute(*userdata):
-        container.busy, container.asked = True, container.preempt_requested()
-        if container.asked:
-            pass_on()
-        if concurrent:  # SMACH for ROS 1 ends as preempted where it finds its own request answered
-            container.service_preempt()
-        unanswered = True
-        try:
-            outcome = run(*userdata)
-            unanswered = any(child.preempt_requested() for child in children().values())
-            return outcome
-        finally:
-            container.busy = False
-            for child in children().values():
-                withdraw(child)
-            if concurrent and container.asked and unanswered:
-                request()
-
-    if isinstance(container, smach.StateMachine):
-        container.request_preempt = request_machine
-        return container
-    if concurrent and container._child_termination_cb:
-        ends = container._child_termination_cb
-        container._child_termination_cb = lambda ended: not container.asked and ends(ended)
-    container.execute, container.request_preempt = execute, request_preempt
-    return container
+    machine.request_preempt = request_preempt
+    return machine
 
 
 class ScriptedState(smach.State):
@@ -100,41 +51,45 @@ class ScriptedState(smach.State):
 def build():
     """Build the state machine `sm`."""
     # main.yml:2
-    sm = stoppable(smach.StateMachine(outcomes=["done"]))
+    sm = stoppable_again(smach.StateMachine(outcomes=["done"]))
     with sm:
         # main.yml:6
-        sm_c0 = stoppable(smach.StateMachine(outcomes=["done"]))
+        sm_c0 = stoppable_again(smach.StateMachine(outcomes=["done"]))
         with sm_c0:
             # main.yml:10
-            sm_c1 = stoppable(smach.StateMachine(outcomes=["done"]))
+            sm_c1 = stoppable_again(smach.StateMachine(outcomes=["done"]))
             with sm_c1:
                 # main.yml:14
-                sm_c2 = stoppable(smach.StateMachine(outcomes=["done"]))
+                sm_c2 = stoppable_again(smach.StateMachine(outcomes=["done"]))
                 with sm_c2:
                     # main.yml:18
-                    sm_c3 = stoppable(smach.StateMachine(outcomes=["done"]))
+                    sm_c3 = stoppable_again(smach.StateMachine(outcomes=["done"]))
                     with sm_c3:
                         # main.yml:22
-                        sm_c4 = stoppable(smach.StateMachine(outcomes=["done"]))
+                        sm_c4 = stoppable_again(smach.StateMachine(outcomes=["done"]))
                         with sm_c4:
                             # main.yml:26
-                            sm_c5 = stoppable(smach.StateMachine(outcomes=["done"]))
+                            sm_c5 = stoppable_again(
+                                smach.StateMachine(outcomes=["done"]),
+                            )
                             with sm_c5:
                                 # main.yml:30
-                                sm_c6 = stoppable(smach.StateMachine(outcomes=["done"]))
+                                sm_c6 = stoppable_again(
+                                    smach.StateMachine(outcomes=["done"]),
+                                )
                                 with sm_c6:
                                     # main.yml:34
-                                    sm_c7 = stoppable(
+                                    sm_c7 = stoppable_again(
                                         smach.StateMachine(outcomes=["done"]),
                                     )
                                     with sm_c7:
                                         # main.yml:38
-                                        sm_c8 = stoppable(
+                                        sm_c8 = stoppable_again(
                                             smach.StateMachine(outcomes=["done"]),
                                         )
                                         with sm_c8:
                                             # main.yml:42
-                                            sm_c9 = stoppable(
+                                            sm_c9 = stoppable_again(
                                                 smach.StateMachine(outcomes=["done"]),
                                             )
                                             with sm_c9:
@@ -193,28 +148,30 @@ def build():
 def _sm_c21():
     """The container `sm/C0/C1/C2/C3/C4/C5/C6/C7/C8/C9/C10/C11/C12/C13/C14/C15/C16/C17/C18/C19/C20/C21`."""
     # main.yml:90
-    sm_c21 = stoppable(smach.StateMachine(outcomes=["done"]))
+    sm_c21 = stoppable_again(smach.StateMachine(outcomes=["done"]))
     with sm_c21:
         # main.yml:94
-        sm_c22 = stoppable(smach.StateMachine(outcomes=["done"]))
+        sm_c22 = stoppable_again(smach.StateMachine(outcomes=["done"]))
         with sm_c22:
             # main.yml:98
-            sm_c23 = stoppable(smach.StateMachine(outcomes=["done"]))
+            sm_c23 = stoppable_again(smach.StateMachine(outcomes=["done"]))
             with sm_c23:
                 # main.yml:102
-                sm_c24 = stoppable(smach.StateMachine(outcomes=["done"]))
+                sm_c24 = stoppable_again(smach.StateMachine(outcomes=["done"]))
                 with sm_c24:
                     # main.yml:106
-                    sm_c25 = stoppable(smach.StateMachine(outcomes=["done"]))
+                    sm_c25 = stoppable_again(smach.StateMachine(outcomes=["done"]))
                     with sm_c25:
                         # main.yml:110
-                        sm_c26 = stoppable(smach.StateMachine(outcomes=["done"]))
+                        sm_c26 = stoppable_again(smach.StateMachine(outcomes=["done"]))
                         with sm_c26:
                             # main.yml:114
-                            sm_c27 = stoppable(smach.StateMachine(outcomes=["done"]))
+                            sm_c27 = stoppable_again(
+                                smach.StateMachine(outcomes=["done"]),
+                            )
                             with sm_c27:
                                 # main.yml:118
-                                sm_c28 = stoppable(
+                                sm_c28 = stoppable_again(
                                     smach.StateMachine(outcomes=["done"]),
                                 )
                                 with sm_c28:
@@ -265,43 +222,45 @@ def _sm_c21():
 def _sm_c10():
     """The container `sm/C0/C1/C2/C3/C4/C5/C6/C7/C8/C9/C10`."""
     # main.yml:46
-    sm_c10 = stoppable(smach.StateMachine(outcomes=["done"]))
+    sm_c10 = stoppable_again(smach.StateMachine(outcomes=["done"]))
     with sm_c10:
         # main.yml:50
-        sm_c11 = stoppable(smach.StateMachine(outcomes=["done"]))
+        sm_c11 = stoppable_again(smach.StateMachine(outcomes=["done"]))
         with sm_c11:
             # main.yml:54
-            sm_c12 = stoppable(smach.StateMachine(outcomes=["done"]))
+            sm_c12 = stoppable_again(smach.StateMachine(outcomes=["done"]))
             with sm_c12:
                 # main.yml:58
-                sm_c13 = stoppable(smach.StateMachine(outcomes=["done"]))
+                sm_c13 = stoppable_again(smach.StateMachine(outcomes=["done"]))
                 with sm_c13:
                     # main.yml:62
-                    sm_c14 = stoppable(smach.StateMachine(outcomes=["done"]))
+                    sm_c14 = stoppable_again(smach.StateMachine(outcomes=["done"]))
                     with sm_c14:
                         # main.yml:66
-                        sm_c15 = stoppable(smach.StateMachine(outcomes=["done"]))
+                        sm_c15 = stoppable_again(smach.StateMachine(outcomes=["done"]))
                         with sm_c15:
                             # main.yml:70
-                            sm_c16 = stoppable(smach.StateMachine(outcomes=["done"]))
+                            sm_c16 = stoppable_again(
+                                smach.StateMachine(outcomes=["done"]),
+                            )
                             with sm_c16:
                                 # main.yml:74
-                                sm_c17 = stoppable(
+                                sm_c17 = stoppable_again(
                                     smach.StateMachine(outcomes=["done"]),
                                 )
                                 with sm_c17:
                                     # main.yml:78
-                                    sm_c18 = stoppable(
+                                    sm_c18 = stoppable_again(
                                         smach.StateMachine(outcomes=["done"]),
                                     )
                                     with sm_c18:
                                         # main.yml:82
-                                        sm_c19 = stoppable(
+                                        sm_c19 = stoppable_again(
                                             smach.StateMachine(outcomes=["done"]),
                                         )
                                         with sm_c19:
                                             # main.yml:86
-                                            sm_c20 = stoppable(
+                                            sm_c20 = stoppable_again(
                                                 smach.StateMachine(outcomes=["done"]),
                                             )
                                             with sm_c20:

@@ -31,12 +31,6 @@ def stoppable(container):
             if hasattr(child, "get_children") or (child and not child.preempt_requested()):
                 child.request_preempt()
 
-    def request_machine():
-        again = container.preempt_requested()
-        request()
-        if again:
-            pass_on()
-
     def request_preempt():
         if not container.busy:
             return request()
@@ -63,14 +57,26 @@ def stoppable(container):
             if concurrent and container.asked and unanswered:
                 request()
 
-    if isinstance(container, smach.StateMachine):
-        container.request_preempt = request_machine
-        return container
     if concurrent and container._child_termination_cb:
         ends = container._child_termination_cb
         container._child_termination_cb = lambda ended: not container.asked and ends(ended)
     container.execute, container.request_preempt = execute, request_preempt
     return container
+
+
+def stoppable_again(machine):
+    """Let a machine pass on a second stop request while the same container in it runs."""
+    request, children = machine.request_preempt, machine.get_children
+
+    def request_preempt():
+        again = machine.preempt_requested() and getattr(smach, "compat", True)
+        request()
+        for label in machine.get_active_states() if again else ():
+            if hasattr(children().get(label), "get_children"):
+                children()[label].request_preempt()
+
+    machine.request_preempt = request_preempt
+    return machine
 
 
 class ScriptedState(smach.State):
@@ -126,7 +132,7 @@ class SleepState(smach.State):
 def build():
     """Build the state machine `prepare`."""
     # main.yml:2
-    prepare = stoppable(smach.StateMachine(outcomes=["succeeded", "aborted"]))
+    prepare = stoppable_again(smach.StateMachine(outcomes=["succeeded", "aborted"]))
     with prepare:
         # main.yml:7
         sm_find_and_warm_up = stoppable(
