@@ -163,8 +163,8 @@ def _unhandled(path: str, container: Linear, child: Node, outcome: Outcome) -> F
     # The file of an interface may have another place on another machine, so it is not shown.
     inside = outcome.span.source is child.span.source
     why = ""
-    if isinstance(child, Concurrence | nodes.Iterator) and child.sugar:
-        why = f"after a stop request `{child.sugar}` ends with it: " if outcome.name == PREEMPTED else ""
+    if outcome.name == PREEMPTED and isinstance(child, Concurrence | nodes.Iterator):
+        why = f"after a stop request `{child.sugar}` ends with it: " if child.sugar else ""
     return Finding(
         span=child.span,
         message=f"outcome `{outcome.name}` of `{child.name}` has no transition, and"

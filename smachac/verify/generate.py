@@ -194,9 +194,9 @@ class PathGenerator:
         """Paths with a request to stop before the start, or as each leaf is first entered; then the
         same with a second request at the next choice."""
         places: list[tuple[list[str | None], int]] = [([], START)]
-        for path in self.runner.leaves[:MOST_STOPPED]:
-            if path in self.runner.entries:
-                choices, count = self.runner.entries[path]
+        for leaf in self.runner.leaves[:MOST_STOPPED]:
+            if leaf in self.runner.entries:
+                choices, count = self.runner.entries[leaf]
                 places.append(([choice.taken for choice in choices[:count]], count))
         most = None if self._most is None else (self.runner.made + self._most) // 2
         for further in ((), (1,), (2,)):

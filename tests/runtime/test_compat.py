@@ -144,11 +144,15 @@ def test_p9_a_request_before_the_run_does_not_reach_the_first_item() -> None:
 
 
 def test_p7_an_unanswered_request_in_an_iterator_stays() -> None:
-    leaf = Leaf()
-    leaf.act = lambda ud: (loop.request_preempt() if len(leaf.flags) == 1 else None) or "done"
-    loop = iterator(leaf, [1, 2])
-    loop.execute()
-    loop.execute()
+    def act(ud: Any) -> str:
+        if len(leaf.flags) == 1:
+            loops[0].request_preempt()
+        return "done"
+
+    leaf = Leaf(act)
+    loops = [iterator(leaf, [1, 2])]
+    loops[0].execute()
+    loops[0].execute()
     assert leaf.flags == [False, True, True]
 
 
