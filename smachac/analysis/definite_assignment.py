@@ -35,7 +35,7 @@ from smachac.analysis.fixpoint import (
 from smachac.ir import nodes
 from smachac.ir.graph import START, Vertex, edges, exit_vertex, stopped_endings
 from smachac.ir.nodes import Concurrence, Container, Expression, Leaf, Machine, Node, OutcomeRule
-from smachac.ir.traversal import containers, outcome_names, remapping
+from smachac.ir.traversal import PREEMPTED, containers, ends_preempted, outcome_names, remapping
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -290,6 +290,8 @@ def joined(
     exact = len(container.rules) * len(base.perhaps) <= MOST_WORK
     ways = [(rule.outcome, _given(every, rule)) for rule in container.rules]
     ways.append((container.default_outcome, _otherwise(every, container.rules)))
+    if ends_preempted(container):
+        ways.append((PREEMPTED, {}))
     for outcome, left in ways:
         if outcome in exits and left is not None:
             yield exit_vertex(outcome), base.writes(left if exact else {})

@@ -162,13 +162,16 @@ def unhandled(child: Node) -> list[Outcome]:
 def _unhandled(path: str, container: Linear, child: Node, outcome: Outcome) -> Finding:
     # The file of an interface may have another place on another machine, so it is not shown.
     inside = outcome.span.source is child.span.source
+    why = ""
+    if outcome.name == PREEMPTED and isinstance(child, Concurrence | nodes.Iterator):
+        why = f"after a stop request `{child.sugar}` ends with it: " if child.sugar else ""
     return Finding(
         span=child.span,
         message=f"outcome `{outcome.name}` of `{child.name}` has no transition, and"
         f" `{container.name}` has no outcome of that name",
         arguments=(child.name, outcome.name),
-        help=f"add `{outcome.name}:` to the transitions of `{child.name}`, or `{outcome.name}` to"
-        f" the outcomes of `{container.name}`",
+        help=f"{why}add `{outcome.name}:` to the transitions of `{child.name}`, or"
+        f" `{outcome.name}` to the outcomes of `{container.name}`",
         related=(
             *(other_place(outcome.span, "declared here") if inside else ()),
             *calls(child, child.span),

@@ -1,11 +1,13 @@
 """Desugaring: time limits, retries and loops become containers, as a SMACH user would write them.
 
 A time limit is a concurrence with a timer; retries and `for_each` are iterators. The container has
-the state's name, interface and transitions; the state is inside, under the same name.
+the state's name, interface and transitions; the state is inside, under the same name. The container
+has the outcome `preempted` too: it ends so after a request to stop (docs/semantics.md, Preemption).
 """
 
 from __future__ import annotations
 
+from collections.abc import Iterable
 from dataclasses import replace
 from typing import Any
 
@@ -87,12 +89,17 @@ def _pause(name: str, seconds: Value, node: Node, reads: tuple[Key, ...] = ()) -
     )
 
 
+def _with_outcomes(
+    outcomes: tuple[Outcome, ...], names: Iterable[str], span: Span
+) -> tuple[Outcome, ...]:
+    """The outcomes, with those of `names` that are not among them."""
+    known = {outcome.name for outcome in outcomes}
+    return outcomes + tuple(Outcome(name=name, span=span) for name in names if name not in known)
+
+
 def _limited(node: Node, limit: Timeout) -> Concurrence:
     timer = _fresh("TIMER", (node.name,))
     own = outcome_names(node)
-    outcomes = node.outcomes
-    if TIMEOUT not in own:
-        outcomes += (Outcome(name=TIMEOUT, doc="", span=limit.span),)
     rules = tuple(
         OutcomeRule(
             outcome=name,
@@ -109,7 +116,7 @@ def _limited(node: Node, limit: Timeout) -> Concurrence:
         **_around(node),
         type="Concurrence",
         sugar="timeout",
-        outcomes=outcomes,
+        outcomes=_with_outcomes(node.outcomes, [TIMEOUT, PREEMPTED], limit.span),
         children=(_inside(node), _pause(timer, seconds, node)),
         default_outcome=TIMEOUT,
         default_span=limit.span,
@@ -129,20 +136,17 @@ def _retried(node: Node, retry: Retry) -> Iterator:
         child = _after_pause(child, item, on)
         items = (0.0, *(retry.delay,) * (retry.most - 1))
     kept = tuple(outcome for outcome in node.outcomes if outcome.name not in on)
-    if EXHAUSTED not in outcome_names(node):
-        kept += (Outcome(name=EXHAUSTED, span=retry.span),)
-    stopped = PREEMPTED if PREEMPTED in own else EXHAUSTED
     return Iterator(
         **_around(node),
         type="Iterator",
         sugar="retry",
-        outcomes=kept,
+        outcomes=_with_outcomes(kept, [EXHAUSTED, PREEMPTED], retry.span),
         children=(child,),
         items=Value(data=items, span=retry.span),
         item_key=item,
         exhausted_outcome=EXHAUSTED,
         loop_outcomes=tuple(name for name in own if name in on),
-        final_map=tuple((name, stopped) for name in own if name in on),
+        final_map=tuple((name, PREEMPTED) for name in own if name in on),
     )
 
 
@@ -181,13 +185,13 @@ def _repeated(node: Node, loop: ForEach) -> Iterator:
     own = outcome_names(node)
     good = tuple(name for name in own if name in GOOD_OUTCOMES)[:1]
     on = tuple(word.text for word in loop.on) or good or own[:1]
-    stopped = PREEMPTED if PREEMPTED in own else on[0] if on else EXHAUSTED
     items = loop.items
     fields = _around(node)
     remaps = remapping(node)
     item = next((key for key, to in remaps.items() if to == loop.item), loop.item)
     fields["inputs"] = tuple(key for key in node.inputs if key.name != item)
     fields["remaps"] = tuple(remap for remap in node.remaps if remap.key != item)
+    kept = tuple(each for each in node.outcomes if each.name not in on[1:])
     exhausted = _fresh(EXHAUSTED, own)
     items_key = ""
     if isinstance(items.data, str):
@@ -196,14 +200,14 @@ def _repeated(node: Node, loop: ForEach) -> Iterator:
         **fields,
         type="Iterator",
         sugar="for_each",
-        outcomes=tuple(each for each in node.outcomes if each.name not in on[1:]),
+        outcomes=_with_outcomes(kept, [PREEMPTED], loop.span),
         children=(_inside(node),),
         items=None if items_key else items,
         items_key=items_key,
         item_key=item,
         exhausted_outcome=exhausted,
         loop_outcomes=on,
-        final_map=((exhausted, on[0]), *((name, stopped) for name in on)) if on else (),
+        final_map=((exhausted, on[0]), *((name, PREEMPTED) for name in on)) if on else (),
     )
 
 

@@ -362,9 +362,7 @@ def _concurrence(
     live = {here: _Branch(_branch(run, child, here, own)) for here, child in children.items()}
     run.preemption.wake.update((here, branch.wake) for here, branch in live.items())
     running = run.preemption.running[path] = list(live)
-    if path in run.preemption.requested:
-        for here in children:
-            run.preemption.request(here)
+    run.preemption.pass_on(path, children)
     starting = list(live)
     ended: dict[str, str | RunFailure] = {}
     stopping = False
@@ -385,12 +383,17 @@ def _concurrence(
             break
         if not stopping and (node.join == "any" or isinstance(end, RunFailure)):
             stopping = True
-            for other in live:
-                run.preemption.request(other)
+            if path not in run.preemption.requested:  # else every branch has a request already
+                for other in live:
+                    run.preemption.request(other)
+    stopped = node.sugar and path in run.preemption.requested
     run.preemption.after_all(path, children)
     for end in ended.values():
         if isinstance(end, RunFailure):
             raise RunError(end)
+    if stopped:
+        run.preemption.requested.discard(path)
+        return PREEMPTED
     return _outcome_of(node, ended)
 
 
@@ -446,7 +449,8 @@ def _outcome_of(node: Concurrence, ended: Mapping[str, str | RunFailure]) -> str
 
 
 def _iterator(run: Interpreter, node: Iterator, path: str, own: dict[str, object]) -> Coroutine:
-    """An iterator: item after item. A request to stop ends it after the current item."""
+    """An iterator: item after item. A request to stop ends it after the current item, or after the
+    first one if it came before."""
     result: str | None = node.exhausted_outcome
     outcome, here = None, path
     # The child sees the keys of the iterator under their own names (docs/semantics.md, Iterator).
@@ -461,9 +465,9 @@ def _iterator(run: Interpreter, node: Iterator, path: str, own: dict[str, object
         child = children[0]
         here = f"{path}/{child.name}"
         run.preemption.running[path] = [here]
+        run.preemption.pass_on(path, [here])
         outcome = yield from run.visit(child, here, own, unrestricted=True)
-        if path in run.preemption.requested or outcome not in node.loop_outcomes:
-            run.preemption.recall(path)
+        if path in run.preemption.requested or not _loops(node, child, outcome):
             result = outcome
             break
         if position < len(items):
@@ -471,9 +475,20 @@ def _iterator(run: Interpreter, node: Iterator, path: str, own: dict[str, object
     run.preemption.running.pop(path, None)
     if result is not None:
         result = dict(node.final_map).get(result, result)
+    if path in run.preemption.requested and (node.sugar or outcome is not None):
+        run.preemption.recall(path)
+        result = PREEMPTED if node.sugar else result
     if outcome is not None:
         run.emit("transition", here, outcome=outcome, to=f"{path}:{result}")
     return result
+
+
+def _loops(node: Iterator, child: Node, outcome: str | None) -> bool:
+    """Whether an outcome of its state leads to the next item. An iterator without looping outcomes
+    goes on after an outcome that its state does not declare (smach-semantics I6)."""
+    if node.loop_outcomes or (isinstance(child, Leaf) and child.open):
+        return outcome in node.loop_outcomes
+    return outcome not in outcome_names(child)
 
 
 def _items_of(

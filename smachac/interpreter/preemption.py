@@ -3,7 +3,7 @@ Preemption)."""
 
 from __future__ import annotations
 
-from collections.abc import Callable, Collection
+from collections.abc import Callable, Collection, Iterable
 from dataclasses import dataclass, field
 
 
@@ -31,6 +31,13 @@ class Preemption:
             if here in self.wake:
                 self.wake[here]()
             pending.extend(reversed(self.running.get(here, ())))
+
+    def pass_on(self, path: str, children: Iterable[str]) -> None:
+        """Pass an unserved request of a container on to those of its states that have none."""
+        if path in self.requested:
+            for child in children:
+                if child not in self.requested:
+                    self.request(child)
 
     def recall(self, path: str) -> None:
         """Withdraw the requests of a state and of all states below it."""

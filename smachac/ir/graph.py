@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING, Literal, NamedTuple, TypeAlias
 from smachac.diagnostics.source import assert_never
 from smachac.ir import nodes
 from smachac.ir.nodes import Concurrence, Container, Leaf, Node, Transition
-from smachac.ir.traversal import leads_to_child, outcome_names
+from smachac.ir.traversal import PREEMPTED, ends_preempted, leads_to_child, outcome_names
 
 if TYPE_CHECKING:
     import networkx as nx
@@ -149,10 +149,13 @@ def _iterator_edges(container: nodes.Iterator) -> Iterator[Edge]:
 
 
 def stopped_endings(container: nodes.Iterator) -> dict[str, str]:
-    """How an iterator ends that is asked to stop (smach-semantics P9): the looping outcomes of its
-    child, and the outcomes of the iterator that come of them then. Not among `edges`."""
+    """The outcomes of an iterator after a request to stop, by the outcome of its child: those that
+    are not among `edges`. After a looping outcome it ends too (smach-semantics P9); a retry or loop
+    always ends as `preempted`."""
+    own = {name: None for child in container.children[:1] for name in outcome_names(child)}
+    if ends_preempted(container):
+        return dict.fromkeys(own, PREEMPTED)
     renamed = dict(container.final_map)
-    own = {name for child in container.children[:1] for name in outcome_names(child)}
     return {name: renamed.get(name, name) for name in container.loop_outcomes if name in own}
 
 

@@ -5,7 +5,16 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 
-from smachac.ir.nodes import Container, Data, Expression, Leaf, Node, Struct, Transition
+from smachac.ir.nodes import (
+    Concurrence,
+    Container,
+    Data,
+    Expression,
+    Leaf,
+    Node,
+    Struct,
+    Transition,
+)
 from smachac.ir.nodes import Iterator as IteratorNode
 from smachac.ir.outcome_names import PREEMPTED as PREEMPTED
 
@@ -42,6 +51,12 @@ def outcome_names(node: Node) -> tuple[str, ...]:
 def own_outcomes(node: Node) -> tuple[str, ...]:
     """The outcomes that the state's own code can return: all except `catches`."""
     return tuple([outcome.name for outcome in node.outcomes if outcome.name != node.catches])
+
+
+def ends_preempted(node: Node) -> bool:
+    """Whether a node is a time limit, a retry or a loop: it ends as `preempted` after a request to
+    stop, whatever its state answers (docs/semantics.md, Preemption)."""
+    return isinstance(node, Concurrence | IteratorNode) and node.sugar != ""
 
 
 def leads_to_child(transition: Transition, children: frozenset[str]) -> bool:

@@ -10,7 +10,7 @@ from typing import NamedTuple
 from smachac.ir.nodes import Machine
 from smachac.verify.coverage import CoverageItem
 from smachac.verify.guidance import Goals
-from smachac.verify.paths import Choice, Path, PathRun, PathRunner, Strategy
+from smachac.verify.paths import START, Choice, Path, PathRun, PathRunner, Strategy
 
 USUAL = 200
 """Default number of paths; more are generated if transition coverage needs them."""
@@ -25,6 +25,9 @@ LONGEST_RANDOM = 1_000
 MOST_USUAL = 3
 """Visits on one path in which a leaf ends with its default outcome while untried outcomes
 remain."""
+
+MOST_STOPPED = 50
+"""The most leaves at which paths with requests to stop begin them."""
 
 MOST_VAIN = 50
 """Random paths in a row that are duplicates, after which the generation ends."""
@@ -67,6 +70,7 @@ class PathGenerator:
     def paths(self) -> Iterator[Path]:
         """All paths; may be called once."""
         yield from self._covering_paths()
+        yield from self._stopped_paths()
         most = self._most if self._most is not None else max(USUAL, self.runner.made)
         yield from self._simple_paths(most - max((most - self.runner.made) // 4, 0))
         yield from self._random_paths(most)
@@ -184,6 +188,30 @@ class PathGenerator:
 
         return strategy
 
+    # A request to stop at every position
+
+    def _stopped_paths(self) -> Iterator[Path]:
+        """Paths with a request to stop before the start, or as each leaf is first entered; then the
+        same with a second request at the next choice."""
+        places: list[tuple[list[str | None], int]] = [([], START)]
+        for leaf in self.runner.leaves[:MOST_STOPPED]:
+            if leaf in self.runner.entries:
+                choices, count = self.runner.entries[leaf]
+                places.append(([choice.taken for choice in choices[:count]], count))
+        most = None if self._most is None else (self.runner.made + self._most) // 2
+        for further in ((), (1,), (2,)):
+            for prefix, at in places:
+                if not self._within() or self.runner.made == most:
+                    return
+                strategy = self._prefix_strategy(prefix, self._to_end)
+                stops = (at, *(at + number for number in further))
+                _, path = self.runner.make("stopped", strategy, stops=stops)
+                if path is not None:
+                    yield path
+
+    def _to_end(self, place: str, options: tuple[str, ...], at: int) -> str | None:
+        return self.runner.towards_end(place, options)
+
     # Simple paths, and any
 
     def _simple_paths(self, most: int) -> Iterator[Path]:
@@ -236,13 +264,17 @@ class PathGenerator:
             surprise = self._random.randrange(size)
             strategy = self._random_strategy(length, surprise if tries % 4 == 2 else -1)
             live = bool(self.runner.live) and tries % 2 == 1 and self.runner.endless < MOST_ENDLESS
-            stop = surprise if tries % 4 == 0 else -1
-            path_run, path = self.runner.make("random", strategy, live=live, stop=stop)
+            stops = self._random_stops(size) if tries % 4 == 0 else []
+            path_run, path = self.runner.make("random", strategy, live=live, stops=stops)
             if tries % 2 == 1:
                 size = max(len(path_run.choices), 1)
             if path is not None:
                 vain = 0
                 yield path
+
+    def _random_stops(self, size: int) -> list[int]:
+        """One to three moments for requests to stop, START among them."""
+        return [self._random.randrange(START, size) for _ in range(self._random.randint(1, 3))]
 
     def _random_strategy(self, length: int, fails: int) -> Strategy:
         """`length` outcomes, each the default or a random one; then go to the end."""

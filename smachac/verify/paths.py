@@ -7,7 +7,7 @@ chooses that branch: leaves of the other branches wait until they are preempted.
 
 from __future__ import annotations
 
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Collection, Sequence
 from dataclasses import dataclass, field
 from typing import Literal, NamedTuple
 
@@ -16,9 +16,10 @@ from smachac.interpreter.interpreter import run
 from smachac.interpreter.result import Event
 from smachac.interpreter.scenario import Scenario, Step, perform_step
 from smachac.interpreter.userdata import Userdata
+from smachac.ir import nodes
 from smachac.ir.expressions import parse_expression
 from smachac.ir.leaf import default_outcome
-from smachac.ir.nodes import Concurrence, Leaf, Machine
+from smachac.ir.nodes import Concurrence, Leaf, Machine, Node, StateMachine
 from smachac.ir.traversal import PREEMPTED, containers, expressions, outcome_names, walk
 from smachac.verify.coverage import Coverage
 from smachac.verify.guidance import Goals, Planner, possible_leaf_outcomes
@@ -37,7 +38,10 @@ FAILS = ""
 FAILS_FIRST = "fails: "
 """Prefix of a branch name: the option of a concurrence that this branch fails first."""
 
-Kind = Literal["covering", "simple", "random"]
+START = -1
+"""The number of a request to stop before the start."""
+
+Kind = Literal["covering", "stopped", "simple", "random"]
 
 
 class Choice(NamedTuple):
@@ -59,7 +63,8 @@ class Path:
     """One path through a machine, as a scenario.
 
     `live`: states made of functions are not in the scenario and run their own code. `ends`: the
-    path ends with an outcome, not with an error. `visits` counts visits of leaves.
+    path ends with an outcome, not with an error. `visits` counts visits of leaves. `stopped`: a
+    request to stop comes before the start.
     """
 
     kind: Kind
@@ -67,6 +72,7 @@ class Path:
     live: bool
     ends: bool
     visits: int
+    stopped: bool = False
 
 
 @dataclass(slots=True)
@@ -75,13 +81,14 @@ class PathRun:
 
     strategy: Strategy
     live: frozenset[str]
-    stop: int = -1
+    stops: set[int]
     choices: list[Choice] = field(default_factory=list)
     steps: dict[str, list[Step]] = field(default_factory=dict)
     first: dict[str, str] = field(default_factory=dict)
     failing: dict[str, str] = field(default_factory=dict)
     visits: int = 0
     ended: dict[str, set[str]] = field(default_factory=dict)
+    stopped: set[str] = field(default_factory=set)
 
 
 class PathRunner:
@@ -105,6 +112,11 @@ class PathRunner:
         self._tree = dict(walk(machine.root))
         self._enclosing = _concurrences_around(machine)
         self._caught = _caught(machine)
+        self._waiting = {
+            path: all(_starts_with_wait(child) for child in node.children)
+            for path, node in containers(machine.root)
+            if isinstance(node, Concurrence)
+        }
         self._sample_values = SampleValues(machine)
         self._inputs = sample_inputs(machine)
         self.leaves = [path for path, node in self._tree.items() if isinstance(node, Leaf)]
@@ -120,14 +132,15 @@ class PathRunner:
         return made and portable and not self._enclosing[path]
 
     def make(
-        self, kind: Kind, strategy: Strategy, *, live: bool = False, stop: int = -1
+        self, kind: Kind, strategy: Strategy, *, live: bool = False, stops: Collection[int] = ()
     ) -> tuple[PathRun, Path | None]:
         """Run the machine with a strategy. The path is None if it is a duplicate or has no end.
 
-        At the choice of number `stop` the machine is preempted, except inside a concurrence: there
-        it depends on the scheduling of threads which branches see the request in time.
+        At the choices with the numbers `stops` the machine is preempted, at START before it starts.
+        Inside a concurrence this is left out unless all other branches wait for a request: else it
+        depends on the scheduling of threads how far they are.
         """
-        path_run = PathRun(strategy, self.live if live else frozenset(), stop)
+        path_run = PathRun(strategy, self.live if live else frozenset(), set(stops))
         others = builtin_behaviour()
 
         def behave(path: str, leaf: Leaf, visit: int, userdata: Userdata) -> str:
@@ -143,13 +156,14 @@ class PathRunner:
             schedule=(),
             max_steps=3 * self._limit,
             userdata=self._inputs,
+            preempt_at=[0] if START in stops else (),
         )
         self.spent += result.steps + len(self._tree) // 10
         if result.error is not None and result.error.kind == "no-end":
             self.endless += 1
             return path_run, None
         mark = hash(
-            (live, stop, tuple((choice.place, choice.taken) for choice in path_run.choices))
+            (live, *stops, tuple((choice.place, choice.taken) for choice in path_run.choices))
         )
         if mark in self._seen:
             return path_run, None
@@ -162,13 +176,15 @@ class PathRunner:
             live=live,
             ends=result.error is None,
             visits=path_run.visits,
+            stopped=START in stops,
         )
 
     def _step(self, path_run: PathRun, path: str, leaf: Leaf, userdata: Userdata) -> str:
         """Choose the step of a leaf, record it and perform it."""
-        stop = len(path_run.choices) == path_run.stop and not self._enclosing[path]
+        number = len(path_run.choices)
+        stop = number in path_run.stops and self._others_wait(path_run, path)
         if stop:
-            path_run.stop = -1
+            path_run.stops.discard(number)
             userdata.stop_machine()
         wait = self._waits(path_run, path, userdata.preempted)
         row = path_run.steps.setdefault(path, [])
@@ -215,7 +231,20 @@ class PathRunner:
         return any(
             (first := path_run.first.get(around)) is not None
             and branch != first
-            and (requested or first not in path_run.ended[around])
+            and (
+                requested
+                or (first not in path_run.ended[around] and around not in path_run.stopped)
+            )
+            for around, branch in self._enclosing[path]
+        )
+
+    def _others_wait(self, path_run: PathRun, path: str) -> bool:
+        """Whether all other branches of the concurrences around a leaf wait for a request."""
+        return all(
+            path_run.first.get(around) == branch
+            and around not in path_run.stopped
+            and not path_run.ended[around]
+            and self._waiting[around]
             for around, branch in self._enclosing[path]
         )
 
@@ -223,6 +252,10 @@ class PathRunner:
         """Update coverage and entries with an event."""
         self.coverage.record(event)
         path = event["path"]
+        if event["event"] == "preempt":
+            path_run.stopped.add(path)
+        elif event["event"] in ("exit", "error"):
+            path_run.stopped.discard(path)
         if event["event"] == "enter":
             if path not in self.entries:
                 self.entries[path] = (path_run.choices, len(path_run.choices))
@@ -241,6 +274,13 @@ class PathRunner:
         path_run.first.pop(path, None)
         path_run.failing.pop(path, None)
         options = [child.name for child in node.children] if node.join == "any" else [""]
+        alone = all(isinstance(child, Leaf) for child in node.children)
+        if node.join == "all" and alone and len(path_run.choices) in path_run.stops:
+            first = node.children[0].name
+            path_run.first[path] = first
+            if self._waiting[path] and self._others_wait(path_run, f"{path}/{first}"):
+                return  # the first branch, which chooses next, requests a stop
+            del path_run.first[path]
         if node.catches or path in self._caught:
             able = (child for child in node.children if isinstance(child, Leaf))
             options += [f"{FAILS_FIRST}{child.name}" for child in able if not child.catches]
@@ -273,6 +313,17 @@ class PathRunner:
         names = (name for name in options if not name.startswith(FAILS_FIRST))
         first = (name for name in names if (ends or {}).get(name) != PREEMPTED)
         return next(first, options[0])
+
+
+def _starts_with_wait(node: Node) -> bool:
+    """Whether the leaves that a state starts with can all wait for a request."""
+    match node:
+        case Leaf():
+            return PREEMPTED in outcome_names(node)
+        case StateMachine() | nodes.Sequence():
+            first = [child for child in node.children if child.name == node.initial]
+            return all(map(_starts_with_wait, first or node.children[:1]))
+    return all(map(_starts_with_wait, node.children))
 
 
 def _concurrences_around(machine: Machine) -> dict[str, tuple[tuple[str, str], ...]]:

@@ -1,7 +1,8 @@
 // The part of a verify program that does not depend on the machine: it reads test cases from the
 // input, runs them and prints their traces.
 //
-// A test case is the limit on visits of leaves and, for each leaf, its number, the number of its
+// A test case is the limit on visits of leaves, whether a request to stop comes before the start
+// and, for each leaf, its number, the number of its
 // visits and the number of the case for each visit.
 #include "smachac/smachac.hpp"
 
@@ -58,7 +59,11 @@ void play(Given given, Run run) {
   observer = &trace;
   std::size_t leaves = 0;
   long most = 0;
-  std::cin >> most >> leaves;
+  bool stopped = false;
+  std::cin >> most >> stopped >> leaves;
+  if (stopped) {
+    stop.request();
+  }
   left = most;
   rows.clear();
   for (std::size_t i = 0; i < leaves; ++i) {

@@ -35,7 +35,8 @@ class UnplayableError(Exception):
 class TestCase:
     """One test case: the steps of every leaf that follows the scenario, by path (`rows`); the
     leaves that run their own code (`live`); the inputs that the other leaves record (`reads`); the
-    userdata of the machine; the limit on visits of leaves (`most`)."""
+    userdata of the machine; the limit on visits of leaves (`most`); whether a request to stop comes
+    before the start (`stopped`)."""
 
     __test__ = False  # pytest: not a test class
 
@@ -44,6 +45,7 @@ class TestCase:
     reads: Mapping[str, Sequence[str]]
     userdata: Mapping[str, object]
     most: int
+    stopped: bool = False
 
 
 Player = Callable[[Sequence[TestCase]], Iterable[list[Event]]]
@@ -71,6 +73,7 @@ def test_cases(machine: Machine, paths: Sequence[Path], live: frozenset[str]) ->
                 reads=scripted_reads if own else reads,
                 userdata=userdata,
                 most=path.visits,
+                stopped=path.stopped,
             )
         )
     return cases
@@ -87,7 +90,8 @@ def expected_trace(machine: Machine, scenario: Scenario, case: TestCase) -> list
                 record_read(events, path, key, userdata[key])
         return scripted(path, leaf, visit, userdata)
 
-    run(machine, behave, events.append, schedule=(), userdata=case.userdata)
+    stops = [0] if case.stopped else ()
+    run(machine, behave, events.append, schedule=(), userdata=case.userdata, preempt_at=stops)
     return events
 
 

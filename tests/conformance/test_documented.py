@@ -36,13 +36,15 @@ DIFFERENT = {
     "K7": "test_the_callers_collections_are_not_written_to",
     "I1": "test_the_exhausted_outcome_is_registered_once",
     "I3": "test_setting_the_child_again_starts_afresh",
-    "P2": "test_a_second_request_after_the_first_was_answered_is_passed_on",
+    "P2": "test_a_second_request_reaches_what_runs_at_every_depth",
     "M9": "test_what_stops_the_process_passes",
     "I2": "test_an_error_of_the_items_passes_unchanged",
     "R7": "test_keys_and_update_obey_the_remapping",
     "R8": "test_keys_and_update_obey_the_remapping",
+    "P9": "test_a_request_before_the_run_reaches_the_first_item",
     "P10": "test_a_request_before_the_run_reaches_all",
     "P8": "test_an_early_end_leaves_no_request_behind",
+    "P7": "test_an_unanswered_request_does_not_reach_the_next_run",
     "R9": "test_values_are_never_wrapped",
     "R10": "test_values_are_never_wrapped",
     "S8": "test_cb_interface_keeps_io_keys",
@@ -53,7 +55,7 @@ DIFFERENT = {
 }
 """Rule -> a test of what the runtime does instead."""
 
-SWITCHED = ("M9", "I2", "R7", "R8", "P10", "P8")
+SWITCHED = ("M9", "I2", "R7", "R8", "P2", "P9", "P10", "P8", "P7")
 
 KEPT = {
     "K2": "test_add_acts_on_the_innermost_container_whatever_it_is_called_on",

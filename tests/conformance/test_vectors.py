@@ -40,4 +40,4 @@ def test_deviates_as_stated(name: str) -> None:
 
 def test_only_advised_deviations() -> None:
     for name in DEVIATIONS:
-        assert {"quirk", "hang", "noetic-only"} & set(CASES[name]["tags"]), name
+        assert {"quirk", "hang", "noetic-only", "preempt"} & set(CASES[name]["tags"]), name

@@ -119,6 +119,32 @@ DEVIATIONS: dict[str, tuple[str, Json]] = {
             scopes={"/C": {}},
         ),
     ),
+    "h134-preempt-iterator-before": (
+        "no lost request: the first item gets it",
+        {
+            "runs": [
+                {
+                    "outcome": "preempted",
+                    "events": [
+                        ["<", "/", ["X"]],
+                        ["P", "/X"],
+                        *_entered("/X", "preempted", {}, "P"),
+                        [">", "/", "X", "preempted"],
+                    ],
+                    "userdata": {"it_data": 1},
+                },
+                {
+                    "outcome": "exhausted",
+                    "events": [
+                        ["<", "/", ["X"]],
+                        *([*_entered("/X", "done"), ["~", "/", ["X"]]] * 3),
+                        [">", "/", "X", "exhausted"],
+                    ],
+                    "userdata": {"it_data": 3},
+                },
+            ]
+        },
+    ),
     "h137-preempt-concurrence-before": (
         "no lost request: children are told before they start",
         _run(

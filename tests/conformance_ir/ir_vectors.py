@@ -141,6 +141,7 @@ def _concurrence(node: Json, common: dict[str, Any]) -> Node:
     default, rules = _rules(node)
     return Concurrence(
         type="Concurrence",
+        sugar=node.get("sugar", ""),
         children=tuple(_node(spec["node"], spec, {}) for spec in specs.values()),
         default_outcome=default,
         join="any" if any(rule["ret"] for rule in node.get("term_cb", [])) else "all",
@@ -197,6 +198,7 @@ def _iterator(node: Json, common: dict[str, Any]) -> Node:
     keyed = isinstance(node["it"], dict)
     return Iterator(
         type="Iterator",
+        sugar=node.get("sugar", ""),
         children=children,
         items=None if keyed else _value(node["it"]),
         items_key=node["it"]["key"] if keyed else "",

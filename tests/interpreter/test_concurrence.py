@@ -303,7 +303,7 @@ def test_p9_a_request_ends_an_iterator_after_the_item() -> None:
     assert preempted(events) == ["sm", "sm/I", "sm/I/L"]
     result, events = ran(root, {"L": "next"}, preempt_at=[0])
     assert result.scopes["sm/I"] == {"it_data": 1}
-    assert preempted(events) == ["sm", "sm/I"]
+    assert preempted(events) == ["sm", "sm/I", "sm/I/L"]
 
 
 def test_p10_a_request_to_a_concurrence_is_served_when_no_child_holds_it() -> None:

@@ -1,4 +1,4 @@
-"""The switch that takes back what scripts may depend on: rules M9, I2, R7, R8, P8, P10."""
+"""The switch that takes back what scripts may depend on: rules M9, I2, R7, R8, P2, P7 to P10."""
 
 from __future__ import annotations
 
@@ -133,3 +133,39 @@ def test_the_environment_sets_the_switch(given: str | None, set_to: str) -> None
         [sys.executable, "-c", code], env=environment, capture_output=True, text=True, check=True
     )
     assert said.stdout.strip() == set_to
+
+
+def test_p9_a_request_before_the_run_does_not_reach_the_first_item() -> None:
+    leaf = Leaf()
+    loop = iterator(leaf, [1, 2])
+    loop.request_preempt()
+    assert loop.execute() == "done"
+    assert leaf.flags == [False]
+
+
+def test_p7_an_unanswered_request_in_an_iterator_stays() -> None:
+    def act(ud: Any) -> str:
+        if len(leaf.flags) == 1:
+            loops[0].request_preempt()
+        return "done"
+
+    leaf = Leaf(act)
+    loops = [iterator(leaf, [1, 2])]
+    loops[0].execute()
+    loops[0].execute()
+    assert leaf.flags == [False, True, True]
+
+
+def test_p2_a_second_request_is_not_passed_on_to_the_same_child() -> None:
+    def act(ud: Any) -> str:
+        outer.request_preempt()
+        leaf.service_preempt()
+        outer.request_preempt()
+        asked.append(leaf.preempt_requested())
+        return "done"
+
+    asked: list[bool] = []
+    leaf = Leaf(act)
+    outer = machine(leaf)
+    outer.execute()
+    assert asked == [False]

@@ -59,7 +59,7 @@ def test_the_first_breaking_outcome_ends_the_loop(
         if breaking:
             looping = [o for o in OUTCOMES if o not in breaking]
             return outcome not in looping if looping else outcome in breaking
-        return outcome not in loop
+        return outcome not in loop if loop else outcome in OUTCOMES
 
     taken = next((n for n, result in enumerate(results) if breaks(result)), len(results))
     outcome = results[taken] if taken < len(results) else "exhausted"
@@ -180,6 +180,25 @@ def test_a_request_ends_the_loop_after_the_item() -> None:
     assert iterator.execute() == "go"
     assert flags == [True]
     assert not iterator.preempt_requested()
+
+
+def test_a_request_before_the_run_reaches_the_first_item() -> None:
+    seen: list[bool] = []
+
+    def work(ud: Any) -> str:
+        seen.append(iterator["EACH"].preempt_requested())
+        return "go"
+
+    iterator = iterate([1, 2], work, loop_outcomes=["go"])
+    iterator.request_preempt()
+    assert iterator.execute() == "go"
+    assert seen == [True]
+
+
+def test_an_outcome_outside_both_lists_goes_on_where_neither_is_given() -> None:
+    """Rule I6: only registered outcomes end such an iterator."""
+    iterator = iterate(["other", "stop", "go"], lambda ud: str(ud.item), loop_outcomes=[])
+    assert iterator.execute() == "stop"
 
 
 def test_an_unanswered_request_does_not_reach_the_next_run() -> None:

@@ -85,6 +85,23 @@ def test_a_second_request_after_the_first_was_answered_is_passed_on() -> None:
     assert machine.execute() == "preempted"
 
 
+@pytest.mark.parametrize("depth", [1, 2, 3, 4])
+def test_a_second_request_reaches_what_runs_at_every_depth(depth: int) -> None:
+    """The first state answers and leads to the next one; the machines around have not ended."""
+    first = Worker(lambda: machine.request_preempt())
+    second = Worker(lambda: machine.request_preempt())
+    machine = smach.StateMachine(["done", "preempted"])
+    with machine:
+        smach.StateMachine.add("0", first, {"preempted": "1"})
+        smach.StateMachine.add("1", second)
+    for _ in range(depth):
+        inner, machine = machine, smach.StateMachine(["done", "preempted"])
+        with machine:
+            smach.StateMachine.add("IN", inner)
+    assert machine.execute() == "preempted"
+    assert (first.requests, second.requests) == (1, 1)
+
+
 @pytest.mark.parametrize("register", ["register_start_cb", "register_transition_cb"])
 def test_callbacks_may_request_a_preempt(register: str) -> None:
     first, second = Worker(), Worker()

@@ -522,11 +522,19 @@ def ran(text: str) -> str:
 @pytest.mark.parametrize(
     ("more", "transitions", "outcome"),
     [
-        ("retry: {on: [aborted], max: 3}", "done: good, exhausted: bad", "good"),
-        ("retry: {on: [aborted], max: 2}", "done: good, exhausted: bad", "bad"),
-        ("retry: {on: [aborted], max: 3, delay: 1ms}", "done: good, exhausted: bad", "good"),
-        ("timeout: 10s", "done: good, aborted: bad, timeout: good", "bad"),
-        ("for_each: {item: x, in: three, on: [aborted]}", "done: good, aborted: bad", "good"),
+        ("retry: {on: [aborted], max: 3}", "done: good, exhausted: bad, preempted: bad", "good"),
+        ("retry: {on: [aborted], max: 2}", "done: good, exhausted: bad, preempted: bad", "bad"),
+        (
+            "retry: {on: [aborted], max: 3, delay: 1ms}",
+            "done: good, exhausted: bad, preempted: bad",
+            "good",
+        ),
+        ("timeout: 10s", "done: good, aborted: bad, timeout: good, preempted: bad", "bad"),
+        (
+            "for_each: {item: x, in: three, on: [aborted]}",
+            "done: good, aborted: bad, preempted: bad",
+            "good",
+        ),
         ("doc: as it is", "done: good, aborted: A", "good"),
     ],
 )

@@ -49,7 +49,8 @@ states:
       input_keys: [size]
       remapping: {size: width}
       timeout: 1.0
-      transitions: {done: succeeded, late: BOTH, failed: aborted, timeout: aborted}
+      transitions:
+        {done: succeeded, late: BOTH, failed: aborted, timeout: aborted, preempted: aborted}
 """
 
 FOREVER = """\
@@ -182,7 +183,7 @@ def test_combinations_of_branches_and_time_limits_are_covered(rounds: Path) -> N
     verdict = judged(rounds)
     assert verdict.disagreements == []
     assert verdict.missing == []
-    assert verdict.taken == verdict.total == 14
+    assert verdict.taken == verdict.total == 15
 
 
 def swapped(text: str) -> str:

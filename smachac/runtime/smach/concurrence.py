@@ -7,7 +7,7 @@ from collections.abc import Callable, Iterable, Mapping, Sequence
 from typing import Any, TypeVar
 
 from smachac.runtime.smach import settings
-from smachac.runtime.smach.container import Container, open_container, withdraw
+from smachac.runtime.smach.container import Container, needs_request, open_container, withdraw
 from smachac.runtime.smach.exceptions import (
     InvalidStateError,
     InvalidTransitionError,
@@ -223,14 +223,19 @@ class Concurrence(Container):
     def request_preempt(self) -> None:
         """Request that the running children end early; if none runs, those of the next run."""
         super().request_preempt()
-        if self._branches is not None:
-            self._branches.request()
+        branches = self._branches
+        if branches is None:
+            return
+        if settings.compat or not branches.take_over():
+            branches.request()
+        else:
+            self._preempt(branches)
 
     def _preempt(self, branches: Branches) -> None:
         for label in list(branches.active):
             state = self._states[label]
             try:
-                if not state.preempt_requested():
+                if needs_request(state):
                     state.request_preempt()
             except Exception:
                 settings.logerr(f"request_preempt failed:\n{traceback.format_exc()}")
@@ -249,5 +254,7 @@ class Concurrence(Container):
         """Recall the requests that children got in an earlier run that failed."""
         if self._left_flagged:
             self._left_flagged = False
+            if settings.compat:
+                return
             for state in self._states.values():
                 withdraw(state)

@@ -246,11 +246,19 @@ class Container(State):
             settings.logerr(f"a callback failed:\n{traceback.format_exc()}")
 
 
+def needs_request(state: State) -> bool:
+    """Whether a running state gets a preempt request: a leaf that has one unanswered gets no second
+    one, a container passes it on to those states inside that need it."""
+    if isinstance(state, Container) and not settings.compat:
+        return True
+    return not state.preempt_requested()
+
+
 def withdraw(state: State) -> None:
-    """Recall the unanswered preempt request of a state and of the states inside it."""
+    """Recall the unanswered preempt request of a state and, except as SMACH, of states inside."""
     if not state.preempt_requested():
         return
     state.recall_preempt()
-    if isinstance(state, Container):
+    if isinstance(state, Container) and not settings.compat:
         for child in state.get_children().values():
             withdraw(child)

@@ -7,7 +7,7 @@ from collections.abc import Callable, Iterable, Mapping, Sequence
 from typing import Any
 
 from smachac.runtime.smach import settings
-from smachac.runtime.smach.container import Container, open_container, withdraw
+from smachac.runtime.smach.container import Container, needs_request, open_container, withdraw
 from smachac.runtime.smach.exceptions import InvalidUserCodeError
 from smachac.runtime.smach.log import quiet
 from smachac.runtime.smach.state import State
@@ -58,7 +58,7 @@ class Iterator(Container):
         """Set the child of the innermost open iterator.
 
         With `break_outcomes`, all other outcomes of the child continue with the next item; without,
-        only `loop_outcomes` do. With neither, the iterator ends after the first item.
+        only `loop_outcomes` do. With neither, every registered outcome ends the iterator.
         `final_outcome_map` renames the outcome with which the iterator ends.
         """
         iterator = open_container(Iterator)
@@ -67,6 +67,8 @@ class Iterator(Container):
             if looping:
                 settings.logwarn(f"'{label}': loop_outcomes are ignored beside break_outcomes")
             looping = tuple(o for o in state.get_registered_outcomes() if o not in breaking)
+        elif not looping:
+            breaking = tuple(state.get_registered_outcomes())
         iterator._label, iterator._state = label, state
         iterator._looping, iterator._breaking = looping, breaking
         iterator._final = dict(final_outcome_map or {})
@@ -127,7 +129,7 @@ class Iterator(Container):
         """
         self._claim()
         try:
-            if self._left_flagged and self._state is not None:
+            if self._left_flagged and self._state is not None and not settings.compat:
                 withdraw(self._state)
             self._left_flagged = False
             self.copy_input_keys(parent_ud)
@@ -156,6 +158,8 @@ class Iterator(Container):
                 outcome = self._exhausted
                 break
             self.userdata[self._item_key] = item
+            if self._preempt_requested and not settings.compat:
+                self._pass_on(state)
             if settings.loginfo is not quiet:
                 settings.loginfo(f"iterator running '{self._label}' for {item!r}")
             outcome = self._run_child(state)
@@ -186,20 +190,22 @@ class Iterator(Container):
     def _loops(self, outcome: str | None) -> bool:
         if self._looping:
             return outcome in self._looping
-        return bool(self._breaking) and outcome not in self._breaking
+        return outcome not in self._breaking
 
     # Preemption
 
     def request_preempt(self) -> None:
-        """Request that the iterator ends after the current item, and that its child ends early."""
+        """Request that the iterator ends after the current item, and that its child ends early;
+        if it does not run, after the first item of the next run."""
         with self._preempting:
             super().request_preempt()
-            state = self._active
-            if state is None:
-                return
-            self._left_flagged = True
-            try:
-                if not state.preempt_requested():
-                    state.request_preempt()
-            except Exception:
-                settings.logerr(f"request_preempt failed:\n{traceback.format_exc()}")
+            if self._active is not None:
+                self._pass_on(self._active)
+
+    def _pass_on(self, state: State) -> None:
+        self._left_flagged = True
+        try:
+            if needs_request(state):
+                state.request_preempt()
+        except Exception:
+            settings.logerr(f"request_preempt failed:\n{traceback.format_exc()}")

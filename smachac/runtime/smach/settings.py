@@ -16,8 +16,9 @@ compat: bool = os.environ.get("SMACHAC_COMPAT", "") == "1"
 
 Ctrl-C and SystemExit become errors of the state; an exception of the items of an Iterator ends it
 as if there were no more items; `keys` of remapped userdata gives the container's names, and
-`update` writes undeclared keys too; a Concurrence does not pass on a preempt request that came
-before its children ran, and a child that did not answer a request starts its next visit with it.
+`update` writes undeclared keys too; Concurrences and Iterators do not pass on a preempt request
+that came before their children ran; a container does not pass on a second request while the same
+child runs; a child that did not answer a request starts its next visit with it.
 To be set before a machine runs. The rules are listed in docs/semantics.md, section "Where the
 bundled runtime differs from SMACH".
 """

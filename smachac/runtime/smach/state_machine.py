@@ -7,7 +7,7 @@ from collections.abc import Iterable, Mapping, Sequence
 from typing import Any, TypeVar
 
 from smachac.runtime.smach import settings
-from smachac.runtime.smach.container import Container, open_container
+from smachac.runtime.smach.container import Container, needs_request, open_container
 from smachac.runtime.smach.exceptions import (
     InvalidStateError,
     InvalidTransitionError,
@@ -281,7 +281,8 @@ class StateMachine(Container):
         with self._preempting:
             super().request_preempt()
             if self._active is not None:
-                self._pass_on(self._active, again=False)
+                if not (settings.compat and self._preempted is self._active):
+                    self._pass_on(self._active, again=False)
             elif self._preempted is not None and not self._preempted.preempt_requested():
                 self._preempted = None  # that child answered an earlier request, not this one
 
@@ -300,7 +301,7 @@ class StateMachine(Container):
         """Preempt a child; one with a request gets another one only if `again`."""
         self._preempted = state
         try:
-            if again or not state.preempt_requested():
+            if again or needs_request(state):
                 state.request_preempt()
         except Exception:
             settings.logerr(f"request_preempt failed:\n{traceback.format_exc()}")

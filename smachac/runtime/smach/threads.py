@@ -87,10 +87,19 @@ class Branches:
             self._requested = True
             self._changed.notify_all()
 
-    def stop(self) -> None:
-        """Add a preempt request of the concurrence itself; only the first one counts."""
+    def take_over(self) -> bool:
+        """Whether the children run, so that a request from outside can be passed on at once; it
+        then counts as passed on."""
         with self._changed:
-            self._stopping = True
+            released = self._gate.is_set() and not self._aborted
+            self.passed_on = self.passed_on or released
+            return released
+
+    def stop(self) -> None:
+        """Add a preempt request of the concurrence itself; only the first one counts, and none
+        after a request from outside, which has reached all children."""
+        with self._changed:
+            self._stopping = not self.passed_on
             self._changed.notify_all()
 
     def take_request(self) -> bool:

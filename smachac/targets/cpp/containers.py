@@ -23,7 +23,13 @@ from smachac.ir.nodes import (
     Sequence,
     StateMachine,
 )
-from smachac.ir.traversal import leads_to_child, own_outcomes, walk
+from smachac.ir.traversal import (
+    PREEMPTED,
+    ends_preempted,
+    leads_to_child,
+    own_outcomes,
+    walk,
+)
 from smachac.ir.types import Type
 from smachac.targets.cpp.builtin_states import LeafCode
 from smachac.targets.cpp.expressions import cpp_expression, cpp_function
@@ -418,10 +424,18 @@ def _concurrence(plan: ContainerPlan, node: Concurrence) -> FunctionBody:
         "  const auto state = static_cast<State>(branch);",
         *indented(_guarded(_switch(cases), _caught_switch(caught))),
         "});",
+        *_stopped(plan, node),
         *_rules(plan, node),
     ]
     userdata = "ud" if any(call.uses_userdata for call in calls) else ""
     return FunctionBody(statements=lines, states="states", userdata=userdata, run="around")
+
+
+def _stopped(plan: ContainerPlan, node: Concurrence) -> Lines:
+    """The statements that end a time limit after a request to stop."""
+    if not ends_preempted(node):
+        return []
+    return ["if (branches.stopped()) {", f"  return {plan.own_outcome(PREEMPTED)};", "}"]
 
 
 def _rules(plan: ContainerPlan, node: Concurrence) -> Lines:
@@ -486,13 +500,15 @@ def _iterator(plan: ContainerPlan, node: Iterator) -> FunctionBody:
         "}",
         NO_OUTCOME,
     ]
+    rounds = "smachac::Round round(run.stop, places[0], items.size());"
+    state = f"const auto state = State::{identifier(child.name)};"
+    start = ["if (items.empty()) {", f"  return {done};", "}", state, rounds]
+    if ends_preempted(node):
+        none = f"  return round.over() ? {plan.own_outcome(PREEMPTED)} : {done};"
+        start = [rounds, "if (items.empty()) {", none, "}", state]
     lines = [
         *items,
-        "if (items.empty()) {",
-        f"  return {done};",
-        "}",
-        f"const auto state = State::{identifier(child.name)};",
-        "smachac::Round round(run.stop, places[0], items.size());",
+        *start,
         "for (const auto &item : items) {",
         f"  ud.{identifier(node.item_key)}.hold(item);",
         *([f"  // {place(child)}"] if place(child) else []),
@@ -506,21 +522,27 @@ def _iterator(plan: ContainerPlan, node: Iterator) -> FunctionBody:
 def _end_of_item(node: Iterator, outcomes: Iterable[str]) -> str:
     """The statement that ends an item. It keeps whether a request to stop ends the iterator where
     an outcome would start the next item."""
-    loops = any(name in node.loop_outcomes for name in outcomes)
-    return f"{'const bool over = ' if loops else ''}round.over();"
+    used = ends_preempted(node) or any(name in node.loop_outcomes for name in outcomes)
+    return f"{'const bool over = ' if used else ''}round.over();"
 
 
 def _item_outcome(plan: ContainerPlan, node: Iterator, name: str) -> OutcomeCode:
     """The code for an outcome of an iterator's state."""
     final = dict(node.final_map)
     text = cpp_literal(name)
-    end = f"return run.end(places, state, {text}, {plan.own_outcome(final.get(name, name))});"
+
+    def end(outcome: str) -> str:
+        return f"return run.end(places, state, {text}, {plan.own_outcome(outcome)});"
+
+    result = final.get(name, name)
+    stopped = ["if (over) {", f"  {end(PREEMPTED if ends_preempted(node) else result)}", "}"]
     if name not in node.loop_outcomes:
-        return OutcomeCode(statements=[end], ends=True)
-    done = plan.own_outcome(final.get(node.exhausted_outcome, node.exhausted_outcome))
+        before = stopped if ends_preempted(node) and result != PREEMPTED else []
+        return OutcomeCode(statements=[*before, end(result)], ends=True)
+    done = final.get(node.exhausted_outcome, node.exhausted_outcome)
     lines = [
-        *("if (over) {", f"  {end}", "}"),
-        *("if (round.last()) {", f"  return run.end(places, state, {text}, {done});", "}"),
+        *stopped,
+        *("if (round.last()) {", f"  {end(done)}", "}"),
         f"run.again(places, state, {text});",
     ]
     return OutcomeCode(statements=lines, loops=True)

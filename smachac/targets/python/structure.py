@@ -12,12 +12,14 @@ from smachac.ir.nodes import (
     Container,
     Data,
     Key,
+    Leaf,
     Node,
     Sequence,
     StateMachine,
     Transition,
 )
 from smachac.ir.nodes import Iterator as IteratorNode
+from smachac.ir.traversal import ends_preempted
 from smachac.targets.python.formatter import (
     WIDTH,
     Doc,
@@ -33,6 +35,7 @@ from smachac.targets.python.formatter import (
 
 OURS = (
     *("smach", "build", "main", "error_as_outcome", "with_callbacks"),
+    *("ends_preempted", "stoppable", "stoppable_again", "withdraw"),
     *("rospy", "smach_ros", "start_node", "preempt_at_shutdown", "server", "sis"),
 )
 """Names of the module that variables of containers must not have."""
@@ -88,7 +91,20 @@ def construct(node: Container, variable: str, depth: int) -> str:
         if node.join == "any":
             arguments.append(("child_termination_cb=", "lambda outcomes: True"))
     head = f"{variable} = "
-    return head + laid_out(call(f"smach.{kind(node)}", arguments), width(depth), len(head))
+    made = call(f"smach.{kind(node)}", arguments)
+    if wrapper := stoppable(node):
+        made = call(wrapper, [("", made)])
+    return head + laid_out(made, width(depth), len(head))
+
+
+def stoppable(node: Node) -> str:
+    """The function of the module that lets a container pass on the requests to stop that SMACH
+    itself does not pass on; empty where it passes on all."""
+    if isinstance(node, Concurrence | IteratorNode):
+        return "stoppable"
+    if isinstance(node, Leaf) or all(isinstance(child, Leaf) for child in node.children):
+        return ""
+    return "stoppable_again"
 
 
 def kind(node: Container) -> str:
@@ -150,9 +166,12 @@ def initial(node: Container, variable: str) -> list[str]:
 
 
 def made(node: Node, state: Doc, callbacks: Data = None) -> Doc:
-    """The expression for a state, wrapped for `callbacks` and for exceptions that it catches."""
+    """The expression for a state, wrapped for `callbacks`, for exceptions that it catches, and for
+    requests to stop that end a time limit, retry or loop."""
     if callbacks is not None:
         state = call("with_callbacks", [("", state), ("", literal(callbacks))])
+    if ends_preempted(node):
+        state = call("ends_preempted", [("", state)])
     if not node.catches:
         return state
     return call("error_as_outcome", [("", state), ("", string(node.catches))])

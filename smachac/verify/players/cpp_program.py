@@ -55,7 +55,9 @@ class Program:
         lines = []
         for case in self._test_cases:
             rows = {path: row for path, row in case.rows.items() if row}
-            lines.append(f"{self._stages.index(case.live)} {case.most} {len(rows)}")
+            lines.append(
+                f"{self._stages.index(case.live)} {case.most} {int(case.stopped)} {len(rows)}"
+            )
             for path, row in rows.items():
                 leaf = self._leaves[path]
                 cases = " ".join(str(leaf.case_of(step)) for step in row)

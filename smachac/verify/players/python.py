@@ -56,6 +56,8 @@ def _trace(built: Any, name: str, case: TestCase, sources: dict[str, str]) -> li
     strict = trace.StrictScript(case.reads, partial(record_read, events), case.most)
     trace.script(built, name, case.rows, strict)
     trace.attach(built, name, events.append, sources)
+    if case.stopped:
+        built.request_preempt()
     with suppress(Exception):
         built.execute()
     return events

@@ -389,16 +389,13 @@ private:
 };
 
 /// The items of an iterator that are left, and requests to stop: it ends after the item that runs
-/// then, even if its state has answered. A request from before is served as the first item starts.
+/// then, even if its state has answered. A request from before reaches the first item.
 class Round {
 public:
   Round(Stop &stop, const Place &item, std::size_t items)
       : stop_(stop), item_(item), before_(stop.requests()), left_(items) {
     stop_.remind(item_.path);
     early_ = stop_.requested();
-    if (early_) {
-      stop_.service();
-    }
   }
   /// An item is done: whether a request ends the iterator.
   bool over() {
@@ -753,6 +750,8 @@ public:
       stops_[i].asked_.store(around_.stop.requested());
       move_kept(i, around_.stop, stops_[i]);
     }
+    before_ = around_.stop.requests();
+    stopped_ = around_.stop.requested();
     around_.stop.branches_ = stops_.data();
   }
   Branches(const Branches &) = delete;
@@ -778,6 +777,14 @@ public:
     }
     leave();
     failure_.go_on();
+  }
+
+  /// Whether there was a request to stop, from outside; it is served. To be called after `run`.
+  bool stopped() {
+    if (stopped_) {
+      around_.stop.service();
+    }
+    return stopped_;
   }
 
 private:
@@ -836,9 +843,13 @@ private:
       const std::lock_guard<std::mutex> hold(stops_[i].lock_);
       stops_[i].ended_ = true;
     }
-    if (ask && !asked_.exchange(true)) {
+    if (ask && !asked_.exchange(true) && !asked_from_outside()) {
       ask_others();
     }
+  }
+  /// Whether every branch has a request already, which came from outside.
+  bool asked_from_outside() const {
+    return stopped_ || around_.stop.requests() != before_;
   }
   void ask_others() {
     for (Stop &each : stops_) {
@@ -852,6 +863,7 @@ private:
     if (around_.stop.branches_ == nullptr) {
       return;
     }
+    stopped_ = asked_from_outside();
     around_.stop.branches_ = nullptr;
     bool open = false;
     for (std::size_t i = 0; i < N; ++i) {
@@ -880,6 +892,8 @@ private:
   const Place *places_;
   std::array<Stop, N> stops_;
   std::atomic<bool> asked_{false};
+  std::uint64_t before_ = 0;
+  bool stopped_ = false;
   Failure failure_;
 };
 

@@ -1,4 +1,4 @@
-// Made by smachac 0.1.0 from main.yml (sha256 a418811d56b433b3).
+// Made by smachac 0.1.0 from main.yml (sha256 0eed65aba39ca33b).
 #pragma once
 
 #include "smachac/smachac.hpp"
@@ -224,10 +224,11 @@ namespace fetch::CARRY { // main.yml:28
 enum class Outcome : std::uint8_t {
   succeeded,
   exhausted,
+  preempted,
 };
 
 constexpr const char *name(Outcome outcome) {
-  constexpr const char *names[] = {"succeeded", "exhausted"};
+  constexpr const char *names[] = {"succeeded", "exhausted", "preempted"};
   return names[static_cast<std::size_t>(outcome)];
 }
 
@@ -269,20 +270,23 @@ inline constexpr smachac::Place places[] = {
 template <class Run>
 [[gnu::always_inline]] inline Outcome execute(States &states, Userdata &ud, Run &run) {
   const std::array<std::int64_t, 3> items = std::array<std::int64_t, 3>{{1, 2, 3}};
+  smachac::Round round(run.stop, places[0], items.size());
   if (items.empty()) {
-    return Outcome::exhausted;
+    return round.over() ? Outcome::preempted : Outcome::exhausted;
   }
   const auto state = State::CARRY;
-  smachac::Round round(run.stop, places[0], items.size());
   for (const auto &item : items) {
     ud.attempt.hold(item);
     // main.yml:28
     SMACHAC_TRY {
       run.enter(places, state);
       const auto outcome = states.CARRY.execute(ud, run);
-      round.over();
+      const bool over = round.over();
       switch (outcome) {
       case types::CARRY::Outcome::succeeded:
+        if (over) {
+          return run.end(places, state, "succeeded", Outcome::preempted);
+        }
         return run.end(places, state, "succeeded", Outcome::succeeded);
       }
       run.no_outcome(places, state);
@@ -291,7 +295,7 @@ template <class Run>
       run.caught(places, state);
       const bool over = round.over();
       if (over) {
-        return run.end(places, state, "error", Outcome::exhausted);
+        return run.end(places, state, "error", Outcome::preempted);
       }
       if (round.last()) {
         return run.end(places, state, "error", Outcome::exhausted);
@@ -514,6 +518,8 @@ template <class Run>
           case CARRY::Outcome::exhausted:
             run.go(places, state, "exhausted", State::BOTH);
             continue;
+          case CARRY::Outcome::preempted:
+            return run.end_asked(places, state, "preempted", Outcome::aborted);
           }
           break;
         }

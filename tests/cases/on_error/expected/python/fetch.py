@@ -1,4 +1,4 @@
-# Made by smachac 0.1.0 from main.yml (sha256 a418811d56b433b3).
+# Made by smachac 0.1.0 from main.yml (sha256 0eed65aba39ca33b).
 """The state machine `fetch`."""
 
 import threading
@@ -8,6 +8,104 @@ try:
     import smach
 except ImportError:  # no ROS on this machine: the same names without it
     from smachac.runtime import smach
+
+
+def withdraw(state):
+    """Take back the unanswered stop requests of a state and of the states inside."""
+    if state.preempt_requested():
+        state.recall_preempt()
+        for child in getattr(state, "get_children", dict)().values():
+            withdraw(child)
+
+
+def stoppable(container):
+    """Let a container pass on every stop request, also an early one and a second one."""
+    if not getattr(smach, "compat", True):  # the bundled runtime does so itself
+        return container
+    run, request, children = container.execute, container.request_preempt, container.get_children
+    concurrent = isinstance(container, smach.Concurrence)
+    container.busy = container.asked = False
+
+    def pass_on():
+        for label in container.get_active_states() or list(children()):
+            child = children().get(label)
+            if hasattr(child, "get_children") or (child and not child.preempt_requested()):
+                child.request_preempt()
+
+    def request_preempt():
+        if not container.busy:
+            return request()
+        container.asked = True
+        if not concurrent:
+            smach.State.request_preempt(container)
+        pass_on()
+
+    def execute(*userdata):
+        container.busy, container.asked = True, container.preempt_requested()
+        if container.asked:
+            pass_on()
+        if concurrent:  # SMACH for ROS 1 ends as preempted where it finds its own request answered
+            container.service_preempt()
+        unanswered = True
+        try:
+            outcome = run(*userdata)
+            unanswered = any(child.preempt_requested() for child in children().values())
+            return outcome
+        finally:
+            container.busy = False
+            for child in children().values():
+                withdraw(child)
+            if concurrent and container.asked and unanswered:
+                request()
+
+    if concurrent and container._child_termination_cb:
+        ends = container._child_termination_cb
+        container._child_termination_cb = lambda ended: not container.asked and ends(ended)
+    container.execute, container.request_preempt = execute, request_preempt
+    return container
+
+
+def stoppable_again(machine):
+    """Let a machine pass on a second stop request while the same container in it runs."""
+    request, children = machine.request_preempt, machine.get_children
+
+    def request_preempt():
+        again = machine.preempt_requested() and getattr(smach, "compat", True)
+        request()
+        for label in machine.get_active_states() if again else ():
+            if hasattr(children().get(label), "get_children"):
+                children()[label].request_preempt()
+
+    machine.request_preempt = request_preempt
+    return machine
+
+
+def ends_preempted(container):
+    """Let a time limit or loop end as preempted after a request to stop, whatever its state did."""
+    run, request, recall = container.execute, container.request_preempt, container.recall_preempt
+
+    def request_preempt():
+        container.stopped = True
+        request()
+
+    def recall_preempt():
+        container.stopped = False
+        recall()
+
+    def execute(*userdata):
+        container.stopped = container.stopped or container.preempt_requested()
+        try:
+            outcome = run(*userdata)
+            if container.stopped:
+                container.service_preempt()
+                outcome = "preempted"
+            return outcome
+        finally:
+            container.stopped = False
+
+    container.execute, container.stopped = execute, False
+    container.request_preempt, container.recall_preempt = request_preempt, recall_preempt
+    return container
 
 
 def error_as_outcome(state, outcome):
@@ -128,7 +226,7 @@ class SleepState(smach.State):
 def build():
     """Build the state machine `fetch`."""
     # main.yml:2
-    fetch = smach.StateMachine(outcomes=["succeeded", "aborted"])
+    fetch = stoppable_again(smach.StateMachine(outcomes=["succeeded", "aborted"]))
     fetch.userdata.n = 0
     fetch.userdata.parts = [1, 2]
     with fetch:
@@ -178,13 +276,15 @@ def build():
         )
 
         # main.yml:28
-        sm_carry = smach.Iterator(
-            outcomes=["succeeded", "exhausted", "error"],
-            it=[1, 2, 3],
-            it_label="attempt",
-            exhausted_outcome="exhausted",
-            input_keys=["n"],
-            output_keys=["width"],
+        sm_carry = stoppable(
+            smach.Iterator(
+                outcomes=["succeeded", "exhausted", "preempted", "error"],
+                it=[1, 2, 3],
+                it_label="attempt",
+                exhausted_outcome="exhausted",
+                input_keys=["n"],
+                output_keys=["width"],
+            ),
         )
         with sm_carry:
             # main.yml:28
@@ -199,21 +299,28 @@ def build():
                     "error",
                 ),
                 loop_outcomes=["error"],
-                final_outcome_map={"error": "exhausted"},
+                final_outcome_map={"error": "preempted"},
             )
 
         smach.StateMachine.add(
             "CARRY",
-            error_as_outcome(sm_carry, "error"),
-            transitions={"succeeded": "BOTH", "exhausted": "BOTH", "error": "LET_GO"},
+            error_as_outcome(ends_preempted(sm_carry), "error"),
+            transitions={
+                "succeeded": "BOTH",
+                "exhausted": "BOTH",
+                "preempted": "aborted",
+                "error": "LET_GO",
+            },
         )
 
         # main.yml:35
-        sm_both = smach.Concurrence(
-            outcomes=["succeeded", "failed", "error"],
-            default_outcome="succeeded",
-            input_keys=["n"],
-            outcome_map={"failed": {"LEFT": "error"}},
+        sm_both = stoppable(
+            smach.Concurrence(
+                outcomes=["succeeded", "failed", "error"],
+                default_outcome="succeeded",
+                input_keys=["n"],
+                outcome_map={"failed": {"LEFT": "error"}},
+            ),
         )
         with sm_both:
             # main.yml:43
@@ -240,12 +347,14 @@ def build():
         )
 
         # main.yml:50
-        sm_each = smach.Iterator(
-            outcomes=["succeeded", "error"],
-            it=lambda: sm_each.userdata["parts"],
-            it_label="part",
-            exhausted_outcome="succeeded",
-            input_keys=["parts"],
+        sm_each = stoppable(
+            smach.Iterator(
+                outcomes=["succeeded", "error"],
+                it=lambda: sm_each.userdata["parts"],
+                it_label="part",
+                exhausted_outcome="succeeded",
+                input_keys=["parts"],
+            ),
         )
         with sm_each:
             # main.yml:60

@@ -1,4 +1,4 @@
-// Made by smachac 0.1.0 from main.yml (sha256 bbfdefbffce19a50).
+// Made by smachac 0.1.0 from main.yml (sha256 20f3bf8389600712).
 #pragma once
 
 #include "smachac/smachac.hpp"
@@ -66,11 +66,11 @@ inline constexpr smachac::Place places[] = {
 template <class Run>
 [[gnu::always_inline]] inline Outcome execute(States &states, Userdata &ud, Run &run) {
   const std::array<std::int64_t, 2> items = std::array<std::int64_t, 2>{{1, 2}};
+  smachac::Round round(run.stop, places[0], items.size());
   if (items.empty()) {
-    return Outcome::exhausted;
+    return round.over() ? Outcome::preempted : Outcome::exhausted;
   }
   const auto state = State::EACH;
-  smachac::Round round(run.stop, places[0], items.size());
   for (const auto &item : items) {
     ud.attempt.hold(item);
     // main.yml:41
@@ -80,6 +80,9 @@ template <class Run>
       const bool over = round.over();
       switch (outcome) {
       case types::EACH::Outcome::found:
+        if (over) {
+          return run.end(places, state, "found", Outcome::preempted);
+        }
         return run.end(places, state, "found", Outcome::found);
       case types::EACH::Outcome::lost:
         if (over) {
@@ -135,11 +138,11 @@ inline constexpr smachac::Place places[] = {
 template <class Run>
 [[gnu::always_inline]] inline Outcome execute(States &states, Userdata &ud, Run &run) {
   const std::array<std::string, 2> items = std::array<std::string, 2>{{std::string("a"), std::string("b")}};
+  smachac::Round round(run.stop, places[0], items.size());
   if (items.empty()) {
-    return Outcome::exhausted;
+    return round.over() ? Outcome::preempted : Outcome::exhausted;
   }
   const auto state = State::EACH;
-  smachac::Round round(run.stop, places[0], items.size());
   for (const auto &item : items) {
     ud.unused.hold(item);
     // main.yml:41
@@ -149,6 +152,9 @@ template <class Run>
       const bool over = round.over();
       switch (outcome) {
       case EACH::Outcome::found:
+        if (over) {
+          return run.end(places, state, "found", Outcome::preempted);
+        }
         return run.end(places, state, "found", Outcome::found);
       case EACH::Outcome::preempted:
         return run.end(places, state, "preempted", Outcome::preempted);
@@ -296,10 +302,11 @@ namespace tour::TRIES { // main.yml:27
 enum class Outcome : std::uint8_t {
   good,
   exhausted,
+  preempted,
 };
 
 constexpr const char *name(Outcome outcome) {
-  constexpr const char *names[] = {"good", "exhausted"};
+  constexpr const char *names[] = {"good", "exhausted", "preempted"};
   return names[static_cast<std::size_t>(outcome)];
 }
 
@@ -323,11 +330,11 @@ inline constexpr smachac::Place places[] = {
 template <class Run>
 [[gnu::always_inline]] inline Outcome execute(States &states, Userdata &ud, Run &run) {
   const std::array<std::int64_t, 2> items = std::array<std::int64_t, 2>{{1, 2}};
+  smachac::Round round(run.stop, places[0], items.size());
   if (items.empty()) {
-    return Outcome::exhausted;
+    return round.over() ? Outcome::preempted : Outcome::exhausted;
   }
   const auto state = State::TRIES;
-  smachac::Round round(run.stop, places[0], items.size());
   for (const auto &item : items) {
     ud.attempt.hold(item);
     // main.yml:27
@@ -338,7 +345,7 @@ template <class Run>
       switch (outcome) {
       case TRIES::Outcome::again:
         if (over) {
-          return run.end(places, state, "again", Outcome::exhausted);
+          return run.end(places, state, "again", Outcome::preempted);
         }
         if (round.last()) {
           return run.end(places, state, "again", Outcome::exhausted);
@@ -346,6 +353,9 @@ template <class Run>
         run.again(places, state, "again");
         continue;
       case TRIES::Outcome::good:
+        if (over) {
+          return run.end(places, state, "good", Outcome::preempted);
+        }
         return run.end(places, state, "good", Outcome::good);
       }
       run.no_outcome(places, state);
@@ -465,6 +475,9 @@ template <class Run>
     }
     SMACHAC_CATCH { run.failed(places, state); }
   });
+  if (branches.stopped()) {
+    return Outcome::preempted;
+  }
   if (ended.HASTE == types::HASTE::Outcome::preempted &&
       ended.TIMER == types::TIMER::Outcome::preempted) {
     return Outcome::preempted;
@@ -482,10 +495,11 @@ namespace tour::VISIT { // main.yml:13
 
 enum class Outcome : std::uint8_t {
   succeeded,
+  preempted,
 };
 
 constexpr const char *name(Outcome outcome) {
-  constexpr const char *names[] = {"succeeded"};
+  constexpr const char *names[] = {"succeeded", "preempted"};
   return names[static_cast<std::size_t>(outcome)];
 }
 
@@ -527,11 +541,11 @@ inline constexpr smachac::Place places[] = {
 template <class Run>
 [[gnu::always_inline]] inline Outcome execute(States &states, Userdata &ud, Run &run) {
   const auto items = smachac::need(ud.waypoints, "waypoints");
+  smachac::Round round(run.stop, places[0], items.size());
   if (items.empty()) {
-    return Outcome::succeeded;
+    return round.over() ? Outcome::preempted : Outcome::succeeded;
   }
   const auto state = State::VISIT;
-  smachac::Round round(run.stop, places[0], items.size());
   for (const auto &item : items) {
     ud.goal.hold(item);
     // main.yml:13
@@ -542,7 +556,7 @@ template <class Run>
       switch (outcome) {
       case types::VISIT::Outcome::succeeded:
         if (over) {
-          return run.end(places, state, "succeeded", Outcome::succeeded);
+          return run.end(places, state, "succeeded", Outcome::preempted);
         }
         if (round.last()) {
           return run.end(places, state, "succeeded", Outcome::succeeded);
@@ -679,6 +693,9 @@ template <class Run>
     }
     SMACHAC_CATCH { run.failed(places, state); }
   });
+  if (branches.stopped()) {
+    return Outcome::preempted;
+  }
   if (ended.LOOK == types::LOOK::Outcome::preempted &&
       ended.TIMER == types::TIMER::Outcome::preempted) {
     return Outcome::preempted;
@@ -822,11 +839,11 @@ inline constexpr smachac::Place places[] = {
 template <class Run>
 [[gnu::always_inline]] inline Outcome execute(States &states, Userdata &ud, Run &run) {
   const std::array<double, 3> items = std::array<double, 3>{{0.0, 0.1, 0.1}};
+  smachac::Round round(run.stop, places[0], items.size());
   if (items.empty()) {
-    return Outcome::exhausted;
+    return round.over() ? Outcome::preempted : Outcome::exhausted;
   }
   const auto state = State::TRY;
-  smachac::Round round(run.stop, places[0], items.size());
   for (const auto &item : items) {
     ud.pause.hold(item);
     // main.yml:6
@@ -837,6 +854,9 @@ template <class Run>
       const bool over = round.over();
       switch (outcome) {
       case TRY::Outcome::succeeded:
+        if (over) {
+          return run.end(places, state, "succeeded", Outcome::preempted);
+        }
         return run.end(places, state, "succeeded", Outcome::succeeded);
       case TRY::Outcome::aborted:
         if (over) {
@@ -965,6 +985,8 @@ template <class Run>
         case VISIT::Outcome::succeeded:
           run.go(places, state, "succeeded", State::HASTE);
           continue;
+        case VISIT::Outcome::preempted:
+          return run.end_asked(places, state, "preempted", Outcome::stopped);
         }
         break;
       }
@@ -986,6 +1008,8 @@ template <class Run>
         case TRIES::Outcome::exhausted:
           run.go(places, state, "exhausted", State::WITHOUT);
           continue;
+        case TRIES::Outcome::preempted:
+          return run.end_asked(places, state, "preempted", Outcome::stopped);
         }
         break;
       case State::WITHOUT: // main.yml:36

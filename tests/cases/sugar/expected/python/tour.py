@@ -1,4 +1,4 @@
-# Made by smachac 0.1.0 from main.yml (sha256 bbfdefbffce19a50).
+# Made by smachac 0.1.0 from main.yml (sha256 20f3bf8389600712).
 """The state machine `tour`."""
 
 import threading
@@ -7,6 +7,104 @@ try:
     import smach
 except ImportError:  # no ROS on this machine: the same names without it
     from smachac.runtime import smach
+
+
+def withdraw(state):
+    """Take back the unanswered stop requests of a state and of the states inside."""
+    if state.preempt_requested():
+        state.recall_preempt()
+        for child in getattr(state, "get_children", dict)().values():
+            withdraw(child)
+
+
+def stoppable(container):
+    """Let a container pass on every stop request, also an early one and a second one."""
+    if not getattr(smach, "compat", True):  # the bundled runtime does so itself
+        return container
+    run, request, children = container.execute, container.request_preempt, container.get_children
+    concurrent = isinstance(container, smach.Concurrence)
+    container.busy = container.asked = False
+
+    def pass_on():
+        for label in container.get_active_states() or list(children()):
+            child = children().get(label)
+            if hasattr(child, "get_children") or (child and not child.preempt_requested()):
+                child.request_preempt()
+
+    def request_preempt():
+        if not container.busy:
+            return request()
+        container.asked = True
+        if not concurrent:
+            smach.State.request_preempt(container)
+        pass_on()
+
+    def execute(*userdata):
+        container.busy, container.asked = True, container.preempt_requested()
+        if container.asked:
+            pass_on()
+        if concurrent:  # SMACH for ROS 1 ends as preempted where it finds its own request answered
+            container.service_preempt()
+        unanswered = True
+        try:
+            outcome = run(*userdata)
+            unanswered = any(child.preempt_requested() for child in children().values())
+            return outcome
+        finally:
+            container.busy = False
+            for child in children().values():
+                withdraw(child)
+            if concurrent and container.asked and unanswered:
+                request()
+
+    if concurrent and container._child_termination_cb:
+        ends = container._child_termination_cb
+        container._child_termination_cb = lambda ended: not container.asked and ends(ended)
+    container.execute, container.request_preempt = execute, request_preempt
+    return container
+
+
+def stoppable_again(machine):
+    """Let a machine pass on a second stop request while the same container in it runs."""
+    request, children = machine.request_preempt, machine.get_children
+
+    def request_preempt():
+        again = machine.preempt_requested() and getattr(smach, "compat", True)
+        request()
+        for label in machine.get_active_states() if again else ():
+            if hasattr(children().get(label), "get_children"):
+                children()[label].request_preempt()
+
+    machine.request_preempt = request_preempt
+    return machine
+
+
+def ends_preempted(container):
+    """Let a time limit or loop end as preempted after a request to stop, whatever its state did."""
+    run, request, recall = container.execute, container.request_preempt, container.recall_preempt
+
+    def request_preempt():
+        container.stopped = True
+        request()
+
+    def recall_preempt():
+        container.stopped = False
+        recall()
+
+    def execute(*userdata):
+        container.stopped = container.stopped or container.preempt_requested()
+        try:
+            outcome = run(*userdata)
+            if container.stopped:
+                container.service_preempt()
+                outcome = "preempted"
+            return outcome
+        finally:
+            container.stopped = False
+
+    container.execute, container.stopped = execute, False
+    container.request_preempt, container.recall_preempt = request_preempt, recall_preempt
+    return container
 
 
 class SleepState(smach.State):
@@ -98,22 +196,26 @@ class PrintUserdataState(smach.State):
 def build():
     """Build the state machine `tour`."""
     # main.yml:1
-    tour = smach.StateMachine(outcomes=["done", "failed", "stopped"])
+    tour = stoppable_again(smach.StateMachine(outcomes=["done", "failed", "stopped"]))
     tour.userdata.waypoints = [1, 2, 3]
     tour.userdata.count = 0
     with tour:
         # main.yml:6
-        sm_look = smach.Iterator(
-            outcomes=["succeeded", "preempted", "exhausted"],
-            it=[0.0, 0.1, 0.1],
-            it_label="pause",
-            exhausted_outcome="exhausted",
+        sm_look = stoppable(
+            smach.Iterator(
+                outcomes=["succeeded", "preempted", "exhausted"],
+                it=[0.0, 0.1, 0.1],
+                it_label="pause",
+                exhausted_outcome="exhausted",
+            ),
         )
         with sm_look:
             # main.yml:6
-            sm_try = smach.StateMachine(
-                outcomes=["succeeded", "aborted", "preempted", "timeout"],
-                input_keys=["pause"],
+            sm_try = stoppable_again(
+                smach.StateMachine(
+                    outcomes=["succeeded", "aborted", "preempted", "timeout"],
+                    input_keys=["pause"],
+                ),
             )
             with sm_try:
                 # main.yml:6
@@ -124,15 +226,17 @@ def build():
                 )
 
                 # main.yml:6
-                sm_look_2 = smach.Concurrence(
-                    outcomes=["succeeded", "aborted", "preempted", "timeout"],
-                    default_outcome="timeout",
-                    outcome_map={
-                        "succeeded": {"LOOK": "succeeded", "TIMER": "preempted"},
-                        "aborted": {"LOOK": "aborted", "TIMER": "preempted"},
-                        "preempted": {"LOOK": "preempted", "TIMER": "preempted"},
-                    },
-                    child_termination_cb=lambda outcomes: True,
+                sm_look_2 = stoppable(
+                    smach.Concurrence(
+                        outcomes=["succeeded", "aborted", "preempted", "timeout"],
+                        default_outcome="timeout",
+                        outcome_map={
+                            "succeeded": {"LOOK": "succeeded", "TIMER": "preempted"},
+                            "aborted": {"LOOK": "aborted", "TIMER": "preempted"},
+                            "preempted": {"LOOK": "preempted", "TIMER": "preempted"},
+                        },
+                        child_termination_cb=lambda outcomes: True,
+                    ),
                 )
                 with sm_look_2:
                     # main.yml:6
@@ -149,7 +253,7 @@ def build():
 
                 smach.StateMachine.add(
                     "LOOK",
-                    sm_look_2,
+                    ends_preempted(sm_look_2),
                     transitions={
                         "succeeded": "succeeded",
                         "aborted": "aborted",
@@ -167,7 +271,7 @@ def build():
 
         smach.StateMachine.add(
             "LOOK",
-            sm_look,
+            ends_preempted(sm_look),
             transitions={
                 "succeeded": "VISIT",
                 "exhausted": "failed",
@@ -176,13 +280,15 @@ def build():
         )
 
         # main.yml:13
-        sm_visit = smach.Iterator(
-            outcomes=["succeeded"],
-            it=lambda: sm_visit.userdata["waypoints"],
-            it_label="goal",
-            exhausted_outcome="exhausted",
-            input_keys=["total", "waypoints"],
-            output_keys=["total"],
+        sm_visit = stoppable(
+            smach.Iterator(
+                outcomes=["succeeded", "preempted"],
+                it=lambda: sm_visit.userdata["waypoints"],
+                it_label="goal",
+                exhausted_outcome="exhausted",
+                input_keys=["total", "waypoints"],
+                output_keys=["total"],
+            ),
         )
         with sm_visit:
             # main.yml:13
@@ -194,25 +300,31 @@ def build():
                     output_keys=["total"],
                 ),
                 loop_outcomes=["succeeded"],
-                final_outcome_map={"exhausted": "succeeded", "succeeded": "succeeded"},
+                final_outcome_map={"exhausted": "succeeded", "succeeded": "preempted"},
             )
 
         smach.StateMachine.add(
             "VISIT",
-            sm_visit,
-            transitions={"succeeded": "HASTE", "exhausted": "HASTE"},
+            ends_preempted(sm_visit),
+            transitions={
+                "succeeded": "HASTE",
+                "preempted": "stopped",
+                "exhausted": "HASTE",
+            },
             remapping={"total": "count"},
         )
 
         # main.yml:21
-        sm_haste = smach.Concurrence(
-            outcomes=["succeeded", "preempted", "timeout"],
-            default_outcome="timeout",
-            outcome_map={
-                "succeeded": {"HASTE": "succeeded", "TIMER": "preempted"},
-                "preempted": {"HASTE": "preempted", "TIMER": "preempted"},
-            },
-            child_termination_cb=lambda outcomes: True,
+        sm_haste = stoppable(
+            smach.Concurrence(
+                outcomes=["succeeded", "preempted", "timeout"],
+                default_outcome="timeout",
+                outcome_map={
+                    "succeeded": {"HASTE": "succeeded", "TIMER": "preempted"},
+                    "preempted": {"HASTE": "preempted", "TIMER": "preempted"},
+                },
+                child_termination_cb=lambda outcomes: True,
+            ),
         )
         with sm_haste:
             # main.yml:21
@@ -223,7 +335,7 @@ def build():
 
         smach.StateMachine.add(
             "HASTE",
-            sm_haste,
+            ends_preempted(sm_haste),
             transitions={
                 "timeout": "TRIES",
                 "succeeded": "failed",
@@ -232,11 +344,13 @@ def build():
         )
 
         # main.yml:27
-        sm_tries = smach.Iterator(
-            outcomes=["good", "exhausted"],
-            it=[1, 2],
-            it_label="attempt",
-            exhausted_outcome="exhausted",
+        sm_tries = stoppable(
+            smach.Iterator(
+                outcomes=["good", "exhausted", "preempted"],
+                it=[1, 2],
+                it_label="attempt",
+                exhausted_outcome="exhausted",
+            ),
         )
         with sm_tries:
             # main.yml:27
@@ -253,21 +367,27 @@ def build():
                 "TRIES",
                 sm_tries_2,
                 loop_outcomes=["again"],
-                final_outcome_map={"again": "exhausted"},
+                final_outcome_map={"again": "preempted"},
             )
 
         smach.StateMachine.add(
             "TRIES",
-            sm_tries,
-            transitions={"good": "failed", "exhausted": "WITHOUT"},
+            ends_preempted(sm_tries),
+            transitions={
+                "good": "failed",
+                "exhausted": "WITHOUT",
+                "preempted": "stopped",
+            },
         )
 
         # main.yml:36
-        sm_without = smach.Iterator(
-            outcomes=["succeeded", "preempted"],
-            it=[],
-            it_label="unused",
-            exhausted_outcome="exhausted",
+        sm_without = stoppable(
+            smach.Iterator(
+                outcomes=["succeeded", "preempted"],
+                it=[],
+                it_label="unused",
+                exhausted_outcome="exhausted",
+            ),
         )
         with sm_without:
             # main.yml:36
@@ -280,7 +400,7 @@ def build():
 
         smach.StateMachine.add(
             "WITHOUT",
-            sm_without,
+            ends_preempted(sm_without),
             transitions={
                 "succeeded": "EACH",
                 "preempted": "stopped",
@@ -289,19 +409,23 @@ def build():
         )
 
         # main.yml:41
-        sm_each = smach.Iterator(
-            outcomes=["found", "preempted", "exhausted"],
-            it=["a", "b"],
-            it_label="unused",
-            exhausted_outcome="exhausted_2",
+        sm_each = stoppable(
+            smach.Iterator(
+                outcomes=["found", "preempted", "exhausted"],
+                it=["a", "b"],
+                it_label="unused",
+                exhausted_outcome="exhausted_2",
+            ),
         )
         with sm_each:
             # main.yml:41
-            sm_each_2 = smach.Iterator(
-                outcomes=["found", "preempted", "exhausted"],
-                it=[1, 2],
-                it_label="attempt",
-                exhausted_outcome="exhausted",
+            sm_each_2 = stoppable(
+                smach.Iterator(
+                    outcomes=["found", "preempted", "exhausted"],
+                    it=[1, 2],
+                    it_label="attempt",
+                    exhausted_outcome="exhausted",
+                ),
             )
             with sm_each_2:
                 # main.yml:41
@@ -321,7 +445,7 @@ def build():
 
             smach.Iterator.set_contained_state(
                 "EACH",
-                sm_each_2,
+                ends_preempted(sm_each_2),
                 loop_outcomes=["exhausted"],
                 final_outcome_map={
                     "exhausted_2": "exhausted",
@@ -331,7 +455,7 @@ def build():
 
         smach.StateMachine.add(
             "EACH",
-            sm_each,
+            ends_preempted(sm_each),
             transitions={
                 "found": "SHOW",
                 "exhausted": "failed",

@@ -25,6 +25,21 @@ def optional(userdata, key):
     return None
 
 
+def stoppable_again(machine):
+    """Let a machine pass on a second stop request while the same container in it runs."""
+    request, children = machine.request_preempt, machine.get_children
+
+    def request_preempt():
+        again = machine.preempt_requested() and getattr(smach, "compat", True)
+        request()
+        for label in machine.get_active_states() if again else ():
+            if hasattr(children().get(label), "get_children"):
+                children()[label].request_preempt()
+
+    machine.request_preempt = request_preempt
+    return machine
+
+
 class LoadModelState(smach.State):
     """Puts a model into the simulated world."""
 
@@ -192,7 +207,7 @@ class CheckPlacedState(smach.State):
 def build():
     """Build the state machine `stacking`."""
     # main.yml:2
-    stacking = smach.StateMachine(outcomes=["succeeded", "aborted"])
+    stacking = stoppable_again(smach.StateMachine(outcomes=["succeeded", "aborted"]))
     stacking.userdata.home = [0.0, -0.785, 0.0, -2.356, 0.0, 1.571, 0.785]
     stacking.userdata.hover_offset = [[0.0, 0.0, 0.15], [0.0, 0.0, 0.0, 1.0]]
     stacking.userdata.table_pose = [[0.55, 0.0, 0.0], [0.0, 0.0, 0.0, 1.0]]

@@ -7,6 +7,76 @@ except ImportError:  # no ROS on this machine: the same names without it
     from smachac.runtime import smach
 
 
+def withdraw(state):
+    """Take back the unanswered stop requests of a state and of the states inside."""
+    if state.preempt_requested():
+        state.recall_preempt()
+        for child in getattr(state, "get_children", dict)().values():
+            withdraw(child)
+
+
+def stoppable(container):
+    """Let a container pass on every stop request, also an early one and a second one."""
+    if not getattr(smach, "compat", True):  # the bundled runtime does so itself
+        return container
+    run, request, children = container.execute, container.request_preempt, container.get_children
+    concurrent = isinstance(container, smach.Concurrence)
+    container.busy = container.asked = False
+
+    def pass_on():
+        for label in container.get_active_states() or list(children()):
+            child = children().get(label)
+            if hasattr(child, "get_children") or (child and not child.preempt_requested()):
+                child.request_preempt()
+
+    def request_preempt():
+        if not container.busy:
+            return request()
+        container.asked = True
+        if not concurrent:
+            smach.State.request_preempt(container)
+        pass_on()
+
+    def execute(*userdata):
+        container.busy, container.asked = True, container.preempt_requested()
+        if container.asked:
+            pass_on()
+        if concurrent:  # SMACH for ROS 1 ends as preempted where it finds its own request answered
+            container.service_preempt()
+        unanswered = True
+        try:
+            outcome = run(*userdata)
+            unanswered = any(child.preempt_requested() for child in children().values())
+            return outcome
+        finally:
+            container.busy = False
+            for child in children().values():
+                withdraw(child)
+            if concurrent and container.asked and unanswered:
+                request()
+
+    if concurrent and container._child_termination_cb:
+        ends = container._child_termination_cb
+        container._child_termination_cb = lambda ended: not container.asked and ends(ended)
+    container.execute, container.request_preempt = execute, request_preempt
+    return container
+
+
+def stoppable_again(machine):
+    """Let a machine pass on a second stop request while the same container in it runs."""
+    request, children = machine.request_preempt, machine.get_children
+
+    def request_preempt():
+        again = machine.preempt_requested() and getattr(smach, "compat", True)
+        request()
+        for label in machine.get_active_states() if again else ():
+            if hasattr(children().get(label), "get_children"):
+                children()[label].request_preempt()
+
+    machine.request_preempt = request_preempt
+    return machine
+
+
 class ScriptedState(smach.State):
     """Ends as it is told: visit n does step n, the last step is repeated.
 
@@ -36,15 +106,19 @@ class ScriptedState(smach.State):
 def build():
     """Build the state machine `sm`."""
     # main.yml:2
-    sm = smach.StateMachine(outcomes=["succeeded", "aborted", "preempted"])
+    sm = stoppable_again(
+        smach.StateMachine(outcomes=["succeeded", "aborted", "preempted"]),
+    )
     with sm:
         # main.yml:6
-        sm_pick_blocks = smach.Concurrence(
-            outcomes=["succeeded", "aborted", "preempted"],
-            default_outcome="succeeded",
-            outcome_map={
-                "succeeded": {"PICK_LEFT": "succeeded", "PICK_RIGHT": "succeeded"},
-            },
+        sm_pick_blocks = stoppable(
+            smach.Concurrence(
+                outcomes=["succeeded", "aborted", "preempted"],
+                default_outcome="succeeded",
+                outcome_map={
+                    "succeeded": {"PICK_LEFT": "succeeded", "PICK_RIGHT": "succeeded"},
+                },
+            ),
         )
         with sm_pick_blocks:
             # main.yml:13

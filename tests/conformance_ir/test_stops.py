@@ -1,0 +1,34 @@
+"""Requests to stop: random machines as generated Python on the bundled runtime, against the
+interpreter. tests/cpp/test_preempt_requests.py has the same for C++."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import pytest
+
+from tests.conformance_ir import generated_vectors
+from tests.conformance_ir.test_ir_vectors import expected, replay
+from tests.support.stop_machines import cases, once
+
+Json = Any
+
+MANY = 3_000
+
+
+def differing(drawn: list[Json]) -> list[str]:
+    """Machines that do something else as generated Python."""
+    return [
+        case["id"]
+        for case in drawn
+        if once(replay(case)) != once(expected(case, generated_vectors.replay(case)))
+    ]
+
+
+def test_requests_reach_the_same_states() -> None:
+    assert differing(cases(1, 100)) == []
+
+
+@pytest.mark.slow
+def test_requests_reach_the_same_states_in_many_machines() -> None:
+    assert differing(cases(2, MANY)) == []
