@@ -242,3 +242,44 @@ def test_the_number_of_an_interface_is_its_own(other: str) -> None:
 
 def test_docs_and_claims_do_not_change_the_number() -> None:
     assert number(HIT + "doc: Hits it.\nclaims: [bat]\n") == number(HIT)
+
+
+ROUTE = """
+name: Hit
+input_keys: {route: TYPE}
+output_keys: {rest: TYPE}
+outcomes: {done: {}}
+code: {cpp: {header: game/hit.hpp, class: "game::Hit"}}
+"""
+ROUTED = """
+name: sm
+outcomes: [done]
+input_keys: {route: TYPE}
+states:
+  - GO: {template: Hit, transitions: {done: done}}
+"""
+
+
+@pytest.mark.parametrize(
+    "type_", ["nav_msgs/Path", "list[nav_msgs/Path]", "nav_msgs/Path?", "my_robot.Route"]
+)
+def test_a_type_that_cpp_lacks_in_an_interface_is_refused_at_its_key(type_: str) -> None:
+    """It crashed: the assertions for the class need a C++ type for each key."""
+    files = {"main.yml": ROUTED, "templates/Hit.yml": ROUTE}
+    report, text = made({name: each.replace("TYPE", f'"{type_}"') for name, each in files.items()})
+    assert text == ""
+    first = next(each for each in report if "`route`" in each.message)
+    assert (first.code, first.span.line) == ("SM601", 4)
+    assert "the key `route`: the members of the type `" in first.message
+    assert first.help is not None
+    assert "declare the key as `any`" in first.help
+
+
+def test_a_type_that_cpp_lacks_in_one_interface_only_is_refused() -> None:
+    files = {
+        "main.yml": ROUTED.replace("TYPE", "none"),
+        "templates/Hit.yml": ROUTE.replace("TYPE", '"nav_msgs/Path?"'),
+    }
+    report, text = made(files)
+    assert text == ""
+    assert {each.code for each in report} == {"SM601"}

@@ -43,12 +43,16 @@ class Header(NamedTuple):
 
 
 def header_of(plan: Plan) -> Header:
-    """The header of a machine. Everything that C++ cannot express is added to the plan's report."""
+    """The header of a machine. Everything that C++ cannot express is added to the plan's report;
+    the header is empty then."""
     printing = _Printing(plan=plan)
     blocks = [
         "\n".join(_container(printing, scope)) for scope in reversed(list(plan.scopes.values()))
     ]
     _refuse_missing(plan, printing.missing)
+    if plan.report:
+        # A class whose types are refused has no assertions.
+        return Header("", (), ())
     codes = [code for code in printing.classes.values() if code is not None]
     headers = sorted({"smachac/smachac.hpp", *(code.header for code in codes)})
     classes = tuple(header for header in headers if not header.startswith("smachac/"))

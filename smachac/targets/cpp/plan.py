@@ -98,7 +98,8 @@ def _check(plan: Plan, scope: ContainerScope, around: ContainerScope | None) -> 
         try:
             cpp_type(type_)
         except UnportableError as error:
-            plan.refuse(_place_of(node, key), UnportableError(f"the key `{key}`: {error}"), key)
+            refused = UnportableError(f"the key `{key}`: {error}", help=error.help)
+            plan.refuse(_place_of(node, key), refused, key)
     names = [
         *(("state", child.name) for child in node.children),
         *(("key", key) for key in scope.keys),

@@ -53,6 +53,11 @@ mappings."""
 
 LISTED = ("Point", "Quaternion", "Pose", "Transform")
 
+OTHER_TYPES = (
+    "declare the key as `any`: C++ keeps its value as a `std::any`, which a class can cast"
+)
+"""The help for a type that C++ lacks, such as a message of ROS."""
+
 SCALARS = {
     "bool": "bool",
     "int": "std::int64_t",
@@ -91,7 +96,8 @@ def cpp_type(type_: Type) -> str:
             return f"std::map<std::string, {cpp_type(item)}>"
         case "optional", (Type() as item,):
             return f"std::optional<{cpp_type(item)}>"
-    raise UnportableError(f"the members of the type `{type_}` are unknown")
+    message = f"the members of the type `{type_}` are unknown"
+    raise UnportableError(message, help=OTHER_TYPES)
 
 
 def plain(type_: Type) -> Type:

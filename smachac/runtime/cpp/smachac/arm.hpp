@@ -19,6 +19,7 @@
 #include "smachac/smachac.hpp"
 
 namespace smachac {
+inline namespace v0_1_0 {
 
 /// The name of an arm; none where the robot has one only.
 using Limb = std::optional<std::string>;
@@ -299,6 +300,7 @@ private:
   std::map<std::string, double> apart_;
 };
 
+} // namespace v0_1_0
 } // namespace smachac
 
 #endif

@@ -15,6 +15,7 @@
 #include "smachac/smachac.hpp"
 
 namespace smachac {
+inline namespace v0_1_0 {
 
 namespace detail {
 
@@ -55,7 +56,7 @@ private:
   sigset_t signals_{};
   sigset_t before_{};
   std::atomic<bool> over_{false};
-  std::thread thread_;
+  std::thread thread_{};
 };
 
 } // namespace detail
@@ -117,6 +118,7 @@ private:
   const char *trace_ = nullptr;
 };
 
+} // namespace v0_1_0
 } // namespace smachac
 
 #endif

@@ -13,6 +13,7 @@
 #include <array>
 #include <atomic>
 #include <chrono>
+#include <cmath>
 #include <condition_variable>
 #include <cstddef>
 #include <cstdint>
@@ -41,8 +42,14 @@
 #endif
 
 namespace smachac {
+inline namespace v0_1_0 {
 
-/// A userdata key: a value, once somebody has put one there.
+/// Fails because a key was read that holds nothing.
+[[noreturn, gnu::cold, gnu::noinline]] inline void unset_key() {
+  fail("reads a key that holds nothing");
+}
+
+/// A userdata key: a value, once somebody has put one there. A read of an unset key is an Error.
 template <class T> class Key {
 public:
   Key() = default;
@@ -53,9 +60,14 @@ public:
     state_ = written;
     return *this;
   }
-  operator const T &() const { return value_; } // NOLINT: `in.tries + 1`
-  const T &get() const { return value_; }
-  bool set() const { return state_ != unset; }
+  operator const T &() const { return get(); } // NOLINT: `in.tries + 1`
+  [[nodiscard]] const T &get() const {
+    if (state_ == unset) {
+      unset_key();
+    }
+    return value_;
+  }
+  [[nodiscard]] bool set() const { return state_ != unset; }
 
   /// What containers do at their borders: no state has written it, so no trace tells of it.
   template <class U> void hold(const U &value) {
@@ -63,7 +75,13 @@ public:
     state_ = held;
   }
   /// The same, where it holds a value already.
-  template <class U> void replace(const U &value) { value_ = convert<T>(value); }
+  template <class U> void replace(const U &value) {
+    if constexpr (std::is_same_v<T, U>) {
+      value_ = value; // keeps the memory that the value has
+    } else {
+      value_ = convert<T>(value);
+    }
+  }
   /// Hold what another key holds, if it does.
   template <class U> void take(const Key<U> &other) {
     if (other.set()) {
@@ -93,7 +111,7 @@ struct MissingKey : Error {
 };
 
 /// The value of a key that has to hold one. Throws MissingKey.
-template <class T> const T &need(const Key<T> &key, const char *name) {
+template <class T> [[nodiscard]] const T &need(const Key<T> &key, const char *name) {
   if (!key.set()) {
 #if defined(__cpp_exceptions)
     throw MissingKey(name);
@@ -105,7 +123,7 @@ template <class T> const T &need(const Key<T> &key, const char *name) {
 }
 
 /// The value of a key that may hold none.
-template <class Optional, class T> Optional maybe(const Key<T> &key) {
+template <class Optional, class T> [[nodiscard]] Optional maybe(const Key<T> &key) {
   return key.set() ? convert<Optional>(key.get()) : Optional();
 }
 
@@ -197,6 +215,8 @@ public:
 
   /// What to do with an event, which is gone after the call.
   virtual void on(const Event &event) = 0;
+  /// Whether `on` is called for writes. Without, no value is turned into JSON.
+  [[nodiscard]] virtual bool wants_writes() const { return true; }
 
   void tell(const Event &event) {
     const std::lock_guard<std::recursive_mutex> hold(lock_);
@@ -204,13 +224,16 @@ public:
   }
 
 private:
-  std::recursive_mutex lock_;
+  std::recursive_mutex lock_{};
 };
 
 /// Writes each event as a line of JSON, at once: what has happened is in the file.
 class TraceWriter : public Observer {
 public:
   explicit TraceWriter(std::FILE *file) : file_(file) {}
+  TraceWriter(const TraceWriter &) = delete;
+  TraceWriter &operator=(const TraceWriter &) = delete;
+  ~TraceWriter() override = default;
 
   void on(const Event &event) override {
     if (std::strcmp(event.event, "start") == 0) {
@@ -246,7 +269,7 @@ private:
   }
 
   std::FILE *file_;
-  std::string line_;
+  std::string line_{};
   std::uint64_t count_ = 0;
   std::chrono::steady_clock::time_point began_ = std::chrono::steady_clock::now();
 };
@@ -265,20 +288,31 @@ public:
   /// again.
   void request() {
     std::vector<std::pair<Observer *, Place>> told;
-    ask(told);
+    {
+      const std::lock_guard<std::mutex> hold(lock_);
+      ask(told);
+      if (told.empty()) {
+        return;
+      }
+      ++calls_;
+    }
+    const EndOfCalls end{*this};
     for (const auto &[observer, place] : told) {
       observer->tell({"preempt", place});
     }
   }
   /// Whether a request waits for an answer.
-  bool requested() const { return asked_.load(std::memory_order_relaxed); }
+  [[nodiscard]] bool requested() const { return asked_.load(std::memory_order_relaxed); }
   /// Answer it: what comes next runs on.
   void service() { asked_.store(false, std::memory_order_relaxed); }
   /// How many requests there were.
-  std::uint64_t requests() const { return requests_.load(std::memory_order_relaxed); }
+  [[nodiscard]] std::uint64_t requests() const { return requests_.load(std::memory_order_relaxed); }
 
-  /// Wait for so many seconds, or for a request; whether one has come.
+  /// Wait for so many seconds, or for a request; whether one has come. NaN is an Error.
   bool wait(double seconds) {
+    if (std::isnan(seconds)) {
+      fail("waits for `nan` seconds");
+    }
     const std::chrono::duration<double> most(std::min(seconds, longest));
     std::unique_lock<std::mutex> hold(lock_);
     return wake_.wait_for(hold, most, [this] { return asked_.load(); });
@@ -292,8 +326,18 @@ private:
 
   static constexpr double longest = 1e9;
 
+  /// The end of a request that calls observers: the run that they watch may end.
+  struct EndOfCalls {
+    Stop &stop;
+    ~EndOfCalls() {
+      const std::lock_guard<std::mutex> hold(stop.lock_);
+      --stop.calls_;
+      stop.uncalled_.notify_all();
+    }
+  };
+
+  /// To be called under the lock.
   void ask(std::vector<std::pair<Observer *, Place>> &told) {
-    const std::lock_guard<std::mutex> hold(lock_);
     if (ended_) {
       return;
     }
@@ -305,6 +349,7 @@ private:
       told.emplace_back(observer_, place);
     }
     for (Stop *branch = branches_; branch != nullptr; branch = branch->next_) {
+      const std::lock_guard<std::mutex> hold(branch->lock_);
       branch->ask(told);
     }
   }
@@ -372,20 +417,23 @@ private:
 
   std::atomic<bool> asked_{false};
   std::atomic<std::uint64_t> requests_{0};
-  std::mutex lock_;
-  std::condition_variable wake_;
+  std::mutex lock_{};
+  std::condition_variable wake_{};
   // Whether a look at those that keep a request is worth it; only the thread of control does.
   bool keeps_ = false;
   // Under the lock: the paths of the states that keep a request, and of the one whose own request
   // `asked_` is; null where it is everybody's.
-  std::vector<const char *> kept_;
+  std::vector<const char *> kept_{};
   const char *asker_ = nullptr;
   // Under the lock: the branches of the concurrence that runs, and what an observer is told of.
   Stop *branches_ = nullptr;
   Stop *next_ = nullptr;
   bool ended_ = false;
   Observer *observer_ = nullptr;
-  std::vector<Place> running_;
+  std::vector<Place> running_{};
+  // Under the lock: the requests that call observers now. A watched run waits for their end.
+  unsigned calls_ = 0;
+  std::condition_variable uncalled_{};
 };
 
 /// The items of an iterator that are left, and requests to stop: it ends after the item that runs
@@ -599,9 +647,10 @@ public:
   WatchedRun(const WatchedRun &) = delete;
   WatchedRun &operator=(const WatchedRun &) = delete;
   ~WatchedRun() {
-    const std::lock_guard<std::mutex> hold(stop.lock_);
+    std::unique_lock<std::mutex> hold(stop.lock_);
     stop.observer_ = nullptr;
     stop.running_.clear();
+    stop.uncalled_.wait(hold, [this] { return stop.calls_ == 0; });
   }
 
   Observer &observer() { return observer_; }
@@ -729,7 +778,7 @@ private:
     }
   }
   template <class T> void wrote_one(Output<T> output) {
-    if (output.key.fresh()) {
+    if (output.key.fresh() && observer_.wants_writes()) {
       const std::string value = json(output.key.get());
       const Place place = stop.running_.back(); // only this thread changes it
       observer_.tell({"write", place, nullptr, nullptr, output.name, value.c_str()});
@@ -961,6 +1010,7 @@ private:
   Seeded words_;
 };
 
+} // namespace v0_1_0
 } // namespace smachac
 
 #endif // SMACHAC_SMACHAC_HPP

@@ -14,6 +14,7 @@
 #include <any>
 #include <array>
 #include <charconv>
+#include <cinttypes>
 #include <cmath>
 #include <cstddef>
 #include <cstdint>
@@ -30,6 +31,7 @@
 #include <vector>
 
 namespace smachac {
+inline namespace v0_1_0 {
 
 /// An expression that has no value, and why.
 struct Error : std::exception {
@@ -538,7 +540,7 @@ template <class A, class B> bool at_most(const A &a, const B &b) {
 constexpr std::int64_t largest = 100'000;
 
 inline std::int64_t length(const std::string &text) {
-  return static_cast<std::int64_t>(std::count_if(text.begin(), text.end(), detail::is_start));
+  return std::count_if(text.begin(), text.end(), detail::is_start);
 }
 
 template <class T> std::int64_t length(const T &items) {
@@ -814,7 +816,7 @@ inline void write_quoted(std::string &out, const std::string &value) {
 
 inline void write_unit(std::string &out, std::uint32_t unit) {
   char escape[8];
-  std::snprintf(escape, sizeof escape, "\\u%04x", static_cast<unsigned>(unit & 0xFFFFU));
+  std::snprintf(escape, sizeof escape, "\\u%04" PRIx32, unit & 0xFFFFU);
   out += escape;
 }
 
@@ -1009,7 +1011,7 @@ inline bool is_decimal(std::string_view text, bool &great) {
   if (count > 0 && place < text.size() && (text[place] == 'e' || text[place] == 'E')) {
     ++place;
     const bool down = place < text.size() && text[place] == '-';
-    place += place < text.size() && (down || text[place] == '+') ? 1 : 0;
+    place += place < text.size() && (down || text[place] == '+') ? 1U : 0U;
     const std::size_t from = place;
     count = digits(text, place);
     for (std::size_t i = from; i < place && exponent < 1'000'000'000; ++i) {
@@ -1088,6 +1090,7 @@ template <class T> std::string json(const T &value) {
   return out;
 }
 
+} // namespace v0_1_0
 } // namespace smachac
 
 #endif
