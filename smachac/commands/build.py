@@ -10,6 +10,7 @@ from pathlib import Path
 from smachac.commands.arguments import SCRIPT, colour, search_folders
 from smachac.commands.files import changed_files, foreign_files, write_files
 from smachac.commands.output import FINDINGS, OK, print_report, usage, without_notes
+from smachac.commands.writing import PartlyWrittenError
 from smachac.driver import analyse_script, compile_script
 from smachac.targets import Files, OptionError, load_target, target_names
 
@@ -85,7 +86,8 @@ def _put(files: Files, arguments: Namespace) -> int:
     try:
         for path in write_files(folder, files):
             print(f"wrote {path}")
-    except OSError as error:
-        print(f"cannot write to {folder}: {error.strerror or error}", file=sys.stderr)
+    except (OSError, PartlyWrittenError) as error:
+        words = getattr(error, "strerror", None) or error
+        print(f"cannot write to {folder}: {words}", file=sys.stderr)
         return FINDINGS
     return OK

@@ -15,8 +15,9 @@ from typing import TYPE_CHECKING
 from smachac.batch import Batch, check_scripts
 from smachac.checks.workspace import NoSimulationError, unreachable
 from smachac.commands.arguments import FORMAT, SCRIPTS, colour, search_folders
-from smachac.commands.files import ChangedError, rewrite_files, write_files
+from smachac.commands.files import ChangedError, not_written, rewrite_files, write_files
 from smachac.commands.output import FINDINGS, OK, print_report, usage, without_notes
+from smachac.commands.writing import PartlyWrittenError
 from smachac.diagnostics import baseline
 from smachac.diagnostics.diagnostic import Report, Severity
 from smachac.diagnostics.severities import select_findings
@@ -171,9 +172,8 @@ def _rewritten(fixed: FixResult) -> bool:
     """Write the fixed texts; whether that succeeded."""
     try:
         rewrite_files(fixed.texts, fixed.sources)
-    except (OSError, ChangedError) as error:
-        words = getattr(error, "strerror", None) or str(error)
-        print(f"nothing was fixed: {words}", file=sys.stderr)
+    except (OSError, ChangedError, PartlyWrittenError) as error:
+        print(not_written(error), file=sys.stderr)
         return False
     return True
 
@@ -217,8 +217,8 @@ def _summary(report: Report, scripts: int, notes: list[str]) -> str:
 def _write_baseline(path: Path, report: Report) -> int:
     try:
         write_files(path.parent, {path.name: baseline.render(report)})
-    except OSError as error:
-        return usage(f"cannot write {path}: {error.strerror or error}")
+    except (OSError, PartlyWrittenError) as error:
+        return usage(f"cannot write {path}: {getattr(error, 'strerror', None) or error}")
     print(f"wrote {path}: {len(report)} findings, which --baseline ignores from now on")
     return OK
 

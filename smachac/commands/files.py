@@ -6,12 +6,12 @@ import contextlib
 import errno
 import os
 import sys
-import tempfile
 from argparse import Namespace
 from collections.abc import Iterable, Mapping
 from pathlib import Path
 
 from smachac.commands.output import FINDINGS, OK
+from smachac.commands.writing import PartlyWrittenError, put_all
 from smachac.diagnostics.source import Source
 from smachac.frontend.files import decoded
 
@@ -48,9 +48,9 @@ def changed_files(folder: Path, files: Mapping[str, str]) -> list[Path]:
 
 
 def write_files(folder: Path, files: Mapping[str, str]) -> list[Path]:
-    """Write all files or none: each to a temporary file, which is then renamed.
+    """Write all files or none.
 
-    Raises OSError; then no file and no new folder is left.
+    Raises OSError, after which no file and no new folder is left, or PartlyWrittenError.
     """
     paths = {folder / name: text.encode("utf-8") for name, text in files.items()}
     made: list[Path] = []
@@ -60,7 +60,7 @@ def write_files(folder: Path, files: Mapping[str, str]) -> list[Path]:
             for each in reversed(missing):
                 each.mkdir(exist_ok=True)
                 made.append(each)
-        _put_all({path: (data, 0o644) for path, data in paths.items()})
+        put_all(paths)
     except BaseException:
         for each in reversed(made):
             with contextlib.suppress(OSError):
@@ -74,30 +74,29 @@ class ChangedError(Exception):
 
 
 def rewrite_files(texts: Mapping[str, str], before: Mapping[str, Source]) -> None:
-    """Write new texts to files, named by real path: to all of them or to none. Encoding and
-    permissions stay. A file that is not in `before` is new.
+    """Write new texts to files, named by real path: to all of them or to none. The encoding stays.
+    A file that is not in `before` is new.
 
-    Raises OSError, also for a read-only file and for a new file that exists, and ChangedError if a
-    file changed after `before` was read.
+    Raises OSError, also for a read-only file and for a new file that exists, ChangedError if a file
+    changed after `before` was read, and PartlyWrittenError.
     """
-    contents: dict[Path, tuple[bytes, int]] = {}
+    contents: dict[Path, bytes] = {}
     for name, text in texts.items():
         path = Path(name)
         if name not in before:
             if path.exists():
                 raise FileExistsError(errno.EEXIST, os.strerror(errno.EEXIST), name)
-            contents[path] = (text.encode("utf-8"), 0o644)
+            contents[path] = text.encode("utf-8")
             continue
         data = path.read_bytes()
-        mode = path.stat().st_mode & 0o7777
         if decoded(data) != before[name].text:
             raise ChangedError(
                 f"{before[name].name} was changed by another program in the meantime"
             )
-        if not mode & 0o222:
+        if not path.stat().st_mode & 0o222:
             raise PermissionError(errno.EACCES, os.strerror(errno.EACCES), before[name].name)
-        contents[path] = (_encoded(text, data), mode)
-    _put_all(contents)
+        contents[path] = _encoded(text, data)
+    put_all(contents)
 
 
 def _encoded(text: str, like: bytes) -> bytes:
@@ -109,26 +108,13 @@ def _encoded(text: str, like: bytes) -> bytes:
     return text.encode("utf-8")
 
 
-def _put_all(contents: Mapping[Path, tuple[bytes, int]]) -> None:
-    """Write bytes, with their permissions, to all paths or to none."""
-    written: list[tuple[str, Path]] = []
-    try:
-        for path, (data, mode) in contents.items():
-            handle, temporary = tempfile.mkstemp(prefix=f".{path.name}.", dir=path.parent)
-            written.append((temporary, path))
-            with os.fdopen(handle, "wb") as stream:
-                stream.write(data)
-            Path(temporary).chmod(mode)
-        for _, path in written:
-            if path.is_dir():
-                raise IsADirectoryError(errno.EISDIR, os.strerror(errno.EISDIR), str(path))
-        for temporary, path in written:
-            Path(temporary).replace(path)
-    except BaseException:
-        for temporary, _ in written:
-            with contextlib.suppress(OSError):
-                Path(temporary).unlink()
-        raise
+def not_written(error: Exception) -> str:
+    """The message about an error of `write_files` or `rewrite_files`."""
+    if isinstance(error, PartlyWrittenError):
+        return f"not all files were written: {error}"
+    where = getattr(error, "filename", None)
+    message = getattr(error, "strerror", None) or str(error)
+    return f"nothing was written: {f'{where}: ' if where else ''}{message}"
 
 
 def put_changes(
@@ -155,10 +141,8 @@ def put_changes(
         return FINDINGS if texts else OK
     try:
         rewrite_files(texts, {path: sources[path] for path in sources.keys() - new})
-    except (OSError, ChangedError) as error:
-        message = getattr(error, "strerror", None) or str(error)
-        where = getattr(error, "filename", None)
-        print(f"nothing was written: {f'{where}: ' if where else ''}{message}", file=sys.stderr)
+    except (OSError, ChangedError, PartlyWrittenError) as error:
+        print(not_written(error), file=sys.stderr)
         return FINDINGS
     for name, word in words.items():
         print(f"{word} {name}")

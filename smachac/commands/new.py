@@ -22,6 +22,7 @@ from smachac.commands.scaffold import (
     project,
     stub,
 )
+from smachac.commands.writing import PartlyWrittenError
 from smachac.diagnostics.diagnostic import Report
 from smachac.diagnostics.source import Source
 from smachac.frontend.files import disk_library
@@ -77,8 +78,9 @@ def _put(folder: Path, files: Files) -> int:
     try:
         for path in write_files(folder, files):
             print(f"created {path}")
-    except OSError as error:
-        print(f"cannot write to {folder}: {error.strerror or error}", file=sys.stderr)
+    except (OSError, PartlyWrittenError) as error:
+        words = getattr(error, "strerror", None) or error
+        print(f"cannot write to {folder}: {words}", file=sys.stderr)
         return FINDINGS
     return OK
 
