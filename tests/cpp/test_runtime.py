@@ -155,7 +155,7 @@ int main() {
 @pytest.mark.parametrize("call", ["key.get()", "key.set()", "stop.requested()"])
 def test_a_result_that_is_not_used_is_a_warning(call: str, tmp_path: Path) -> None:
     text = UNUSED.replace("CALL", call)
-    with pytest.raises(AssertionError, match="nodiscard|unused-result"):
+    with pytest.raises(AssertionError, match=r"nodiscard|unused-result"):
         last_with("-O0").compile(text, tmp_path, "-fsyntax-only", "-pthread")
 
 
