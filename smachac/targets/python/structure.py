@@ -7,6 +7,7 @@ from collections.abc import Callable, Iterator
 from dataclasses import replace
 from keyword import iskeyword
 
+from smachac.diagnostics.source import assert_never
 from smachac.ir.nodes import (
     Concurrence,
     Container,
@@ -82,6 +83,8 @@ def construct(node: Container, variable: str, depth: int) -> str:
             arguments.append(("exhausted_outcome=", string(node.exhausted_outcome)))
         case StateMachine():
             pass
+        case _:
+            assert_never(node)
     arguments += key_arguments(node.inputs, node.outputs)
     if isinstance(node, Concurrence):
         if len({rule.outcome for rule in node.rules}) < len(node.rules):
