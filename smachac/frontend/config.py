@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import re
 from collections.abc import Iterable, Mapping
 from dataclasses import dataclass, field
 from pathlib import Path
@@ -11,7 +10,7 @@ from smachac.diagnostics.diagnostic import Code, Report, Severity, did_you_mean
 from smachac.diagnostics.severities import Policy
 from smachac.diagnostics.source import Source, Span
 from smachac.diagnostics.wording import listed
-from smachac.frontend.errors.script import unreadable_file
+from smachac.frontend.errors.script import too_big, unreadable_file
 
 SETTINGS = ("scripts", "templates", "code", "exclude", "severity")
 LEVELS: Mapping[str, Severity | None] = {
@@ -19,6 +18,13 @@ LEVELS: Mapping[str, Severity | None] = {
     "off": None,
 }
 """The severities that a project file may set."""
+
+
+MOST_DOTS = 200
+"""The most dots of a line, and so the most parts of a key."""
+
+LONGEST_KEY = 200
+"""The longest key that is looked for in the text, in characters."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -42,6 +48,12 @@ def read_project(
     Wrong settings are reported (SM007) and left out. `codes` are those whose severity can be set;
     without them the codes in the file are not checked.
     """
+    crowded = next((line for line in source.text.split("\n") if line.count(".") > MOST_DOTS), None)
+    if crowded is not None:  # tomllib takes time and memory quadratic in the parts of a key
+        start = source.text.index(crowded)
+        message = f"a line has {crowded.count('.'):,} dots; the limit is {MOST_DOTS}"
+        report.append(too_big(Span(source, start, start), message, "break it into lines", arguments=("dots",)))
+        return Project()
     try:
         import tomllib as toml
     except ImportError:  # Python 3.10
@@ -117,8 +129,17 @@ def _wrong(
     source: Source, key: str, message: str, help: str, report: Report, arguments: tuple[str, ...]
 ) -> None:
     """SM007 at the key, if a search finds it: TOML parsers give no positions."""
-    found = re.search(
-        rf"^[ \t]*(?:\[[^\]\n]*?)?([\"']?{re.escape(key)}\b[\"']?)", source.text, re.M
-    )
-    span = Span(source, *found.span(1)) if found else Span(source, 0, 0)
+    span = Span(source, 0, 0)
+    for start in source.line_starts if len(key) <= LONGEST_KEY else ():
+        line = source.text[start : start + 2 * LONGEST_KEY].split("\n", 1)[0]
+        before, found, after = line.partition(key)
+        lead = before.lstrip(" \t")
+        quote = lead[-1:] if lead[-1:] in ("'", '"') else ""
+        name = lead.removesuffix(quote)
+        is_key = not name or (name[0] == "[" and "]" not in name)
+        if found and is_key and not (after[:1].isalnum() or after[:1] == "_"):
+            at = start + len(before)
+            closed = after[:1] in ("'", '"')
+            span = Span(source, at - len(quote), at + len(key) + closed)
+            break
     report.append(unreadable_file(span, message, help, arguments=arguments))

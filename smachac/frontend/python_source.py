@@ -13,12 +13,12 @@ from collections.abc import Iterator
 from dataclasses import dataclass
 
 from smachac.diagnostics.source import Source, Span, Word
+from smachac.frontend.jinja_tags import replaced, tags
 from smachac.ir.nodes import Body
 
 LONGEST = 200_000
 """The longest text that is read, in characters."""
 
-_JINJA = re.compile(r"\{#.*?#\}|\{%.*?%\}|\{\{.*?\}\}", re.DOTALL)
 _RAW = re.compile(r"\{%[-+]?\s*raw\b")
 _NOT_PORTABLE_LINES = re.compile(r"\r(?!\n)|[\f\v]")
 
@@ -63,20 +63,14 @@ def python_text(source: Source, *, template: bool) -> PythonText | None:
     if template:
         if _RAW.search(text):
             return None
-        filled = tuple(found.span() for found in _JINJA.finditer(text))
-        text = _JINJA.sub(_stand_in, text)
+        filled = tuple(tags(text))
+        text = replaced(text, iter(filled), {"{{": "_"})  # a name in place of an expression
     try:
         with warnings.catch_warnings():
             warnings.simplefilter("ignore", SyntaxWarning)
             return PythonText(source=source, tree=ast.parse(text), filled=filled)
     except (SyntaxError, ValueError):
         return None
-
-
-def _stand_in(found: re.Match[str]) -> str:
-    """A name in place of an expression, spaces in place of other tags, of the same length."""
-    text = found.group()
-    return re.sub(r"[^\n]", "_" if text.startswith("{{") else " ", text)
 
 
 METHODS = frozenset(["extract", "keys", "merge", "update"])

@@ -10,18 +10,17 @@ from collections.abc import Callable
 from dataclasses import dataclass
 
 from smachac.diagnostics.source import Source, Span, Word
+from smachac.frontend.jinja_tags import meta_block, tags
 from smachac.frontend.yaml_tree import Map, Scalar, Seq, Tree, parse
 from smachac.ir.nodes import Outcome, StateKind
 
-_META = re.compile(r"\{%-?\s*block\s+meta\s*-?%\}(.*?)\{%-?\s*endblock", re.DOTALL)
 _BODY = re.compile(r"\{%[-+]?\s*block\s+body\b")
 _AROUND = re.compile(r"\{\{[-+]?\s*(?:body\b|super\s*\()")
 _EXTENDS = re.compile(r"\{%[-+]?\s*extends\s+[\"']([^\"']+)[\"']")
 _OUTCOMES = re.compile(r"\boutcomes\s*=\s*\[([^\[\]{}]*)\]")
 _DEFAULT = re.compile(r"\bdef\s+\w+\([^()]*$")
 _KEYS = re.compile(r"\b(input|output)_keys\s*=\s*\[([^\[\]{}]*)\]")
-_TAGS = re.compile(r"\{[{%](.*?)[%}]\}", re.DOTALL)
-_BRINGS = re.compile(r"\s*[-+]?\s*(?:extends|include|import|from)\b\s*(.*)", re.DOTALL)
+_BRINGS = re.compile(r"\s*(?:[-+]\s*)?(?:extends|include|import|from)\b\s*(.*)", re.DOTALL)
 _WORD = re.compile(r"[^\W\d]\w*")
 _FILES = re.compile(r"[\"']([^\"']+)[\"']")
 _QUOTED = re.compile(r"([\"'])(\w+)\1")
@@ -53,8 +52,9 @@ def extended(template: Source) -> str:
 
 def read_meta(template: Source) -> Meta | None:
     """The meta block of a template; None if there is none or it is no YAML."""
-    found = _META.search(template.text)
-    tree = parse(Source(template.name, found.group(1)), []) if found else None
+    found = meta_block(template.text)
+    text = template.text[found[1] : found[2]] if found is not None else ""
+    tree = parse(Source(template.name, text), []) if found is not None else None
     if not isinstance(tree, Map):
         return None
 
@@ -124,9 +124,10 @@ def words_used(file: str, find: Callable[[str], Source | None]) -> frozenset[str
         template = find(name) or find(f"{name}.py")
         if template is None:
             return None
-        for tag in _TAGS.finditer(template.text):
-            words.update(_WORD.findall(tag.group(1)))
-            brings = _BRINGS.match(tag.group(1)) if tag.group(0).startswith("{%") else None
+        for start, end in tags(template.text, "%{"):
+            tag = template.text[start + 2 : end - 2]
+            words.update(_WORD.findall(tag))
+            brings = _BRINGS.match(tag) if template.text.startswith("{%", start) else None
             if brings is None:
                 continue
             files = _FILES.findall(brings.group(1)) if brings.group(1)[:1] in "\"'[(" else []

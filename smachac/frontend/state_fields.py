@@ -18,6 +18,7 @@ from smachac.frontend.fields import READERS, listed_keys, name_of
 from smachac.frontend.params import Scope
 from smachac.frontend.script import Keys, State
 from smachac.frontend.sugar import NAMES, is_own, read_sugar
+from smachac.frontend.unquoted import check_name, check_unquoted
 from smachac.frontend.values import as_value, as_written
 from smachac.frontend.yaml_tree import Entry, is_known_wrong
 from smachac.ir.nodes import Key, Outcome, StateType, Struct, Value, Variable
@@ -63,6 +64,7 @@ def read_fields(
         read[part] = (*read.get(part, ()), *keys)
     _check_required(read["name"], entries, owner, type_, rejected, inner, report)
     read["variables"] = tuple(_variables(entries, owner, type_))
+    _check_unquoted(entries, owner, type_, report)
     if type_.prints_itself:
         read["written"] = tuple(_written(read["name"], entries, scope))
     return read
@@ -84,6 +86,8 @@ def _known_fields(
         elif key in type_.variables:
             continue  # a rule checks it against its type
         elif type_.open or "variables" in type_.given:
+            if not type_.prints_itself:
+                check_name(key, entry.key.span, report)
             if type_.used is not None and key not in type_.used:
                 words = [*schema.names_for(owner), *type_.used]
                 word = Word(str(entry.key.value), entry.key.span)
@@ -166,6 +170,15 @@ def _variables(entries: Entries, owner: str, type_: StateType) -> Iterator[Varia
         value = as_value(entry.value, code=called)
         declared = known.type if known is not None else ANY
         yield Variable(name=name, type=declared, role=role, value=value, span=entry.key.span)
+
+
+def _check_unquoted(entries: Entries, owner: str, type_: StateType, report: Report) -> None:
+    """The shapes of the variables that programs contain without quotes."""
+    if owner == "base" and "function_name" in entries:
+        check_unquoted(entries["function_name"].value, "name", report)
+    for name, variable in type_.variables.items():
+        if variable.unquoted and name in entries:
+            check_unquoted(entries[name].value, variable.unquoted, report)
 
 
 def _written(name: Word, entries: Entries, scope: Scope) -> Iterator[Variable]:

@@ -8,7 +8,6 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from dataclasses import replace
-from keyword import iskeyword
 from typing import TypeAlias, TypeVar, get_args
 
 from smachac.diagnostics.diagnostic import Report, did_you_mean
@@ -19,6 +18,7 @@ from smachac.frontend.fields import as_flag, as_map, as_name, as_names, as_text
 from smachac.frontend.loader import Library
 from smachac.frontend.python_source import python_body
 from smachac.frontend.type_annotations import read_type
+from smachac.frontend.unquoted import VARIABLE_SHAPES, check_name, check_unquoted, is_name
 from smachac.frontend.values import as_value
 from smachac.frontend.yaml_tree import Entry, Map, Scalar, Tree
 from smachac.ir.nodes import (
@@ -111,9 +111,7 @@ def _read_interface(name: str, source: Source, library: Library, report: Report)
         name=name,
         kind=_kind(fields.get("kind"), report),
         doc=as_text(fields["doc"], report) if "doc" in fields else "",
-        variables={
-            key: _variable(key, value, report) for key, value in _declared(sections["variables"])
-        },
+        variables=_variables(sections["variables"], report),
         input_keys=_keys(sections["input_keys"], report),
         output_keys=_keys(sections["output_keys"], report),
         outcomes=tuple(
@@ -204,7 +202,7 @@ def _code(section: Section, report: Report) -> dict[str, str]:
         if isinstance(value, Scalar):
             found[language] = str(value.value)
             names = found[language].replace(":", ".", 1).split(".")
-            if language == "python" and ":" in found[language] and not all(map(_is_name, names)):
+            if language == "python" and ":" in found[language] and not all(map(is_name, names)):
                 message = f"`{value.value}` is not the name of a class in a Python module"
                 help = "write it as `my_robot.states:Grasp`, or give the file name of a template"
                 arguments = ("class", str(value.value))
@@ -227,6 +225,8 @@ def _classes(section: Section, report: Report) -> dict[str, dict[str, str]]:
                 report.append(unknown_variable(word, owner, CLASS_FIELDS))
             elif isinstance(entry.value, Scalar):
                 given[name] = str(entry.value.value)
+                if language == "cpp":
+                    check_unquoted(entry.value, name, report)
         missing = [name for name in CLASS_FIELDS[:2] if name not in given]
         if missing:
             message = f"the code for `{language}` has no `{missing[0]}`"
@@ -236,11 +236,6 @@ def _classes(section: Section, report: Report) -> dict[str, dict[str, str]]:
         else:
             found[language] = given
     return found
-
-
-def _is_name(word: str) -> bool:
-    """Whether a word is a name in Python."""
-    return word.isidentifier() and not iskeyword(word)
 
 
 def _kind(tree: Tree | None, report: Report) -> StateKind:
@@ -294,6 +289,13 @@ def _type(tree: Tree | None, report: Report) -> Type:
     return read_type(tree.value, Word(tree.value, tree.span), report) or ANY
 
 
+def _variables(section: Section, report: Report) -> dict[str, VariableType]:
+    for entry in section:
+        if entry.key.value != "*":
+            check_name(str(entry.key.value), entry.key.span, report)
+    return {key: _variable(key, value, report) for key, value in _declared(section)}
+
+
 def _variable(name: str, tree: Tree, report: Report) -> VariableType:
     type_ = _type(tree, report)
     default = tree.get("default") if isinstance(tree, Map) else None
@@ -309,7 +311,18 @@ def _variable(name: str, tree: Tree, report: Report) -> VariableType:
         default=as_value(default.value) if default is not None else None,
         keys=_text(tree, "keys"),
         called_first=_is_set(tree, "called_first"),
+        unquoted=_unquoted(tree, report),
     )
+
+
+def _unquoted(tree: Tree, report: Report) -> str:
+    """The shape that an interface gives for the text of a variable; empty without one."""
+    shape = _text(tree, "unquoted")
+    if shape in ("", *VARIABLE_SHAPES):
+        return shape
+    message = "`unquoted` is one of `name`, `type`, `function`"
+    report.append(wrong_shape(tree.span, message, did_you_mean(shape, VARIABLE_SHAPES)))
+    return ""
 
 
 def _keys(section: Section, report: Report) -> tuple[Key, ...]:

@@ -24,6 +24,10 @@ MAX_ALIASED = 100_000
 """Limits of a script: its length, its nesting, and the nodes that its aliases add (more are allowed
 if the script has more characters)."""
 
+DEEPEST_PURE = 400
+"""Limit on the open brackets of a text that only the pure parser can read: it takes time quadratic
+in them."""
+
 MOST_REREAD, DEEPEST_REREAD = 50_000, 100
 """The largest text, in characters and levels, that the pure parser reads again to word an error: it
 takes 7 us for a character and 2 ms for a bracket."""
@@ -188,6 +192,8 @@ def _build(source: Source, report: Report) -> Tree | None:
             found: Report = []
             builder = _Builder(source, found)
             try:
+                if events is _pure_events:
+                    builder.check_brackets()
                 builder.drive(events(source.text))
             except YAMLError as error:
                 if events is _c_events and _is_reread(source.text, builder.deepest):
@@ -209,8 +215,13 @@ def _is_reread(text: str, deepest: int) -> bool:
     """Whether a text is small enough for the pure parser in length, levels and open brackets."""
     if len(text) > MOST_REREAD or deepest > DEEPEST_REREAD:
         return False
+    return _deepest_bracket(text) <= DEEPEST_REREAD
+
+
+def _deepest_bracket(text: str) -> int:
+    """The most brackets that are open at a place of a text, those in strings included."""
     depths = accumulate(1 if bracket in "[{" else -1 for bracket in _BRACKETS.findall(text))
-    return max(depths, default=0) <= DEEPEST_REREAD
+    return max(depths, default=0)
 
 
 def _syntax_error(source: Source, error: Any) -> Diagnostic:
@@ -256,6 +267,15 @@ class _Builder:
         self.deepest = 0
         self.aliased = 0
         self.end = 0
+
+    def check_brackets(self) -> None:
+        """Raises _BeyondLimitError for a text with too many open brackets for the pure parser."""
+        deepest = _deepest_bracket(self.source.text)
+        if deepest > DEEPEST_PURE:
+            message = f"{deepest:,} brackets are open at once; the limit is {DEEPEST_PURE} here"
+            help = "install the C parser (`smachac[fast]`), or split the value into sub-scripts"
+            self.report.append(too_big(Span(self.source, 0, 0), message, help))
+            raise _BeyondLimitError
 
     def drive(self, events: Iterator[Any]) -> None:
         steps: dict[str, Callable[[Any], None]] = {

@@ -311,7 +311,7 @@ class VariableType:
     """A variable of a state type. `keys`: it lists userdata keys, "input" or "output" ones.
 
     `called_first`: generated programs call its functions before the state, whose class does not
-    receive the variable.
+    receive the variable. `unquoted`: the shape of a text that programs contain without quotes.
     """
 
     name: str
@@ -322,6 +322,7 @@ class VariableType:
     default: Value | None = None
     keys: str = ""
     called_first: bool = False
+    unquoted: str = ""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)

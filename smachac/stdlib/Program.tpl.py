@@ -23,7 +23,7 @@ except ImportError:  # no ROS on this machine: the same names without it
 
 
 def build():
-    """Build the state machine `{{ name }}`."""
+    """Build the state machine `{{ name | docstring }}`."""
 {%- if main_def %}
     {{ main_def | indent(4) }}
 {%- endif %}

@@ -4,8 +4,8 @@
 {{ action | ros_import("msg", "Action", "Goal", goal) }}
 {% endblock imports %}
 {% block body %}
-{% if exec_timeout is number %}{% set longest = ("rospy.Duration(" ~ exec_timeout ~ ")") | code %}{% endif %}
-{% if server_wait_timeout is number %}{% set wait = ("rospy.Duration(" ~ server_wait_timeout ~ ")") | code %}{% endif %}
+{% if exec_timeout is number %}{% set longest = ("rospy.Duration(" ~ exec_timeout | literal ~ ")") | code %}{% endif %}
+{% if server_wait_timeout is number %}{% set wait = ("rospy.Duration(" ~ server_wait_timeout | literal ~ ")") | code %}{% endif %}
 {{ add("smach_ros.SimpleActionState", action_server_namespace, action | ros_class, goal=goal, goal_slots=goal_slots,
        goal_cb=goal_cb | exptostr | code, result_slots=result_slots, result_cb=result_cb | exptostr | code,
        input_keys=input_keys, output_keys=output_keys, exec_timeout=longest, server_wait_timeout=wait) }}

@@ -44,7 +44,7 @@ type: None
     the template defines. Both run in the order of their names, on the keys that they declare. -#}
 
 {%- macro _callback_name(key, state_name, uuid) -%}
-{{ key | lower }}_{{ state_name | lower | replace(" ", "_") }}_{{ uuid }}_lambda_cb
+{{ key | lower | word }}_{{ state_name | lower | word }}_{{ uuid }}_lambda_cb
 {%- endmacro %}
 
 {#- Takes (defined_headers, class_name, state_name, uuid, input_keys, outcomes, callbacks), and what

@@ -79,7 +79,19 @@ class Target:
 
 def made_by(machine: Machine) -> str:
     """The line that marks a file as generated: the version of smachac and the script."""
-    return f"Made by smachac {__version__} from {machine.source} (sha256 {machine.digest[:16]})."
+    file = comment(machine.source)
+    return f"Made by smachac {__version__} from {file} (sha256 {machine.digest[:16]})."
+
+
+def comment(text: str) -> str:
+    """A text in a comment of one line: characters that end or hide it are escaped, and a backslash
+    at the end, which continues a comment of C++, is followed by a mark."""
+    if text.isascii() and text.isprintable() and text[-1:] not in "\\/":
+        return text
+    text = "".join(
+        each if each.isprintable() or each == "\t" else ascii(each)[1:-1] for each in text
+    )
+    return f"{text} //" if text.rstrip().endswith(("\\", "??/")) else text
 
 
 def stem(machine: Machine) -> str:

@@ -26,7 +26,7 @@ USERDATA = ("ud", "userdata")
 _MAKES_NAMES = re.compile(r"import \*|[\"']\*[\"']|\w\{\{|\}\}\w")
 _BLOCK = re.compile(r"\{%[-+]?\s*(?:end)?block\b[^%]*%\}")
 _WORDS = re.compile(r"[^\W\d]\w*")
-_DEFINED = re.compile(r"^\s*(?:def|class|import|from \S+ import)\s+(\w+)|^\s*(\w+) = ", re.M)
+_DEFINED = re.compile(r"^[ \t]*(?:def|class|import|from \S+ import)\s+(\w+)|^[ \t]*(\w+) = ", re.M)
 
 
 def undefined_names(machine: Machine, library: Library) -> Iterator[Diagnostic]:

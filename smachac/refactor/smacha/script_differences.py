@@ -14,6 +14,7 @@ from typing import Literal
 from smachac.diagnostics.source import Span
 from smachac.frontend.schema import LONG
 from smachac.frontend.yaml_tree import Entry, Map, Scalar, Seq, Tree
+from smachac.targets.python.smacha_context import is_dotted_or_call
 
 What = Literal["edit", "changed", "note"]
 """Required action: an edit; none, but the meaning is different; none (information)."""
@@ -23,9 +24,6 @@ SMACHA_SHORT = frozenset(LONG) - {"k"}
 
 _MERGED = ("script", "params", "userdata", "remapping", "transitions", "template")
 """The fields that SMACHA took from a call, over those of the sub-script."""
-
-_RAW = re.compile(r"\D+[.]\D+|.*\(.*\)")
-"""Texts that SMACHA printed as code."""
 
 _NUMBER = re.compile(r"[-+]?(\d+(\.\d*)?|\.\d+)([eE][-+]?\d+)?|[-+]?(inf|nan|infinity)", re.I)
 
@@ -187,7 +185,7 @@ def _literal(value: Scalar) -> Iterator[SmachaDifference]:
     if len(text) > 2 and text[0] == text[-1] == "`":
         message = "SMACHA left the backticks in userdata; here this is code"
         yield SmachaDifference(span=value.span, name="code-in-userdata", message=message)
-    elif not text.startswith("'") and (_RAW.match(text) or _NUMBER.fullmatch(text)):
+    elif not text.startswith("'") and (is_dotted_or_call(text) or _NUMBER.fullmatch(text)):
         from smachac.ir.expressions import looks_like_expression, parse_expression
 
         code = value.plain and looks_like_expression(text) and parse_expression(text) is not None

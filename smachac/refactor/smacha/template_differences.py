@@ -13,6 +13,7 @@ from typing import TYPE_CHECKING
 from smachac.diagnostics.diagnostic import did_you_mean
 from smachac.diagnostics.source import Source, Span
 from smachac.frontend import schema, smacha_meta
+from smachac.frontend.jinja_tags import meta_block, tags
 from smachac.refactor.smacha.script_differences import SmachaDifference
 from smachac.targets.python.buffers import APPENDED, KEYED, PREPENDED
 from smachac.targets.python.python2 import translated
@@ -37,9 +38,8 @@ GONE = re.compile(
 )
 """Names that Python 3 does not have, although their use compiles."""
 
-_TAG = re.compile(r"\{%.*?%\}|\{\{.*?\}\}|\{#.*?#\}", re.DOTALL)
-_META = re.compile(r"\{%-?\s*block\s+meta\b.*?\{%-?\s*endblock.*?%\}", re.DOTALL)
-_UUID = re.compile(r"\{[{%][^}]*\buuid\b")
+_OPENING = re.compile(r"\{[{%]")
+_UUID = re.compile(r"\buuid\b")
 _OLD = re.compile(r"\{%[-+]?\s*include\s+[\"']State\.tpl(?:\.py)?[\"']\s*[-+]?%\}")
 _BASES = ("Base", "ROSBase", "Program", "ROSProgram")
 
@@ -202,9 +202,10 @@ def _of_names(
 
 def _of_text(source: Source, chain: list[tuple[Source, Names]]) -> Iterator[SmachaDifference]:
     """Differences in the text: Python 2 code, old style, uuids."""
-    text = _META.sub(lambda found: "\n" * found[0].count("\n"), source.text)
-    if found := _UUID.search(text):
-        line = text.count("\n", 0, found.end()) + 1
+    text = source.text
+    if meta := meta_block(text):
+        text = text[: meta[0]] + "\n" * text.count("\n", meta[0], meta[3]) + text[meta[3] :]
+    if line := _line_of_uuid(text):
         message = "SMACHA made a `uuid` anew in each run; here it is the same in each build"
         yield SmachaDifference(
             span=_word(source, line, "uuid"), name="stable-uuid", what="note", message=message
@@ -217,7 +218,7 @@ def _of_text(source: Source, chain: list[tuple[Source, Names]]) -> Iterator[Smac
         line = chain[0][1].loose
         message = "SMACHA printed what is outside of blocks once for each block; here it is not"
         yield SmachaDifference(span=_line(source, line), name="text-outside", message=message)
-    python = _TAG.sub(lambda found: "x" + "\n" * found[0].count("\n"), text)
+    python = _without_tags(text)
     for number, code in enumerate(python.splitlines(), start=1):
         if gone := GONE.search(code.partition("#")[0]):
             message = f"`{gone[0].strip('.(')}` is Python 2: the program fails where it comes to it"
@@ -229,6 +230,27 @@ def _of_text(source: Source, chain: list[tuple[Source, Names]]) -> Iterator[Smac
             yield SmachaDifference(
                 span=_line(source, number), name="python-2", what="note", message=message
             )
+
+
+def _line_of_uuid(text: str) -> int:
+    """The number of the first line that has `uuid` in a tag; 0 without one."""
+    line = 1
+    for piece in text.split("}"):
+        opening = _OPENING.search(piece)
+        found = _UUID.search(piece, opening.end()) if opening is not None else None
+        if found is not None:
+            return line + piece.count("\n", 0, found.end())
+        line += piece.count("\n")
+    return 0
+
+
+def _without_tags(text: str) -> str:
+    """A text with `x` in place of each tag, on the same lines."""
+    parts, at = [], 0
+    for start, end in tags(text):
+        parts += [text[at:start], "x", "\n" * text.count("\n", start, end)]
+        at = end
+    return "".join([*parts, text[at:]])
 
 
 def _of_blocks(chain: list[tuple[Source, Names]]) -> Iterator[SmachaDifference]:

@@ -25,10 +25,14 @@ _NO_CODE = re.compile(
     r"""(?P<kept>\b\d[\w.']*)|//[^\n]*|/\*.*?(?:\*/|\Z)|"(?:\\.|[^"\\\n])*"|'(?:\\.|[^'\\\n])*'""",
     re.DOTALL,
 )
-_CLASS = r"(?<!enum )\b(?:class|struct)\s+(?:\w+\s+)?(?P<name>{})\b(?P<base>[^;(){{}}=]*)\{{"
-_OUTCOME = r"\benum\s+(?:class|struct)\s+Outcome\b[^;{]*\{"
+_CLASS = (
+    r"(?<!enum )\b(?:class|struct)\s+(?:\w+\s+)?(?P<name>{})\b(?P<base>[^;(){{}}=]{{0,1000}})\{{"
+)
+_OUTCOME = r"\benum\s+(?:class|struct)\s+Outcome\b[^;{]{0,1000}\{"
 _STRUCT = r"\bstruct\s+{}\s*\{{"
-_NUMBER = r"\bsmachac_interface\s*[={]\s*(0[xX][\da-fA-F']{1,20}|\d[\d']{0,20})[uUlL]*\s*\}?\s*;"
+_NUMBER = (
+    r"\bsmachac_interface\s*[={]\s*(0[xX][\da-fA-F']{1,20}|\d[\d']{0,20})[uUlL]*\s*(?:\}\s*)?;"
+)
 _ENUMERATOR = re.compile(r"\s*(?P<name>[A-Za-z_]\w*)\s*(?:=[^,]*)?")
 _LAST_WORD = re.compile(r"\b[A-Za-z_]\w*$")
 _ARGUMENTS = re.compile(r"<[^<>]*>")

@@ -13,7 +13,7 @@ from typing import NamedTuple
 
 from smachac.ir.nodes import Iterator, Leaf, Machine
 from smachac.ir.traversal import walk
-from smachac.targets import made_by
+from smachac.targets import comment, made_by
 from smachac.targets.cpp.builtin_states import LeafCode, built_in, enumeration
 from smachac.targets.cpp.containers import ContainerPlan, Lines, execute, parts, results
 from smachac.targets.cpp.identifiers import identifier
@@ -133,7 +133,7 @@ def _container(printing: _Printing, scope: ContainerScope) -> Lines:
         blocks.append(_root(plan.machine))
     inner = "\n\n".join("\n".join(block) for block in blocks if block)
     where = f" // {place(node)}" if place(node) else ""
-    doc = [f"// {line}" for line in node.doc.splitlines()]
+    doc = [f"// {comment(line)}" for line in node.doc.splitlines()]
     return [*doc, f"namespace {name} {{{where}", "", inner, "", f"}} // namespace {name}"]
 
 

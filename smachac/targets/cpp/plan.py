@@ -12,6 +12,7 @@ from smachac.diagnostics.source import NOWHERE, Span
 from smachac.ir.nodes import Container, Iterator, Leaf, Machine, Node
 from smachac.ir.traversal import containers, outcome_names, remapping
 from smachac.ir.types import ANY, Type
+from smachac.targets import comment
 from smachac.targets.cpp.expressions import Spelling
 from smachac.targets.cpp.identifiers import clashes, identifier, outermost
 from smachac.targets.cpp.types import UnportableError, cpp_literal, cpp_type, plain
@@ -183,7 +184,7 @@ def place(node: Node) -> str:
     """The place of a state in the script, file name and line; empty if it has none."""
     if node.span.source is NOWHERE.source:
         return ""
-    return f"{PurePath(node.span.source.name).name}:{node.span.line}"
+    return comment(f"{PurePath(node.span.source.name).name}:{node.span.line}")
 
 
 def scope_name(path: str) -> str:

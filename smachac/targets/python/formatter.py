@@ -77,6 +77,11 @@ def string(text: str) -> str:
     return f'"{literal[1:-1]}"'
 
 
+def docstring(text: str) -> str:
+    """A text as part of a docstring: it neither ends the string nor escapes anything."""
+    return text.replace("\\", "\\\\").replace('"""', "'''").rstrip('"')
+
+
 def expression(text: str) -> Doc:
     """Code of the script: in layout if it is a portable expression, else unchanged."""
     from smachac.ir.expressions import parse_expression
@@ -86,11 +91,15 @@ def expression(text: str) -> Doc:
 
 
 def _one_line(text: str) -> str:
-    """Code on one line, without comments, which would hide the text that follows on the line."""
-    if "#" not in text and "\n" not in text:
+    """Code on one line, without comments, which would hide the text that follows on the line, and
+    as one argument of a call: a tuple in parentheses."""
+    if not any(mark in text for mark in "#\n,"):
         return text
     try:
-        return ast.unparse(ast.parse(f"({text}\n)", mode="eval"))
+        tree = ast.parse(f"({text}\n)", mode="eval")
+        if isinstance(tree.body, ast.Tuple) or "#" in text or "\n" in text:
+            return ast.unparse(tree)
+        return text
     except (SyntaxError, ValueError, RecursionError):
         return " ".join(text.split("\n"))
 

@@ -13,6 +13,7 @@ from smachac.ir.traversal import ends_preempted, walk
 from smachac.targets import BuildContext, made_by
 from smachac.targets.errors import python_2_code
 from smachac.targets.python.buffers import PREPENDED, ModuleParts
+from smachac.targets.python.formatter import docstring
 from smachac.targets.python.imports import (
     import_lines,
     standard_imports,
@@ -264,7 +265,7 @@ def _rendered(
 def _title(machine: Machine) -> str:
     """The first line of the docstring, escaped so that it does not end the string."""
     doc = machine.root.doc or f"The state machine `{machine.root.name}`."
-    return doc.replace("\\", "\\\\").replace('"""', "'''").rstrip('"')
+    return docstring(doc)
 
 
 def _base_template(machine: Machine, context: BuildContext, module: ModuleParts) -> str:
@@ -298,7 +299,8 @@ def _checked(text: str, template: str, machine: Machine, module: ModuleParts) ->
         raise BlockError(template_error(place, message, help, names)) from error
     text = with_fallback(text, tree)
     tree = ast.parse(text)
-    tidy = _TRAILING.sub("", _BLANKS.sub("\n\n\n", text))
+    lines = _BLANKS.sub("\n\n\n", text).split("\n")
+    tidy = "\n".join(line.rstrip(" \t") for line in lines)
     if tidy != text and ast.dump(ast.parse(tidy)) == ast.dump(tree):
         text = tidy
     mark = f"# {made_by(machine)}\n"
@@ -315,4 +317,3 @@ _NEEDS_NODE = re.compile(
 """Code of templates that needs a ROS node. SMACHA's first base made every program a node."""
 
 _BLANKS = re.compile(r"\n(?:[ \t]*\n){3,}")
-_TRAILING = re.compile(r"[ \t]+$", re.M)

@@ -9,10 +9,10 @@ Change = tuple[str, str]
 """A line before and after its translation."""
 
 _EXCEPT = re.compile(r"^(\s*except\s+(?:\([^()]*\)|[\w.]+))\s*,\s*(\w+)\s*:(.*)$")
-_PRINT = re.compile(r"^(\s*)print(?:\s+(?!\()|(?=[\"']))([^>\s].*?)(,?)\s*$")
+_PRINT = re.compile(r"^(\s*)print(?:\s+(?!\()|(?=[\"']))([^>\s].*)$")
 _PRINT_NOTHING = re.compile(r"^(\s*)print\s*$")
 _PRINT_FORMAT = re.compile(r"^(\s*)print\s+(\(.*\)\s*%.*|[\"'].*)$")
-_RAISE = re.compile(r"^(\s*raise\s+[\w.]+)\s*,\s*(.+?)\s*$")
+_RAISE = re.compile(r"^(\s*raise\s+[\w.]+)\s*,\s*(.+)$")
 _UNEQUAL = re.compile(r"^([^\"'#]*?)<>(.*)$")
 
 
@@ -49,11 +49,15 @@ def translated(line: str) -> str | None:
 
 def _line(line: str) -> str | None:
     """A line with `print`, `raise` or `<>` of Python 2 as Python 3; None for other lines."""
+    line = line.rstrip()
     if found := _PRINT_NOTHING.match(line):
         return f"{found[1]}print()"
-    if found := _PRINT_FORMAT.match(line) or _PRINT.match(line):
-        end = ', end=" "' if found.lastindex == 3 and found[3] else ""
-        return f"{found[1]}print({found[2]}{end})"
+    if found := _PRINT_FORMAT.match(line):
+        return f"{found[1]}print({found[2]})"
+    if found := _PRINT.match(line):
+        values = found[2].removesuffix(",")
+        end = ', end=" "' if values != found[2] and values else ""
+        return f"{found[1]}print({values or found[2]}{end})"
     if found := _RAISE.match(line):
         return f"{found[1]}({found[2]})"
     if found := _UNEQUAL.match(line):

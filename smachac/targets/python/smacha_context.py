@@ -10,7 +10,7 @@ from typing import Any
 from smachac.ir.nodes import Concurrence, Container, Data, Expression, Leaf, Node, Struct, Variable
 from smachac.ir.traversal import own_outcomes, remapping
 from smachac.targets.python import structure
-from smachac.targets.python.formatter import call, flat, literal, string
+from smachac.targets.python.formatter import call, docstring, flat, literal, string
 
 
 class CodeText(str):
@@ -48,7 +48,14 @@ class Headers(list[str]):
 
 
 _TICKED = re.compile(r"`(.*)`", re.DOTALL)
-_DOTTED_OR_CALL = re.compile(r"\D+[.]\D+|.*\(.*\)")
+_DOTTED = re.compile(r"\D+[.]\D+")
+
+
+def is_dotted_or_call(text: str) -> bool:
+    """Whether a text has the form of code for SMACHA: a dot between characters that are no digits,
+    or parentheses on its first line."""
+    line = text.partition("\n")[0]
+    return _DOTTED.match(text) is not None or 0 <= line.find("(") < line.rfind(")")
 
 
 def is_expression(value: object) -> bool:
@@ -70,7 +77,7 @@ def is_not_string(value: object) -> bool:
     try:
         float(value)
     except ValueError:
-        return _DOTTED_OR_CALL.match(value) is not None
+        return is_dotted_or_call(value)
     return True
 
 
@@ -134,6 +141,8 @@ FILTERS: Mapping[str, Callable[..., Any]] = {
     "exptostr": without_ticks,
     "literal": as_literal,
     "code": lambda value: CodeText(value) if isinstance(value, str) else value,
+    "docstring": docstring,
+    "word": lambda value: re.sub(r"\W", "_", str(value)),
     "quoted": lambda value: string(str(value)),
 }
 

@@ -15,7 +15,7 @@ from smachac.ir.traversal import own_outcomes
 from smachac.targets.python import structure
 from smachac.targets.python.add_call import NotAddedError, adapted
 from smachac.targets.python.buffers import KEYED, PREPENDED, Buffers, ModuleParts, UsedType, buffers
-from smachac.targets.python.formatter import call, literal, names
+from smachac.targets.python.formatter import call, docstring, literal, names
 from smachac.targets.python.smacha_context import adding, container_variables, state_variables
 from smachac.targets.templates.engine import BlockError, Page
 
@@ -217,7 +217,9 @@ def _function(
 ) -> str:
     """The call of a new function of the module, which makes a deeply nested container."""
     inner = container(node, None, variable, 1, path, module)
-    text = f'def _{variable}():\n    """The container `{path}`."""\n{indent(inner, "    ")}'
+    text = (
+        f'def _{variable}():\n    """The container `{docstring(path)}`."""\n{indent(inner, "    ")}'
+    )
     module.functions.append(f"{text}\n    return {variable}")
     assert parent is not None
     return structure.add(node, parent.node, structure.made(node, f"_{variable}()"), depth)

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import re
+import unicodedata
 from collections.abc import Callable, Iterator
 from dataclasses import replace
 from keyword import iskeyword
@@ -21,6 +22,7 @@ from smachac.ir.nodes import (
 )
 from smachac.ir.nodes import Iterator as IteratorNode
 from smachac.ir.traversal import ends_preempted
+from smachac.targets import comment
 from smachac.targets.python.formatter import (
     WIDTH,
     Doc,
@@ -55,7 +57,9 @@ def variable_names() -> Callable[[str, bool], str]:
     taken: dict[str, int] = dict.fromkeys(OURS, 1)
 
     def fresh(name: str, root: bool) -> str:
-        word = re.sub(r"\W+", "_", name.lower()).strip("_")
+        word = unicodedata.normalize("NFKC", name.lower())
+        word = "".join(each if f"_{each}".isidentifier() else " " for each in word)
+        word = re.sub(r"\W+", "_", word).strip("_")
         if not root or not word or word[0].isdigit() or iskeyword(word) or word in taken:
             word = f"sm_{word}".rstrip("_")
         taken[word] = taken.get(word, 0) + 1
@@ -233,4 +237,4 @@ def children(node: Container) -> Iterator[Node]:
 def place(node: Node) -> str:
     """The place of a state in its script, without folders: `pick_block.yml:12`."""
     name = node.span.source.name.replace("\\", "/").rsplit("/", 1)[-1]
-    return f"{name}:{node.span.line}"
+    return comment(f"{name}:{node.span.line}")
