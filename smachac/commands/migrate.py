@@ -20,6 +20,7 @@ from smachac.frontend.discovery import NothingFoundError, scripts_of
 from smachac.frontend.files import Disk, disk_library
 from smachac.frontend.schema import LONG
 from smachac.frontend.yaml_tree import Map, Seq, Tree
+from smachac.ir.recursion import deep_recursion
 from smachac.refactor.smacha.report import File, MigrationItem, render_migration
 from smachac.refactor.smacha.script_differences import SmachaDifference, script_differences
 from smachac.refactor.smacha.template_differences import template_differences, top_level_sets
@@ -231,8 +232,9 @@ def _has_errors(found: Report, path: Path) -> bool:
 def _items(found: Report, path: Path, source: Source | None, disk: Disk) -> Iterator[MigrationItem]:
     """The findings in one script and its differences from SMACHA."""
     items = [_item(item) for item in found if _is_at(item.span, path)]
-    for difference in script_differences(disk.parse(source, [])) if source is not None else ():
-        items.append(_difference(difference))
+    with deep_recursion():
+        tree = disk.parse(source, []) if source is not None else None
+        items += map(_difference, script_differences(tree))
     yield from sorted(items, key=lambda item: (item.line, item.column, item.name))
 
 

@@ -20,7 +20,7 @@ from smachac.frontend.yaml_tree import Scalar, Tree
 _NAME = r"[A-Za-z_][A-Za-z0-9_]*"
 _QUALIFIED = rf"(?:::)?{_NAME}(?:::{_NAME})*"
 _ANGLES = r"(?:<[\w:, <>]*>)?"
-_HEADER = re.compile(r"[\w+-][\w./+-]*", re.ASCII)
+_HEADER = re.compile(r"[\w./+-]+", re.ASCII)
 _CLASS = re.compile(_QUALIFIED + _ANGLES, re.ASCII)
 _PARAMETER = re.compile(rf"(?:const +)?{_QUALIFIED}{_ANGLES}(?: *[&*] *| +){_NAME}", re.ASCII)
 

@@ -34,15 +34,15 @@ from smachac.ir.expressions import (
 )
 
 MOST_STEPS = 1_000_000
-"""Limit on the nodes that one evaluation visits; a function call also counts the length of its
-arguments."""
+"""Limit on the nodes that one evaluation visits; a value that is made, compared or given to
+a function also counts its size."""
 
 LARGEST = 100_000
-"""Limit on the size of results of `+`, `*`, `range` and `sum`: items and characters, nested ones
-included."""
+"""Limit on the size of a result: items and characters, nested ones included, each as often as it is
+reached."""
 
 MOST_BITS = 10_000
-"""Limit on the binary digits of a result of `**`."""
+"""Limit on the binary digits of an integer."""
 
 CLOSED = (
     types.FunctionType,
@@ -117,6 +117,17 @@ class _Evaluation:
         if self.budget.left < 0:
             raise EvaluationError(f"the expression takes more than {MOST_STEPS} steps")
 
+    def sized(self, value: Any) -> Any:
+        """A value that was made or is going to be compared; its size is limited, and counts as
+        steps."""
+        if isinstance(value, SIZED):
+            size = _size(value)
+            _limit(size, LARGEST, "items")
+            self.spend(size)
+        elif isinstance(value, int):
+            _limit(value.bit_length(), MOST_BITS, "digits")
+        return value
+
     def compute(self, expr: Expr) -> Any:
         match expr:
             case Constant(value):
@@ -126,7 +137,7 @@ class _Evaluation:
             case Attribute(value, name):
                 return self.attribute(expr, value, name)
             case Index(value, index):
-                return self.value(value)[self.value(index)]
+                return self.value(value)[self.sized(self.value(index))]
             case Call():
                 return self.call(expr)
             case Lambda(parameter, body):
@@ -134,15 +145,15 @@ class _Evaluation:
             case Conditional(test, then, otherwise):
                 return self.value(then if self.value(test) else otherwise)
             case ListDisplay(items):
-                return [self.value(item) for item in items]
+                return self.sized([self.value(item) for item in items])
             case TupleDisplay(items):
-                return tuple([self.value(item) for item in items])
+                return self.sized(tuple([self.value(item) for item in items]))
             case DictDisplay(entries):
-                return {self.value(key): self.value(value) for key, value in entries}
+                return self.sized({self.value(key): self.value(value) for key, value in entries})
             case Unary(word, operand):
                 return UNARY[word](self.value(operand))
             case Binary(word, left, right):
-                return self.binary(word, self.value(left), self.value(right))
+                return self.sized(self.binary(word, self.value(left), self.value(right)))
             case Compare(first, rest):
                 return self.compare(first, rest)
             case Boolean(word, operands):
@@ -180,7 +191,9 @@ class _Evaluation:
         arguments = [self.value(argument) for argument in expr.arguments]
         keywords = {name: self.value(argument) for name, argument in expr.keywords}
         self.spend(sum(map(_length, arguments)))
-        return function(*arguments, **keywords)
+        for value in (*arguments, *keywords.values()):
+            self.sized(value)
+        return self.sized(function(*arguments, **keywords))
 
     def function(self, parameter: str | None, body: Expr) -> Callable[..., object]:
         wanted = 0 if parameter is None else 1
@@ -216,6 +229,8 @@ class _Evaluation:
                 break
             right = self.value(operand)
             self.spend(_length(right))
+            self.sized(left)
+            self.sized(right)
             result = COMPARE[word](left, right)
             left = right
         return result
@@ -254,6 +269,7 @@ def _size(value: Any) -> int:
         if isinstance(current, (list, tuple)):
             todo.extend(current)
         elif isinstance(current, dict):
+            todo.extend(current.keys())
             todo.extend(current.values())
     return total
 

@@ -12,7 +12,7 @@ from collections.abc import Iterable, Iterator, Sequence
 
 from smachac.analysis.failure_paths import Answer, Failure
 from smachac.report.outline import alternatives, at
-from smachac.report.terminal import visible
+from smachac.report.terminal import on_one_line, visible
 from smachac.report.text import steps
 
 HEADINGS = ("state", "failure", "place", "path", "caught by", "the machine ends with")
@@ -42,12 +42,12 @@ def render_failures(name: str, found: Sequence[Failure], form: str) -> str:
 
 
 def _text(name: str, found: Sequence[Failure]) -> str:
-    parts = [f"{visible(name)}: {_summary(found)}"]
+    parts = [f"{on_one_line(name)}: {_summary(found)}"]
     for each in found:
         head = f"{each.path} fails with {each.outcome} ({each.span})"
         way = "".join(steps(each.way))
         parts.append(
-            "\n".join(visible(line) for line in (head, f"  {way}", f"  {_consequence(each)}"))
+            "\n".join(on_one_line(line) for line in (head, f"  {way}", f"  {_consequence(each)}"))
         )
     return "\n\n".join(parts) + "\n"
 

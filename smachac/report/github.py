@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from smachac.diagnostics.diagnostic import Diagnostic, Report, Severity
 from smachac.diagnostics.source import NOWHERE
-from smachac.report.terminal import visible
+from smachac.report.terminal import on_one_line, visible
 from smachac.report.text import steps
 
 _COMMANDS = {Severity.ERROR: "error", Severity.WARNING: "warning", Severity.INFO: "notice"}
@@ -24,7 +24,7 @@ def _command(item: Diagnostic) -> str:
     if finding.span.source is not NOWHERE.source:
         line, column = finding.span.source.position(finding.span.start)
         end_line, end_column = finding.span.source.position(finding.span.end)
-        properties = {"file": visible(finding.span.source.name), "line": line}
+        properties = {"file": on_one_line(finding.span.source.name), "line": line}
         properties["endLine"] = max(line, end_line)
         if line == end_line:  # GitHub refuses columns over several lines
             properties |= {"col": column, "endColumn": max(column, end_column)}

@@ -7,7 +7,7 @@ from collections.abc import Mapping
 from xml.etree import ElementTree as ET
 
 from smachac.diagnostics.diagnostic import Report
-from smachac.report.terminal import visible
+from smachac.report.terminal import on_one_line
 from smachac.report.text import render_text, summary
 
 # XML 1.0 (fifth edition), section 2.2: all but these are characters.
@@ -25,7 +25,7 @@ def render_junit(reports: Mapping[str, Report], failing: Mapping[str, Report]) -
     suite.set("errors", "0")
     suite.set("skipped", "0")
     for name, report in reports.items():
-        shown = _text(visible(name))
+        shown = _text(on_one_line(name))
         test = ET.SubElement(suite, "testcase", name=shown, classname="smachac.check", file=shown)
         grave = failing.get(name, [])
         if grave:

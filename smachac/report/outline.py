@@ -6,7 +6,7 @@ from collections.abc import Iterable, Iterator, Sequence
 
 from smachac.analysis.def_use import Status
 from smachac.diagnostics.source import NOWHERE, Span
-from smachac.report.terminal import visible
+from smachac.report.terminal import on_one_line
 from smachac.report.text import shortened
 
 STATUS: dict[Status, str] = {
@@ -34,7 +34,7 @@ def paragraphs(headline: str, parts: Iterable[Paragraph]) -> str:
         for sentence in sentences:
             lines.append(f"  {word if first else '':<{size}}  {sentence}")
             first = False
-    return "".join(f"{visible(line)}\n" for line in lines)
+    return "".join(f"{on_one_line(line)}\n" for line in lines)
 
 
 def place(span: Span) -> str:

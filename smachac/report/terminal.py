@@ -90,6 +90,12 @@ def visible(text: str) -> str:
     return "\n".join("".join(_glyphs(line)[0]) for line in text.split("\n"))
 
 
+def on_one_line(text: str) -> str:
+    """A text with all invisible characters and line feeds made visible: it cannot begin a line, as
+    a command of GitHub Actions would."""
+    return visible(text).replace("\n", "␊")
+
+
 def columns(text: str) -> int:
     """The width of a text without tabs and line feeds, in columns."""
     return _glyphs(text)[1][-1]

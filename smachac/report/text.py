@@ -12,7 +12,7 @@ from typing import NamedTuple
 
 from smachac.diagnostics.diagnostic import Diagnostic, Report, Severity
 from smachac.diagnostics.source import NOWHERE, Source, Span
-from smachac.report.terminal import Line, columns, lay_out, visible
+from smachac.report.terminal import Line, columns, lay_out, on_one_line, visible
 
 COLOURS = {
     "error": "1;31",
@@ -64,7 +64,7 @@ def summary(report: Report) -> str:
     names = list(dict.fromkeys(i.span.source.name for i in report if not _nowhere(i.span)))
     if not names:
         return ", ".join(counts)
-    where = visible(names[0]) if len(names) == 1 else f"{len(names)} files"
+    where = on_one_line(names[0]) if len(names) == 1 else f"{len(names)} files"
     return f"{', '.join(counts)} in {where}"
 
 
@@ -83,7 +83,7 @@ def steps(path: tuple[str, ...]) -> list[str]:
 
 def shortened(path: tuple[str, ...]) -> list[str]:
     """The steps of a path as printed; the middle of a long path is left out."""
-    parts = [visible(part).replace("\n", "␊") for part in steps(path)]
+    parts = [on_one_line(part) for part in steps(path)]
     if len(parts) <= MOST_STEPS:
         return parts
     left_out = len(parts) - MOST_STEPS
@@ -104,7 +104,7 @@ def _rendered(item: Diagnostic, *, colour: bool, width: int) -> str:
 def _lines(item: Diagnostic, width: int, paint: Paint) -> Iterator[str]:
     finding = item.finding
     head = paint("primary", f"{item.severity.value}[{item.code}]")
-    yield head + paint("strong", f": {visible(finding.message)}")
+    yield head + paint("strong", f": {on_one_line(finding.message)}")
     places = [("", "primary", finding.span)]
     places += [(related.message, "related", related.span) for related in finding.related]
     marks = [
@@ -115,7 +115,7 @@ def _lines(item: Diagnostic, width: int, paint: Paint) -> Iterator[str]:
     yield from _snippets(marks, width, paint)
     for label, style, span in places:
         if _nowhere(span) and style == "related":
-            yield paint("related", "note") + f": {visible(label)}"
+            yield paint("related", "note") + f": {on_one_line(label)}"
     if finding.path:
         yield from _path(finding.path_labels, width, paint)
     if finding.help:
@@ -136,7 +136,7 @@ def _snippets(marks: list[Mark], width: int, paint: Paint) -> Iterator[str]:
         arrow = "-->" if index == 0 and first.style == "primary" else ":::"
         if index:
             yield paint("gutter", " " * digits + " |")
-        place = f"{visible(first.source.name)}:{first.line}:{first.start + 1}"
+        place = f"{on_one_line(first.source.name)}:{first.line}:{first.start + 1}"
         yield f"{' ' * digits}{paint('gutter', arrow)} {place}"
         yield from snippet(group, digits, width, paint)
 

@@ -161,11 +161,37 @@ def test_a_parameter_hides_the_function_of_its_name() -> None:
         "sorted(range(9999), key=lambda x: sum(range(9999)))",
         "sum([[[0] * 50000], [[0] * 50000], [[0]]], [])",
         "'%99999999d' % 1",
+        "sorted(range(99999), key=lambda x: [x] * 1000)",
+        "max(range(99999), key=lambda x: [x, x, [x] * 900])",
+        "2 ** 9999 * 2 ** 9999",
     ],
 )
 def test_work_and_size_are_limited(text: str) -> None:
     with pytest.raises(EvaluationError, match=r"more than|numbers"):
         value_of(text)
+
+
+def test_values_that_grow_from_visit_to_visit_are_limited() -> None:
+    for text in ("[ud, ud]", "(ud, ud)", "{1: ud, 2: ud}"):
+        tree = parse_expression(text)
+        assert tree is not None
+        value: object = 1
+        for _ in range(16):
+            value = evaluate(tree, {"ud": value})
+        with pytest.raises(EvaluationError, match="more than"):
+            evaluate(tree, {"ud": value})
+
+
+def test_comparisons_and_look_ups_of_shared_values_are_limited() -> None:
+    shared: object = 1
+    other: object = 1
+    for _ in range(40):
+        shared, other = (shared, shared), (other, other)
+    for text in ("a == b", "a in [1, b]", "d[a]", "sorted([a, b])", "str(a)"):
+        tree = parse_expression(text)
+        assert tree is not None
+        with pytest.raises(EvaluationError, match="more than"):
+            evaluate(tree, {"a": shared, "b": other, "d": {}})
 
 
 def test_limits_leave_room() -> None:

@@ -31,6 +31,7 @@ from smachac.report.explain_code import MAIN, explanation
 from smachac.report.github import render_github
 from smachac.report.junit import render_junit
 from smachac.report.sarif import render_sarif
+from smachac.report.text import render_text
 
 STANDARD = Path(__file__).parents[1] / "standards" / "sarif-2.1.0-rtm.5.json"
 SCRIPT = Source("a b/main.yml", "name: sm\ntransitions: {\U0001f916: B}\n")
@@ -199,3 +200,23 @@ def test_any_text_survives_every_form(
 
     suite = ET.fromstring(render_junit({name: report}, {name: report}).encode())
     assert "SM204" in ("".join(suite.itertext()))
+
+
+def test_no_name_begins_a_line_or_controls_a_terminal() -> None:
+    name = "a\n::error::x\n##[error]y\r::add-mask::z\x1b[31m\x9b31m\u2028::warning::w"
+    source = Source(f"{name}.yml", f"name: sm\n# {name}\n")
+    span = Span(source, 0, 4)
+    related = (Related(span=span, message=name), Related(span=NOWHERE, message=name))
+    finding = Finding(span=span, message=name, help=name, related=related, path=(name, name))
+    item = Diagnostic(kind=CODES["SM101"], finding=finding, severity=Severity.ERROR)
+    texts = [
+        render_text([item]),
+        render_github([item]),
+        render_junit({source.name: [item]}, {source.name: [item]}),
+    ]
+    for text in texts:
+        assert not any(mark in text for mark in "\x1b\x9b\r\u2028")
+        lines = [line.lstrip() for line in text.split("\n")]
+        commands = [line for line in lines if line.startswith(("::", "##["))]
+        assert all(line.startswith("::error file=") for line in commands)
+        assert len(commands) == (text is texts[1])

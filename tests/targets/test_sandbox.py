@@ -24,13 +24,19 @@ NO_END = "the template does not end, or prints too much text"
 CALLS = "macros, blocks or includes call one another endlessly"
 ITSELF = "the template extends, includes or calls itself endlessly"
 
+BITS = "an integer has more than 10,000 binary digits"
+SHARED = (
+    "{% set ns = namespace(a=[1], b=[1]) %}{% for i in range(40) %}"
+    "{% set ns.a = [ns.a, ns.a] %}{% set ns.b = [ns.b, ns.b] %}{% endfor %}"
+)
+
 HARMFUL = {
     "nested loops": ("{% for a in range(90000) %}{% for b in range(90000) %}x{% endfor %}{% endfor %}", NO_END),
     "a long range": ("{% for a in range(10**9) %}x{% endfor %}", "Range too big"),
     "a product": ("{{ 'x' * 10**10 }}", NO_END),
     "a product of variables": ("{% set n = 10**9 %}{{ given * n }}", NO_END),
     "a power": ("{{ 9 ** (9 ** 9) }}", NO_END),
-    "squares": ("{% set ns = namespace(n=7) %}{% for i in range(60) %}{% set ns.n = ns.n * ns.n %}{% endfor %}{{ ns.n }}", NO_END),
+    "squares": ("{% set ns = namespace(n=7) %}{% for i in range(60) %}{% set ns.n = ns.n * ns.n %}{% endfor %}{{ ns.n }}", BITS),
     "doubling by ~": ("{% set ns = namespace(s='x') %}{% for i in range(60) %}{% set ns.s = ns.s ~ ns.s %}{% endfor %}", NO_END),
     "doubling by +": ("{% set ns = namespace(s='x') %}{% for i in range(60) %}{% set ns.s = ns.s + ns.s %}{% endfor %}", NO_END),
     "doubling by join": ("{% set ns = namespace(s='x') %}{% for i in range(60) %}{% set ns.s = [ns.s, ns.s] | join %}{% endfor %}", NO_END),
@@ -55,6 +61,34 @@ HARMFUL = {
     "tojson": ("{{ [[1]] | tojson(10**9) }}", NO_END),
     "searching long lists": ("{% set l = range(90000) | list %}{% for i in range(90000) %}{% if -1 in l %}{% endif %}{% endfor %}", NO_END),
     "slices": ("{% set l = range(90000) | list %}{% set k = [] %}{% for i in range(90000) %}{% do k.append(l[:]) %}{% endfor %}", NO_END),
+    "equality of shared lists": (SHARED + "{{ ns.a == ns.b }}", NO_END),
+    "membership in shared lists": (SHARED + "{{ ns.a in [ns.b] }}", NO_END),
+    "equality of shared dicts": (SHARED.replace("[ns.a, ns.a]", "{1: ns.a, 2: ns.a}") + "{{ ns.a == ns.b }}", NO_END),
+    "a hash of shared tuples": (SHARED.replace("[ns.a, ns.a]", "(ns.a, ns.a)") + "{{ {ns.a: 1} }}", NO_END),
+    "a look-up of a long tuple": ("{% set t = (1,) * 90000 %}{% set d = {t: 1} %}{% for i in range(90000) %}{% if d[t] %}{% endif %}{% endfor %}", NO_END),
+    "equality of views": ("{% set l = range(90000) | list %}{% set d = {1: l} %}{% for i in range(90000) %}{% if d.items() == d.items() %}{% endif %}{% endfor %}", NO_END),
+    "a test for equality": ("{% set l = range(90000) | list %}{% set k = l[:] %}{% for i in range(90000) %}{% if l is eq(k) %}{% endif %}{% endfor %}", NO_END),
+    "sums of lists": ("{% set l = [[1] * 100] * 5000 %}{{ l | sum(start=[]) }}", NO_END),
+    "literal of shared lists": (SHARED + "{{ ns.a | literal }}", NO_END),
+    "literal of a deep list": ("{% set ns = namespace(a=['x' * 9000]) %}{% for i in range(90) %}{% set ns.a = [ns.a] %}{% endfor %}{{ ns.a | literal }}", NO_END),
+    "sort of shared lists": (SHARED + "{{ [ns.a, ns.b] | sort }}", NO_END),
+    "a division of large numbers": ("{{ 9 ** 200000 // 7 ** 100000 }}", BITS),
+    "numbers of any base": ("{{ ('f' * 100000) | int(base=16) }}", BITS),
+    "bytes of a number": ("{{ (5).to_bytes(10**9, 'big') }}", "access to attribute 'to_bytes' of 'int' object is unsafe"),
+    "a method of bytes": ("{{ given.encode().ljust(10**9) }}", "access to attribute 'ljust' of 'bytes' object is unsafe"),
+    "format_map": ("{{ '{:{w}}'.format_map({'w': 10**9}) }}", NO_END),
+    "a width in a list": ("{{ '{:{w[0]}}'.format(1, w=[10**9]) }}", NO_END),
+    "a width in a text": ("{{ '{:{w}}'.format(1, w='999999999') }}", NO_END),
+    "many fields": ("{{ ('{0}' * 20000).format('x' * 20000) }}", NO_END),
+    "many fields of %": ("{{ ('%(x)s' * 20000) % {'x': 'x' * 20000} }}", NO_END),
+    "many fields of the filter": ("{{ ('%(x)s' * 20000) | format(x='x' * 20000) }}", NO_END),
+    "an indent of text": ("{{ ('x\\n' * 20000) | indent('x' * 20000) }}", NO_END),
+    "a wrap with text": ("{{ ('x' * 20000) | wordwrap(1, wrapstring='x' * 20000) }}", NO_END),
+    "a wrap of a long word": ("{{ ('x' * 90000) | wordwrap(1) }}", NO_END),
+    "a list that grows in its loop": ("{% set l = [1] %}{% for i in range(90) %}{% do l.extend(l) %}{% endfor %}", NO_END),
+    "pops from the start": ("{% set l = range(90000) | list %}{% for i in range(90000) %}{% do l.pop(0) %}{% endfor %}", NO_END),
+    "a search in a range": ("{% for i in range(90000) %}{% if 1.5 in range(90000) %}{% endif %}{% endfor %}", NO_END),
+    "deep json": ("{% set ns = namespace(a=[1]) %}{% for i in range(300) %}{% set ns.a = [ns.a] %}{% endfor %}{{ ns.a | tojson(900) }}", NO_END),
     "a macro that calls itself": ("{% macro m() %}{{ m() }}{% endmacro %}{{ m() }}", CALLS),
     "macros that branch": ("{% macro m(n) %}{% if n %}{{ m(n - 1) }}{{ m(n - 1) }}{% endif %}{% endmacro %}{{ m(100) }}", NO_END),
     "a block that prints itself": ("{{ self.body() }}", CALLS),
@@ -116,6 +150,7 @@ def test_harm_ends_in_an_error_at_its_line(harm: str, tmp_path: Path) -> None:
         ("{% block body %}{% endblock %}{{ 'x' * 10**10 }}{% set a = 1 %}", NO_END),
         ("{% block body %}" + "(" * 500, ""),
         ("{% block body %}{{ " + "(" * 5000 + "1" + ")" * 5000 + " }}{% endblock %}", ITSELF),
+        ("{% block body %}{{ given" + ".x" * 10_000 + " }}{% endblock %}", ITSELF),
         ("{% for a in [1] %}" * 30 + "{% endfor %}" * 30 + "{% block body %}{% endblock %}", ""),
         ("{% block body %}smach.add(\n{% endblock %}", "the block `body` does not print valid Python"),
         ("{% block class_defs %}class A\n{% endblock %}{% block body %}pass{% endblock %}",

@@ -62,8 +62,8 @@ class Blocks:
             autoescape=False,  # the output is code, not HTML
             cache_size=-1,
         )
-        self._environment.filters.update(filters or {})
-        self._environment.tests.update(tests or {})
+        self._environment.add_filters(filters or {})
+        self._environment.add_tests(tests or {})
 
     def source(self, file: str) -> Source | None:
         """The text of a template, read once. `X.tpl` and `X.tpl.py` stand in for one another."""

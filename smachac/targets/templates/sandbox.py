@@ -9,13 +9,15 @@ not depend on time: the same template always fails at the same place.
 from __future__ import annotations
 
 import re
-from collections.abc import Callable, Iterator, Sized
+from collections.abc import Callable, Iterator, Mapping, Sized
 from functools import wraps
+from string import Formatter
 from typing import TYPE_CHECKING, Any, TypeVar
 
 from jinja2 import TemplateRuntimeError, Undefined, nodes
 from jinja2.filters import FILTERS
 from jinja2.sandbox import SandboxedEnvironment
+from jinja2.tests import TESTS
 from jinja2.visitor import NodeTransformer
 
 if TYPE_CHECKING:
@@ -33,12 +35,27 @@ CALL = 20
 MOST_CALLS_DEEP = 200
 """The maximal nesting of macros, blocks and includes."""
 
-DROPPED_FILTERS = ("random",)
-"""Filters that would make the output random."""
+MOST_BITS = 10_000
+"""Limit on the binary digits of an integer."""
+
+DEEPEST = 1_000
+"""The deepest nesting of a value that is counted; Python prints none that is deeper."""
+
+DROPPED_FILTERS = ("random", "urlize")
+"""Filters that would make the output random, or whose cost is not bounded."""
 
 KEPT_GLOBALS = ("range", "dict", "cycler", "joiner", "namespace")
 
 _NUMBER = re.compile(r"\d+")
+_TEXTS = (str, bytes, bytearray)
+_VIEWS = (type({}.keys()), type({}.values()), type({}.items()))
+_WITHOUT_METHODS = (int, float, complex, bytes, bytearray, memoryview)
+"""Types whose methods make values of any size; templates have no use for them."""
+
+_DEEP = frozenset(["literal", "pprint", "tojson"])
+"""Filters that copy a text once for each level of a value."""
+
+_SORTING = frozenset(["sort", "dictsort", "groupby", "unique", "min", "max"])
 _CHEAP = frozenset(["append", "get", "items", "keys", "values", "pop", "setdefault", "add"])
 """Methods whose cost does not grow with the size of their object."""
 
@@ -76,22 +93,51 @@ class Meter:
 
     def size(self, value: object) -> int:
         """The size of a value in characters; counting stops when the budget is exceeded."""
-        if isinstance(value, str):
+        if isinstance(value, (*_TEXTS, range)):
             return len(value)
-        if type(value) not in (list, tuple, dict):  # objects of the engine have no size
-            return value.bit_length() // 3 + 1 if isinstance(value, int) else 1
-        total, todo = 0, [value]
+        if isinstance(value, int):
+            return _digits(value)
+        if not isinstance(value, (list, tuple, dict, *_VIEWS)):  # objects of the engine
+            return 1
+        total = 0
+        todo: list[Any] = [value]
         while todo and total <= self.left:
-            each: Any = todo.pop()
+            each = todo.pop()
             total += 1
-            if isinstance(each, str):
+            if isinstance(each, (*_TEXTS, range)):
                 total += len(each)
+            elif isinstance(each, int):
+                total += _digits(each) - 1
             elif isinstance(each, dict):
                 todo.extend(each.keys())
                 todo.extend(each.values())
-            elif isinstance(each, list | tuple):
+            elif isinstance(each, (list, tuple, *_VIEWS)):
                 todo.extend(each)
         return total
+
+    def weight(self, value: object) -> int:
+        """The size of a value, as often as it has levels."""
+        size = self.size(value)
+        if size > self.left:
+            return size
+        levels, level = 0, [value]
+        while level and levels < DEEPEST:
+            inner: list[object] = []
+            for each in level:
+                if isinstance(each, dict):
+                    inner.extend(each.values())
+                elif isinstance(each, list | tuple):
+                    inner.extend(each)
+            levels, level = levels + 1, inner
+        return size * levels
+
+
+def _digits(number: int) -> int:
+    """The size of an integer. Raises TooMuchError for one beyond the limit."""
+    bits = number.bit_length()
+    if bits > MOST_BITS:
+        raise TooMuchError(f"an integer has more than {MOST_BITS:,} binary digits")
+    return bits // 3 + 1
 
 
 class _Counted:
@@ -117,7 +163,7 @@ class BoundedEnvironment(SandboxedEnvironment):
     `include` renders an `{% include %}`: file names, context, whether the file may be missing.
     """
 
-    intercepted_binops = frozenset(["+", "*", "**", "%"])
+    intercepted_binops = frozenset(["+", "-", "*", "/", "//", "**", "%"])
 
     def __init__(self, include: Callable[[Any, Any, bool], str], **options: Any) -> None:
         self.meter = Meter()
@@ -129,6 +175,15 @@ class BoundedEnvironment(SandboxedEnvironment):
             for name, function in FILTERS.items()
             if name not in DROPPED_FILTERS
         }
+        self.tests = {name: self._metered_test(function) for name, function in TESTS.items()}
+
+    def add_filters(self, filters: Mapping[str, Callable[..., Any]]) -> None:
+        """Adds filters, metered like those of Jinja."""
+        self.filters |= {name: self._metered(name, each) for name, each in filters.items()}
+
+    def add_tests(self, tests: Mapping[str, Callable[..., Any]]) -> None:
+        """Adds tests, metered like those of Jinja."""
+        self.tests |= {name: self._metered_test(each) for name, each in tests.items()}
 
     def _parse(self, source: str, name: str | None, filename: str | None) -> nodes.Template:
         tree = super()._parse(source, name, filename)
@@ -152,14 +207,18 @@ class BoundedEnvironment(SandboxedEnvironment):
 
     def weighed(self, value: Any) -> Any:
         """A value that is going to be searched, compared or copied; its size is charged."""
-        if type(value) in (list, tuple, str):
-            self.meter.charge(self.meter.size(value))
+        self.meter.charge(self.meter.size(value))
         return value
 
     def included(self, names: Any, context: Context, may_be_missing: bool) -> str:
         return self.include(names, context, may_be_missing)
 
     # Methods of the sandbox.
+
+    def is_safe_attribute(self, obj: Any, attr: str, value: Any) -> bool:
+        if isinstance(obj, _WITHOUT_METHODS) and callable(value):
+            return False
+        return super().is_safe_attribute(obj, attr, value)
 
     def getattr(self, obj: Any, attribute: str) -> Any:
         if attribute in PYTHON_2_METHODS and isinstance(obj, dict):
@@ -171,11 +230,15 @@ class BoundedEnvironment(SandboxedEnvironment):
         meter.charge(1 + meter.size(left) + meter.size(right))
         if operator == "%" and isinstance(left, str):
             meter.charge(_widths(left, right))
+            if isinstance(right, dict):
+                meter.charge(left.count("%") * meter.size(right))
         elif operator == "*":
             meter.charge(_product(left, right))
         elif operator == "**" and isinstance(left, int) and isinstance(right, int):
             meter.charge(left.bit_length() * max(0, right))
-        return super().call_binop(context, operator, left, right)
+        result = super().call_binop(context, operator, left, right)
+        meter.size(result)  # raises for an integer beyond the limit
+        return result
 
     def call(__self, __context: Context, __obj: Any, *args: Any, **kwargs: Any) -> Any:  # noqa: N805
         meter = __self.meter
@@ -184,7 +247,9 @@ class BoundedEnvironment(SandboxedEnvironment):
         function = getattr(__obj, "__func__", None)
         own = getattr(__obj, "__self__", None) is __self and function is not None
         if not own:
-            meter.charge(CALL + sum(map(meter.size, (*args, *kwargs.values()))))
+            is_add = getattr(__obj, "__name__", "") == "add" and not hasattr(__obj, "__self__")
+            measure = meter.weight if is_add else meter.size
+            meter.charge(CALL + sum(map(measure, (*args, *kwargs.values()))))
             meter.charge(_cost_of_method(__obj, (*args, *kwargs.values()), meter))
         meter.depth += 1
         result = super().call(__context, __obj, *args, **kwargs)
@@ -211,6 +276,8 @@ class BoundedEnvironment(SandboxedEnvironment):
                 meter.charge(meter.size(values[0]) * meter.size(values[1]))
             elif name == "format" and isinstance(values[0], str):
                 meter.charge(_widths(values[0], tuple(values[1:])))
+                meter.charge(values[0].count("%(") * sum(map(meter.size, values[1:])))
+            meter.charge(_cost_of_filter(name, values, meter))
             result = function(*args, **kwargs)
             if isinstance(result, Iterator):
                 return iter(_Counted(meter, result, 0))
@@ -218,6 +285,37 @@ class BoundedEnvironment(SandboxedEnvironment):
             return result
 
         return filtered
+
+    def _metered_test(self, function: Callable[..., Any]) -> Callable[..., Any]:
+        meter = self.meter
+
+        @wraps(function)
+        def tested(*args: Any) -> Any:
+            given = args[getattr(function, "jinja_pass_arg", None) is not None :]
+            meter.charge(1 + sum(map(meter.size, given)))
+            return function(*args)
+
+        return tested
+
+
+def _cost_of_filter(name: str, values: list[Any], meter: Meter) -> int:
+    """The charge for a filter, beyond the sizes of its values and its result."""
+    first, others = values[0], values[1:]
+    size = meter.size(first)
+    widths = [abs(value) for value in others if type(value) is int]
+    if name in _DEEP:
+        return meter.weight(first) * (1 + sum(widths))
+    if name in _SORTING:
+        return size * size.bit_length()
+    if name == "sum" and any(isinstance(value, list | tuple) for value in others):
+        return size * (len(first) if isinstance(first, Sized) else 1)
+    if name in ("indent", "wordwrap"):
+        text = sum(len(value) for value in others if isinstance(value, str))
+        lines = _lines(first) if name == "indent" else size
+        # `textwrap` copies the rest of a long word for each line.
+        copied = size * size // (1000 * max(1, *widths, 1)) if name == "wordwrap" else 0
+        return lines * text + copied
+    return 0
 
 
 def _lines(value: object) -> int:
@@ -247,11 +345,13 @@ def _cost_of_method(function: object, values: tuple[Any, ...], meter: Meter) -> 
     name = getattr(function, "__name__", "")
     # The sandbox puts a function of its own before `str.format`.
     owner = getattr(getattr(function, "__wrapped__", function), "__self__", None)
+    if isinstance(owner, list) and name == "pop" and values:
+        return len(owner) // 20  # the items behind it move
     if not isinstance(owner, str | list | tuple | dict) or name in _CHEAP:
         return 0
     cost = meter.size(owner)
     if name.startswith("format") and isinstance(owner, str):
-        cost += _widths(owner, ())
+        return cost + _cost_of_format(owner, values, meter)
     cost += sum(abs(value) * _lines(owner) for value in values if type(value) is int)
     if name == "replace" and len(values) > 1:
         cost *= 1 + meter.size(values[1])
@@ -260,6 +360,35 @@ def _cost_of_method(function: object, values: tuple[Any, ...], meter: Meter) -> 
     elif name == "expandtabs":
         cost += 8 * len(owner) + sum(abs(v) * len(owner) for v in values if type(v) is int)
     return cost
+
+
+def _cost_of_format(text: str, values: tuple[Any, ...], meter: Meter) -> int:
+    """The charge for `str.format`: each field may print every value, and be as wide as a number in
+    its format or, where that contains fields, in the values."""
+    try:
+        specs = [spec or "" for _, field, spec, _ in Formatter().parse(text) if field is not None]
+    except ValueError:
+        return 0  # it raises the same error
+    cost = len(specs) * sum(map(meter.size, values))
+    cost += sum(int(found[:12]) for spec in specs for found in _NUMBER.findall(spec))
+    inner = sum(spec.count("{") for spec in specs)
+    return cost + (inner * sum(map(_numbers, values)) if inner else 0)
+
+
+def _numbers(value: Any) -> int:
+    """The sum of the integers in a value, and of those that its texts contain."""
+    total, todo = 0, [value]
+    while todo:
+        each = todo.pop()
+        if isinstance(each, int):
+            total += abs(each)
+        elif isinstance(each, str):
+            total += sum(int(found[:12]) for found in _NUMBER.findall(each))
+        elif isinstance(each, dict):
+            todo.extend(each.values())
+        elif isinstance(each, list | tuple):
+            todo.extend(each)
+    return total
 
 
 class _Counting(NodeTransformer):
@@ -302,7 +431,22 @@ class _Counting(NodeTransformer):
 
     def visit_Getitem(self, node: nodes.Getitem) -> nodes.Expr:  # noqa: N802
         self.generic_visit(node)
-        return _weighed(node) if isinstance(node.arg, nodes.Slice) else node
+        if isinstance(node.arg, nodes.Slice):
+            return _weighed(node)
+        node.arg = _weighed(node.arg)
+        return node
+
+    def visit_List(self, node: nodes.List) -> nodes.Expr:  # noqa: N802
+        self.generic_visit(node)
+        return _weighed(node)
+
+    def visit_Dict(self, node: nodes.Dict) -> nodes.Expr:  # noqa: N802
+        self.generic_visit(node)
+        return _weighed(node)
+
+    def visit_Tuple(self, node: nodes.Tuple) -> nodes.Expr:  # noqa: N802
+        self.generic_visit(node)
+        return _weighed(node) if node.ctx == "load" else node
 
     def visit_Include(self, node: nodes.Include) -> nodes.Stmt:  # noqa: N802
         self.generic_visit(node)
