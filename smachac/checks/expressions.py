@@ -83,6 +83,10 @@ def _fault(text: str) -> str:
         return (error.msg or "invalid syntax").lower()
     except (ValueError, RecursionError, MemoryError):
         return "it is nested too deeply, or contains a character that is not allowed"
+    if "yield" in text or "await" in text:
+        kinds = ast.Yield | ast.YieldFrom | ast.Await
+        if any(isinstance(node, kinds) for node in ast.walk(tree)):
+            return "`yield` and `await` are allowed only in functions of a module"
     # Every level takes a character or more.
     if len(text) > MAX_LEVELS and _is_deeper(tree):
         return f"it is nested deeper than {MAX_LEVELS} levels"

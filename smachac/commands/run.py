@@ -237,13 +237,14 @@ def perform(
     from smachac.targets.python.runner import execute
 
     gc.enable()  # from here on the user's program runs
+    folder = arguments.script.parent.resolve()  # the program may change the working folder
     try:
         outcome = execute(
             name,
             text,
             machine,
             observe,
-            folder=arguments.script.parent,
+            folder=folder,
             seed=arguments.seed,
             gui=arguments.gui,
             record=arguments.record,
@@ -252,10 +253,18 @@ def perform(
             ),
         ).outcome
     except Exception as error:
-        raise FailedError(_failure(error, name, arguments.script.parent)) from error
+        raise FailedError(_failure(error, name, folder)) from error
     if outcome is None:
         raise FailedError("the machine ended without an outcome")
     return outcome
+
+
+def message_of(error: BaseException) -> str:
+    """The message of an exception; empty if it raises another one."""
+    try:
+        return str(error)
+    except Exception:
+        return ""
 
 
 def _failure(error: BaseException, name: str, folder: Path) -> str:
@@ -266,9 +275,9 @@ def _failure(error: BaseException, name: str, folder: Path) -> str:
     own = [
         frame
         for frame in traceback.extract_tb(first.__traceback__)
-        if frame.filename == name or Path(frame.filename).is_relative_to(folder.resolve())
+        if frame.filename == name or Path(frame.filename).is_relative_to(folder)
     ]
-    words = str(first).strip().splitlines() or [""]
+    words = message_of(first).strip().splitlines() or [""]
     lines = [f"{type(first).__name__}: {words[0]}" if words[0] else type(first).__name__]
     lines += [f"  in {frame.filename}:{frame.lineno}, {frame.name}: {frame.line}" for frame in own]
     return "\n".join(lines)

@@ -2,6 +2,7 @@
 {% block imports %}
 import roslib.message
 import rospy
+import sys
 {% endblock %}
 {% block class_defs %}
 class ReadTopicState(smach.State):
@@ -21,10 +22,14 @@ class ReadTopicState(smach.State):
         raw = self.read(topic, rospy.AnyMsg)
         if raw is None:
             return given_up(self)
-        kind = kind or raw._connection_header["type"]
-        message_class = roslib.message.get_message_class(kind)
+        if kind:
+            message_class = roslib.message.get_message_class(kind)
+        else:  # a publisher does not decide what is imported
+            kind = raw._connection_header["type"]
+            package, _, name = kind.partition("/")
+            message_class = getattr(sys.modules.get(f"{package}.msg"), name, None)
         if message_class is None:
-            smach.logerr(f"{kind} of {topic} is not installed here")
+            smach.logerr(f"{kind} of {topic} is not installed, or neither imported nor in msg_type")
             return "aborted"
         message = message_class()
         message.deserialize(raw._buff)

@@ -207,7 +207,9 @@ def test_no_name_begins_a_line_or_controls_a_terminal() -> None:
     source = Source(f"{name}.yml", f"name: sm\n# {name}\n")
     span = Span(source, 0, 4)
     related = (Related(span=span, message=name), Related(span=NOWHERE, message=name))
-    finding = Finding(span=span, message=name, help=name, related=related, path=(name, name))
+    finding = Finding(
+        span=span, message=name, help=name, related=related, path=(entered(name, None), ended(name))
+    )
     item = Diagnostic(kind=CODES["SM101"], finding=finding, severity=Severity.ERROR)
     texts = [
         render_text([item]),

@@ -211,3 +211,10 @@ def test_shapes_that_programs_have_are_accepted(tmp_path: Path) -> None:
         report: Report = []
         find_state_type("Own", library_of(tmp_path), report)
         assert report == [], code
+
+
+@pytest.mark.parametrize(
+    "code", ["`(yield)`", "`lambda ud: (yield)`", "`lambda ud: (yield from ud)`"]
+)
+def test_a_generator_is_no_expression(code: str, tmp_path: Path) -> None:
+    assert programs(script("SleepState", {"time": code}), tmp_path) is None

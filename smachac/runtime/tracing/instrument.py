@@ -263,7 +263,11 @@ def _is_a(state: Any, kind: str) -> bool:
 
 def _message(error: BaseException) -> str:
     """The type and the first line of an exception."""
-    first = next((line for line in str(error).splitlines() if line.strip()), "")
+    try:
+        text = str(error)
+    except Exception:  # its `__str__` raises
+        text = ""
+    first = next((line for line in text.splitlines() if line.strip()), "")
     return f"{type(error).__name__}: {first}" if first else type(error).__name__
 
 

@@ -136,14 +136,16 @@ def loaded(name: str, text: str, folder: Path) -> Iterator[dict[str, Any]]:
     module = ModuleType(name.removesuffix(".py"))
     module.__file__ = name
     linecache.cache[name] = (len(text), None, text.splitlines(keepends=True), name)
-    sys.path.insert(0, str(folder.resolve()))
+    folder = folder.resolve()  # the program may change the working folder
+    sys.path.insert(0, str(folder))
     before = set(sys.modules)
     try:
         exec(compile(text, name, "exec"), module.__dict__)
         yield module.__dict__
     finally:
-        sys.path.remove(str(folder.resolve()))
-        _forget(before, folder.resolve())
+        if str(folder) in sys.path:
+            sys.path.remove(str(folder))
+        _forget(before, folder)
 
 
 def _forget(before: set[str], folder: Path) -> None:

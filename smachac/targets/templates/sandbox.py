@@ -48,7 +48,7 @@ KEPT_GLOBALS = ("range", "dict", "cycler", "joiner", "namespace")
 
 _NUMBER = re.compile(r"\d+")
 _TEXTS = (str, bytes, bytearray)
-_VIEWS = (type({}.keys()), type({}.values()), type({}.items()))
+_VIEWS: tuple[type, ...] = (type({}.keys()), type({}.values()), type({}.items()))
 _WITHOUT_METHODS = (int, float, complex, bytes, bytearray, memoryview)
 """Types whose methods make values of any size; templates have no use for them."""
 
@@ -175,7 +175,9 @@ class BoundedEnvironment(SandboxedEnvironment):
             for name, function in FILTERS.items()
             if name not in DROPPED_FILTERS
         }
-        self.tests = {name: self._metered_test(function) for name, function in TESTS.items()}
+        self.tests: dict[str, Callable[..., Any]] = {
+            name: self._metered_test(each) for name, each in TESTS.items()
+        }
 
     def add_filters(self, filters: Mapping[str, Callable[..., Any]]) -> None:
         """Adds filters, metered like those of Jinja."""
@@ -286,7 +288,7 @@ class BoundedEnvironment(SandboxedEnvironment):
 
         return filtered
 
-    def _metered_test(self, function: Callable[..., Any]) -> Callable[..., Any]:
+    def _metered_test(self, function: Any) -> Callable[..., Any]:
         meter = self.meter
 
         @wraps(function)
