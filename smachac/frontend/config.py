@@ -52,7 +52,9 @@ def read_project(
     if crowded is not None:  # tomllib takes time and memory quadratic in the parts of a key
         start = source.text.index(crowded)
         message = f"a line has {crowded.count('.'):,} dots; the limit is {MOST_DOTS}"
-        report.append(too_big(Span(source, start, start), message, "break it into lines", arguments=("dots",)))
+        report.append(
+            too_big(Span(source, start, start), message, "break it into lines", arguments=("dots",))
+        )
         return Project()
     try:
         import tomllib as toml

@@ -274,7 +274,9 @@ class _Builder:
         if deepest > DEEPEST_PURE:
             message = f"{deepest:,} brackets are open at once; the limit is {DEEPEST_PURE} here"
             help = "install the C parser (`smachac[fast]`), or split the value into sub-scripts"
-            self.report.append(too_big(Span(self.source, 0, 0), message, help, arguments=("brackets",)))
+            self.report.append(
+                too_big(Span(self.source, 0, 0), message, help, arguments=("brackets",))
+            )
             raise _BeyondLimitError
 
     def drive(self, events: Iterator[Any]) -> None:

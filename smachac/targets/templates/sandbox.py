@@ -120,9 +120,10 @@ class Meter:
         size = self.size(value)
         if size > self.left:
             return size
-        levels, level = 0, [value]
+        levels = 0
+        level: list[Any] = [value]
         while level and levels < DEEPEST:
-            inner: list[object] = []
+            inner: list[Any] = []
             for each in level:
                 if isinstance(each, dict):
                     inner.extend(each.values())
@@ -175,9 +176,7 @@ class BoundedEnvironment(SandboxedEnvironment):
             for name, function in FILTERS.items()
             if name not in DROPPED_FILTERS
         }
-        self.tests: dict[str, Callable[..., Any]] = {
-            name: self._metered_test(each) for name, each in TESTS.items()
-        }
+        self.tests = {name: self._metered_test(each) for name, each in TESTS.items()}
 
     def add_filters(self, filters: Mapping[str, Callable[..., Any]]) -> None:
         """Adds filters, metered like those of Jinja."""
@@ -288,7 +287,7 @@ class BoundedEnvironment(SandboxedEnvironment):
 
         return filtered
 
-    def _metered_test(self, function: Any) -> Callable[..., Any]:
+    def _metered_test(self, function: Any) -> Any:
         meter = self.meter
 
         @wraps(function)
