@@ -123,7 +123,8 @@ def test_a_branch_that_fails_is_told_from_one_that_does_not(tmp_path: Path) -> N
 
 
 def test_tries_end_with_exhausted(tmp_path: Path) -> None:
-    way = "retry: {on: [error], max: 3}, transitions: {succeeded: succeeded, exhausted: failed}"
+    leads = "{succeeded: succeeded, exhausted: failed, preempted: failed}"
+    way = f"retry: {{on: [error], max: 3}}, transitions: {leads}"
     outcome, exits = ended(machine_of(tmp_path, f"- A: {fails(way)}"))
     assert outcome == "failed"
     assert exits == ["sm/A/A error"] * 3 + ["sm/A exhausted"]

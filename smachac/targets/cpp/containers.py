@@ -479,6 +479,10 @@ def _iterator(plan: ContainerPlan, node: Iterator) -> FunctionBody:
     final = dict(node.final_map)
     done = plan.own_outcome(final.get(node.exhausted_outcome, node.exhausted_outcome))
     items = _items(plan, node)
+    if items is None and node.children and ends_preempted(node):
+        start = "smachac::Round round(run.stop, places[0], 0);"
+        end = f"return round.over() ? {plan.own_outcome(PREEMPTED)} : {done};"
+        return FunctionBody(statements=[start, end], run="run")
     if items is None or not node.children:
         return FunctionBody(statements=[f"return {done};"])
     child = node.children[0]
