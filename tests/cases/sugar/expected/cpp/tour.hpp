@@ -226,8 +226,9 @@ inline constexpr smachac::Place places[] = {
 };
 
 template <class Run>
-[[gnu::always_inline]] inline Outcome execute(States &, Userdata &, Run &) {
-  return Outcome::succeeded;
+[[gnu::always_inline]] inline Outcome execute(States &, Userdata &, Run &run) {
+  smachac::Round round(run.stop, places[0], 0);
+  return round.over() ? Outcome::preempted : Outcome::succeeded;
 }
 
 } // namespace tour::WITHOUT
