@@ -506,13 +506,13 @@ def _iterator(plan: ContainerPlan, node: Iterator) -> FunctionBody:
     ]
     rounds = "smachac::Round round(run.stop, places[0], items.size());"
     state = f"const auto state = State::{identifier(child.name)};"
-    start = ["if (items.empty()) {", f"  return {done};", "}", state, rounds]
+    begin = ["if (items.empty()) {", f"  return {done};", "}", state, rounds]
     if ends_preempted(node):
         none = f"  return round.over() ? {plan.own_outcome(PREEMPTED)} : {done};"
-        start = [rounds, "if (items.empty()) {", none, "}", state]
+        begin = [rounds, "if (items.empty()) {", none, "}", state]
     lines = [
         *items,
-        *start,
+        *begin,
         "for (const auto &item : items) {",
         f"  ud.{identifier(node.item_key)}.hold(item);",
         *([f"  // {place(child)}"] if place(child) else []),
