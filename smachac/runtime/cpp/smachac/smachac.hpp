@@ -897,9 +897,7 @@ private:
     }
   }
   /// Whether every branch has a request already, which came from outside.
-  bool asked_from_outside() const {
-    return stopped_ || around_.stop.requests() != before_;
-  }
+  bool asked_from_outside() const { return stopped_ || around_.stop.requests() != before_; }
   void ask_others() {
     for (Stop &each : stops_) {
       each.request();
