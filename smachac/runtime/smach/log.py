@@ -12,11 +12,8 @@ def quiet(msg: str) -> None:
     """Drop the message. Info lines are not built at all while this is the info logger."""
 
 
-def set_loggers(info: Logger, warn: Logger, debug: Logger, error: Logger) -> None:
-    """Replace the four loggers, as `smach.set_loggers` does."""
-    from smachac.runtime.smach import settings  # it imports this module
-
-    settings.set_loggers(info, warn, debug, error)
+set_loggers: Callable[[Logger, Logger, Logger, Logger], None]
+"""The function `set_loggers` of `settings`, which sets it here, as SMACH has it here too."""
 
 
 _EMPTY_BYTECODE = (lambda: None).__code__.co_code
