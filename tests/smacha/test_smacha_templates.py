@@ -435,7 +435,8 @@ def test_expression_and_exptostr(built: Built) -> None:
 
 def state_type(tmp_path: Path, meta: str) -> StateType:
     (tmp_path / "templates").mkdir(exist_ok=True)
-    text = f"{{% block meta %}}\n{meta}{{% endblock meta %}}\n{CLASS}{ADDED}"
+    code = CLASS.replace("['done']", "outcomes")  # computed, so that the meta block decides
+    text = f"{{% block meta %}}\n{meta}{{% endblock meta %}}\n{code}{ADDED}"
     (tmp_path / "templates" / "T.tpl.py").write_text(text)
     library = disk_library(tmp_path / "main.yml", [])
     found = find_state_type("T", library, [])
@@ -692,3 +693,45 @@ def test_callbacks_of_each_kind_are_called(built: Built, callback: str, result: 
     assert machine.execute() == "done"
     assert machine.userdata.n == result
     assert machine["A"].get_registered_outcomes() == ("done",)
+
+
+# Classes and their meta blocks.
+
+
+DOCUMENTED = """\
+{% block meta %}
+name: T
+type: State
+input_keys: []
+output_keys: []
+outcomes:
+- succeeded
+{% endblock meta %}
+{% block class_defs %}
+class T(smach.State):
+    def __init__(self, interfaces=None, input_keys=['limb', 'pose'], output_keys=['seen']):
+        smach.State.__init__(self, outcomes=['succeeded', 'preempted'], input_keys=input_keys,
+                             output_keys=output_keys)
+{% endblock %}
+{% block body %}
+smach.{{ parent_type }}.add('{{ name }}', T({% if input_keys is defined %}input_keys={{ input_keys }}{% endif %}))
+{% endblock %}
+"""
+
+
+def test_a_class_is_believed_where_its_meta_block_differs(tmp_path: Path) -> None:
+    (tmp_path / "templates").mkdir()
+    (tmp_path / "templates" / "T.tpl.py").write_text(DOCUMENTED)
+    path = tmp_path / "main.yml"
+    head = "name: SM\ntemplate: Base\noutcomes: [done]\nuserdata: {pose: 1}\nstates:\n"
+    path.write_text(head + "  - A: {template: T, transitions: {succeeded: done}}\n")
+    found = [(item.code, item.span.line, item.span.source.name) for item in smachac.check(path)]
+    assert found == [("SM104", 6, str(path)), ("SM301", 6, str(path))]
+    path.write_text(
+        head
+        + "  - A: {template: T, input_keys: [pose], transitions: {succeeded: done, preempted: done}}\n"
+    )
+    assert [item.code for item in smachac.check(path) if item.code == "SM301"] == []
+    type_ = find_state_type("T", disk_library(path, []), [])
+    assert type_ is not None
+    assert [each.name for each in type_.outcomes] == ["succeeded", "preempted"]
