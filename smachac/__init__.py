@@ -129,7 +129,7 @@ def check(
 
     `scripts` and `templates` are more folders with sub-scripts and with state types.
     """
-    return _analysis(source, name, scripts, templates).report
+    return _analysis(source, name, scripts, templates, render=True).report
 
 
 def load(
@@ -206,10 +206,12 @@ def run(
     return replace(result, events=tuple(events))
 
 
-def _analysis(source: Text, name: str | None, scripts: Folders, templates: Folders) -> Analysis:
+def _analysis(
+    source: Text, name: str | None, scripts: Folders, templates: Folders, render: bool = False
+) -> Analysis:
     from smachac.diagnostics.source import Source
     from smachac.driver import analyse_script
 
     if name is not None:
         source = Source(name, str(source))
-    return analyse_script(source, scripts, templates)
+    return analyse_script(source, scripts, templates, render=render)

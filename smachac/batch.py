@@ -65,7 +65,10 @@ def check_scripts(
     templates: Sequence[Path] = (),
     extra: MachineCheck | None = None,
 ) -> Batch:
-    """Check scripts by all rules and by `extra`: sub-scripts through their callers, or alone."""
+    """Check scripts by all rules and by `extra`: sub-scripts through their callers, or alone.
+
+    Templates of the user are rendered, for their findings.
+    """
     analyses: dict[str, Analysis] = {}
     uses: dict[str, frozenset[str]] = {}
     alone: list[Path] = []
@@ -78,7 +81,7 @@ def check_scripts(
                 path, report, scripts=scripts, templates=templates, disk=disk, codes=CODES
             )
             if called:
-                analyses[str(path)] = analyse(source, library, report, extra)
+                analyses[str(path)] = analyse(source, library, report, extra, render=True)
             else:
                 analyses[str(path)] = analyse_alone(source, library, report)
         uses[str(path)] = frozenset(disk.asked)

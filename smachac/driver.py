@@ -50,6 +50,9 @@ CODES: Mapping[str, Code] = {
 }
 """All codes, those of problems and those of rules, in order."""
 
+TEMPLATE_CODES = ("SM605", "SM606", "SM607")
+"""The codes of findings in templates of the user, which exist only once they are rendered."""
+
 MachineCheck: TypeAlias = "Callable[[Machine], Iterable[Diagnostic]]"
 """A check that runs on request only, because it is slow or needs more than the compiler."""
 
@@ -74,12 +77,16 @@ class Analysis:
 
 
 def analyse_script(
-    script: str | PathLike[str] | Source, scripts: Folders = (), templates: Folders = ()
+    script: str | PathLike[str] | Source,
+    scripts: Folders = (),
+    templates: Folders = (),
+    *,
+    render: bool = False,
 ) -> Analysis:
     """Read a script, given as a path or as a text, and analyse it.
 
     Its sub-scripts, templates and settings are read from disk, beside the path or the name of the
-    text; `scripts` and `templates` are more folders.
+    text; `scripts` and `templates` are more folders. `render`: see `analyse`.
     """
     report: Report = []
     source = script if isinstance(script, Source) else read_source(Path(script), report)
@@ -89,15 +96,21 @@ def analyse_script(
     library = disk_library(
         Path(source.name), report, scripts=folders[0], templates=folders[1], codes=CODES
     )
-    return analyse(source, library, report)
+    return analyse(source, library, report, render=render)
 
 
 def analyse(
-    source: Source, library: Library, report: Report, extra: MachineCheck | None = None
+    source: Source,
+    library: Library,
+    report: Report,
+    extra: MachineCheck | None = None,
+    *,
+    render: bool = False,
 ) -> Analysis:
     """Parse, resolve, lower and check a script, then apply suppressions and severities.
 
-    Findings that are already in `report` belong to the result as well.
+    Findings that are already in `report` belong to the result as well. `render`: the templates of
+    the user are rendered too, for their findings; a build does that in any case.
     """
     with deep_recursion():
         script = parse_and_resolve(source, library, report)
@@ -107,6 +120,8 @@ def analyse(
             report.extend(code_faults(machine, library, load_target))
             report.extend(undefined_names(machine, library))
             report.extend(extra(machine) if extra is not None else ())
+            if render and not has_errors(report):
+                report.extend(template_faults(machine, library))
         sources = script.sources if script is not None else (source,)
         rest, given, unused = suppress(report, source, sources, CODES, library.parse)
         found = apply_severities(in_order(rest), library.policy)
@@ -132,6 +147,18 @@ def read_machine(source: Source, library: Library, report: Report) -> Machine | 
     """The machine of a script, as far as it can be read; it is not checked."""
     script = parse_and_resolve(source, library, report)
     return None if script is None else lower(script)
+
+
+def template_faults(machine: Machine, library: Library) -> Report:
+    """The findings in templates of the user, which are rendered as for the Python program."""
+    from smachac.targets.python import TARGET
+    from smachac.targets.python.template_sources import uses_own_templates
+
+    if not uses_own_templates(machine, library):
+        return []
+    found: Report = []
+    TARGET.emit(Checked(machine), BuildContext(library=library, options={}), found)
+    return [item for item in found if item.code in TEMPLATE_CODES]
 
 
 def check(machine: Machine, report: Report) -> Checked | None:

@@ -19,7 +19,7 @@ from smachac.driver import CODES, analyse, compile_script
 from smachac.frontend.discovery import NothingFoundError, scripts_of
 from smachac.frontend.files import Disk, disk_library
 from smachac.frontend.schema import LONG
-from smachac.frontend.yaml_tree import Map, Seq, Tree
+from smachac.frontend.yaml_tree import Map, Scalar, Seq, Tree
 from smachac.ir.recursion import deep_recursion
 from smachac.refactor.smacha.report import File, MigrationItem, render_migration
 from smachac.refactor.smacha.script_differences import SmachaDifference, script_differences
@@ -40,7 +40,7 @@ examples:
 kinds of places in the report:
   edit      SMACHA ignored an error here; correct it, smachac generates no code with it
   changed   SMACHA and smachac behave differently here, or SMACHA failed here
-  note      works as before; `smachac check` has a finding here
+  note      works as before; a finding of `smachac check`, or a difference without effect
 
 exit codes: 0 nothing to edit, 1 something to edit, 2 wrong usage, 70 a bug in smachac
 """
@@ -113,6 +113,7 @@ def _files(
             items=tuple(_items(found, path, text, disk)),
         )
     trees = [disk.parse(text, []) for _, text in texts if text is not None]
+    types = frozenset(name for tree in trees if tree is not None for name in _types(tree))
     given = frozenset(name for tree in trees if tree is not None for name in _keys(tree))
     sources = [source for path in templates if (source := disk.read(path, [])) is not None]
     sets = {"sm_name": "Base.tpl.py"} | {
@@ -125,7 +126,12 @@ def _files(
         fault = _syntax_fault(source)
         if fault is not None and not any(item.code == "SM605" for item in known):
             known.append(fault)
-        differences = () if fault else template_differences(source, library.template, given, sets)
+        used_by_scripts = path.name.partition(".")[0] in types
+        differences = (
+            ()
+            if fault
+            else template_differences(source, library.template, given, sets, used=used_by_scripts)
+        )
         items = [*map(_item, known), *map(_difference, _unreported(differences, known))]
         yield File(
             name=str(path),
@@ -178,6 +184,20 @@ def _keys(tree: Tree) -> Iterator[str]:
         if isinstance(each, Map):
             yield from (LONG.get(name, name) for name in (str(e.key.value) for e in each.entries))
             todo += [entry.value for entry in each.entries]
+        elif isinstance(each, Seq):
+            todo += each.items
+
+
+def _types(tree: Tree) -> Iterator[str]:
+    """The templates that a script names."""
+    todo = [tree]
+    while todo:
+        each = todo.pop()
+        if isinstance(each, Map):
+            for entry in each.entries:
+                if str(entry.key.value) in ("template", "T") and isinstance(entry.value, Scalar):
+                    yield str(entry.value.value)
+                todo.append(entry.value)
         elif isinstance(each, Seq):
             todo += each.items
 

@@ -20,6 +20,12 @@ SKIPPED = ("__pycache__", "node_modules")
 _KEY = re.compile(r"^([\"']?)(\w+)\1[ \t]*:", re.M)
 _ITEM = re.compile(r"^[ \t]*(?:#[^\n]*|---[^\n]*)?$", re.M)
 _CALLABLE = re.compile(r"(?:^[ \t]+|[{,][ \t]*)(?:template|script|T|S)[ \t]*:", re.M)
+_FLOW_PART = re.compile(
+    r"""#[^\n]*|(?:"((?:[^"\\]|\\.)*)"?|'([^']*)'?|(\w+))([ \t\n]*:)?|[{}\[\]]""", re.DOTALL
+)
+"""A part of flow style: a comment, a text or word with the colon of a key, a bracket. A text that
+does not end goes up to the end, so that each character is read once."""
+
 _NAMED = {"name", "template", "outcomes", "n", "T", "o"}
 
 
@@ -83,12 +89,28 @@ def _is_script(path: Path, disk: Disk) -> bool:
 
 
 def looks_like_a_script(text: str) -> bool:
-    """Whether the first column has `states:` and another field of scripts, or a list of states."""
-    keys = {found[2] for found in _KEY.finditer(text)}
+    """Whether the outermost mapping has `states` and another field of scripts, or the text is a
+    list of states; in block style or in flow style (`{name: main, states: [...]}`)."""
+    first = next((line for line in text.splitlines() if not _ITEM.fullmatch(line)), "").lstrip()
+    flow = first.startswith("{")
+    keys = _flow_keys(text) if flow else {found[2] for found in _KEY.finditer(text)}
     if keys & {"states", "s"}:
         return bool(keys & _NAMED)
-    first = next((line for line in text.splitlines() if not _ITEM.fullmatch(line)), "")
-    return first.startswith("- ") and _CALLABLE.search(text) is not None
+    return first.startswith(("- ", "[")) and _CALLABLE.search(text) is not None
+
+
+def _flow_keys(text: str) -> set[str]:
+    """The keys of the outermost mapping of a text in flow style."""
+    keys = set()
+    depth = 0
+    for part in _FLOW_PART.finditer(text):
+        if part[0] in "{[":
+            depth += 1
+        elif part[0] in "}]":
+            depth -= 1
+        elif part[4] and depth == 1:
+            keys.add(part[1] or part[2] or part[3])
+    return keys
 
 
 class GitError(Exception):

@@ -66,10 +66,17 @@ def lower(script: Script) -> Machine:
     )
 
 
-def _keys(listed: Keys, known: tuple[Key, ...], roles: Mapping[str, KeyRole]) -> tuple[Key, ...]:
-    """The keys of an interface and those that the script lists, which have `roles` by name."""
+def _keys(
+    listed: Keys,
+    known: tuple[Key, ...],
+    roles: Mapping[str, KeyRole],
+    default: tuple[Key, ...],
+) -> tuple[Key, ...]:
+    """The keys of an interface and those that the script lists, which have `roles` by name; where
+    it lists none, the default ones."""
     if not listed:
-        return known
+        names = {key.name for key in known}
+        return (*known, *(key for key in default if key.name not in names))
     keys = {key.name: key for key in known}
     for word, type_ in listed:
         declared = keys.get(word.text)
@@ -90,8 +97,18 @@ def _interface(state: State) -> dict[str, Any]:
         "name": state.name.text,
         "type": type_.name,
         "doc": state.doc.strip(),
-        "inputs": _keys(state.input_keys, type_.input_keys, type_.listed_inputs),
-        "outputs": _keys(state.output_keys, type_.output_keys, type_.listed_outputs),
+        "inputs": _keys(
+            state.input_keys,
+            type_.input_keys,
+            type_.listed_inputs,
+            type_.default_keys.get("input_keys", ()),
+        ),
+        "outputs": _keys(
+            state.output_keys,
+            type_.output_keys,
+            type_.listed_outputs,
+            type_.default_keys.get("output_keys", ()),
+        ),
         "transitions": tuple(
             Transition(outcome=key.text, target=target.text, span=key.span, target_span=target.span)
             for key, target in state.transitions

@@ -6,13 +6,13 @@ SMACHA uses meta blocks only for its help, and many are malformed; such parts ar
 from __future__ import annotations
 
 import re
-from collections.abc import Callable
+from collections.abc import Callable, Mapping
 from dataclasses import dataclass
 
 from smachac.diagnostics.source import Source, Span, Word
 from smachac.frontend.jinja_tags import meta_block, tags
 from smachac.frontend.yaml_tree import Map, Scalar, Seq, Tree, parse
-from smachac.ir.nodes import Outcome, StateKind
+from smachac.ir.nodes import Key, Outcome, StateKind
 
 _BODY = re.compile(r"\{%[-+]?\s*block\s+body\b")
 _AROUND = re.compile(r"\{\{[-+]?\s*(?:body\b|super\s*\()")
@@ -21,6 +21,10 @@ _OUTCOMES = re.compile(r"\boutcomes\s*=\s*\[([^\[\]{}]*)\]")
 _DEFAULT = re.compile(r"\bdef\s+\w+\([^()]*$")
 _KEYS = re.compile(r"\b(input|output)_keys\s*=\s*\[([^\[\]{}]*)\]")
 _BRINGS = re.compile(r"\s*(?:[-+]\s*)?(?:extends|include|import|from)\b\s*(.*)", re.DOTALL)
+_INIT = re.compile(
+    r"\b(?:State|super\([^()]*\))\.__init__\(\s*(?:self\s*,\s*)?(?:outcomes\s*=\s*)?\[([^\[\]{}]*)\]"
+)
+_MAKER = re.compile(r"\bdef\s+__init__\s*\(([^()]*)\)")
 _WORD = re.compile(r"[^\W\d]\w*")
 _FILES = re.compile(r"[\"']([^\"']+)[\"']")
 _QUOTED = re.compile(r"([\"'])(\w+)\1")
@@ -103,6 +107,49 @@ def outcomes_in_code(template: Source) -> tuple[Outcome, ...]:
         )
         for word in words
     )
+
+
+def class_outcomes(template: Source) -> tuple[Outcome, ...]:
+    """The outcomes that the only class of states in a template passes to `smach.State` first, as
+    constants; nothing if they are computed or others are registered."""
+    found = list(_INIT.finditer(template.text))
+    if len(found) != 1 or "register_outcomes" in template.text:
+        return ()
+    words = list(_QUOTED.finditer(found[0].group(1)))
+    if _QUOTED.sub("", found[0].group(1)).strip(", \n\t"):
+        return ()
+    start = found[0].start(1)
+    return tuple(
+        Outcome(
+            name=word.group(2),
+            span=Span(template, start + word.start(2), start + word.end(2)),
+        )
+        for word in words
+    )
+
+
+def default_keys(template: Source) -> Mapping[str, tuple[Key, ...]]:
+    """The keys that the only constructor in a template has as default values, by parameter.
+
+    A list that the template gives elsewhere too may replace the default, which then does not count.
+    """
+    makers = list(_MAKER.finditer(template.text))
+    if len(makers) != 1:
+        return {}
+    every = [found.group(1) for found in _KEYS.finditer(template.text)]
+    keys = {}
+    for found in _KEYS.finditer(template.text, *makers[0].span(1)):
+        if every.count(found.group(1)) > 1:
+            continue
+        start = found.start(2)
+        keys[f"{found.group(1)}_keys"] = tuple(
+            Key(
+                name=word.group(2),
+                span=Span(template, start + word.start(2), start + word.end(2)),
+            )
+            for word in _QUOTED.finditer(found.group(2))
+        )
+    return keys
 
 
 def keys_in_code(template: Source) -> tuple[tuple[str, ...], tuple[str, ...]]:

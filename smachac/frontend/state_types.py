@@ -388,6 +388,9 @@ def _read_template(
     extended = smacha_meta.extended(template).partition(".")[0]
     known = _find(extended, library, [], below) if extended else None
     outcomes = found.outcomes if found is not None else ()
+    declared = smacha_meta.class_outcomes(template)
+    if declared and {each.name for each in declared} != {each.name for each in outcomes}:
+        outcomes = declared  # a meta block is documentation
     outcomes = outcomes or (known.outcomes if known is not None else ())
     outcomes = outcomes or smacha_meta.outcomes_in_code(template)
     if found is None:
@@ -396,6 +399,7 @@ def _read_template(
             known, name=name, outcomes=outcomes, code={"python": file}, prints_itself=whole,
             body=None, given=known.given if known.open else _ALL_GIVEN,
             used=smacha_meta.words_used(file, library.template),
+            default_keys=smacha_meta.default_keys(template) or known.default_keys,
         )  # fmt: skip
     return StateType(
         name=name,
@@ -409,6 +413,7 @@ def _read_template(
         code={"python": file},
         prints_itself=whole,
         used=smacha_meta.words_used(file, library.template),
+        default_keys=smacha_meta.default_keys(template),
         open=found.kind == "state" and not outcomes,
         simulation=found.simulation or (known is not None and known.simulation),
     )

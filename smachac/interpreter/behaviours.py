@@ -16,8 +16,8 @@ def builtin_behaviour(seed: int = 0) -> Behaviour:
     """The behaviour of every leaf, selected by its state type.
 
     A preempted leaf ends as `preempted` if it declares that outcome, unless its built-in type
-    ignores requests. `seed` is the random seed of leaves without a seed of their own; generated
-    programs use 0.
+    ignores requests. `seed` is the seed of random leaves without a seed of their own; each has
+    random numbers of its own.
     """
     behaviours = {**_BEHAVIOURS, "RandomOutcomeState": _random_outcome(seed)}
 
@@ -103,7 +103,7 @@ def _random_outcome(seed: int) -> Behaviour:
     def draw(path: str, leaf: Leaf, visit: int, userdata: Userdata) -> str:
         if path not in sources:
             own = variable(leaf, "seed")
-            sources[path] = random.Random(own if isinstance(own, int) else seed)
+            sources[path] = random.Random(own if isinstance(own, int) else f"{seed}/{path}")
         outcome = sources[path].choice(own_outcomes(leaf) or (default_outcome(leaf),))
         return _publish_outcome(leaf, outcome, userdata)
 

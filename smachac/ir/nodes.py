@@ -336,6 +336,8 @@ class StateType:
     `prints_itself`: the Python template adds the state to its container, as SMACHA's templates do.
     A state has an outcome of `optional` only if its container or one of its transitions names it.
     `used` are the words in the template of a type that accepts any variable; None: not known.
+    `default_keys` are the keys of a state for which the script lists none, by `input_keys` and
+    `output_keys`.
 
     Facts (docs/state_types.md): `built_in` is the name of a built-in type and empty for all others.
     `stand_in`: it takes the place of a state that does not exist yet. `simulation`: its code uses
@@ -368,6 +370,7 @@ class StateType:
     adds_frames: tuple[str, ...] | None = None
     listed_inputs: Mapping[str, KeyRole] = field(default_factory=dict)
     listed_outputs: Mapping[str, KeyRole] = field(default_factory=dict)
+    default_keys: Mapping[str, tuple[Key, ...]] = field(default_factory=dict)
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)

@@ -5,7 +5,9 @@ language: Python
 framework: SMACH
 type: None
 {% endblock meta %}
-{% from "Utils.tpl.py" import render_userdata, render_def_lambda_callbacks %}
+{#- Templates that extend this one use the macros without an import of their own, as in SMACHA. -#}
+{% from "Utils.tpl.py" import render_input_keys, render_output_keys, render_outcomes, render_callbacks %}
+{% from "Utils.tpl.py" import render_transitions, render_remapping, render_def_lambda_callbacks, render_userdata %}
 {% block base_header %}{% endblock base_header %}
 {% block imports %}{% endblock imports %}
 {% block defs %}{% endblock defs %}

@@ -51,16 +51,17 @@ type: None
     older templates pass: without outcomes, without class_name, without uuid. -#}
 {%- macro render_def_lambda_callbacks(defined_headers) -%}
 {% set callbacks = varargs[-1] %}
+{% set outcomes = varargs[4] if varargs | length > 5 and varargs[4] is defined and varargs[4] else ["succeeded"] %}
 {% set input_keys = varargs[3] if varargs | length > 4 else varargs[-2] %}
 {% set state_name = varargs[1] if varargs | length > 4 else varargs[0] %}
 {% set uuid = (varargs[2] if varargs | length > 4 else varargs[1]) if varargs | length > 3 else "" %}
 {% for key, callback in callbacks.items() if callback is expression %}
 {% set function = _callback_name(key, state_name, uuid) %}
 {% if function not in defined_headers %}
-@smach.cb_interface(input_keys={{ input_keys | list | literal }}, output_keys=[{{ key | literal }}], outcomes=["succeeded"])
+@smach.cb_interface(input_keys={{ input_keys | list | literal }}, output_keys=[{{ key | literal }}], outcomes={{ outcomes | list | literal }})
 def {{ function }}(userdata):
     userdata[{{ key | literal }}] = ({{ callback | exptostr }})(userdata)
-    return "succeeded"
+    return {{ outcomes | first | literal }}
 
 
 {% do defined_headers.append(function) %}
@@ -74,15 +75,16 @@ def {{ function }}(userdata):
 {{ "callbacks=" | indent(indent, true) }}{
 {%- for key, callback in callbacks.items() %}
 {%- set function = _callback_name(key, state_name, uuid) if callback is expression else callback %}
-{{- function | quoted }}: {{ function }}{% if not loop.last %}, {% endif %}
+{{- function | quoted }}: {{ function if callback is expression or "." in function else function | quoted }}{% if not loop.last %}, {% endif %}
 {%- endfor %}}
 {%- endmacro %}
 
 {%- macro render_init_callbacks() %}
-        if not isinstance(callbacks, dict):
-            callbacks = {name: globals()[name] for name in callbacks or ()}
-        self._cbs = [callbacks[name] for name in sorted(callbacks)]
-        for cb in self._cbs:
+        named = callbacks if isinstance(callbacks, dict) else {name: name for name in callbacks or ()}
+        self._cbs = [named[name] for name in sorted(named)]
+        for index, cb in enumerate(self._cbs):
+            if isinstance(cb, str):  # the name of a function, or of a method of this class
+                self._cbs[index] = cb = globals()[cb] if cb in globals() else getattr(self, cb)
             if smach.has_smach_interface(cb):
                 self.register_input_keys(cb.get_registered_input_keys())
                 self.register_output_keys(cb.get_registered_output_keys())
@@ -91,11 +93,15 @@ def {{ function }}(userdata):
 
 {%- macro render_execute_callbacks() %}
         for cb in self._cbs:
+            view, function = userdata, getattr(cb, "_cb", cb)  # of smach.cb_interface
             if smach.has_smach_interface(cb):
                 inputs, outputs = cb.get_registered_input_keys(), cb.get_registered_output_keys()
-                cb(smach.Remapper(userdata, inputs, outputs, {}))
+                view = smach.Remapper(userdata, inputs, outputs, {})
+            code = getattr(function, "__code__", None)
+            if getattr(function, "__self__", None) is None and code and code.co_argcount == 2:
+                cb(self, view)  # a function (self, userdata)
             else:
-                cb(userdata)
+                cb(view)
 {%- endmacro %}
 
 {#- Imports, each once. -#}

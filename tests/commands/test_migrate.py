@@ -10,10 +10,11 @@ import pytest
 
 from smachac.commands.cli import main
 from smachac.diagnostics.source import Source
+from smachac.frontend.files import disk_library
 from smachac.frontend.yaml_tree import parse
 from smachac.refactor.smacha.report import render_migration
 from smachac.refactor.smacha.script_differences import script_differences
-from smachac.refactor.smacha.template_differences import template_differences
+from smachac.refactor.smacha.template_differences import template_differences, top_level_sets
 
 SMACHA = Path(__file__).parents[1] / "smacha"
 
@@ -143,12 +144,28 @@ SAME = [
     '{% extends "Parent.tpl.py" %}{% block part %}{{ made }}{% endblock %}',
     '{% extends "Base.tpl.py" %}{% block more %}{{ body }}{% endblock %}',
     "{% block defs %}{% if %}{% endblock %}",
+    '{% extends "Parent.tpl.py" %}\n# said\n{% block defs %}x = 1{% endblock %}',
+    "{% block meta %}\nname: T\n{% endblock %}\n# of macros\n{% macro m(a) %}{{ a }}{% endmacro %}",
+    "{% block defs %}{% if not x and (y or z) %}{{ y }}{{ z }}{{ 1 if x else 2 }}{% endif %}{% endblock %}",
+    '{% extends "State.tpl.py" %}{% block defs %}{{ render_transitions({}) }}{% endblock %}',
 ]
 
 OTHERS = {
     "Parent.tpl.py": "{% set made = 1 %}{% block defs %}{% block part %}{% endblock %}{% endblock %}",
     "Base.tpl.py": "{% block main %}{% endblock %}",
+    "State.tpl.py": disk_library(Path("main.yml"), []).template("State.tpl").text,  # type: ignore[union-attr]
 }
+
+
+def test_imported_names_and_those_of_loops_are_not_handed_on() -> None:
+    text = '{% from "Utils.tpl.py" import a %}{% set b = 1 %}{% macro c() %}{% endmacro %}'
+    text += "{% for d in [1] %}{% set e = d %}{% endfor %}{% set _f = 1 %}"
+    assert top_level_sets(Source("T.tpl.py", text)) == ("b", "c")
+
+
+def test_variables_of_a_template_that_no_script_uses_are_not_known() -> None:
+    source = Source("T.tpl.py", "{% block defs %}{{ sped }}{% endblock %}")
+    assert [*template_differences(source, lambda file: None, frozenset(), {}, used=False)] == []
 
 
 def told_of(text: str) -> list[tuple[str, str, str]]:

@@ -42,7 +42,7 @@ def concurrence(**children: smach.State) -> smach.Concurrence:
 
 
 def iterator(child: smach.State, items: Any) -> smach.Iterator:
-    with (container := smach.Iterator(["done"], it=items, exhausted_outcome="done")):
+    with (container := smach.Iterator(["done"], [], [], it=items, exhausted_outcome="done")):
         smach.Iterator.set_contained_state("A", child, loop_outcomes=["done"])
     return container
 

@@ -173,7 +173,7 @@ def test_the_callers_collections_are_not_written_to() -> None:
         smach.Sequence.add("B", leaf("ok"), shared)
     assert shared == {}
     outcomes = ["brk"]
-    smach.Iterator(outcomes, it=[])
+    smach.Iterator(outcomes, [], [], it=[])
     assert outcomes == ["brk"]
 
 
@@ -294,7 +294,7 @@ def test_a_plain_container_is_abstract() -> None:
         with pytest.raises(NotImplementedError):
             call()
     with pytest.raises(NotImplementedError):
-        container.set_initial_state([])
+        container.set_initial_state([], None)
     with pytest.raises(NotImplementedError):
         container["A"]
 

@@ -23,7 +23,7 @@ def iterate(
     items: Any, do: Callable[[Any], Any] = lambda ud: None, **contained: Any
 ) -> smach.Iterator:
     """An iterator over `items` that looks at each under `item`; `go` loops."""
-    iterator = smach.Iterator(["stop"], it=items, it_label="item")
+    iterator = smach.Iterator(["stop"], [], [], it=items, it_label="item")
     with iterator:
         smach.Iterator.set_contained_state(
             "EACH", leaf(do), **{"loop_outcomes": ["go"], **contained}
@@ -40,8 +40,8 @@ def test_every_item_up_to_the_end() -> None:
 
 
 def test_the_exhausted_outcome_is_registered_once() -> None:
-    assert smach.Iterator(["a"]).get_registered_outcomes() == ("a", "exhausted")
-    iterator = smach.Iterator(("over",), it=[], exhausted_outcome="over")
+    assert smach.Iterator(["a"], [], []).get_registered_outcomes() == ("a", "exhausted")
+    iterator = smach.Iterator(("over",), [], [], it=[], exhausted_outcome="over")
     assert iterator.get_registered_outcomes() == ("over",)
 
 
@@ -150,7 +150,7 @@ def test_edges_and_children() -> None:
     iterator = iterate([], final_outcome_map={"stop": "ended"})
     assert list(iterator.get_children()) == iterator.get_initial_states() == ["EACH"]
     assert iterator.get_internal_edges() == [["go", "EACH", "EACH"], ("stop", "EACH", "ended")]
-    assert smach.Iterator(["a"]).get_internal_edges() == []
+    assert smach.Iterator(["a"], [], []).get_internal_edges() == []
 
 
 def test_set_initial_state_merges_userdata() -> None:
@@ -159,7 +159,7 @@ def test_set_initial_state_merges_userdata() -> None:
     iterator.set_initial_state(["EACH"], ud)
     assert iterator.userdata.k == 1
     with pytest.raises(KeyError):
-        iterator.set_initial_state(["OTHER"])
+        iterator.set_initial_state(["OTHER"], ud)
 
 
 def test_shutdown_ends_with_the_last_outcome(monkeypatch: pytest.MonkeyPatch) -> None:

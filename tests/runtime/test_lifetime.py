@@ -62,7 +62,7 @@ def held_by(kind: str, state: smach.State, *others: smach.State) -> Any:
         with (container := smach.Sequence(ends, "done")):
             smach.Sequence.add("A", state)
     elif kind == "iterator":
-        with (container := smach.Iterator(ends, it=[1], exhausted_outcome="done")):
+        with (container := smach.Iterator(ends, [], [], it=[1], exhausted_outcome="done")):
             smach.Iterator.set_contained_state("A", state)
     else:
         rule = {"preempted": {"A": "preempted"}}

@@ -8,6 +8,7 @@ from __future__ import annotations
 
 import ast
 import os
+import random
 import subprocess
 import sys
 from collections import deque
@@ -417,3 +418,38 @@ def built_report(path: Path) -> Report:
     build(analysis.checked, target, analysis.library, report)
     assert all(item.severity is Severity.WARNING for item in report)
     return report
+
+
+def draws(path: Path, **seeds: int) -> list[list[str]]:
+    """Forty outcomes of each of two random states of a program made anew."""
+    lines = [
+        f"  - {name}: {{template: RandomOutcomeState, outcomes: [a, b], transitions: {{b: {to}}}"
+        + (f", seed: {seeds[name]}}}\n" if name in seeds else "}\n")
+        for name, to in (("A", "B"), ("B", "A"))
+    ]
+    path.write_text("name: sm\noutcomes: [a, b]\nstates:\n" + "".join(lines))
+    machine = machine_of(smachac.compile(path, "python")["sm.py"])
+    userdata = machine.userdata
+    return [[machine[name].execute(userdata) for _ in range(40)] for name in ("A", "B")]
+
+
+def test_random_states_are_random_unless_they_have_a_seed(tmp_path: Path) -> None:
+    path = tmp_path / "main.yml"
+    first, second = draws(path), draws(path)
+    assert len({tuple(row) for row in (*first, *second)}) == 4
+    seeded = draws(path, A=7, B=7)
+    assert seeded[0] == seeded[1] == draws(path, A=7)[0]
+    random.seed(3)
+    third = draws(path)
+    random.seed(3)
+    assert draws(path) == third
+
+
+def test_random_states_of_cpp_are_random_unless_they_have_a_seed(tmp_path: Path) -> None:
+    path = tmp_path / "main.yml"
+    for given, printed in (("", "draws_{};"), (", seed: 0", "draws_{0U};")):
+        path.write_text(
+            "name: sm\noutcomes: [a, b]\nstates:\n"
+            f"  - A: {{template: RandomOutcomeState, outcomes: [a, b]{given}}}\n"
+        )
+        assert f"smachac::Draws {printed}" in smachac.compile(path, "cpp")["sm.hpp"]

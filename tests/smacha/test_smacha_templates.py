@@ -385,7 +385,7 @@ MACROS = {
     "render_outcome_map({'b': {'X': 'x', 'Y': 'y'}, 'a': 'd'}, indent=0)":
         'outcome_map={"a": "d",\n"b": {"X": "x", "Y": "y"}}',
     "render_callbacks('A', 'u', {'k': '`lambda ud: 1`', 'l': 'named'}, indent=0)":
-        'callbacks={"k_a_u_lambda_cb": k_a_u_lambda_cb, "named": named}',
+        'callbacks={"k_a_u_lambda_cb": k_a_u_lambda_cb, "named": "named"}',
     "render_def_lambda_callbacks(heads, 'T', 'A', 'u', ['i'], outcomes, {'k': '`lambda ud: 1`', 'l': 'named'})":
         '@smach.cb_interface(input_keys=["i"], output_keys=["k"], outcomes=["succeeded"])\n'
         'def k_a_u_lambda_cb(userdata):\nuserdata["k"] = (lambda ud: 1)(userdata)\nreturn "succeeded"',
@@ -435,7 +435,8 @@ def test_expression_and_exptostr(built: Built) -> None:
 
 def state_type(tmp_path: Path, meta: str) -> StateType:
     (tmp_path / "templates").mkdir(exist_ok=True)
-    text = f"{{% block meta %}}\n{meta}{{% endblock meta %}}\n{CLASS}{ADDED}"
+    code = CLASS.replace("['done']", "outcomes")  # computed, so that the meta block decides
+    text = f"{{% block meta %}}\n{meta}{{% endblock meta %}}\n{code}{ADDED}"
     (tmp_path / "templates" / "T.tpl.py").write_text(text)
     library = disk_library(tmp_path / "main.yml", [])
     found = find_state_type("T", library, [])
@@ -611,3 +612,126 @@ def test_what_cannot_be_wrapped_is_told(built: Built, body: str, words: str) -> 
     assert (
         message == f"the template of `T` {words}, so `A` cannot have an outcome for its exceptions"
     )
+
+
+# Callbacks.
+
+
+CALLED = """\
+{% extends "State.tpl.py" %}
+{% from "Utils.tpl.py" import render_init_callbacks, render_execute_callbacks %}
+{% block defs %}
+{% if 'callbacks_of_T' not in defined_headers %}
+@smach.cb_interface(input_keys=["n"], output_keys=["n"], outcomes=["done"])
+def with_state(self, userdata):
+    userdata.n = userdata.n + self.step
+
+def plain_with_state(self, userdata):
+    userdata["n"] = userdata["n"] + self.step
+{% do defined_headers.append('callbacks_of_T') %}
+{% endif %}
+{% endblock defs %}
+{% block class_defs %}
+class T(smach.State):
+    def __init__(self, callbacks=(), step=10, input_keys=(), output_keys=()):
+        smach.State.__init__(self, ['done'], list(input_keys), list(output_keys))
+        self.step = step
+        {{ render_init_callbacks() }}
+
+    def method(self, userdata):
+        userdata["n"] = userdata["n"] + self.step
+
+    @smach.cb_interface(input_keys=["n"], output_keys=["n"], outcomes=["done"])
+    def declared(self, userdata):
+        userdata.n = userdata.n + self.step
+
+    def execute(self, userdata):
+        {{ render_execute_callbacks() }}
+        return 'done'
+{% endblock class_defs %}
+{% block body %}
+smach.{{ parent_type }}.add('{{ name }}', T({{ render_callbacks(name, uuid, callbacks, indent=0) }},
+{{ render_input_keys(input_keys) }},
+{{ render_output_keys(output_keys) }}),
+{{ render_transitions(transitions) }}{% if remapping is defined %},
+{{ render_remapping(remapping) }}{% endif %})
+{% endblock body %}
+"""
+
+CALLING = """\
+name: SM
+template: Base
+outcomes: [done]
+userdata: {n: 1}
+states:
+  - A:
+      template: T
+      outcomes: [done]
+      input_keys: [n]
+      output_keys: [n]
+      callbacks: {n: %s}
+      transitions: {done: done}
+"""
+
+
+@pytest.mark.parametrize(
+    ("callback", "result"),
+    [
+        ("with_state", 11),
+        ("plain_with_state", 11),
+        ("method", 11),
+        ("declared", 11),
+        ("'`lambda ud: ud.n + 5`'", 6),
+    ],
+)
+def test_callbacks_of_each_kind_are_called(built: Built, callback: str, result: int) -> None:
+    """State.tpl hands its macros on, and the outcomes of a lambda are those of its state."""
+    text = built(CALLING % callback, T=CALLED)
+    module: dict[str, object] = {"__name__": "sm"}
+    exec(text, module)
+    machine = module["build"]()  # type: ignore[operator]
+    assert machine.execute() == "done"
+    assert machine.userdata.n == result
+    assert machine["A"].get_registered_outcomes() == ("done",)
+
+
+# Classes and their meta blocks.
+
+
+DOCUMENTED = """\
+{% block meta %}
+name: T
+type: State
+input_keys: []
+output_keys: []
+outcomes:
+- succeeded
+{% endblock meta %}
+{% block class_defs %}
+class T(smach.State):
+    def __init__(self, interfaces=None, input_keys=['limb', 'pose'], output_keys=['seen']):
+        smach.State.__init__(self, outcomes=['succeeded', 'preempted'], input_keys=input_keys,
+                             output_keys=output_keys)
+{% endblock %}
+{% block body %}
+smach.{{ parent_type }}.add('{{ name }}', T({% if input_keys is defined %}input_keys={{ input_keys }}{% endif %}))
+{% endblock %}
+"""
+
+
+def test_a_class_is_believed_where_its_meta_block_differs(tmp_path: Path) -> None:
+    (tmp_path / "templates").mkdir()
+    (tmp_path / "templates" / "T.tpl.py").write_text(DOCUMENTED)
+    path = tmp_path / "main.yml"
+    head = "name: SM\ntemplate: Base\noutcomes: [done]\nuserdata: {pose: 1}\nstates:\n"
+    path.write_text(head + "  - A: {template: T, transitions: {succeeded: done}}\n")
+    found = [(item.code, item.span.line, item.span.source.name) for item in smachac.check(path)]
+    assert found == [("SM104", 6, str(path)), ("SM301", 6, str(path))]
+    path.write_text(
+        head
+        + "  - A: {template: T, input_keys: [pose], transitions: {succeeded: done, preempted: done}}\n"
+    )
+    assert [item.code for item in smachac.check(path) if item.code == "SM301"] == []
+    type_ = find_state_type("T", disk_library(path, []), [])
+    assert type_ is not None
+    assert [each.name for each in type_.outcomes] == ["succeeded", "preempted"]

@@ -77,14 +77,14 @@ def _text(files: Sequence[File]) -> str:
         lines.append(
             f"{file.name}:{item.line}:{item.column}: {item.what}: {item.message} [{item.name}]"
         )
-        if item.help and item.what == "edit":
+        if item.help and item.what != "changed":
             lines.append(f"  help: {item.help}")
     return "\n".join([*lines, "", _summary(files), ""])
 
 
 def _reported(files: Sequence[File]) -> Iterator[tuple[File, MigrationItem]]:
-    """The notes that are printed: first all edits, then all changes. Others are only counted."""
-    for what in ("edit", "changed"):
+    """All items: first all edits, then all changes, then all notes."""
+    for what in ("edit", "changed", "note"):
         for file in files:
             yield from ((file, item) for item in file.items if item.what == what)
 

@@ -48,11 +48,12 @@ _BASES = ("Base", "ROSBase", "Program", "ROSProgram")
 class Names:
     """The use of names in a template and the templates it extends.
 
-    `sets` are set at the top level, `used` are used without a definition, `tested` may be
-    undefined.
+    `sets` are set or imported at the top level, `exports` are those that SMACHA handed to other
+    templates, `used` are used without a definition, `tested` may be undefined.
     """
 
     sets: dict[str, int] = field(default_factory=dict)
+    exports: dict[str, int] = field(default_factory=dict)
     used: dict[str, int] = field(default_factory=dict)
     tested: set[str] = field(default_factory=set)
     blocks: dict[str, int] = field(default_factory=dict)
@@ -61,24 +62,31 @@ class Names:
 
 
 def template_differences(
-    source: Source, find: Find, given: frozenset[str], sets: Mapping[str, str]
+    source: Source,
+    find: Find,
+    given: frozenset[str],
+    sets: Mapping[str, str],
+    *,
+    used: bool = True,
 ) -> Iterator[SmachaDifference]:
     """The differences in a template, in the order of its text.
 
     `find` finds templates by name, `given` are the variables that scripts give to states, `sets`
-    are the names that templates set at their top level, each with one such template.
+    are the names that templates set at their top level, each with one such template. `used`:
+    scripts use the template; otherwise it is not known which variables they would give.
     """
     chain = _chain(source, find)
     if not chain:
         return
     found = [*_of_names(source, chain, given, sets), *_of_text(source, chain), *_of_blocks(chain)]
+    found = [each for each in found if used or each.name != "unknown-name"]
     yield from sorted(found, key=lambda each: each.span.start)
 
 
 def top_level_sets(source: Source) -> tuple[str, ...]:
     """The names that a template sets outside of its blocks; in SMACHA other templates saw them."""
     names = _names(source)
-    return tuple(names.sets) if names is not None else ()
+    return tuple(names.exports) if names is not None else ()
 
 
 def _chain(source: Source, find: Find) -> list[tuple[Source, Names]]:
@@ -111,7 +119,10 @@ def _names(source: Source) -> Names | None:
     names = Names()
     for node in _outside(tree):
         if isinstance(node, nodes.Assign | nodes.Macro | nodes.Import | nodes.FromImport):
-            names.sets |= dict.fromkeys(_assigned_names(node), node.lineno)
+            found = dict.fromkeys(_assigned_names(node), node.lineno)
+            names.sets |= found
+            if isinstance(node, nodes.Assign | nodes.Macro):  # Jinja exports no imported names
+                names.exports |= {k: line for k, line in found.items() if not k.startswith("_")}
         elif isinstance(node, nodes.Block):
             names.blocks.setdefault(node.name, node.lineno)
             names.inner_blocks |= {block.name for block in node.find_all(nodes.Block)}
@@ -132,7 +143,7 @@ def _outside(tree: nodes.Node) -> Iterator[nodes.Node]:
 
     for node in tree.iter_child_nodes():
         yield node
-        if not isinstance(node, nodes.Block | nodes.Macro):
+        if not isinstance(node, nodes.Block | nodes.Macro | nodes.For):  # with names of their own
             yield from _outside(node)
 
 
@@ -159,8 +170,22 @@ def _tested(node: nodes.Node) -> set[str]:
             return {name}
         case nodes.Filter(name="default" | "d", node=nodes.Name(name=name)):
             return {name}
-        case nodes.If(test=nodes.Name(name=name)) | nodes.CondExpr(test=nodes.Name(name=name)):
+        case nodes.If(test=test) | nodes.CondExpr(test=test):
+            return _truths(test)
+    return set()
+
+
+def _truths(test: nodes.Node) -> set[str]:
+    """The names of which a condition uses only the truth, which is false for undefined ones."""
+    from jinja2 import nodes
+
+    match test:
+        case nodes.Name(name=name):
             return {name}
+        case nodes.Not(node=inner):
+            return _truths(inner)
+        case nodes.And(left=left, right=right) | nodes.Or(left=left, right=right):
+            return _truths(left) | _truths(right)
     return set()
 
 
@@ -214,7 +239,8 @@ def _of_text(source: Source, chain: list[tuple[Source, Names]]) -> Iterator[Smac
         message = "it includes `State.tpl` and adds its state itself, as older templates do"
         span = Span(source, found.start(), found.end())
         yield SmachaDifference(span=span, name="old-style", what="note", message=message)
-    if chain[0][1].loose and not _is_base(chain):
+    printed = chain[0][1].blocks.keys() - {"meta"}  # none in a template of macros
+    if chain[0][1].loose and printed and not smacha_meta.extended(source) and not _is_base(chain):
         line = chain[0][1].loose
         message = "SMACHA printed what is outside of blocks once for each block; here it is not"
         yield SmachaDifference(span=_line(source, line), name="text-outside", message=message)

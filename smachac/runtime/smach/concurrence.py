@@ -86,9 +86,7 @@ class Concurrence(Container):
         if faults:
             raise InvalidTransitionError(f"outcomes that never come: {'; '.join(faults)}")
 
-    def set_initial_state(
-        self, initial_states: Sequence[str], userdata: UserData | None = None
-    ) -> None:
+    def set_initial_state(self, initial_states: Sequence[str], userdata: UserData | None) -> None:
         """Merge `userdata`; all children start in any case. KeyError for an unknown label."""
         for label in initial_states:
             if label not in self._states:
@@ -97,6 +95,12 @@ class Concurrence(Container):
             self.userdata.update(userdata)
 
     # Introspection
+
+    @property
+    def _child_outcomes(self) -> dict[str, str | None]:
+        """Label -> outcome in this run, under the name that extensions of SMACH read."""
+        running = self._branches is not None and self._running.locked()
+        return self._branches.outcomes if running and self._branches else {}
 
     def get_children(self) -> dict[str, State]:
         """The contained states by label."""

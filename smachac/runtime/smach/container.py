@@ -125,7 +125,7 @@ class Container(State):
                 return
 
     @contextmanager
-    def opened(self: C, *args: object, **kwargs: object) -> Iterator[C]:
+    def opened(self: C, **kwargs: object) -> Iterator[C]:
         """Open the container for a `with` block, as its value. The arguments are ignored."""
         with self:
             yield self
@@ -152,9 +152,7 @@ class Container(State):
         """The labels that run first."""
         raise NotImplementedError
 
-    def set_initial_state(
-        self, initial_states: Sequence[str], userdata: UserData | None = None
-    ) -> None:
+    def set_initial_state(self, initial_states: Sequence[str], userdata: UserData | None) -> None:
         """Choose the labels that run first, and merge `userdata` into the container's."""
         raise NotImplementedError
 
@@ -209,21 +207,23 @@ class Container(State):
 
     # Callbacks
 
-    def register_start_cb(self, cb: Callable[..., object], cb_args: Iterable[Any] = ()) -> None:
-        """Call `cb(userdata, initial_labels, *cb_args)` at every start."""
-        self._start_cbs.append((cb, tuple(cb_args)))
+    def register_start_cb(
+        self, start_cb: Callable[..., object], cb_args: Iterable[Any] = ()
+    ) -> None:
+        """Call `start_cb(userdata, initial_labels, *cb_args)` at every start."""
+        self._start_cbs.append((start_cb, tuple(cb_args)))
 
     def register_transition_cb(
-        self, cb: Callable[..., object], cb_args: Iterable[Any] = ()
+        self, transition_cb: Callable[..., object], cb_args: Iterable[Any] = ()
     ) -> None:
-        """Call `cb(userdata, active_labels, *cb_args)` at every transition inside."""
-        self._transition_cbs.append((cb, tuple(cb_args)))
+        """Call `transition_cb(userdata, active_labels, *cb_args)` at every transition inside."""
+        self._transition_cbs.append((transition_cb, tuple(cb_args)))
 
     def register_termination_cb(
-        self, cb: Callable[..., object], cb_args: Iterable[Any] = ()
+        self, termination_cb: Callable[..., object], cb_args: Iterable[Any] = ()
     ) -> None:
-        """Call `cb(userdata, terminal_labels, outcome, *cb_args)` at every normal end."""
-        self._termination_cbs.append((cb, tuple(cb_args)))
+        """Call `termination_cb(userdata, terminal_labels, outcome, *cb_args)` at every end."""
+        self._termination_cbs.append((termination_cb, tuple(cb_args)))
 
     def call_start_cbs(self) -> None:
         """Run the start callbacks."""

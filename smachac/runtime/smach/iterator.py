@@ -26,8 +26,8 @@ class Iterator(Container):
     def __init__(
         self,
         outcomes: Iterable[str],
-        input_keys: list[str] | None = None,
-        output_keys: list[str] | None = None,
+        input_keys: list[str] | None,
+        output_keys: list[str] | None,
         it: Iterable[Any] | Callable[[], Iterable[Any]] = (),
         it_label: str = "it_data",
         exhausted_outcome: str = "exhausted",
@@ -84,9 +84,7 @@ class Iterator(Container):
     def check_consistency(self) -> None:
         """Check nothing: an iterator is not checked before it runs."""
 
-    def set_initial_state(
-        self, initial_states: Sequence[str], userdata: UserData | None = None
-    ) -> None:
+    def set_initial_state(self, initial_states: Sequence[str], userdata: UserData | None) -> None:
         """Merge `userdata`; KeyError for a label other than the child's."""
         for label in initial_states:
             if label != self._label:

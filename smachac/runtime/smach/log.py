@@ -8,8 +8,12 @@ Logger = Callable[[str], object]
 """A function of one message; its return value is ignored."""
 
 
-def quiet(message: str) -> None:
+def quiet(msg: str) -> None:
     """Drop the message. Info lines are not built at all while this is the info logger."""
+
+
+set_loggers: Callable[[Logger, Logger, Logger, Logger], None]
+"""The function `set_loggers` of `settings`, which sets it here, as SMACH has it here too."""
 
 
 _EMPTY_BYTECODE = (lambda: None).__code__.co_code
@@ -22,24 +26,24 @@ def audible(logger: Logger) -> Logger:
     return quiet if code is not None and code.co_code == _EMPTY_BYTECODE else logger
 
 
-def loginfo(message: str) -> None:
+def loginfo(msg: str) -> None:
     """Print an info line to stdout."""
-    print(f"[ INFO ] {message}")
+    print(f"[ INFO ] {msg}")
 
 
-def logwarn(message: str) -> None:
+def logwarn(msg: str) -> None:
     """Print a warning line to stdout."""
-    print(f"[ WARN ] {message}")
+    print(f"[ WARN ] {msg}")
 
 
-def logdebug(message: str) -> None:
+def logdebug(msg: str) -> None:
     """Print a debug line to stdout."""
-    print(f"[ DEBUG ] {message}")
+    print(f"[ DEBUG ] {msg}")
 
 
-def logerr(message: str) -> None:
+def logerr(msg: str) -> None:
     """Print an error line to stdout."""
-    print(f"[ ERROR ] {message}")
+    print(f"[ ERROR ] {msg}")
 
 
 def is_shutdown() -> bool:

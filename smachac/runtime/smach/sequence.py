@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterable, Mapping
-from typing import Any, TypeVar
+from typing import TypeVar
 
 from smachac.runtime.smach import settings
 from smachac.runtime.smach.container import open_container
@@ -31,21 +31,20 @@ class Sequence(StateMachine):
         self._last: str | None = None
 
     @staticmethod
-    def add(
+    def add(  # type: ignore[override]  # pyright: ignore[reportIncompatibleMethodOverride]
         label: str,
         state: S,
         transitions: Mapping[str, str | None] | None = None,
         remapping: Mapping[str, str] | None = None,
-        constants: Mapping[str, Any] | None = None,
     ) -> S:
         """Add a state to the innermost open sequence, and return it.
 
         The state added before leads to it, unless it has another target for the connector.
-        Arguments and errors as for `StateMachine.add`.
+        Arguments and errors as for `StateMachine.add`, without `constants`.
         """
         sequence = open_container(Sequence)
         sequence._link(label)
-        sequence._add(label, state, transitions, remapping, constants)
+        sequence._add(label, state, transitions, remapping, None)
         sequence._last = label
         return state
 

@@ -36,6 +36,9 @@ def set_loggers(info: log.Logger, warn: log.Logger, debug: log.Logger, error: lo
     loginfo, logwarn, logdebug, logerr = log.audible(info), warn, debug, error
 
 
+log.set_loggers = set_loggers
+
+
 def set_shutdown_check(cb: Callable[[], bool]) -> None:
     """Replace the function that running containers call to find out whether to stop."""
     global is_shutdown

@@ -105,7 +105,7 @@ class CBState(State):
             self.register_input_keys(cb.get_registered_input_keys())
             self.register_output_keys(cb.get_registered_output_keys())
 
-    def execute(self, ud: Any, /) -> str | None:
+    def execute(self, ud: Any) -> str | None:
         """Call the function."""
         outcome: str | None = self._cb(ud, *self._cb_args, **self._cb_kwargs)
         return outcome

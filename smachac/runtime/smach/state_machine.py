@@ -114,6 +114,9 @@ class StateMachine(Container):
         constants: Mapping[str, Any] | None,
     ) -> None:
         settings.logdebug(f"adding state '{label}'")
+        if self._table.initial is None:
+            self._table.initial = label
+        self.check_state_spec(label, state, transitions or {})
         self._table.add(label, state, transitions, remapping, constants)
         self._changed()
 
@@ -148,7 +151,43 @@ class StateMachine(Container):
         if faults:
             raise InvalidTransitionError("; ".join(faults))
 
+    def check_state_spec(
+        self, label: str, state: State, transitions: Mapping[str, str | None]
+    ) -> None:
+        """Raise InvalidTransitionError for a transition from an outcome that the state lacks."""
+        registered = state.get_registered_outcomes()
+        unknown = [outcome for outcome in transitions if outcome not in registered]
+        if unknown:
+            raise InvalidTransitionError(
+                f"state '{label}' has transitions for {unknown}; its outcomes: {registered}"
+            )
+
     # Introspection
+
+    @property
+    def _states(self) -> dict[str, State]:
+        """The children by label, under the name that extensions of SMACH read."""
+        return self._table.states
+
+    @property
+    def _transitions(self) -> dict[str, dict[str, str | None]]:
+        """The targets by label and outcome, under the name that extensions of SMACH read."""
+        return self._table.targets
+
+    @property
+    def _initial_state_label(self) -> str | None:
+        """The initial label, under the name that extensions of SMACH read."""
+        return self._table.initial
+
+    @property
+    def _current_label(self) -> str | None:
+        """The label that runs now, or None, under the name that extensions of SMACH read."""
+        return None if self._current is None else self._current.label
+
+    @property
+    def _current_state(self) -> State | None:
+        """The child that runs now, or None, under the name that extensions of SMACH read."""
+        return None if self._current is None else self._current.state
 
     def get_children(self) -> dict[str, State]:
         """The contained states by label."""
@@ -156,7 +195,7 @@ class StateMachine(Container):
 
     def get_initial_states(self) -> list[str]:
         """The label that runs first."""
-        return [str(self._table.initial)]
+        return [str(None) if self._table.initial is None else self._table.initial]
 
     def get_active_states(self) -> list[str]:
         """The label that runs now, or ran last before an error; ['None'] when there is none."""
@@ -196,7 +235,8 @@ class StateMachine(Container):
         if self._store is not self.userdata:
             self._store, self._steps = self.userdata, {}
         self._preempted = None
-        step = self._current = self._step(str(self._table.initial))
+        assert self._table.initial is not None  # of a consistent machine
+        step = self._current = self._step(self._table.initial)
         self.copy_input_keys(parent_ud)
         if settings.loginfo is not quiet:
             keys = self.userdata.keys()
@@ -260,7 +300,7 @@ class StateMachine(Container):
     def _follow(self, label: str, outcome: Any) -> _Step:
         """The next step for an outcome not seen before. Raises InvalidTransitionError."""
         target = self._table.target(label, outcome)
-        return self._step(target) if target else _Step(outcome)
+        return _Step(outcome) if target is None else self._step(target)
 
     def _end(self, label: str, outcome: str) -> None:
         """Settle the preempt request and run the termination callbacks."""

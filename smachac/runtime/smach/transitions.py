@@ -13,7 +13,7 @@ class Transitions:
     """Children by label with their transitions, in the order in which they were added.
 
     Attributes:
-        initial: the label that runs first; the first one ever added, unless it is set.
+        initial: the label that runs first; None: no state was added.
         states: label -> child.
         targets: label -> outcome -> label of another child or outcome of the machine;
             None or '': the machine ends with the same outcome.
@@ -37,21 +37,9 @@ class Transitions:
         remapping: Mapping[str, str] | None,
         constants: Mapping[str, Any] | None,
     ) -> None:
-        """Add a child. The label is the initial one even if what follows raises.
-
-        Raises:
-            InvalidTransitionError: a transition from an outcome that the state lacks.
-            InvalidStateError: the label is taken.
-        """
-        if self.initial is None:
-            self.initial = label
+        """Add a child with checked transitions. Raises InvalidStateError: the label is taken."""
         registered = state.get_registered_outcomes()
         explicit = dict(transitions or {})
-        unknown = [outcome for outcome in explicit if outcome not in registered]
-        if unknown:
-            raise InvalidTransitionError(
-                f"state '{label}' has transitions for {unknown}; its outcomes: {registered}"
-            )
         if label in self.states:
             raise InvalidStateError(f"label '{label}' is taken")
         implicit = dict.fromkeys(o for o in registered if o not in explicit)
@@ -83,9 +71,9 @@ class Transitions:
         elif self.initial not in self.states:
             faults.append(f"the initial state '{self.initial}' was not added")
         for outcome, label, target in self.edges():
-            known = target in self.states or target in outcomes if target else outcome in outcomes
-            if not known:
-                end = target or outcome
+            implicit = target in (None, "")
+            end = outcome if implicit else target
+            if end not in outcomes and (implicit or end not in self.states):
                 faults.append(f"'{label}':'{outcome}'-->'{end}' leads to no state or outcome")
         return faults
 
@@ -112,4 +100,5 @@ class Transitions:
             raise InvalidTransitionError(
                 f"outcome '{outcome}' was registered after '{label}' was added: no transition"
             )
-        return targets[outcome]
+        target = targets[outcome]
+        return None if target == "" else target

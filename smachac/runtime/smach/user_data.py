@@ -61,10 +61,10 @@ class UserData:
         """The keys, in the order in which they were first written."""
         return list(self._data)
 
-    def update(self, ud: UserData) -> None:
+    def update(self, other_userdata: UserData) -> None:
         """Copy every key of another store by reference."""
-        for key in ud.keys():  # noqa: SIM118 (a store is no mapping)
-            self._data[key] = ud[key]
+        for key in other_userdata.keys():  # noqa: SIM118 (a store is no mapping)
+            self._data[key] = other_userdata[key]
 
     def extract(self, keys: Iterable[str], remapping: Mapping[str, str]) -> UserData:
         """A new store with shallow copies of `keys`, renamed by the inverse of `remapping`."""
@@ -82,6 +82,36 @@ class UserData:
             self._data[remapping.get(key, key)] = copy.copy(ud[key])
 
 
+class Const:
+    """A read-only proxy: attributes and items can be read, and no attribute set or deleted.
+
+    What is read is wrapped too if it has attributes of its own. The runtime wraps nothing; this
+    class is for code that names it.
+    """
+
+    def __init__(self, obj: object) -> None:
+        object.__setattr__(self, "_obj", obj)
+
+    def __getattr__(self, name: str) -> Any:
+        return get_const(getattr(object.__getattribute__(self, "_obj"), name))
+
+    def __getitem__(self, name: Any) -> Any:
+        return get_const(self._obj[name])
+
+    def __setattr__(self, name: str, value: object) -> None:
+        settings.logerr(f"attribute '{name}' of a constant is set")
+        raise TypeError(f"attribute '{name}' is read-only")
+
+    def __delattr__(self, name: str) -> None:
+        settings.logerr(f"attribute '{name}' of a constant is deleted")
+        raise TypeError(f"attribute '{name}' is read-only")
+
+
+def get_const(obj: Any) -> Any:
+    """A Const for an object with attributes of its own; any other object itself."""
+    return Const(obj) if hasattr(obj, "__dict__") else obj
+
+
 class Remapper:
     """A child's view of its container's store: the declared keys, under the child's own names.
 
@@ -95,7 +125,13 @@ class Remapper:
     __iter__: ClassVar[None] = None
     _view: View
 
-    def __new__(cls, ud: Any, input_keys: Collection[str] = (), *_: Any, **__: Any) -> Remapper:
+    def __new__(
+        cls,
+        ud: Any,
+        input_keys: Collection[str] = (),
+        output_keys: Collection[str] = (),
+        remapping: Mapping[str, str] | None = None,
+    ) -> Remapper:
         return object.__new__(_with_properties(frozenset(input_keys)))
 
     def __init__(
@@ -153,14 +189,14 @@ class Remapper:
         """The declared inputs that are present, under the child's names."""
         inputs, _, remapping, data = self._view
         if settings.compat:
-            return [remapping.get(key, key) for key in data if key in inputs]
+            return [remapping.get(key, key) for key in data.keys() if key in inputs]  # noqa: SIM118
         return [key for key in inputs if key in self]
 
-    def update(self, ud: UserData | Remapper) -> None:
+    def update(self, other_userdata: UserData | Remapper) -> None:
         """Write every key of another store, by the same rules as single writes."""
         target = self._view[3] if settings.compat else self
-        for key in ud.keys():  # noqa: SIM118 (a store is no mapping)
-            target[key] = ud[key]
+        for key in other_userdata.keys():  # noqa: SIM118 (a store is no mapping)
+            target[key] = other_userdata[key]
 
     def _refusal(self, key: str) -> Exception:
         inputs, _, remapping, data = self._view
@@ -191,8 +227,11 @@ def _with_properties(keys: frozenset[str]) -> type[Remapper]:
 
 
 def store(ud: Any) -> Any:
-    """The mapping behind a UserData; anything else stands for itself."""
-    return ud._data if isinstance(ud, UserData) else ud
+    """The mapping behind a plain UserData; anything else stands for itself.
+
+    A subclass of UserData may define item access, so it is read and written by item.
+    """
+    return ud._data if type(ud) is UserData else ud
 
 
 def read_keys(source: Any, keys: Collection[str], data: MutableMapping[str, Any]) -> list[str]:
@@ -200,7 +239,7 @@ def read_keys(source: Any, keys: Collection[str], data: MutableMapping[str, Any]
     inputs, remapping, held = keys, _SAME, source
     if isinstance(source, Remapper):
         inputs, _, remapping, held = source._view
-    elif isinstance(source, UserData):
+    elif type(source) is UserData:
         held = source._data
     missing = []
     for key in keys:
@@ -219,7 +258,7 @@ def write_keys(target: Any, keys: Collection[str], data: Mapping[str, Any]) -> l
     outputs, remapping, held = keys, _SAME, target
     if isinstance(target, Remapper):
         _, outputs, remapping, held = target._view
-    elif isinstance(target, UserData):
+    elif type(target) is UserData:
         held = target._data
     missing = []
     for key in keys:

@@ -5,6 +5,14 @@ from __future__ import annotations
 from collections.abc import Callable, Iterable
 from typing import Any, Protocol, TypeGuard
 
+from smachac.runtime.smach import settings
+from smachac.runtime.smach.settings import set_shutdown_check as set_shutdown_check
+
+
+def is_shutdown() -> bool:
+    """Whether running containers are to end, by the shutdown check that is set now."""
+    return settings.is_shutdown()
+
 
 class Interface(Protocol):
     """An object that declares its outcomes and the userdata keys that it reads and writes."""

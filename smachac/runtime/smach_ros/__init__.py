@@ -19,7 +19,11 @@ from smachac.runtime.smach_ros import (
 )
 from smachac.runtime.smach_ros.action_server_wrapper import ActionServerWrapper
 from smachac.runtime.smach_ros.condition_state import ConditionState
-from smachac.runtime.smach_ros.introspection import IntrospectionClient, IntrospectionServer
+from smachac.runtime.smach_ros.introspection import (
+    ContainerProxy,
+    IntrospectionClient,
+    IntrospectionServer,
+)
 from smachac.runtime.smach_ros.monitor_state import MonitorState
 from smachac.runtime.smach_ros.service_state import ServiceState
 from smachac.runtime.smach_ros.simple_action_state import SimpleActionState
@@ -28,6 +32,7 @@ from smachac.runtime.smach_ros.util import set_preempt_handler
 __all__ = [
     "ActionServerWrapper",
     "ConditionState",
+    "ContainerProxy",
     "IntrospectionClient",
     "IntrospectionServer",
     "MonitorState",

@@ -24,6 +24,8 @@ class ActionServerWrapper:
     The slot maps are from fields of the message to keys. `expand_goal_slots` writes each field of
     the goal to the key of the same name; `pack_result_slots` fills the fields of the result from
     the keys of the same names.
+
+    The methods that end in `_cb`, and `publish_feedback`, may be overridden.
     """
 
     def __init__(
@@ -64,17 +66,18 @@ class ActionServerWrapper:
         self.userdata[result_key] = message.action_result.result
         self._empty_result = copy.deepcopy(message.action_result.result)
         self._server = ros.load("actionlib").SimpleActionServer(
-            server_name, action_spec, execute_cb=self._execute, auto_start=False
+            server_name, action_spec, execute_cb=self.execute_cb, auto_start=False
         )
-        self._server.register_preempt_callback(wrapped_container.request_preempt)
-        wrapped_container.register_transition_cb(self._publish_feedback)
+        self._server.register_preempt_callback(self.preempt_cb)
+        wrapped_container.register_transition_cb(self.transition_cb)
+        wrapped_container.register_termination_cb(self.termination_cb)
 
     def run_server(self) -> None:
         """Start the server; returns at once."""
         self._server.start()
 
-    def _execute(self, goal: Any) -> None:
-        """Run the container for one goal."""
+    def execute_cb(self, goal: Any) -> None:
+        """Run the container for one goal; called by the action server."""
         goal_key, _, result_key = self._keys
         self.userdata[goal_key] = goal
         self.userdata[result_key] = copy.deepcopy(self._empty_result)
@@ -106,7 +109,21 @@ class ActionServerWrapper:
             setattr(result, slot, self.userdata[key])
         return result
 
-    def _publish_feedback(self, userdata: UserData, active_states: object) -> None:
+    def preempt_cb(self) -> None:
+        """Preempt the container; called by the action server when a client cancels the goal."""
+        self.wrapped_container.request_preempt()
+
+    def transition_cb(self, userdata: UserData, active_states: list[str]) -> None:
+        """Publish the feedback; called by the container at every transition."""
+        self.publish_feedback(userdata)
+
+    def termination_cb(
+        self, userdata: UserData, terminal_states: Any, container_outcome: str | None
+    ) -> None:
+        """Do nothing; called by the container at its end."""
+
+    def publish_feedback(self, userdata: UserData) -> None:
+        """Publish the feedback message in this userdata, if it has one."""
         key = self._keys[1]
         if key in userdata:
             feedback = userdata[key]

@@ -36,7 +36,7 @@ class ConditionState(RosState):
         self._limit = ros.limit(timeout)
         self._max_checks = max_checks
 
-    def execute(self, ud: Any, /) -> str:
+    def execute(self, ud: Any) -> str:
         """Poll the condition until it is true or a limit is reached."""
         end = None if self._limit is None else self._rospy.get_time() + self._limit
         checks = 0

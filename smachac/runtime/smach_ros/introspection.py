@@ -25,23 +25,13 @@ PROTOCOL = 2
 """The pickle protocol of userdata; SMACH's viewer reads it, in Python 2 too."""
 
 
-class IntrospectionServer:
-    """Reports on the container `state`, whose path is `path`, and on all containers below it.
+class _Reporter:
+    """Reports on containers, by path, on the topics of one server name."""
 
-    It publishes on `<server_name>/smach/container_structure` and `container_status`, in the format
-    of SMACH's viewer: at every start, transition and end of a container, and on all containers for
-    each new subscriber and every two seconds.
-
-    On `container_init` a viewer may set the initial state of a container for all later runs. The
-    userdata of such a command is a pickle, which can run any code: it is dropped, unless `unpickle`
-    is true.
-    """
-
-    def __init__(self, server_name: str, state: State, path: str, unpickle: bool = False) -> None:
+    def __init__(self, server_name: str, update_rate: ros.Time, unpickle: bool) -> None:
         self._rospy = ros.rospy()
         self._name = server_name
-        self._state = state
-        self._path = path
+        self._update_rate = ros.seconds(update_rate)
         self._unpickle = unpickle
         self._paths: dict[str, Container] = {}
         self._registered: list[Container] = []
@@ -50,12 +40,9 @@ class IntrospectionServer:
         self._topics: list[Any] = []
 
     def start(self) -> None:
-        """Start to report. Raises InvalidStateError for a state that is no container."""
-        if not isinstance(self._state, Container):
-            raise InvalidStateError(f"a {type(self._state).__name__} has nothing to look into")
+        """Start to report."""
         if self._running:
             return
-        self._paths = dict(_containers(self._path, self._state))
         topic, listener = self._rospy.Publisher, _SubscriberListener(self._due)
         self._structures = topic(
             self._name + STRUCTURE_TOPIC,
@@ -76,8 +63,7 @@ class IntrospectionServer:
         self._topics = [self._structures, self._statuses, commands]
         self._running = True
         for path, container in self._paths.items():
-            self._register_callbacks(path, container)
-            self._report(path, container, "Initial state")
+            self._follow(path, container)
         threading.Thread(
             target=self._heartbeat, name=f"{self._name}:heartbeat", daemon=True
         ).start()
@@ -89,6 +75,11 @@ class IntrospectionServer:
         while self._topics:
             self._topics.pop().unregister()
 
+    def _follow(self, path: str, container: Container) -> None:
+        """Report on a container from now on."""
+        self._register_callbacks(path, container)
+        self._report(path, container, "Initial state")
+
     def _register_callbacks(self, path: str, container: Container) -> None:
         """Report on the container from now on; once, however often the server is started."""
         if any(container is each for each in self._registered):
@@ -96,19 +87,20 @@ class IntrospectionServer:
         self._registered.append(container)
 
         def report(userdata: UserData, *what: object) -> None:
-            self._report(path, container, repr(what))
+            if self._paths.get(path) is container:
+                self._report(path, container, repr(what))
 
         container.register_start_cb(report)
         container.register_transition_cb(report)
         container.register_termination_cb(report)
 
     def _heartbeat(self) -> None:
-        """Report on all containers every two seconds, and for each new subscriber."""
+        """Report on all containers every `update_rate` seconds, and for each new subscriber."""
         while self._running and not self._rospy.is_shutdown():
             for path, container in self._paths.items():
                 self._describe(path, container)
                 self._report(path, container, "HEARTBEAT")
-            self._due.wait(HEARTBEAT)
+            self._due.wait(self._update_rate)
             self._due.clear()
 
     def _describe(self, path: str, container: Container) -> None:
@@ -117,11 +109,11 @@ class IntrospectionServer:
         self._publish(
             self._structures,
             path=path,
-            children=list(container.get_children()),
+            children=[str(label) for label in container.get_children()],
             internal_outcomes=[outcome for outcome, _, _ in edges],
             outcomes_from=[label for _, label, _ in edges],
             outcomes_to=[target for _, _, target in edges],
-            container_outcomes=list(container.get_registered_outcomes()),
+            container_outcomes=[str(each) for each in container.get_registered_outcomes()],
         )
 
     def _report(self, path: str, container: Container, info: str) -> None:
@@ -131,8 +123,8 @@ class IntrospectionServer:
         self._publish(
             self._statuses,
             path=path,
-            initial_states=container.get_initial_states(),
-            active_states=container.get_active_states(),
+            initial_states=[str(label) for label in container.get_initial_states()],
+            active_states=[str(label) for label in container.get_active_states()],
             local_data=_pickled(container.userdata),
             info=info,
         )
@@ -150,7 +142,7 @@ class IntrospectionServer:
         container = self._paths.get(command.path)
         if container is None:
             return
-        known = container.get_children()
+        known = {str(label): label for label in container.get_children()}
         unknown = [label for label in command.initial_states if label not in known]
         if unknown:
             smach.logerr(f"container '{command.path}' has no states {unknown} to start in")
@@ -164,8 +156,69 @@ class IntrospectionServer:
                 "with it is dropped, for unpickling it may run any code (IntrospectionServer: "
                 "unpickle)"
             )
-        container.set_initial_state(command.initial_states, userdata)
+        container.set_initial_state([known[each] for each in command.initial_states], userdata)
         self._report(command.path, container, "REMOTE_INIT")
+
+
+class IntrospectionServer(_Reporter):
+    """Reports on the container `state`, whose path is `path`, and on all containers below it.
+
+    It publishes on `<server_name>/smach/container_structure` and `container_status`, in the format
+    of SMACH's viewer: at every start, transition and end of a container, and on all containers for
+    each new subscriber and every two seconds.
+
+    On `container_init` a viewer may set the initial state of a container for all later runs. The
+    userdata of such a command is a pickle, which can run any code: it is dropped, unless `unpickle`
+    is true.
+    """
+
+    def __init__(self, server_name: str, state: State, path: str, unpickle: bool = False) -> None:
+        super().__init__(server_name, HEARTBEAT, unpickle)
+        self._state = state
+        self._path = path
+
+    def start(self) -> None:
+        """Start to report. Raises InvalidStateError for a state that is no container."""
+        if not self._running:
+            self.construct(self._name, self._state, self._path)
+        super().start()
+
+    def construct(self, server_name: str, state: State, path: str) -> None:
+        """Report also on the container `state`, whose path is `path`, and on those below it.
+
+        Raises InvalidStateError for a state that is no container, and for the name of another
+        server: a server has one name.
+        """
+        if not isinstance(state, Container):
+            raise InvalidStateError(f"a {type(state).__name__} has nothing to look into")
+        if server_name != self._name:
+            raise InvalidStateError(f"server '{self._name}' does not report as '{server_name}'")
+        added = dict(_containers(path, state))
+        self._paths = {**self._paths, **added}
+        if self._running:
+            for each, container in added.items():
+                self._follow(each, container)
+
+    def clear(self) -> None:
+        """Report on no container any more, until `construct` or `start` adds some."""
+        self._paths = {}
+
+
+class ContainerProxy(_Reporter):
+    """Reports on one container, and not on those below it, every `update_rate` seconds.
+
+    It publishes what IntrospectionServer does, and obeys the same commands without their userdata.
+    """
+
+    def __init__(
+        self,
+        server_name: str,
+        container: Container,
+        path: str,
+        update_rate: ros.Time = HEARTBEAT,
+    ) -> None:
+        super().__init__(server_name, update_rate, unpickle=False)
+        self._paths = {path: container}
 
 
 class IntrospectionClient:

@@ -32,7 +32,7 @@ class MonitorState(RosState):
         self._condition = cond_cb
         self._max_checks = max_checks
 
-    def execute(self, ud: Any, /) -> str:
+    def execute(self, ud: Any) -> str:
         """Check messages until one decides the outcome."""
         if self._preempted():
             return "preempted"

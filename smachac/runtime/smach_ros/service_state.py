@@ -73,7 +73,7 @@ class ServiceState(RosState):
         self.register_input_keys([*filter(None, [request_key]), *self._request_slots, *keys[0]])
         self.register_output_keys([*filter(None, [response_key]), *self._response_slots, *keys[1]])
 
-    def execute(self, ud: Any, /) -> str:
+    def execute(self, ud: Any) -> str:
         """Call the service once."""
         if self._preempted():
             return "preempted"

@@ -34,7 +34,15 @@ class SimpleActionState(RosState):
     status: preempted after a request, aborted after the timeout. It is also aborted when there is
     no server within `server_wait_timeout`, when a cancelled goal has not ended within
     `preempt_timeout`, and when the server has ended. The three are durations in ROS time.
+
+    The constants are the stages of smach_ros, for code that names them; no stage is stored.
     """
+
+    WAITING_FOR_SERVER = 0
+    INACTIVE = 1
+    ACTIVE = 2
+    PREEMPTING = 3
+    COMPLETED = 4
 
     def __init__(
         self,
@@ -92,7 +100,7 @@ class SimpleActionState(RosState):
         self._search_thread: threading.Thread | None = None
         self._has_shutdown_hook = False
 
-    def execute(self, ud: Any, /) -> str:
+    def execute(self, ud: Any) -> str:
         """Send one goal and wait for its end."""
         found = self._find_server()
         if self._preempted():

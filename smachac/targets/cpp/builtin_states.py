@@ -298,12 +298,12 @@ def _random(leaf: _BuiltInLeaf) -> Code:
     seed = variable(leaf.leaf, "seed")
     number = abs(seed) if isinstance(seed, int) else 0
     words: list[str] = []
-    while number or not words:
+    while isinstance(seed, int) and (number or not words):
         words.append(f"{number % LARGEST_WORD}U")
         number //= LARGEST_WORD
     names = own_outcomes(leaf.leaf)
     draw = f"return static_cast<Outcome>(draws_.below({len(names)}));"
-    member = f"smachac::Draws draws_{{{', '.join(words)}}};"
+    member = f"smachac::Draws draws_{{{', '.join(words)}}};"  # without a seed: by chance
     return leaf.calls() + _Statements(lines=(draw,)), member
 
 

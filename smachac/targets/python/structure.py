@@ -89,7 +89,9 @@ def construct(node: Container, variable: str, depth: int) -> str:
             pass
         case _:
             assert_never(node)
-    arguments += key_arguments(node.inputs, node.outputs)
+    # SMACH's Iterator requires both lists of keys.
+    both = isinstance(node, IteratorNode)
+    arguments += key_arguments(node.inputs, node.outputs, both=both)
     if isinstance(node, Concurrence):
         if len({rule.outcome for rule in node.rules}) < len(node.rules):
             arguments.append(("outcome_cb=", _outcome_function(node)))
@@ -124,9 +126,12 @@ def width(depth: int) -> int:
     return max(40, WIDTH - 4 * depth)
 
 
-def key_arguments(inputs: tuple[Key, ...], outputs: tuple[Key, ...]) -> Iterator[tuple[str, Doc]]:
+def key_arguments(
+    inputs: tuple[Key, ...], outputs: tuple[Key, ...], both: bool = False
+) -> Iterator[tuple[str, Doc]]:
+    """The keyword arguments for keys; those without keys are left out, unless `both`."""
     for name, keys in (("input_keys=", inputs), ("output_keys=", outputs)):
-        if keys:
+        if keys or both:
             yield name, names(key.name for key in keys)
 
 

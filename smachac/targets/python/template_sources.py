@@ -29,6 +29,13 @@ def template_sources(machine: Machine, library: Library) -> Iterator[tuple[str, 
             todo += _OTHERS.findall(source.text)
 
 
+def uses_own_templates(machine: Machine, library: Library) -> bool:
+    """Whether the user has templates for the base or a state type of a machine."""
+    types = {machine.base, *(node.type for _, node in walk(machine.root))}
+    files = (file for name in sorted(types) for file in _files(name, machine))
+    return any(library.own_template(file) is not None for file in files if ":" not in file)
+
+
 def _files(name: str, machine: Machine) -> list[str]:
     """The file names that the template of a state type may have."""
     type_ = machine.state_types.get(name)

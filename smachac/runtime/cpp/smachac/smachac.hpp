@@ -947,6 +947,9 @@ private:
 /// Random numbers as Python draws them: the same seed gives the same row.
 class Draws {
 public:
+  /// Seeded by the platform: each object, in each run, gives another row.
+  Draws() : Draws({std::random_device{}(), std::random_device{}()}) {}
+
   /// The seed in words of 32 bits, the lowest first.
   Draws(std::initializer_list<std::uint32_t> seed) : words_(Words{seed}) {}
 

@@ -144,6 +144,8 @@ def build():
                 it=[1, 2, 3],
                 it_label="number",
                 exhausted_outcome="finished",
+                input_keys=[],
+                output_keys=[],
             ),
         )
         with sm_round:

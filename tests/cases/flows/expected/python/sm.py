@@ -210,6 +210,7 @@ def build():
                 it_label="pose",
                 exhausted_outcome="done",
                 input_keys=["poses"],
+                output_keys=[],
             ),
         )
         with sm_each:

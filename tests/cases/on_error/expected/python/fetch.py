@@ -354,6 +354,7 @@ def build():
                 it_label="part",
                 exhausted_outcome="succeeded",
                 input_keys=["parts"],
+                output_keys=[],
             ),
         )
         with sm_each:

@@ -207,6 +207,8 @@ def build():
                 it=[0.0, 0.1, 0.1],
                 it_label="pause",
                 exhausted_outcome="exhausted",
+                input_keys=[],
+                output_keys=[],
             ),
         )
         with sm_look:
@@ -350,6 +352,8 @@ def build():
                 it=[1, 2],
                 it_label="attempt",
                 exhausted_outcome="exhausted",
+                input_keys=[],
+                output_keys=[],
             ),
         )
         with sm_tries:
@@ -387,6 +391,8 @@ def build():
                 it=[],
                 it_label="unused",
                 exhausted_outcome="exhausted",
+                input_keys=[],
+                output_keys=[],
             ),
         )
         with sm_without:
@@ -415,6 +421,8 @@ def build():
                 it=["a", "b"],
                 it_label="unused",
                 exhausted_outcome="exhausted_2",
+                input_keys=[],
+                output_keys=[],
             ),
         )
         with sm_each:
@@ -425,6 +433,8 @@ def build():
                     it=[1, 2],
                     it_label="attempt",
                     exhausted_outcome="exhausted",
+                    input_keys=[],
+                    output_keys=[],
                 ),
             )
             with sm_each_2:

@@ -130,6 +130,7 @@ def build():
                 it_label="waypoint",
                 exhausted_outcome="all_seen",
                 input_keys=["waypoints"],
+                output_keys=[],
             ),
         )
         with sm_visit_all:

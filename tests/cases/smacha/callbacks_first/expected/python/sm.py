@@ -1,4 +1,4 @@
-# Made by smachac 0.1.0 from main.yml (sha256 33f5f5366237b367).
+# Made by smachac 0.1.0 from main.yml (sha256 7cbba04338abf83a).
 """The state machine `sm`."""
 
 import csv
@@ -43,9 +43,9 @@ def columns(name, value, ignored):
 
 
 class RandomOutcomeState(smach.State):
-    """Ends with one of its outcomes by chance; a seed makes the row repeatable."""
+    """Ends with one of its outcomes by chance; with a seed, in the same order in each run."""
 
-    def __init__(self, outcomes, seed=0, input_keys=(), output_keys=()):
+    def __init__(self, outcomes, seed=None, input_keys=(), output_keys=()):
         super().__init__(
             outcomes=outcomes,
             input_keys=list(input_keys),
@@ -53,7 +53,8 @@ class RandomOutcomeState(smach.State):
         )
         self.tells = "outcome" in output_keys
         self.choices = list(outcomes)
-        self.random = random.Random(seed)
+        # Without a seed each state has random numbers of its own, which `random.seed` repeats.
+        self.random = random.Random(random.getrandbits(64) if seed is None else seed)
 
     def execute(self, userdata):
         outcome = self.random.choice(self.choices)
@@ -138,6 +139,7 @@ def build():
             with_callbacks(
                 RandomOutcomeState(
                     outcomes=["again", "enough"],
+                    seed=0,
                     input_keys=["tries"],
                     output_keys=["tries"],
                 ),
@@ -146,7 +148,7 @@ def build():
             transitions={"again": "DRAW", "enough": "WRITE"},
         )
 
-        # main.yml:14
+        # main.yml:15
         smach.StateMachine.add(
             "WRITE",
             with_callbacks(
@@ -163,7 +165,7 @@ def build():
             transitions={"succeeded": "DELETE", "aborted": "aborted"},
         )
 
-        # main.yml:23
+        # main.yml:24
         smach.StateMachine.add(
             "DELETE",
             with_callbacks(

@@ -58,9 +58,9 @@ class ConditionalOutcomeState(smach.State):
 
 
 class RandomOutcomeState(smach.State):
-    """Ends with one of its outcomes by chance; a seed makes the row repeatable."""
+    """Ends with one of its outcomes by chance; with a seed, in the same order in each run."""
 
-    def __init__(self, outcomes, seed=0, input_keys=(), output_keys=()):
+    def __init__(self, outcomes, seed=None, input_keys=(), output_keys=()):
         super().__init__(
             outcomes=outcomes,
             input_keys=list(input_keys),
@@ -68,7 +68,8 @@ class RandomOutcomeState(smach.State):
         )
         self.tells = "outcome" in output_keys
         self.choices = list(outcomes)
-        self.random = random.Random(seed)
+        # Without a seed each state has random numbers of its own, which `random.seed` repeats.
+        self.random = random.Random(random.getrandbits(64) if seed is None else seed)
 
     def execute(self, userdata):
         outcome = self.random.choice(self.choices)

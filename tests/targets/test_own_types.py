@@ -1,0 +1,55 @@
+"""A state type of the user is not the built-in one of its name."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import pytest
+
+import smachac
+from smachac.interpreter.behaviours import builtin_behaviour
+from smachac.interpreter.interpreter import run
+
+TEMPLATE = """\
+{% block class_defs %}
+class NAME(smach.State):
+    def __init__(self):
+        smach.State.__init__(self, outcomes=['awake', 'late'])
+    def execute(self, userdata):
+        return 'late'
+{% endblock %}
+"""
+INTERFACE = "name: NAME\noutcomes: {awake: {}, late: {}}\ncode: {python: NAME.tpl.py}\n"
+SCRIPT = """\
+name: sm
+outcomes: [first, second]
+states:
+  - A: {template: NAME, transitions: {awake: first, late: second}}
+"""
+BUILT_IN = ["SleepState", "RandomOutcomeState", "ScriptedState", "PrintUserdataState"]
+
+
+def project(folder: Path, name: str, *, interface: bool = True) -> Path:
+    (folder / "templates").mkdir()
+    (folder / "templates" / f"{name}.tpl.py").write_text(TEMPLATE.replace("NAME", name))
+    if interface:
+        (folder / "templates" / f"{name}.yml").write_text(INTERFACE.replace("NAME", name))
+    (folder / "main.yml").write_text(SCRIPT.replace("NAME", name))
+    return folder / "main.yml"
+
+
+@pytest.mark.parametrize("interface", [True, False])
+@pytest.mark.parametrize("name", BUILT_IN)
+def test_there_is_no_code_of_ours_for_it(tmp_path: Path, name: str, interface: bool) -> None:
+    path = project(tmp_path, name, interface=interface)
+    with pytest.raises(smachac.ScriptError) as caught:
+        smachac.compile(path, "cpp")
+    assert "SM602" in [item.code for item in caught.value.report]
+    text = smachac.compile(path, "python")["sm.py"]
+    assert text.count(f"class {name}") == 1
+    assert "return 'late'" in text
+
+
+def test_the_interpreter_takes_its_outcomes(tmp_path: Path) -> None:
+    machine = smachac.load(project(tmp_path, "SleepState"))
+    assert run(machine, builtin_behaviour()).outcome == "first"
