@@ -131,7 +131,7 @@ def test_no_variable_of_a_state_type_becomes_code(type_: str, tmp_path: Path) ->
     interface = find_state_type(type_, library_of(tmp_path), [])
     assert interface is not None
     assert programs(script(type_, {}), tmp_path) is not None, "the script itself is right"
-    targets = ("python", "cpp") if is_built_in(type_) or interface.classes else ("python",)
+    targets = ("python", "cpp") if is_built_in(interface) or interface.classes else ("python",)
     names = [*interface.variables]
     names += ["function_name", "node_name"] if interface.kind == "base" else ["doc", "x = 1, y"]
     for name in names:
