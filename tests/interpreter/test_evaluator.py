@@ -176,7 +176,7 @@ def test_values_that_grow_from_visit_to_visit_are_limited() -> None:
         tree = parse_expression(text)
         assert tree is not None
         value: object = 1
-        for _ in range(16):
+        for _ in range(15):
             value = evaluate(tree, {"ud": value})
         with pytest.raises(EvaluationError, match="more than"):
             evaluate(tree, {"ud": value})

@@ -112,7 +112,7 @@ class Meter:
                 todo.extend(each.keys())
                 todo.extend(each.values())
             elif isinstance(each, (list, tuple, *_VIEWS)):
-                todo.extend(iter(each))  # type: ignore[call-overload]  # views have no common type
+                todo.extend(iter(each))  # type: ignore[call-overload]
         return total
 
     def weight(self, value: object) -> int:
