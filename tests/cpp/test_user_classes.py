@@ -15,7 +15,7 @@ from smachac.frontend.loader import memory_library
 from smachac.frontend.state_types import find_state_type
 from smachac.targets.cpp import TARGET
 from smachac.targets.cpp.user_classes import interface_hash
-from tests.cpp.compilers import Compiler, compilers
+from tests.cpp.compilers import Compiler, compilers, last_with
 
 COMPILERS = pytest.mark.parametrize("compiler", compilers(), ids=lambda each: each.name)
 
@@ -97,9 +97,10 @@ def made(files: Mapping[str, str]) -> tuple[Report, str]:
     return built, next(iter(printed.values()), "")
 
 
-def number(interface: str) -> str:
-    library = memory_library({"templates/Hit.yml": interface}, disk_library(Path("main.yml"), []))
-    type_ = find_state_type("Hit", library, [])
+def number(interface: str, name: str = "Hit") -> str:
+    files = {f"templates/{name}.yml": interface}
+    library = memory_library(files, disk_library(Path("main.yml"), []))
+    type_ = find_state_type(name, library, [])
     assert type_ is not None
     return interface_hash(type_)
 
@@ -283,3 +284,83 @@ def test_a_type_that_cpp_lacks_in_one_interface_only_is_refused() -> None:
     report, text = made(files)
     assert text == ""
     assert {each.code for each in report} == {"SM601"}
+
+
+TWO = """
+name: sm
+outcomes: [done]
+states:
+  - LEFT: {template: Left, transitions: {done: INNER}}
+  - INNER:
+      template: StateMachine
+      outcomes: [done]
+      states:
+        - RIGHT: {template: Right, transitions: {done: WAIT}}
+        - WAIT: {template: ScriptedState, outcomes: [done], transitions: {done: done}}
+      transitions: {done: AGAIN}
+  - AGAIN: {template: Left, transitions: {done: done}}
+"""
+STATE = """
+name: NAME
+outcomes: {done: {}}
+code: {cpp: {header: game/hit.hpp, class: "game::NAME", with: "WITH"}}
+"""
+LEFT = STATE.replace("NAME", "Left").replace("WITH", "game::Arm& robot")
+RIGHT = STATE.replace("NAME", "Right").replace(
+    "WITH", "game::Base& robot, const std::map<std::string, int>& speeds"
+)
+TWO_CLASSES = """
+#pragma once
+#include <map>
+#include "smachac/smachac.hpp"
+namespace game {
+struct Arm { int moves = 0; };
+struct Base { int moves = 0; };
+class Left {
+public:
+  enum class Outcome { done };
+  static constexpr std::uint32_t smachac_interface = LEFT;
+  explicit Left(Arm &arm) : arm_(arm) {}
+  Outcome execute() { ++arm_.moves; return Outcome::done; }
+private:
+  Arm &arm_;
+};
+class Right {
+public:
+  enum class Outcome { done };
+  static constexpr std::uint32_t smachac_interface = RIGHT;
+  Right(Base &base, const std::map<std::string, int> &speeds) : base_(base), speeds_(speeds) {}
+  Outcome execute() { base_.moves += speeds_.at("slow"); return Outcome::done; }
+private:
+  Base &base_;
+  const std::map<std::string, int> &speeds_;
+};
+}
+"""
+TWO_MAIN = """
+#include "sm.hpp"
+int main() {
+  game::Arm arm;
+  game::Base base;
+  const std::map<std::string, int> speeds{{"slow", 7}};
+  sm::States states(arm, base, speeds);
+  sm::Userdata userdata;
+  smachac::Stop stop;
+  sm::run(states, userdata, nullptr, stop);
+  return arm.moves == 2 && base.moves == 7 ? 0 : 1;
+}
+"""
+
+
+def test_classes_take_several_objects_and_objects_of_one_name(tmp_path: Path) -> None:
+    """Two objects of one name and different types had one parameter."""
+    files = {"main.yml": TWO, "templates/Left.yml": LEFT, "templates/Right.yml": RIGHT}
+    report, text = made(files)
+    assert report == []
+    head = "States(game::Base &robot_2, const std::map<std::string, int> &speeds)"
+    assert f"  {head}\n      : RIGHT(robot_2, speeds) {{}}" in text
+    (tmp_path / "game").mkdir()
+    (tmp_path / "sm.hpp").write_text(text)
+    header = TWO_CLASSES.replace("LEFT", number(LEFT, "Left"))
+    (tmp_path / "game" / "hit.hpp").write_text(header.replace("RIGHT", number(RIGHT, "Right")))
+    last_with("-O0").run(TWO_MAIN, tmp_path, f"-I{tmp_path}", "-pthread", "-Weffc++")

@@ -42,8 +42,8 @@ class LeafCode:
     """A leaf in C++: its type, the call that runs it, and the definition of the type if the header
     has to contain it.
 
-    `made_with` are the arguments of its constructor; `parameter` is the parameter that the `States`
-    of its container need for them. `uses_userdata`: the call uses the userdata of the container.
+    `made_with` are the arguments of its constructor; `parameters` are those that the `States` of
+    its container need for them. `uses_userdata`: the call uses the userdata of the container.
     `uses_stop`: the state receives requests to stop.
     """
 
@@ -51,7 +51,7 @@ class LeafCode:
     call: str
     definition: tuple[str, ...] = ()
     made_with: str = ""
-    parameter: str = ""
+    parameters: tuple[str, ...] = ()
     uses_userdata: bool
     uses_stop: bool
 

@@ -8,7 +8,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from collections.abc import Set as AbstractSet
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from typing import NamedTuple
 
 from smachac.ir.nodes import Iterator, Leaf, Machine
@@ -19,7 +19,14 @@ from smachac.targets.cpp.containers import ContainerPlan, Lines, execute, parts,
 from smachac.targets.cpp.identifiers import identifier
 from smachac.targets.cpp.plan import ContainerScope, Plan, member, place, scope_name
 from smachac.targets.cpp.types import UnportableError, cpp_literal, cpp_type, cpp_value
-from smachac.targets.cpp.user_classes import ClassCode, argument, assertions, class_code, class_leaf
+from smachac.targets.cpp.user_classes import (
+    ClassCode,
+    argument,
+    assertions,
+    class_code,
+    class_leaf,
+    named_apart,
+)
 from smachac.targets.errors import no_code_for_target
 
 STRICT = """// A class with more outcomes than its interface is an error, whatever the warnings are.
@@ -45,7 +52,7 @@ class Header(NamedTuple):
 def header_of(plan: Plan) -> Header:
     """The header of a machine. Everything that C++ cannot express is added to the plan's report;
     the header is empty then."""
-    printing = _Printing(plan=plan)
+    printing = _Printing(plan=plan, classes=_classes(plan.machine))
     blocks = [
         "\n".join(_container(printing, scope)) for scope in reversed(list(plan.scopes.values()))
     ]
@@ -53,7 +60,7 @@ def header_of(plan: Plan) -> Header:
     if plan.report:
         # A class whose types are refused has no assertions.
         return Header("", (), ())
-    codes = [code for code in printing.classes.values() if code is not None]
+    codes = list(printing.classes.values())
     headers = sorted({"smachac/smachac.hpp", *(code.header for code in codes)})
     classes = tuple(header for header in headers if not header.startswith("smachac/"))
     made = f"// {made_by(plan.machine)}\n#pragma once"
@@ -75,20 +82,32 @@ class _Printing:
     """
 
     plan: Plan
-    classes: dict[str, ClassCode | None] = field(default_factory=dict)
+    classes: Mapping[str, ClassCode]
     parameters: dict[str, tuple[str, ...]] = field(default_factory=dict)
     stopping: set[str] = field(default_factory=set)
     missing: set[str] = field(default_factory=set)
 
     def code_of(self, leaf: Leaf, scope: ContainerScope) -> LeafCode | None:
         """The code of a leaf; None if its type has no code for C++. Raises UnportableError."""
-        if leaf.type not in self.classes:
-            type_ = self.plan.machine.state_types.get(leaf.type)
-            self.classes[leaf.type] = class_code(type_) if type_ is not None else None
-        code = self.classes[leaf.type]
+        code = self.classes.get(leaf.type)
         if code is not None:
             return class_leaf(code, leaf, scope)
         return built_in(leaf, scope, self.plan.refuse)
+
+
+def _classes(machine: Machine) -> Mapping[str, ClassCode]:
+    """The classes of the state types of a machine, by name. Their constructors have parameters of
+    one name only where these have one type."""
+    found: dict[str, ClassCode] = {}
+    objects: list[str] = []
+    for _, node in walk(machine.root):
+        type_ = machine.state_types.get(node.type) if isinstance(node, Leaf) else None
+        code = class_code(type_) if type_ is not None and node.type not in found else None
+        if code is not None:
+            parameters = named_apart(code.parameters, objects)
+            found[node.type] = replace(code, parameters=parameters)
+            objects += parameters
+    return found
 
 
 def _refuse_missing(plan: Plan, types: AbstractSet[str]) -> None:
@@ -198,24 +217,26 @@ def _types(leaves: Mapping[str, LeafCode]) -> Lines:
 
 def _states(printing: _Printing, scope: ContainerScope, leaves: Mapping[str, LeafCode]) -> Lines:
     """The struct of the states, with a constructor if the classes of some states need arguments."""
-    lines, made = [], []
+    members: dict[str, bool] = {}
+    made: Lines = []
     parameters: dict[str, None] = {}
     for child in scope.node.children:
         if isinstance(child, Leaf):
             code = leaves[child.name]
             type_, given = code.type, code.made_with
-            wanted: tuple[str, ...] = (code.parameter,) if code.parameter else ()
+            wanted = code.parameters
         else:
             type_ = f"{identifier(child.name)}::States"
             wanted = printing.parameters.get(f"{scope.path}/{child.name}", ())
             given = ", ".join(map(argument, wanted))
         parameters |= dict.fromkeys(wanted)
-        lines.append(f"  {type_} {member(child)};")
+        members[f"  {type_} {member(child)}"] = bool(given)
         if given:
             made.append(f"{member(child)}({given})")
     printing.parameters[scope.path] = tuple(parameters)
     if not made:
-        return ["struct States {", *lines, "};"]
+        return ["struct States {", *(f"{text};" for text in members), "};"]
+    lines = [f"{text};" if listed else f"{text}{{}};" for text, listed in members.items()]
     explicit = "explicit " if len(parameters) == 1 else ""
     head = f"  {explicit}States({', '.join(parameters)})"
     initial = ",\n        ".join(made)

@@ -53,9 +53,7 @@ mappings."""
 
 LISTED = ("Point", "Quaternion", "Pose", "Transform")
 
-OTHER_TYPES = (
-    "declare the key as `any`: C++ keeps its value as a `std::any`, which a class can cast"
-)
+OTHER_TYPES = "declare the key as `any`, which is a `std::any` in C++; a class can cast its value"
 """The help for a type that C++ lacks, such as a message of ROS."""
 
 SCALARS = {

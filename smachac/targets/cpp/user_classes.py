@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import zlib
+from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
 
 from smachac.ir.nodes import Data, Key, Leaf, StateType
@@ -19,13 +20,13 @@ BY_VALUE = ("bool", "int", "float")
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class ClassCode:
-    """A class of the user for a state type: its name, the header to include, and the parameter
+    """A class of the user for a state type: its name, the header to include, and the parameters
     that its constructor takes first, such as `my_robot::Arm &arm`."""
 
     type: StateType
     name: str
     header: str
-    parameter: str = ""
+    parameters: tuple[str, ...] = ()
 
 
 def argument(parameter: str) -> str:
@@ -38,13 +39,50 @@ def class_code(type_: StateType) -> ClassCode | None:
     given = type_.classes.get("cpp")
     if given is None:
         return None
-    parameter = " ".join(given.get("with", "").replace("&", " & ").replace("*", " * ").split())
     return ClassCode(
         type=type_,
         name=f"::{given['class'].removeprefix('::')}",
         header=given["header"],
-        parameter=parameter.replace("& ", "&").replace("* ", "*"),
+        parameters=tuple(map(_parameter, _split(given.get("with", "")))),
     )
+
+
+def _split(parameters: str) -> list[str]:
+    """The parameters between the commas that are not in template arguments or brackets."""
+    found, depth = [""], 0
+    for character in parameters:
+        depth += (character in "<([{") - (character in ">)]}")
+        if character == "," and depth == 0:
+            found.append("")
+        else:
+            found[-1] += character
+    return [each for each in found if each.strip()]
+
+
+def _parameter(text: str) -> str:
+    """A parameter in the layout of the header: `my_robot::Arm &arm`."""
+    spaced = " ".join(text.replace("&", " & ").replace("*", " * ").split())
+    return spaced.replace("& ", "&").replace("* ", "*")
+
+
+def named_apart(parameters: Sequence[str], others: Iterable[str]) -> tuple[str, ...]:
+    """Parameters of which none has the name of another parameter of another type: a number is added
+    to its name."""
+    types = {argument(each): _type_of(each) for each in others}
+    found = []
+    for each in parameters:
+        type_, name = _type_of(each), argument(each)
+        new, number = name, 1
+        while types.get(new, type_) != type_:
+            number += 1
+            new = f"{name}_{number}"
+        types[new] = type_
+        found.append(f"{each.removesuffix(name)}{new}")
+    return tuple(found)
+
+
+def _type_of(parameter: str) -> str:
+    return parameter.removesuffix(argument(parameter)).strip()
 
 
 def left_to_scripts(type_: StateType) -> list[str]:
@@ -76,12 +114,12 @@ def class_leaf(code: ClassCode, leaf: Leaf, scope: ContainerScope) -> LeafCode:
             for key, out in zip(type_.output_keys, outs, strict=True)
         ]
         call = f"run.wrote({call}, {', '.join(told)})"
-    made = [*([argument(code.parameter)] if code.parameter else []), *_variables(type_, leaf)]
+    made = [*map(argument, code.parameters), *_variables(type_, leaf)]
     return LeafCode(
         type=code.name,
         call=call,
         made_with=", ".join(made),
-        parameter=code.parameter,
+        parameters=code.parameters,
         uses_userdata=bool(inputs or outs),
         uses_stop=stops(type_),
     )

@@ -838,7 +838,7 @@ public:
 
 private:
   struct Threads {
-    std::array<std::thread, N - 1> all;
+    std::array<std::thread, N - 1> all{};
     ~Threads() {
       for (std::thread &each : all) {
         if (each.joinable()) {
@@ -865,8 +865,8 @@ private:
     }
 
   private:
-    std::mutex lock_;
-    std::exception_ptr first_;
+    std::mutex lock_{};
+    std::exception_ptr first_{};
 #else
     void keep() {}
     void go_on() const {}
@@ -937,11 +937,11 @@ private:
 
   Run &around_;
   const Place *places_;
-  std::array<Stop, N> stops_;
+  std::array<Stop, N> stops_{};
   std::atomic<bool> asked_{false};
   std::uint64_t before_ = 0;
   bool stopped_ = false;
-  Failure failure_;
+  Failure failure_{};
 };
 
 /// Random numbers as Python draws them: the same seed gives the same row.
