@@ -80,7 +80,7 @@ def folder(tmp_path_factory: pytest.TempPathFactory) -> Path:
          '{{std::string("open"), std::string("closed")}}, in.mode)'),
         ("ud.note or 'none'", 'py::truth(in.note) ? py::present(in.note) : std::string("none")'),
         ("ud.flag and not ud.n or ud.flag", "(in.flag && !(in.n != 0)) || in.flag"),
-        ("ud.pose[0][2] + ud.point.x", "in.pose.position.z + in.point.x"),
+        ("ud.pose[0][2] + ud.point[0]", "in.pose.position.z + in.point.x"),
         ("ud.n if ud.flag else 0", "in.flag ? in.n : 0"),
         ("max(ud.whole, key=lambda v: -v)",
          "py::max_of(in.whole, [&](const auto &item_1) { return py::negate(item_1); })"),
@@ -126,6 +126,8 @@ def test_expressions_are_printed_as_the_wanted_type(code: str, wanted: str, text
     [
         ("ud.thing + 1", "", "`ud.thing`: the type is unknown"),
         ("ud.other", "", "`ud.other`: this name is not defined here"),
+        ("ud.point.x", "", "the value is a list in Python, which has no field `x`"),
+        ("ud.pose[0].z", "", "the value is a list in Python, which has no field `z`"),
         ("math.sin(ud.x)", "", "`math.sin(ud.x)`: unknown function"),
         ("ud.n ** ud.m", "", "`ud.n ** ud.m`: the type depends on the sign of the exponent"),
         ("[1, 'a'][ud.n]", "", "one of two types, `int` or `str`"),

@@ -15,7 +15,7 @@ from smachac.frontend.loader import memory_library
 from smachac.frontend.state_types import find_state_type
 from smachac.targets.cpp import TARGET
 from smachac.targets.cpp.user_classes import interface_hash
-from tests.cpp.compilers import Compiler, compilers, last_with
+from tests.cpp.compilers import BARE, Compiler, compilers, last_with
 
 COMPILERS = pytest.mark.parametrize("compiler", compilers(), ids=lambda each: each.name)
 
@@ -364,3 +364,63 @@ def test_classes_take_several_objects_and_objects_of_one_name(tmp_path: Path) ->
     header = TWO_CLASSES.replace("LEFT", number(LEFT, "Left"))
     (tmp_path / "game" / "hit.hpp").write_text(header.replace("RIGHT", number(RIGHT, "Right")))
     last_with("-O0").run(TWO_MAIN, tmp_path, f"-I{tmp_path}", "-pthread", "-Weffc++")
+
+
+RACE = """
+name: sm
+outcomes: [done]
+states:
+  - BOTH:
+      template: Concurrence
+      outcomes: [done]
+      default_outcome: done
+      output_keys: [pose]
+      states:
+        # smachac: allow SM405 one of them comes first
+        - LEFT: {template: ScriptedState, outcomes: [ok], output_keys: [pose]}
+        # smachac: allow SM405 one of them comes first
+        - RIGHT: {template: ScriptedState, outcomes: [ok], KEYS}
+      transitions: {done: done}
+"""
+
+
+@pytest.mark.parametrize("keys", ["output_keys: [pose]", "input_keys: [pose]"])
+def test_a_data_race_that_a_script_allows_is_refused(keys: str) -> None:
+    report, text = made({"main.yml": RACE.replace("KEYS", keys)})
+    assert text == ""
+    race = report[0]
+    assert (race.code, race.span.line) == ("SM601", 12)
+    assert "the branches `LEFT` and `RIGHT` use the key `pose` at the same time" in race.message
+    assert race.help == "remap the key so that each branch has its own"
+
+
+def test_keys_of_branches_that_differ_are_no_data_race() -> None:
+    keys = "output_keys: [pose], remapping: {pose: other}"
+    report, _ = made({"main.yml": RACE.replace("KEYS", keys)})
+    assert report == []
+
+
+CATCHING = """
+name: sm
+outcomes: [done, failed]
+states:
+  - COUNT:
+      template: CallbacksState
+      output_keys: [total]
+      callbacks: {total: 'lambda ud: 1'}
+      transitions: {succeeded: done, error: failed}
+"""
+
+
+@COMPILERS
+def test_a_script_that_catches_exceptions_needs_them(compiler: Compiler, tmp_path: Path) -> None:
+    """Without exceptions the program ended where the script goes on."""
+    report, text = made({"main.yml": CATCHING})
+    assert report == []
+    (tmp_path / "sm.hpp").write_text(text)
+    program = '#include "sm.hpp"\nint main() {}\n'
+    flags = (f"-I{tmp_path}", "-pthread", "-c")
+    compiler.compile(program, tmp_path, *flags)
+    message = r"the script catches the exceptions of COUNT \(main.yml:5\): compile with"
+    with pytest.raises(AssertionError, match=message):
+        compiler.compile(program, tmp_path, *flags, *BARE)

@@ -55,7 +55,15 @@ from smachac.targets.cpp.terms import (
     present,
     shown,
 )
-from smachac.targets.cpp.types import FIELDS, FLOAT, INT, NONE, UnportableError, plain
+from smachac.targets.cpp.types import (
+    FIELDS,
+    FLOAT,
+    INT,
+    LISTED,
+    NONE,
+    UnportableError,
+    plain,
+)
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -235,6 +243,14 @@ def _name(expr: Name | Attribute, names: _Names) -> Term:
     match expr:
         case Attribute(value, name) if not isinstance(value, Name) or value.name in names.spellings:
             owner = _term(value, names)
+            fields = list(FIELDS.get(present(owner.type).name, {}))
+            if name in fields:
+                listed = present(owner.type).name in LISTED
+                raise UnportableError(
+                    f"the value is a {'list' if listed else 'mapping'} in Python,"
+                    f" which has no field `{name}`",
+                    help=f"write `[{fields.index(name) if listed else repr(name)}]` for `.{name}`",
+                )
             return _member(owner, name)
     raise UnportableError("this name is not defined here")
 

@@ -11,7 +11,7 @@ from collections.abc import Set as AbstractSet
 from dataclasses import dataclass, field, replace
 from typing import NamedTuple
 
-from smachac.ir.nodes import Iterator, Leaf, Machine
+from smachac.ir.nodes import Iterator, Leaf, Machine, Node
 from smachac.ir.traversal import walk
 from smachac.targets import comment, made_by
 from smachac.targets.cpp.builtin_states import LeafCode, built_in, enumeration
@@ -66,10 +66,22 @@ def header_of(plan: Plan) -> Header:
     made = f"// {made_by(plan.machine)}\n#pragma once"
     includes = "\n".join(f'#include "{header}"' for header in headers)
     checks = ["\n".join(assertions(code)) for code in codes]
+    catching = next((node for _, node in walk(plan.machine.root) if node.catches), None)
+    if catching is not None:
+        includes += f"\n\n{_needs_exceptions(catching)}"
     if codes:
         blocks = [STRICT, *checks, *blocks, LENIENT]
     text = "\n\n".join([made, includes, *blocks]) + "\n"
     return Header(text, printing.parameters.get(plan.machine.root.name, ()), classes)
+
+
+def _needs_exceptions(node: Node) -> str:
+    """The code that refuses compilers without exceptions, for a state whose exceptions become an
+    outcome."""
+    message = f"the script catches the exceptions of {identifier(node.name)}"
+    message += f"{f' ({place(node)})' if place(node) else ''}: compile with -fexceptions"
+    condition = "#if !defined(__cpp_exceptions)"
+    return f"{condition}\nstatic_assert(false, {cpp_literal(message)});\n#endif"
 
 
 @dataclass(slots=True, kw_only=True)

@@ -9,7 +9,7 @@ from pathlib import PurePath
 from smachac.analysis.type_inference import infer
 from smachac.diagnostics.diagnostic import Report
 from smachac.diagnostics.source import NOWHERE, Span
-from smachac.ir.nodes import Container, Iterator, Leaf, Machine, Node
+from smachac.ir.nodes import Concurrence, Container, Iterator, Leaf, Machine, Node
 from smachac.ir.traversal import containers, outcome_names, remapping
 from smachac.ir.types import ANY, Type
 from smachac.targets import comment
@@ -120,6 +120,28 @@ def _check(plan: Plan, scope: ContainerScope, around: ContainerScope | None) -> 
             plan.refuse(each.span, UnportableError(text), "outcome", other, name)
     if around is not None:
         _check_borders(plan, scope, around)
+    if isinstance(node, Concurrence):
+        _check_races(plan, scope, node)
+
+
+def _check_races(plan: Plan, scope: ContainerScope, node: Concurrence) -> None:
+    """Refuses a key that a branch writes while another reads or writes it, which is undefined in
+    C++. An `allow` of the rule for data races does not change this."""
+    writers: dict[str, list[Node]] = {}
+    readers: dict[str, list[Node]] = {}
+    for child in node.children:
+        names = scope.names(child)
+        for keys, found in ((child.outputs, writers), (child.inputs, readers)):
+            for outer in {names.get(key.name, key.name): None for key in keys}:
+                found.setdefault(outer, []).append(child)
+    for key, writing in writers.items():
+        branches = {child.name: child for child in (*writing, *readers.get(key, ()))}
+        if len(branches) > 1:
+            one, other = list(branches.values())[:2]
+            text = f"the branches `{one.name}` and `{other.name}` use the key `{key}` at the same"
+            text += f" time, and `{one.name}` writes it"
+            help_ = "remap the key so that each branch has its own"
+            plan.refuse(one.span, UnportableError(text, help=help_), key, one.name, other.name)
 
 
 def _check_borders(plan: Plan, scope: ContainerScope, around: ContainerScope) -> None:
