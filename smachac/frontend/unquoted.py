@@ -66,9 +66,21 @@ def is_class(text: str) -> bool:
     return _CLASS.fullmatch(text) is not None
 
 
-def is_parameter(text: str) -> bool:
-    """A parameter of a C++ function: a type and a name."""
-    return _PARAMETER.fullmatch(text.strip()) is not None
+def parameters(text: str) -> list[str]:
+    """The texts between the commas that are not in angle brackets."""
+    found, depth = [""], 0
+    for character in text:
+        depth += (character == "<") - (character == ">")
+        if character == "," and depth == 0:
+            found.append("")
+        else:
+            found[-1] += character
+    return [each.strip() for each in found]
+
+
+def are_parameters(text: str) -> bool:
+    """Parameters of a C++ function, each a type and a name."""
+    return all(_PARAMETER.fullmatch(each) is not None for each in parameters(text))
 
 
 Shape = tuple[Callable[[str], bool], str, str]
@@ -80,7 +92,7 @@ SHAPES: Mapping[str, Shape] = {
     "function": (is_function, "a function", "`fill_request` or `lambda ud, request: request`"),
     "header": (is_header, "the path of a C++ header", "`my_robot/grasp.hpp`"),
     "class": (is_class, "the qualified name of a C++ class", "`my_robot::Grasp`"),
-    "with": (is_parameter, "a parameter of a C++ function", "`my_robot::Arm &arm`"),
+    "with": (are_parameters, "parameters of a C++ function", "`my_robot::Arm &arm`"),
 }
 
 VARIABLE_SHAPES = ("name", "type", "function")

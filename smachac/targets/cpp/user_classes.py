@@ -6,6 +6,7 @@ import zlib
 from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
 
+from smachac.frontend.unquoted import parameters
 from smachac.ir.nodes import Data, Key, Leaf, StateType
 from smachac.ir.traversal import PREEMPTED
 from smachac.ir.types import Type
@@ -43,20 +44,8 @@ def class_code(type_: StateType) -> ClassCode | None:
         type=type_,
         name=f"::{given['class'].removeprefix('::')}",
         header=given["header"],
-        parameters=tuple(map(_parameter, _split(given.get("with", "")))),
+        parameters=tuple(_parameter(each) for each in parameters(given.get("with", "")) if each),
     )
-
-
-def _split(parameters: str) -> list[str]:
-    """The parameters between the commas that are not in template arguments or brackets."""
-    found, depth = [""], 0
-    for character in parameters:
-        depth += (character in "<([{") - (character in ">)]}")
-        if character == "," and depth == 0:
-            found.append("")
-        else:
-            found[-1] += character
-    return [each for each in found if each.strip()]
 
 
 def _parameter(text: str) -> str:
@@ -65,12 +54,12 @@ def _parameter(text: str) -> str:
     return spaced.replace("& ", "&").replace("* ", "*")
 
 
-def named_apart(parameters: Sequence[str], others: Iterable[str]) -> tuple[str, ...]:
+def named_apart(taken: Sequence[str], others: Iterable[str]) -> tuple[str, ...]:
     """Parameters of which none has the name of another parameter of another type: a number is added
     to its name."""
     types = {argument(each): _type_of(each) for each in others}
     found = []
-    for each in parameters:
+    for each in taken:
         type_, name = _type_of(each), argument(each)
         new, number = name, 1
         while types.get(new, type_) != type_:

@@ -249,9 +249,9 @@ struct States {
         HOME(arm, std::optional<std::string>{}, 1.0) {}
 
   EACH::States EACH_;
-  types::COUNT COUNT;
-  types::USE USE;
-  types::AGAIN AGAIN;
+  types::COUNT COUNT{};
+  types::USE USE{};
+  types::AGAIN AGAIN{};
   ::smachac::MoveToJointPositionsState HOME;
 };
 

@@ -3,6 +3,10 @@
 
 #include "smachac/smachac.hpp"
 
+#if !defined(__cpp_exceptions)
+static_assert(false, "the script catches the exceptions of FIND (main.yml:7): compile with -fexceptions");
+#endif
+
 namespace fetch::EACH { // main.yml:50
 
 enum class Outcome : std::uint8_t {

@@ -10,6 +10,25 @@
 #pragma GCC diagnostic error "-Wswitch"
 #endif
 
+static_assert(::smachac::LoadModelState::smachac_interface == 0x8fbc7534U,
+              "smachac::LoadModelState was written for another LoadModelState.yml: compare them, then set smachac_interface");
+static_assert(std::is_same_v<decltype(::smachac::LoadModelState::In::pose), const smachac::Pose &>,
+              "smachac::LoadModelState::In::pose must be const smachac::Pose &");
+static_assert(std::is_same_v<decltype(::smachac::LoadModelState::In::reference_frame), const std::optional<std::string> &>,
+              "smachac::LoadModelState::In::reference_frame must be const std::optional<std::string> &");
+static_assert(std::is_same_v<decltype(::smachac::LoadModelState::Out::pose), smachac::Key<smachac::Pose> &>,
+              "smachac::LoadModelState::Out::pose must be smachac::Key<smachac::Pose> &");
+
+static_assert(::smachac::MoveToJointPositionsState::smachac_interface == 0x1e53a7a2U,
+              "smachac::MoveToJointPositionsState was written for another MoveToJointPositionsState.yml: compare them, then set smachac_interface");
+static_assert(std::is_same_v<decltype(::smachac::MoveToJointPositionsState::In::positions), const std::vector<double> &>,
+              "smachac::MoveToJointPositionsState::In::positions must be const std::vector<double> &");
+
+static_assert(::smachac::GripperState::smachac_interface == 0xf6784b1fU,
+              "smachac::GripperState was written for another GripperState.yml: compare them, then set smachac_interface");
+static_assert(std::is_same_v<decltype(::smachac::GripperState::Out::width), smachac::Key<double> &>,
+              "smachac::GripperState::Out::width must be smachac::Key<double> &");
+
 static_assert(::smachac::PoseToJointPositionsState::smachac_interface == 0xb36feb04U,
               "smachac::PoseToJointPositionsState was written for another PoseToJointPositionsState.yml: compare them, then set smachac_interface");
 static_assert(std::is_same_v<decltype(::smachac::PoseToJointPositionsState::In::pose), const smachac::Pose &>,
@@ -19,14 +38,6 @@ static_assert(std::is_same_v<decltype(::smachac::PoseToJointPositionsState::In::
 static_assert(std::is_same_v<decltype(::smachac::PoseToJointPositionsState::Out::joints), smachac::Key<std::vector<double>> &>,
               "smachac::PoseToJointPositionsState::Out::joints must be smachac::Key<std::vector<double>> &");
 
-static_assert(::smachac::MoveToJointPositionsState::smachac_interface == 0x1e53a7a2U,
-              "smachac::MoveToJointPositionsState was written for another MoveToJointPositionsState.yml: compare them, then set smachac_interface");
-static_assert(std::is_same_v<decltype(::smachac::MoveToJointPositionsState::In::positions), const std::vector<double> &>,
-              "smachac::MoveToJointPositionsState::In::positions must be const std::vector<double> &");
-
-static_assert(::smachac::CheckGraspState::smachac_interface == 0x13d26e9fU,
-              "smachac::CheckGraspState was written for another CheckGraspState.yml: compare them, then set smachac_interface");
-
 static_assert(::smachac::MoveAlongState::smachac_interface == 0xf86fdf91U,
               "smachac::MoveAlongState was written for another MoveAlongState.yml: compare them, then set smachac_interface");
 static_assert(std::is_same_v<decltype(::smachac::MoveAlongState::In::pose), const smachac::Pose &>,
@@ -34,10 +45,8 @@ static_assert(std::is_same_v<decltype(::smachac::MoveAlongState::In::pose), cons
 static_assert(std::is_same_v<decltype(::smachac::MoveAlongState::In::offset), const std::optional<smachac::Pose> &>,
               "smachac::MoveAlongState::In::offset must be const std::optional<smachac::Pose> &");
 
-static_assert(::smachac::GripperState::smachac_interface == 0xf6784b1fU,
-              "smachac::GripperState was written for another GripperState.yml: compare them, then set smachac_interface");
-static_assert(std::is_same_v<decltype(::smachac::GripperState::Out::width), smachac::Key<double> &>,
-              "smachac::GripperState::Out::width must be smachac::Key<double> &");
+static_assert(::smachac::CheckGraspState::smachac_interface == 0x13d26e9fU,
+              "smachac::CheckGraspState was written for another CheckGraspState.yml: compare them, then set smachac_interface");
 
 static_assert(::smachac::CheckPlacedState::smachac_interface == 0xe69f2892U,
               "smachac::CheckPlacedState was written for another CheckPlacedState.yml: compare them, then set smachac_interface");
@@ -45,15 +54,6 @@ static_assert(std::is_same_v<decltype(::smachac::CheckPlacedState::In::pose), co
               "smachac::CheckPlacedState::In::pose must be const smachac::Pose &");
 static_assert(std::is_same_v<decltype(::smachac::CheckPlacedState::Out::error), smachac::Key<double> &>,
               "smachac::CheckPlacedState::Out::error must be smachac::Key<double> &");
-
-static_assert(::smachac::LoadModelState::smachac_interface == 0x8fbc7534U,
-              "smachac::LoadModelState was written for another LoadModelState.yml: compare them, then set smachac_interface");
-static_assert(std::is_same_v<decltype(::smachac::LoadModelState::In::pose), const smachac::Pose &>,
-              "smachac::LoadModelState::In::pose must be const smachac::Pose &");
-static_assert(std::is_same_v<decltype(::smachac::LoadModelState::In::reference_frame), const std::optional<std::string> &>,
-              "smachac::LoadModelState::In::reference_frame must be const std::optional<std::string> &");
-static_assert(std::is_same_v<decltype(::smachac::LoadModelState::Out::pose), smachac::Key<smachac::Pose> &>,
-              "smachac::LoadModelState::Out::pose must be smachac::Key<smachac::Pose> &");
 
 // Place the block in the gripper and look whether it lies there.
 namespace pick_and_place::PLACE_BLOCK { // main.yml:50
