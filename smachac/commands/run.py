@@ -82,10 +82,39 @@ def run_command(arguments: Namespace) -> int:
         return usage("--schedule and --orders need --mock: the turns of threads cannot be chosen")
     if arguments.mock is not None and (record is not None or arguments.gui):
         return usage(NO_ARM)
+    for option, path, is_ours in (
+        ("trace", arguments.trace, _is_trace),
+        ("record", record, _is_film),
+    ):
+        if path is not None and in_the_way(path, is_ours):
+            what = "is a file of another kind: it was not overwritten"
+            return usage(f"--{option} {path} {what}")
     analysis = analyse_script(arguments.script, arguments.scripts, arguments.templates)
     if arguments.mock is not None:
         return _run_scenario(arguments, analysis)
     return _run_program(arguments, analysis)
+
+
+def in_the_way(path: Path, is_ours: Callable[[bytes], bool]) -> bool:
+    """Whether a file must not be overwritten: it has content, and that is not of the kind to write.
+    A pipe or a device may be written to."""
+    from smachac.frontend.files import TooBigError, read_bytes
+
+    if not path.is_file():
+        return False
+    try:
+        head = read_bytes(path)[:2000]
+    except (OSError, TooBigError):
+        return False
+    return bool(head) and not is_ours(head)
+
+
+def _is_trace(head: bytes) -> bool:
+    return head.startswith(b'{"seq": ') and b'"event": ' in head.partition(b"\n")[0]
+
+
+def _is_film(head: bytes) -> bool:
+    return head.startswith(b"GIF8") or head[4:8] == b"ftyp"
 
 
 NO_ARM = "--record and --gui need a program that uses the simulated arm; this run does not"

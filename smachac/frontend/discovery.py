@@ -11,7 +11,7 @@ from pathlib import Path
 
 from smachac.diagnostics.diagnostic import Report
 from smachac.frontend.config import Project
-from smachac.frontend.files import Disk, find_project
+from smachac.frontend.files import Disk, find_project, leads_out, lies_inside
 
 SUFFIXES = (".yml", ".yaml")
 SKIPPED = ("__pycache__", "node_modules")
@@ -43,7 +43,7 @@ def scripts_of(arguments: Sequence[Path], disk: Disk) -> list[Path]:
     for argument in arguments:
         paths = [argument]
         if argument.is_dir():
-            paths = [path for path in yaml_files([argument]) if _is_script(path, disk)]
+            paths = [path for path in yaml_files([argument]) if _is_script(path, argument, disk)]
         elif not argument.exists() and has_magic(str(argument)):
             root = Path(argument.anchor)
             paths = sorted(root.glob(str(argument.relative_to(root))))
@@ -78,11 +78,16 @@ def _excluded(path: Path, project: Project) -> bool:
     return any(fnmatchcase(name, pattern.rstrip("/")) for pattern in project.exclude)
 
 
-def _is_script(path: Path, disk: Disk) -> bool:
-    """Whether a YAML file looks like a script or sub-script, even if it has syntax errors.
+def _is_script(path: Path, folder: Path, disk: Disk) -> bool:
+    """Whether a YAML file in a folder looks like a script or sub-script, even if it has syntax
+    errors.
 
-    A file that cannot be read counts as a script, so that it is reported.
+    A file that cannot be read counts as a script, so that it is reported; so does a link that leads
+    out of the folder, and the disk refuses it from then on.
     """
+    if not lies_inside(path, folder):
+        disk.refused[str(path)] = leads_out(path, folder)
+        return True
     report: Report = []
     source = disk.read(path, report)
     return source is None or looks_like_a_script(source.text)
