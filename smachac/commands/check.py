@@ -263,6 +263,6 @@ def _watch(arguments: Namespace) -> int:
 
 
 def _watched(arguments: Namespace, used: Iterable[str]) -> list[str]:
-    named = [str(path) for path in arguments.script if not path.is_dir()]
+    named = [str(path) for path in arguments.script if not os.path.isdir(path)]  # noqa: PTH112
     inside = map(str, yaml_files(arguments.script))
     return sorted({*named, *inside, *used})

@@ -7,6 +7,7 @@ Only the module of the named command is imported, so that `smachac --version` an
 from __future__ import annotations
 
 import argparse
+import errno
 import gc
 import os
 import sys
@@ -74,9 +75,15 @@ def main(arguments: Sequence[str] | None = None) -> int:
         os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
         return 0
     except KeyboardInterrupt:
-        print("interrupted", file=sys.stderr)
+        print("interrupted", file=sys.stderr, flush=True)
+        _end_if_threads_run()
         return INTERRUPTED
-    except Exception:
+    except Exception as error:
+        if _is_of_output(error):
+            assert isinstance(error, OSError)
+            os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
+            print(f"cannot print: {error.strerror}", file=sys.stderr)
+            return 1
         import traceback
 
         traceback.print_exc()
@@ -124,8 +131,30 @@ def _formatter(prog: str) -> argparse.HelpFormatter:
     return argparse.RawDescriptionHelpFormatter(prog, width=max(columns - 2, 40))
 
 
+def _end_if_threads_run() -> None:
+    """End the process if a thread of the user's program still runs: Python would wait for it."""
+    threading = sys.modules.get("threading")
+    if threading is not None and any(
+        not thread.daemon and thread is not threading.current_thread()
+        for thread in threading.enumerate()
+    ):
+        os._exit(INTERRUPTED)
+
+
+def _is_of_output(error: Exception) -> bool:
+    """Whether an error comes from standard output, such as a full disk: it names no file, and the
+    commands handle the errors of the files that they write."""
+    if not isinstance(error, OSError) or error.filename is not None:
+        return False
+    return error.errno in (errno.ENOSPC, errno.EIO, errno.EBADF, errno.EFBIG)
+
+
 def _never_fail_to_print() -> None:
-    """Streams that cannot show a character show an escape instead."""
+    """Streams that cannot show a character show an escape instead; closed ones drop the text."""
+    if sys.stdout is None:
+        sys.stdout = open(os.devnull, "w", encoding="utf-8")  # noqa: PTH123, SIM115
+    if sys.stderr is None:
+        sys.stderr = open(os.devnull, "w", encoding="utf-8")  # noqa: PTH123, SIM115
     for stream in (sys.stdout, sys.stderr):
         reconfigure = getattr(stream, "reconfigure", None)
         if reconfigure is not None:

@@ -9,7 +9,7 @@ import sys
 import traceback
 from argparse import Namespace
 from collections.abc import Callable, Iterator
-from contextlib import ExitStack, contextmanager
+from contextlib import ExitStack, contextmanager, suppress
 from functools import partial
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
@@ -326,7 +326,9 @@ def watching(
         if arguments.trace is not None:
             arguments.trace.parent.mkdir(parents=True, exist_ok=True)
             stream = stack.enter_context(arguments.trace.open("wb", buffering=0))
-            writer = TraceWriter(partial(os.write, stream.fileno()))
+            failures: list[OSError] = []
+            writer = TraceWriter(partial(_write_lines, stream.fileno(), failures))
+            stack.callback(_raise_first, failures)
             if arguments.quiet:
                 yield writer, writer.errors
                 return
@@ -341,6 +343,26 @@ def watching(
                 sink(event)
 
         yield observe, errors
+
+
+def _write_lines(handle: int, failures: list[OSError], data: bytes) -> int:
+    """Write lines of a trace. After an error, which is noted, the file ends with a whole line."""
+    done = 0
+    try:
+        while done < len(data):
+            done += os.write(handle, data[done:])
+    except OSError as error:
+        failures.append(error)
+        if done:
+            with suppress(OSError):  # a pipe has no size
+                os.ftruncate(handle, os.fstat(handle).st_size - done)
+        raise
+    return done
+
+
+def _raise_first(failures: list[OSError]) -> None:
+    if failures:
+        raise failures[0]
 
 
 def read_scenario_file(path: Path, machine: Machine, report: Report) -> Scenario | None:

@@ -42,9 +42,9 @@ def scripts_of(arguments: Sequence[Path], disk: Disk) -> list[Path]:
     found: dict[str, Path] = {}
     for argument in arguments:
         paths = [argument]
-        if argument.is_dir():
+        if os.path.isdir(argument):  # noqa: PTH112 (no error for a name that is too long)
             paths = [path for path in yaml_files([argument]) if _is_script(path, argument, disk)]
-        elif not argument.exists() and has_magic(str(argument)):
+        elif has_magic(str(argument)) and not os.path.lexists(argument):
             root = Path(argument.anchor)
             paths = sorted(root.glob(str(argument.relative_to(root))))
             paths = [path for path in paths if path.is_file()]

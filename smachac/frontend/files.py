@@ -28,6 +28,10 @@ MAX_BYTES = 50_000_000
 def read_source(path: Path, report: Report) -> Source | None:
     """A text file as a source, named by the path as given; SM007 if it cannot be read."""
     place = Span(Source(str(path), ""), 0, 0)
+    if not _is_text(str(path)):
+        message, help = "the name of this file is not UTF-8", "rename the file"
+        report.append(unreadable_file(place, message, help, arguments=("name",)))
+        return None
     try:
         return Source(str(path), decoded(read_bytes(path)))
     except TooBigError as error:
@@ -41,6 +45,15 @@ def read_source(path: Path, report: Report) -> Source | None:
         message = f"this file cannot be read: {words}"
         report.append(unreadable_file(place, message, near, arguments=("read",)))
     return None
+
+
+def _is_text(name: str) -> bool:
+    """Whether a file name is UTF-8: bytes that are not become lone surrogates."""
+    try:
+        name.encode("utf-8")
+    except UnicodeEncodeError:
+        return False
+    return True
 
 
 def _not_text(path: Path, error: UnicodeDecodeError) -> Diagnostic:
@@ -77,7 +90,10 @@ def read_bytes(path: Path) -> bytes:
 
 def lies_inside(path: Path, folder: Path) -> bool:
     """Whether a path lies inside a folder after all links are followed."""
-    return Path(os.path.realpath(path)).is_relative_to(os.path.realpath(folder))
+    try:
+        return Path(os.path.realpath(path)).is_relative_to(os.path.realpath(folder))
+    except (OSError, ValueError):  # a NUL in the name
+        return False
 
 
 def leads_out(path: Path, folder: Path) -> Diagnostic:
