@@ -76,13 +76,11 @@ def main(arguments: Sequence[str] | None = None) -> int:
         return 0
     except KeyboardInterrupt:
         print("interrupted", file=sys.stderr, flush=True)
-        _end_if_threads_run()
         return INTERRUPTED
     except Exception as error:
-        if _is_of_output(error):
-            assert isinstance(error, OSError)
+        if (reason := _why_not_printed(error)) is not None:
             os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
-            print(f"cannot print: {error.strerror}", file=sys.stderr)
+            print(f"cannot print: {reason}", file=sys.stderr)
             return 1
         import traceback
 
@@ -131,22 +129,13 @@ def _formatter(prog: str) -> argparse.HelpFormatter:
     return argparse.RawDescriptionHelpFormatter(prog, width=max(columns - 2, 40))
 
 
-def _end_if_threads_run() -> None:
-    """End the process if a thread of the user's program still runs: Python would wait for it."""
-    threading = sys.modules.get("threading")
-    if threading is not None and any(
-        not thread.daemon and thread is not threading.current_thread()
-        for thread in threading.enumerate()
-    ):
-        os._exit(INTERRUPTED)
-
-
-def _is_of_output(error: Exception) -> bool:
-    """Whether an error comes from standard output, such as a full disk: it names no file, and the
-    commands handle the errors of the files that they write."""
+def _why_not_printed(error: Exception) -> str | None:
+    """The reason why standard output accepts no more, such as a full disk; None for other errors.
+    Such an error names no file, and the commands handle those of the files that they write."""
     if not isinstance(error, OSError) or error.filename is not None:
-        return False
-    return error.errno in (errno.ENOSPC, errno.EIO, errno.EBADF, errno.EFBIG)
+        return None
+    full = error.errno in (errno.ENOSPC, errno.EIO, errno.EBADF, errno.EFBIG)
+    return error.strerror if full else None
 
 
 def _never_fail_to_print() -> None:

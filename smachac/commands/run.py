@@ -280,6 +280,7 @@ def perform(
             on_preempt=lambda: print(
                 "preemption requested: the states stop; Ctrl-C again ends at once", file=sys.stderr
             ),
+            on_interrupt=_end,
         ).outcome
     except Exception as error:
         raise FailedError(_failure(error, name, folder)) from error
@@ -294,6 +295,14 @@ def message_of(error: BaseException) -> str:
         return str(error)
     except Exception:
         return ""
+
+
+def _end(*_: object) -> None:
+    """End the process at once: a container would wait for branches that may never return."""
+    with suppress(OSError, RuntimeError):  # the signal may have come in the middle of a print
+        sys.stdout.flush()
+    os.write(2, b"interrupted\n")
+    os._exit(130)
 
 
 def _failure(error: BaseException, name: str, folder: Path) -> str:

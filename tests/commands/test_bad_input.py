@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import os
+import signal
 import subprocess
 import sys
 from pathlib import Path
@@ -154,3 +155,41 @@ def test_a_trace_ends_with_a_whole_line(tmp_path: Path, monkeypatch: pytest.Monk
             _write_lines(stream.fileno(), failures, b'{"seq": 2}\n')
     assert path.read_bytes() == b'{"seq": 1}\n'
     assert len(failures) == 1
+
+
+ENDLESS = """\
+name: sm
+template: Base
+outcomes: [succeeded, preempted]
+userdata: {tries: 0}
+states:
+- BOTH:
+    template: Concurrence
+    outcomes: [succeeded, preempted]
+    default_outcome: succeeded
+    outcome_map: {succeeded: {A: succeeded}}
+    states:
+    - A: {template: SleepState, time: 0}
+    - B:
+        template: CallbacksState
+        input_keys: [tries]
+        output_keys: [tries]
+        callbacks: {tries: 'lambda ud: any(0 for _ in iter(int, 1))'}
+    transitions: {succeeded: succeeded, preempted: preempted}
+"""
+
+
+def test_the_second_interrupt_ends_a_branch_that_never_returns(script: Path) -> None:
+    script.write_text(ENDLESS)
+    os.mkfifo("trace")
+    words = [sys.executable, "-m", "smachac", "run", str(script), "-q", "--trace", "trace"]
+    with subprocess.Popen(words, stderr=subprocess.PIPE, text=True) as process:
+        assert process.stderr is not None
+        with Path("trace").open() as trace:
+            for event in ('"sm/BOTH/B"', '"preempt", "path": "sm/BOTH/B"'):
+                for line in trace:
+                    if event in line:
+                        break
+                process.send_signal(signal.SIGINT)
+        assert process.wait(timeout=60) == 130
+        assert "Traceback" not in process.stderr.read()
