@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import argparse
 import gc
+import os
 import sys
 import time
 from argparse import Namespace
@@ -119,7 +120,8 @@ def _once(arguments: Namespace, used: set[str]) -> int:
         from smachac.refactor.autofix import Texts, apply_fixes
 
         def again(texts: Texts) -> Batch:
-            return check_scripts(paths, Disk(texts), arguments.scripts, arguments.templates, extra)
+            disk_then = Disk(texts, refused=disk.refused)
+            return check_scripts(paths, disk_then, arguments.scripts, arguments.templates, extra)
 
         def counted(batch: Batch) -> Report:
             return _counted(batch, changed, arguments)[0].report
@@ -215,6 +217,10 @@ def _summary(report: Report, scripts: int, notes: list[str]) -> str:
 
 
 def _write_baseline(path: Path, report: Report) -> int:
+    if os.path.lexists(path):
+        old = None if path.is_symlink() else read_source(path, [])
+        if old is None or (old.text.strip() and not baseline.is_baseline(old.text)):
+            return usage(f"--baseline {path} exists and is not a baseline: it was not overwritten")
     try:
         write_files(path.parent, {path.name: baseline.render(report)})
     except (OSError, PartlyWrittenError) as error:
@@ -257,6 +263,6 @@ def _watch(arguments: Namespace) -> int:
 
 
 def _watched(arguments: Namespace, used: Iterable[str]) -> list[str]:
-    named = [str(path) for path in arguments.script if not path.is_dir()]
+    named = [str(path) for path in arguments.script if not os.path.isdir(path)]  # noqa: PTH112
     inside = map(str, yaml_files(arguments.script))
     return sorted({*named, *inside, *used})

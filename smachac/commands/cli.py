@@ -7,6 +7,7 @@ Only the module of the named command is imported, so that `smachac --version` an
 from __future__ import annotations
 
 import argparse
+import errno
 import gc
 import os
 import sys
@@ -74,9 +75,13 @@ def main(arguments: Sequence[str] | None = None) -> int:
         os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
         return 0
     except KeyboardInterrupt:
-        print("interrupted", file=sys.stderr)
+        print("interrupted", file=sys.stderr, flush=True)
         return INTERRUPTED
-    except Exception:
+    except Exception as error:
+        if (reason := _why_not_printed(error)) is not None:
+            os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
+            print(f"cannot print: {reason}", file=sys.stderr)
+            return 1
         import traceback
 
         traceback.print_exc()
@@ -124,8 +129,21 @@ def _formatter(prog: str) -> argparse.HelpFormatter:
     return argparse.RawDescriptionHelpFormatter(prog, width=max(columns - 2, 40))
 
 
+def _why_not_printed(error: Exception) -> str | None:
+    """The reason why standard output accepts no more, such as a full disk; None for other errors.
+    Such an error names no file, and the commands handle those of the files that they write."""
+    if not isinstance(error, OSError) or error.filename is not None:
+        return None
+    full = error.errno in (errno.ENOSPC, errno.EIO, errno.EBADF, errno.EFBIG)
+    return error.strerror if full else None
+
+
 def _never_fail_to_print() -> None:
-    """Streams that cannot show a character show an escape instead."""
+    """Streams that cannot show a character show an escape instead; closed ones drop the text."""
+    if sys.stdout is None:
+        sys.stdout = open(os.devnull, "w", encoding="utf-8")  # noqa: PTH123, SIM115
+    if sys.stderr is None:
+        sys.stderr = open(os.devnull, "w", encoding="utf-8")  # noqa: PTH123, SIM115
     for stream in (sys.stdout, sys.stderr):
         reconfigure = getattr(stream, "reconfigure", None)
         if reconfigure is not None:

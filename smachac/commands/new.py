@@ -65,12 +65,18 @@ def new_command(arguments: Namespace) -> int:
             "name a folder, as in `new my_robot`, or a state type, as in `new state Grasp`"
         )
     folder = Path(words[0])
+    if not words[0].isprintable():
+        return usage(f"`{words[0]}` is not a name for a folder")
     return _put(folder, project(folder.resolve().name))
 
 
 def _put(folder: Path, files: Files) -> int:
     """Write files, unless one of them exists; the exit code."""
-    there = present_files(folder, files)
+    try:
+        there = present_files(folder, files)
+    except OSError as error:
+        print(f"cannot write to {folder}: {error.strerror}", file=sys.stderr)
+        return FINDINGS
     for path in there:
         print(f"{path} exists already: nothing was written", file=sys.stderr)
     if there:

@@ -9,7 +9,7 @@ import sys
 import traceback
 from argparse import Namespace
 from collections.abc import Callable, Iterator
-from contextlib import ExitStack, contextmanager
+from contextlib import ExitStack, contextmanager, suppress
 from functools import partial
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
@@ -82,10 +82,39 @@ def run_command(arguments: Namespace) -> int:
         return usage("--schedule and --orders need --mock: the turns of threads cannot be chosen")
     if arguments.mock is not None and (record is not None or arguments.gui):
         return usage(NO_ARM)
+    for option, path, is_ours in (
+        ("trace", arguments.trace, _is_trace),
+        ("record", record, _is_film),
+    ):
+        if path is not None and in_the_way(path, is_ours):
+            what = "is a file of another kind: it was not overwritten"
+            return usage(f"--{option} {path} {what}")
     analysis = analyse_script(arguments.script, arguments.scripts, arguments.templates)
     if arguments.mock is not None:
         return _run_scenario(arguments, analysis)
     return _run_program(arguments, analysis)
+
+
+def in_the_way(path: Path, is_ours: Callable[[bytes], bool]) -> bool:
+    """Whether a file must not be overwritten: it has content, and that is not of the kind to write.
+    A pipe or a device may be written to."""
+    from smachac.frontend.files import TooBigError, read_bytes
+
+    if not path.is_file():
+        return False
+    try:
+        head = read_bytes(path)[:2000]
+    except (OSError, TooBigError):
+        return False
+    return bool(head) and not is_ours(head)
+
+
+def _is_trace(head: bytes) -> bool:
+    return head.startswith(b'{"seq": ') and b'"event": ' in head.partition(b"\n")[0]
+
+
+def _is_film(head: bytes) -> bool:
+    return head.startswith(b"GIF8") or head[4:8] == b"ftyp"
 
 
 NO_ARM = "--record and --gui need a program that uses the simulated arm; this run does not"
@@ -251,6 +280,7 @@ def perform(
             on_preempt=lambda: print(
                 "preemption requested: the states stop; Ctrl-C again ends at once", file=sys.stderr
             ),
+            on_interrupt=_end,
         ).outcome
     except Exception as error:
         raise FailedError(_failure(error, name, folder)) from error
@@ -265,6 +295,14 @@ def message_of(error: BaseException) -> str:
         return str(error)
     except Exception:
         return ""
+
+
+def _end(*_: object) -> None:
+    """End the process at once: a container would wait for branches that may never return."""
+    with suppress(OSError, RuntimeError):  # the signal may have come in the middle of a print
+        sys.stdout.flush()
+    os.write(2, b"interrupted\n")
+    os._exit(130)
 
 
 def _failure(error: BaseException, name: str, folder: Path) -> str:
@@ -297,7 +335,9 @@ def watching(
         if arguments.trace is not None:
             arguments.trace.parent.mkdir(parents=True, exist_ok=True)
             stream = stack.enter_context(arguments.trace.open("wb", buffering=0))
-            writer = TraceWriter(partial(os.write, stream.fileno()))
+            failures: list[OSError] = []
+            writer = TraceWriter(partial(_write_lines, stream.fileno(), failures))
+            stack.callback(_raise_first, failures)
             if arguments.quiet:
                 yield writer, writer.errors
                 return
@@ -312,6 +352,26 @@ def watching(
                 sink(event)
 
         yield observe, errors
+
+
+def _write_lines(handle: int, failures: list[OSError], data: bytes) -> int:
+    """Write lines of a trace. After an error, which is noted, the file ends with a whole line."""
+    done = 0
+    try:
+        while done < len(data):
+            done += os.write(handle, data[done:])
+    except OSError as error:
+        failures.append(error)
+        if done:
+            with suppress(OSError):  # a pipe has no size
+                os.ftruncate(handle, os.fstat(handle).st_size - done)
+        raise
+    return done
+
+
+def _raise_first(failures: list[OSError]) -> None:
+    if failures:
+        raise failures[0]
 
 
 def read_scenario_file(path: Path, machine: Machine, report: Report) -> Scenario | None:

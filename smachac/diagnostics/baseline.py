@@ -35,6 +35,15 @@ def render(report: Report) -> str:
     return f'{{\n  "version": {VERSION},\n  "findings": {findings}\n}}\n'
 
 
+def is_baseline(text: str) -> bool:
+    """Whether a text is a baseline, of any version."""
+    try:
+        data = json.loads(text)
+    except (ValueError, RecursionError):
+        return False
+    return isinstance(data, dict) and isinstance(data.get("version"), int) and "findings" in data
+
+
 def read(text: str) -> Counter[str]:
     """The number of findings by fingerprint in a baseline. Raises BaselineError."""
     try:

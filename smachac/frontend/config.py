@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterable, Mapping
 from dataclasses import dataclass, field
 from pathlib import Path
+from typing import Any
 
 from smachac.diagnostics.diagnostic import Code, Report, Severity, did_you_mean
 from smachac.diagnostics.severities import Policy
@@ -62,12 +63,12 @@ def read_project(
         import tomli as toml  # type: ignore[import-not-found,no-redef,unused-ignore]
     try:
         data = toml.loads(source.text)
-    except toml.TOMLDecodeError as error:
+    except (ValueError, RecursionError) as error:  # also a number or an array that is too long
         message = f"the project file is not valid TOML: {error}"
         help = "correct the syntax: strings have quotes, lists have brackets"
         report.append(unreadable_file(Span(source, 0, 0), message, help, arguments=("toml",)))
         return Project()
-    settings = data if path.name == "smachac.toml" else data.get("tool", {}).get("smachac")
+    settings = data if path.name == "smachac.toml" else _tool(data)
     if not isinstance(settings, dict):
         return None
     folders: dict[str, tuple[Path, ...]] = {}
@@ -96,6 +97,12 @@ def read_project(
         exclude=texts.get("exclude", ()),
         policy=policy,
     )
+
+
+def _tool(data: dict[str, Any]) -> object:
+    """The table `[tool.smachac]`; None if there is none."""
+    tool = data.get("tool")
+    return tool.get("smachac") if isinstance(tool, dict) else None
 
 
 def _severities(

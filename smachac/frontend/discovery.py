@@ -11,7 +11,7 @@ from pathlib import Path
 
 from smachac.diagnostics.diagnostic import Report
 from smachac.frontend.config import Project
-from smachac.frontend.files import Disk, find_project
+from smachac.frontend.files import Disk, find_project, leads_out, lies_inside
 
 SUFFIXES = (".yml", ".yaml")
 SKIPPED = ("__pycache__", "node_modules")
@@ -42,9 +42,9 @@ def scripts_of(arguments: Sequence[Path], disk: Disk) -> list[Path]:
     found: dict[str, Path] = {}
     for argument in arguments:
         paths = [argument]
-        if argument.is_dir():
-            paths = [path for path in yaml_files([argument]) if _is_script(path, disk)]
-        elif not argument.exists() and has_magic(str(argument)):
+        if os.path.isdir(argument):  # noqa: PTH112 (no error for a name that is too long)
+            paths = [path for path in yaml_files([argument]) if _is_script(path, argument, disk)]
+        elif has_magic(str(argument)) and not os.path.lexists(argument):
             root = Path(argument.anchor)
             paths = sorted(root.glob(str(argument.relative_to(root))))
             paths = [path for path in paths if path.is_file()]
@@ -78,11 +78,16 @@ def _excluded(path: Path, project: Project) -> bool:
     return any(fnmatchcase(name, pattern.rstrip("/")) for pattern in project.exclude)
 
 
-def _is_script(path: Path, disk: Disk) -> bool:
-    """Whether a YAML file looks like a script or sub-script, even if it has syntax errors.
+def _is_script(path: Path, folder: Path, disk: Disk) -> bool:
+    """Whether a YAML file in a folder looks like a script or sub-script, even if it has syntax
+    errors.
 
-    A file that cannot be read counts as a script, so that it is reported.
+    A file that cannot be read counts as a script, so that it is reported; so does a link that leads
+    out of the folder, and the disk refuses it from then on.
     """
+    if not lies_inside(path, folder):
+        disk.refused[str(path)] = leads_out(path, folder)
+        return True
     report: Report = []
     source = disk.read(path, report)
     return source is None or looks_like_a_script(source.text)

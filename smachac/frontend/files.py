@@ -3,11 +3,14 @@
 from __future__ import annotations
 
 import contextlib
+import errno
 import os
-from collections.abc import Iterable, Mapping, Sequence
+import stat
+from collections.abc import Callable, Iterable, Mapping, Sequence
+from dataclasses import replace
 from pathlib import Path
 
-from smachac.diagnostics.diagnostic import Code, Report, did_you_mean
+from smachac.diagnostics.diagnostic import Code, Diagnostic, Report, did_you_mean
 from smachac.diagnostics.source import Source, Span
 from smachac.frontend.config import Project, read_project
 from smachac.frontend.errors.script import too_big, unreadable_file
@@ -24,27 +27,80 @@ MAX_BYTES = 50_000_000
 
 def read_source(path: Path, report: Report) -> Source | None:
     """A text file as a source, named by the path as given; SM007 if it cannot be read."""
+    place = Span(Source(str(path), ""), 0, 0)
+    if not _is_text(str(path)):
+        message, help = "the name of this file is not UTF-8", "rename the file"
+        report.append(unreadable_file(place, message, help, arguments=("name",)))
+        return None
     try:
-        if path.stat().st_size > MAX_BYTES:
-            place = Span(Source(str(path), ""), 0, 0)
-            size = f"{path.stat().st_size:,} bytes; the limit is {MAX_BYTES:,}"
-            help = "split it into smaller files"
-            report.append(too_big(place, f"the file has {size}", help, arguments=("bytes",)))
-            return None
-        return Source(str(path), decoded(path.read_bytes()))
-    except OSError as error:
-        span = Span(Source(str(path), ""), 0, 0)
-        words = (error.strerror or str(error)).lower()
+        return Source(str(path), decoded(read_bytes(path)))
+    except TooBigError as error:
+        help = "split it into smaller files"
+        report.append(too_big(place, str(error), help, arguments=("bytes",)))
+    except UnicodeDecodeError as error:
+        report.append(_not_text(path, error))
+    except (OSError, ValueError) as error:
+        words = (getattr(error, "strerror", None) or str(error)).lower()
         near = did_you_mean(path.name, _names_beside(path))
         message = f"this file cannot be read: {words}"
-        report.append(unreadable_file(span, message, near, arguments=("read",)))
-    except UnicodeDecodeError as error:
-        text = error.object[: error.start].decode("utf-8", "replace")
-        span = Span(Source(str(path), text), len(text), len(text))
-        byte = error.object[error.start]
-        message = f"the byte 0x{byte:02x} is not valid in {error.encoding.upper()}"
-        report.append(unreadable_file(span, message, arguments=("byte", f"{byte:02x}")))
+        report.append(unreadable_file(place, message, near, arguments=("read",)))
     return None
+
+
+def _is_text(name: str) -> bool:
+    """Whether a file name is UTF-8: bytes that are not become lone surrogates."""
+    try:
+        name.encode("utf-8")
+    except UnicodeEncodeError:
+        return False
+    return True
+
+
+def _not_text(path: Path, error: UnicodeDecodeError) -> Diagnostic:
+    text = error.object[: error.start].decode("utf-8", "replace")
+    span = Span(Source(str(path), text), len(text), len(text))
+    byte = error.object[error.start]
+    message = f"the byte 0x{byte:02x} is not valid in {error.encoding.upper()}"
+    return unreadable_file(span, message, arguments=("byte", f"{byte:02x}"))
+
+
+class TooBigError(Exception):
+    """A file is larger than MAX_BYTES; the message has the size."""
+
+
+def read_bytes(path: Path) -> bytes:
+    """The content of a regular file; a pipe or a device is not opened for waiting.
+
+    Raises OSError, ValueError (a path with a NUL) and TooBigError.
+    """
+    handle = os.open(path, os.O_RDONLY | getattr(os, "O_NONBLOCK", 0) | getattr(os, "O_BINARY", 0))
+    with open(handle, "rb") as stream:  # noqa: PTH123 (a file descriptor)
+        status = os.fstat(handle)
+        if stat.S_ISDIR(status.st_mode):
+            raise IsADirectoryError(errno.EISDIR, os.strerror(errno.EISDIR), str(path))
+        if not stat.S_ISREG(status.st_mode):
+            raise OSError(errno.EINVAL, "not a regular file", str(path))
+        size = status.st_size
+        data = stream.read(MAX_BYTES + 1) if size <= MAX_BYTES else b""
+        if max(size, len(data)) > MAX_BYTES:
+            size = max(size, len(data))
+            raise TooBigError(f"the file has {size:,} bytes; the limit is {MAX_BYTES:,}")
+    return data
+
+
+def lies_inside(path: Path, folder: Path) -> bool:
+    """Whether a path lies inside a folder after all links are followed."""
+    try:
+        return Path(os.path.realpath(path)).is_relative_to(os.path.realpath(folder))
+    except (OSError, ValueError):  # a NUL in the name
+        return False
+
+
+def leads_out(path: Path, folder: Path) -> Diagnostic:
+    """SM007: a link in a folder that is searched leads out of it."""
+    message = f"this link leads out of the folder `{folder}`: it is not followed"
+    help = "copy the file into the folder, or name it or its folder on the command line"
+    return unreadable_file(Span(Source(str(path), ""), 0, 0), message, help, arguments=("link",))
 
 
 def _names_beside(path: Path) -> list[str]:
@@ -66,11 +122,18 @@ class Disk:
 
     `texts` replace the files at their (real) paths. `asked` collects the real paths of all files
     that were searched, found or not; the caller may empty it. `plain`: all line ends become line
-    feeds.
+    feeds. `refused`: the paths that are not read, as given, and why.
     """
 
-    def __init__(self, texts: Mapping[str, str] | None = None, *, plain: bool = False) -> None:
+    def __init__(
+        self,
+        texts: Mapping[str, str] | None = None,
+        *,
+        plain: bool = False,
+        refused: Mapping[str, Diagnostic] | None = None,
+    ) -> None:
         self.texts = texts or {}
+        self.refused = dict(refused or {})
         self.plain = plain
         self.asked: set[str] = set()
         self._sources: dict[str, tuple[Source | None, Report]] = {}
@@ -78,6 +141,9 @@ class Disk:
 
     def read(self, path: Path, report: Report) -> Source | None:
         """As `read_source`."""
+        if str(path) in self.refused:
+            report.append(self.refused[str(path)])
+            return None
         key = os.path.realpath(path)
         self.asked.add(key)
         if key not in self._sources:
@@ -125,15 +191,41 @@ def find_project(
         for name in ("smachac.toml", "pyproject.toml"):
             path = folder / name
             if disk.is_file(path):
+                if not lies_inside(path, folder):
+                    report.append(leads_out(path, folder))
+                    return Project()
                 source = disk.read(path, report)
                 if source is None:
                     return Project()
                 project = read_project(source, path, report, codes)
                 if project is not None:
-                    return project
+                    return _inside_repository(project, source, report)
         if (folder / ".git").exists():
             break
     return Project()
+
+
+def _inside_repository(project: Project, source: Source, report: Report) -> Project:
+    """The project without the search folders outside its git repository, or outside its own folder
+    if there is none."""
+    above = (project.folder, *_parents(project.folder))
+    root = next((each for each in above if (each / ".git").exists()), project.folder)
+    kept: dict[str, list[Path]] = {"scripts": [], "templates": [], "code": []}
+    for setting, folders in kept.items():
+        for folder in getattr(project, setting):
+            if lies_inside(folder, root):
+                folders.append(folder)
+                continue
+            message = f"`{setting}` names a folder outside the project: `{folder}`"
+            help = "move it into the project; `--scripts` and `--templates` may name any folder"
+            place = Span(source, 0, 0)
+            report.append(unreadable_file(place, message, help, arguments=("link",)))
+    return replace(
+        project,
+        scripts=tuple(kept["scripts"]),
+        templates=tuple(kept["templates"]),
+        code=tuple(kept["code"]),
+    )
 
 
 def _parents(folder: Path) -> list[Path]:
@@ -169,16 +261,28 @@ def disk_library(
     template_folders = [*templates, *project.templates, main.parent / "templates", *BUILT_IN]
 
     code_folders = [*project.code, main.parent, main.parent / "include"]
+    refused: set[Path] = set()
+
+    def refuse(path: Path, folder: Path) -> None:
+        if path not in refused:
+            refused.add(path)
+            report.append(leads_out(path, folder))
+
+    for folder in (main.parent / "templates", main.parent / "include"):
+        if folder.is_dir() and not lies_inside(folder, main.parent):
+            refuse(folder, main.parent)
+            template_folders = [each for each in template_folders if each != folder]
+            code_folders = [each for each in code_folders if each != folder]
 
     def script_folders(caller: str) -> list[Path]:
         return list(dict.fromkeys([Path(caller).parent, *own_scripts]))
 
     def script(name: str, caller: str) -> Source | None:
-        path = _found(name, script_folders(caller), SUFFIXES, disk)
+        path = _found(name, script_folders(caller), SUFFIXES, disk, refuse)
         return disk.read(path, report) if path else None
 
     def template(name: str, folders: Sequence[Path] = template_folders) -> Source | None:
-        path = _found(name, folders, ("",), disk)
+        path = _found(name, folders, ("",), disk, refuse)
         return disk.read(path, report) if path else None
 
     return Library(
@@ -195,16 +299,26 @@ def disk_library(
     )
 
 
-def _found(name: str, folders: Sequence[Path], suffixes: Sequence[str], disk: Disk) -> Path | None:
-    """The first file of that name inside one of the folders; no link leads out of them."""
-    if "\0" in name:
-        return None
+def _found(
+    name: str,
+    folders: Sequence[Path],
+    suffixes: Sequence[str],
+    disk: Disk,
+    refuse: Callable[[Path, Path], None],
+) -> Path | None:
+    """The first file of that name inside one of the folders. `refuse` is called for a link that
+    leads out of its folder."""
+    below = ".." not in Path(name).parts and not Path(name).is_absolute()
     for folder in folders:
         for suffix in suffixes:
             path = folder / f"{name}{suffix}"
-            with contextlib.suppress(OSError):  # a name may be too long for the file system
-                if disk.is_file(path) and path.resolve().is_relative_to(folder.resolve()):
-                    return path
+            # A name may be too long for the file system, or have characters that it cannot encode.
+            with contextlib.suppress(OSError, ValueError):
+                if disk.is_file(path):
+                    if lies_inside(path, folder):
+                        return path
+                    if below:
+                        refuse(path, folder)
     return None
 
 

@@ -195,7 +195,7 @@ def _build(source: Source, report: Report) -> Tree | None:
                 if events is _pure_events:
                     builder.check_brackets()
                 builder.drive(events(source.text))
-            except YAMLError as error:
+            except (YAMLError, ValueError) as error:
                 if events is _c_events and _is_reread(source.text, builder.deepest):
                     continue  # the message is always that of the pure parser
                 builder.root = None
@@ -224,10 +224,18 @@ def _deepest_bracket(text: str) -> int:
     return max(depths, default=0)
 
 
+_BEYOND_UNICODE = re.compile(r"\\U(?!000|0010)[0-9A-Fa-f]{8}")
+
+
 def _syntax_error(source: Source, error: Any) -> Diagnostic:
     """SM001 with the message and the position of a parser's exception."""
     mark = getattr(error, "problem_mark", None) or getattr(error, "context_mark", None)
     at = min(mark.index, len(source.text)) if mark is not None else 0
+    wide = _BEYOND_UNICODE.search(source.text) if isinstance(error, ValueError) else None
+    if wide is not None:
+        message = f"`{wide.group()}` is no character: the last one is \\U0010FFFF"
+        span = Span(source, *wide.span())
+        return yaml_syntax(span, message, "correct the number", arguments=("escape", wide.group()))
     parts = [getattr(error, name, None) for name in ("problem", "context")]
     words = ", ".join(" ".join(str(part).split()) for part in parts if part)
     here = source.text[at : at + 1]

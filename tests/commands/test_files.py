@@ -2,10 +2,12 @@
 
 from __future__ import annotations
 
+import os
 from pathlib import Path
 
 import pytest
 
+from smachac.commands.cli import main
 from smachac.commands.files import MARK, changed_files, foreign_files, write_files
 from smachac.diagnostics.diagnostic import Report
 from smachac.frontend.files import disk_library, find_project, read_source
@@ -118,3 +120,90 @@ def test_files_of_others_are_known(tmp_path: Path) -> None:
     (tmp_path / "ours.py").write_text(f"# {MARK} 0.1\n")
     found = foreign_files(tmp_path, {"mine.py": "", "ours.py": "", "new.py": ""})
     assert found == [tmp_path / "mine.py"]
+
+
+SCRIPT = """\
+name: sm
+template: Base
+outcomes: [succeeded]
+states:
+- A: {template: ScriptedState, outcomes: [done], transitions: {done: succeeded}}
+"""
+
+
+@pytest.fixture
+def linked(tmp_path: Path) -> Path:
+    """A folder with a script, beside a file and a folder that it must not reach."""
+    (tmp_path / "secret").mkdir()
+    (tmp_path / "secret" / "own.yml").write_text(SCRIPT + "# password\n")
+    (tmp_path / "secret" / "smachac.toml").write_text("password\n")
+    folder = tmp_path / "p"
+    folder.mkdir()
+    (folder / "main.yml").write_text(SCRIPT)
+    return folder
+
+
+def test_links_in_a_folder_are_reported(linked: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    secret = linked.parent / "secret" / "own.yml"
+    before = secret.read_bytes()
+    (linked / "link.yml").symlink_to(secret)
+    assert main(["check", str(linked)]) == 1
+    assert "link.yml" in (shown := capsys.readouterr().out)
+    assert "leads out of the folder" in shown
+    assert main(["check", "--fix", str(linked)]) == 1
+    assert main(["fmt", str(linked)]) == 1
+    assert secret.read_bytes() == before
+    assert main(["check", str(linked / "link.yml")]) == 0
+    assert main(["fmt", str(linked / "link.yml")]) == 0
+    assert secret.read_bytes() != before
+
+
+def test_links_inside_a_folder_are_followed(linked: Path) -> None:
+    (linked / "link.yml").symlink_to("main.yml")
+    assert main(["check", str(linked)]) == 0
+
+
+@pytest.mark.parametrize("name", ["smachac.toml", "pyproject.toml"])
+def test_a_project_file_that_is_a_link(linked: Path, name: str) -> None:
+    (linked / name).symlink_to(linked.parent / "secret" / "smachac.toml")
+    report: Report = []
+    find_project(linked / "main.yml", report)
+    assert codes(report) == ["SM007"]
+    assert "password" not in str(report[0].message) + report[0].span.source.text
+
+
+def test_folders_that_lead_out(linked: Path) -> None:
+    (linked / "templates").symlink_to("../secret")
+    report: Report = []
+    library = disk_library(linked / "main.yml", report)
+    assert library.template("own.yml") is None
+    assert codes(report) == ["SM007"]
+    named = disk_library(linked / "main.yml", [], templates=[linked.parent / "secret"])
+    assert named.template("own.yml") is not None
+
+
+@pytest.mark.parametrize("setting", ["scripts", "templates", "code"])
+def test_a_project_file_names_no_folder_outside(linked: Path, setting: str) -> None:
+    (linked / "smachac.toml").write_text(f'{setting} = ["../secret", "sub"]\n')
+    report: Report = []
+    project = find_project(linked / "main.yml", report)
+    assert getattr(project, setting) == (linked / "sub",)
+    assert codes(report) == ["SM007"]
+    (linked.parent / ".git").mkdir()
+    assert len(getattr(find_project(linked / "main.yml", []), setting)) == 2
+
+
+def test_a_pipe_or_a_device_is_not_read(linked: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    os.mkfifo(linked / "pipe.yml")
+    (linked / "zero.yml").symlink_to("/dev/zero")
+    (linked / "templates").mkdir()
+    os.mkfifo(linked / "templates" / "Pipe.yml")
+    main_script = linked / "main.yml"
+    main_script.write_text(SCRIPT.replace("ScriptedState", "Pipe"))
+    assert main(["check", str(linked)]) == 1
+    assert "not a regular file" in capsys.readouterr().out
+    for words in (["check"], ["fmt"], ["run", str(main_script), "--mock"]):
+        for name in ("pipe.yml", "zero.yml", "/dev/zero"):
+            assert main([*words, str(linked / name)]) == 1
+    assert main(["check", str(main_script), "--baseline", str(linked / "pipe.yml")]) == 2
+    assert main(["build", str(main_script), "-t", "json", "-o", str(linked / "pipe.yml")]) == 1

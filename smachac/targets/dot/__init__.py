@@ -16,7 +16,7 @@ def emit(machine: Checked, context: BuildContext, report: Report) -> Files:
     Raises OptionError for an invalid value of an option.
     """
     depth = context.options.get("depth")
-    if depth is not None and not (depth.isdecimal() and int(depth) > 0):
+    if depth is not None and not (depth.isdecimal() and len(depth) < 10 and int(depth) > 0):
         raise OptionError(f"`depth` must be a number of levels, 1 or more, not `{depth}`")
     rankdir = context.options.get("rankdir", "TB")
     if rankdir not in DIRECTIONS:

@@ -53,12 +53,14 @@ def execute(
     gui: bool = False,
     record: Path | None = None,
     on_preempt: Callable[[], None] = lambda: None,
+    on_interrupt: Callable[..., Any] = signal.default_int_handler,
 ) -> RunResult:
     """Run the module `text`; the result has no events, which `observe` receives.
 
     `folder` is where the program may import modules of the user from: that of the script.
     `observe` gets every event of the trace. Ctrl-C requests the machine to preempt and calls
-    `on_preempt`; a second one raises KeyboardInterrupt. Exceptions of the program are not caught.
+    `on_preempt`; a second one calls the signal handler `on_interrupt`. Exceptions of the program
+    are not caught.
     """
     from smachac.runtime.tracing import trace
 
@@ -78,7 +80,7 @@ def execute(
         with (
             _watching(module, watch) as outcomes,
             quiet(module["smach"], _told),
-            _preempting(built, on_preempt),
+            _preempting(built, on_preempt, on_interrupt),
         ):
             outcome: str | None = module[main_function(machine)]()
         return RunResult(
@@ -194,11 +196,13 @@ def main_function(machine: Machine) -> str:
 
 
 @contextmanager
-def _preempting(built: list[Any], on_preempt: Callable[[], None]) -> Iterator[None]:
-    """The first Ctrl-C is a preempt request; the second raises KeyboardInterrupt."""
+def _preempting(
+    built: list[Any], on_preempt: Callable[[], None], on_interrupt: Callable[..., Any]
+) -> Iterator[None]:
+    """The first Ctrl-C is a preempt request; the second calls `on_interrupt`."""
 
     def preempt(number: int, frame: FrameType | None) -> None:
-        signal.signal(signal.SIGINT, signal.default_int_handler)
+        signal.signal(signal.SIGINT, on_interrupt)
         if not built:
             raise KeyboardInterrupt
         # Not from here: the signal may have come in the middle of a write to the trace.
