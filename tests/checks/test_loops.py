@@ -75,7 +75,6 @@ def test_a_machine_that_goes_on_must_wait_somewhere() -> None:
     assert one(pair(a, b), "SM204").finding.path_labels == ("A", "(x)", "B", "(x)", "A")
     assert found(pair(a, blocking(b)), "SM204") == []
     assert found(pair(a, replace(b, open=True)), "SM204") == []
-    assert found(pair(a, replace(b, type="SleepState")), "SM204") == []
     inside = machine("B", "x", blocking(leaf("C", {"x": "x"})), to={"x": "A"})
     assert found(pair(a, inside), "SM204") == []
     assert found(pair(leaf("A", {"x": "B", "y": "A"}), blocking(b)), "SM204") == ["SM204 sm/A"]

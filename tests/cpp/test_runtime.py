@@ -55,7 +55,7 @@ def test_a_request_uses_no_observer_of_a_run_that_has_ended(
     flags: tuple[str, ...], tmp_path: Path
 ) -> None:
     compiler = last_with(*flags)
-    compiler.run(LATE_REQUESTS, tmp_path, *flags, "-O1", "-pthread")
+    assert compiler.run(LATE_REQUESTS, tmp_path, *flags, "-O1", "-pthread") == ""
 
 
 KEYS = """
@@ -85,7 +85,7 @@ int main() {
 
 
 def test_a_copy_into_a_key_that_has_a_value_allocates_nothing(tmp_path: Path) -> None:
-    last_with("-O1").run(KEYS, tmp_path, "-O1", "-pthread")
+    assert last_with("-O1").run(KEYS, tmp_path, "-O1", "-pthread") == ""
 
 
 WRITES = """
@@ -174,7 +174,7 @@ int main() {}
 def test_the_names_of_the_runtime_have_its_version(tmp_path: Path) -> None:
     """Objects of two versions in one program do not link as if they were one."""
     text = VERSION.replace("NAME", f"v{__version__.replace('.', '_')}")
-    last_with("-O0").compile(text, tmp_path, "-c", "-pthread")
+    assert last_with("-O0").compile(text, tmp_path, "-c", "-pthread").exists()
 
 
 STRICT = (
@@ -193,4 +193,4 @@ int main() {}
 def test_the_headers_have_no_warnings(
     compiler: Compiler, bare: tuple[str, ...], tmp_path: Path
 ) -> None:
-    compiler.compile(HEADERS, tmp_path, *STRICT, *bare, "-pthread", "-c")
+    assert compiler.compile(HEADERS, tmp_path, *STRICT, *bare, "-pthread", "-c").exists()
