@@ -138,8 +138,11 @@ def _once(arguments: Namespace, used: set[str]) -> int:
             return FINDINGS
         found, notes = _counted(fixed.batch, changed, arguments)
         notes += [f"{fixes} fixed"] if fixes else []
-    elif fixable := sum(bool(item.finding.edits) for item in found.report):
-        notes.append(f"{fixable} fixable with --fix")
+    elif any(item.finding.edits for item in found.report):
+        from smachac.refactor.autofix import fixable
+
+        number = len(fixable(whole, found.report))
+        notes += [f"{number} fixable with --fix"] if number else []
     grave = {Severity.ERROR, Severity.WARNING} if arguments.strict else {Severity.ERROR}
     failing = {
         name: [item for item in each if item.severity in grave]
@@ -174,7 +177,9 @@ def _put_diff(fixed: FixResult) -> None:
     from smachac.refactor.autofix import differences
 
     sys.stdout.writelines(differences(fixed.texts, fixed.sources))
-    print(f"--fix would fix {fixed.count} findings in {len(fixed.texts)} files", file=sys.stderr)
+    findings = "1 finding" if fixed.count == 1 else f"{fixed.count} findings"
+    files = "1 file" if len(fixed.texts) == 1 else f"{len(fixed.texts)} files"
+    print(f"--fix would fix {findings} in {files}", file=sys.stderr)
 
 
 def _rewritten(fixed: FixResult) -> bool:
