@@ -48,6 +48,7 @@ def check_arguments(parser: argparse.ArgumentParser) -> None:
     parser.add_argument("script", nargs="*", type=as_path, help=SCRIPTS)
     search_folders(parser)
     parser.add_argument("--format", choices=FORMATS, default="text", help=FORMAT)
+    parser.add_argument("--notes", action="store_true", help="show notes, not only their number")
     parser.add_argument("--strict", action="store_true", help="warnings fail, as errors do")
     for name, what in (("select", "report only these codes"), ("ignore", "ignore these codes")):
         parser.add_argument(f"--{name}", action="append", default=[], metavar="CODE[,CODE]",
@@ -150,6 +151,8 @@ def _once(arguments: Namespace, used: set[str]) -> int:
     }
     if sys.stdout.isatty():
         notes.append(f"{time.perf_counter() - started:.2f} s")
+    if not arguments.notes and len(without_notes(found.report)) < len(found.report):
+        notes.append("--notes shows notes")
     if not arguments.diff:
         _put(found, failing, notes, arguments)
     return FINDINGS if any(failing.values()) or (arguments.diff and fixes) else OK
@@ -198,6 +201,7 @@ def _rewritten(fixed: FixResult) -> bool:
 def _put(found: Batch, failing: dict[str, Report], notes: list[str], arguments: Namespace) -> None:
     """Print the findings in the requested format."""
     report = found.report
+    shown = report if arguments.notes else without_notes(report)
     match arguments.format:
         case "json":
             from smachac.report.json import render_json
@@ -210,15 +214,15 @@ def _put(found: Batch, failing: dict[str, Report], notes: list[str], arguments: 
         case "junit":
             from smachac.report.junit import render_junit
 
-            mild = {name: without_notes(each) for name, each in found.reports.items()}
+            mild = found.only(shown).reports
             sys.stdout.write(render_junit(mild, failing))
         case "github":
             from smachac.report.github import render_github
 
-            sys.stdout.write(render_github(without_notes(report)))
+            sys.stdout.write(render_github(shown))
             print(_summary(report, len(found.reports), notes))
         case _:
-            print_report(without_notes(report), arguments, sys.stdout)
+            print_report(shown, arguments, sys.stdout)
             print(_summary(report, len(found.reports), notes))
 
 
