@@ -72,6 +72,7 @@ def main() -> None:
             "import argparse": [PYTHON, "-c", "import argparse"],
             "--version": [*SMACHAC, "--version"],
             "--help": [*SMACHAC, "--help"],
+            "check --help": [*SMACHAC, "check", "--help"],
             "import ruamel.yaml, networkx": [PYTHON, "-c", "import ruamel.yaml, networkx"],
             "check, 10 states": [*SMACHAC, "check", "10.yml"],
         }
@@ -79,7 +80,7 @@ def main() -> None:
         for name, (cpu, elapsed) in found.items():
             print(f"{name:<32} cpu {1000 * cpu:7.1f} ms   wall {1000 * elapsed:7.1f} ms")
         wall = {name: times[1] for name, times in found.items()}
-        for name in ("--version", "--help"):
+        for name in ("--version", "--help", "check --help"):
             print(f"{name} / import argparse: {wall[name] / wall['import argparse']:.2f} (wall)")
         ratio = wall["check, 10 states"] / wall["import ruamel.yaml, networkx"]
         print(f"check / import ruamel.yaml, networkx: {ratio:.2f} (wall)")

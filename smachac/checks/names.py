@@ -111,6 +111,8 @@ def _nowhere(fault: _Lost, elsewhere: str | None) -> Finding:
             f" `{above}` cannot be a target here"
         )
         sure = None
+    if sure is not None and not _same_case(step.target, sure):
+        sure = None
     return Finding(
         span=step.target_span,
         message=whole,
@@ -124,6 +126,13 @@ def _nowhere(fault: _Lost, elsewhere: str | None) -> Finding:
         node=f"{path}/{child.name}",
         edits=respelt(Word(step.target, step.target_span), sure),
     )
+
+
+def _same_case(word: str, name: str) -> bool:
+    """Whether a misspelt target and a name have the same case. By convention states are in upper
+    case and outcomes in lower case, so `ABORTED` is a missing state rather than `aborted`."""
+    same = word.isupper() == name.isupper() and word.islower() == name.islower()
+    return same and word.casefold() != name.casefold()
 
 
 def _idle_transitions(path: str, container: Container) -> Iterator[Finding]:

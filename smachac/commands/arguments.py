@@ -3,11 +3,21 @@
 from __future__ import annotations
 
 import argparse
-from pathlib import Path
+
+TYPE_CHECKING = False  # annotations only: `--help` imports none of this
+if TYPE_CHECKING:
+    import pathlib
 
 SCRIPT = "the script, a YAML file"
 SCRIPTS = "scripts, folders or patterns (default: the current folder)"
 FORMAT = "format of the report"
+
+
+def as_path(text: str) -> pathlib.Path:
+    """A path; pathlib is imported when the first one is given."""
+    from pathlib import Path
+
+    return Path(text)
 
 
 def search_folders(parser: argparse.ArgumentParser) -> None:
@@ -18,7 +28,7 @@ def search_folders(parser: argparse.ArgumentParser) -> None:
 
 def folder(parser: argparse.ArgumentParser, name: str, what: str) -> None:
     """An option that names one more folder each time it is given."""
-    parser.add_argument(f"--{name}", type=Path, action="append", default=[], metavar="DIR",
+    parser.add_argument(f"--{name}", type=as_path, action="append", default=[], metavar="DIR",
                         help=f"another folder with {what} (repeatable)")  # fmt: skip
 
 

@@ -5,14 +5,15 @@ from __future__ import annotations
 import argparse
 import sys
 from argparse import Namespace
-from pathlib import Path
 
-from smachac.commands.arguments import SCRIPT, colour, search_folders
-from smachac.commands.files import changed_files, foreign_files, write_files
+from smachac.commands.arguments import SCRIPT, as_path, colour, search_folders
 from smachac.commands.output import FINDINGS, OK, print_report, usage, without_notes
-from smachac.commands.writing import PartlyWrittenError
-from smachac.driver import analyse_script, compile_script
-from smachac.targets import Files, OptionError, load_target, target_names
+
+TYPE_CHECKING = False  # annotations only: `--help` imports none of this
+if TYPE_CHECKING:
+    from pathlib import Path
+
+    from smachac.targets import Files
 
 EXAMPLES = """\
 examples:
@@ -29,9 +30,9 @@ exit codes: 0 success, 1 the script has errors or a file is in the way or not up
 
 def build_arguments(parser: argparse.ArgumentParser) -> None:
     parser.epilog = EXAMPLES
-    parser.add_argument("script", type=Path, help=SCRIPT)
+    parser.add_argument("script", type=as_path, help=SCRIPT)
     parser.add_argument("--target", "-t", required=True, help="the target (see `smachac targets`)")
-    parser.add_argument("-o", "--output", type=Path, default=Path(), metavar="DIR",
+    parser.add_argument("-o", "--output", type=as_path, default=".", metavar="DIR",
                         help="folder to write to (default: the current one); `-` prints the main"
                         " file")  # fmt: skip
     parser.add_argument("--option", action="append", default=[], metavar="NAME=VALUE",
@@ -46,6 +47,9 @@ def build_arguments(parser: argparse.ArgumentParser) -> None:
 
 def build_command(arguments: Namespace) -> int:
     """Generate code; the exit code."""
+    from smachac.driver import analyse_script, compile_script
+    from smachac.targets import OptionError, load_target, target_names
+
     target = load_target(arguments.target)
     if target is None:
         return usage(f"there is no target `{arguments.target}`", arguments.target, target_names())
@@ -69,6 +73,9 @@ def build_command(arguments: Namespace) -> int:
 
 def _put(files: Files, arguments: Namespace) -> int:
     """Print files, compare them with those on disk, or write them; the exit code."""
+    from smachac.commands.files import changed_files, foreign_files, write_files
+    from smachac.commands.writing import PartlyWrittenError
+
     folder: Path = arguments.output
     if str(folder) == "-":
         sys.stdout.write(next(iter(files.values())))

@@ -9,30 +9,17 @@ import sys
 import time
 from argparse import Namespace
 from collections import Counter
-from collections.abc import Iterable
-from pathlib import Path
-from typing import TYPE_CHECKING
 
-from smachac.batch import Batch, check_scripts
-from smachac.checks.workspace import NoSimulationError, unreachable
-from smachac.commands.arguments import FORMAT, SCRIPTS, colour, search_folders
-from smachac.commands.files import ChangedError, not_written, rewrite_files, write_files
+from smachac.commands.arguments import FORMAT, SCRIPTS, as_path, colour, search_folders
 from smachac.commands.output import FINDINGS, OK, print_report, usage, without_notes
-from smachac.commands.writing import PartlyWrittenError
-from smachac.diagnostics import baseline
-from smachac.diagnostics.diagnostic import Report, Severity
-from smachac.diagnostics.severities import select_findings
-from smachac.driver import CODES
-from smachac.frontend.discovery import (
-    GitError,
-    NothingFoundError,
-    changed_since,
-    scripts_of,
-    yaml_files,
-)
-from smachac.frontend.files import Disk, read_source, stamps
 
+TYPE_CHECKING = False  # annotations only: `--help` imports none of this
 if TYPE_CHECKING:
+    from collections.abc import Iterable
+    from pathlib import Path
+
+    from smachac.batch import Batch
+    from smachac.diagnostics.diagnostic import Report
     from smachac.refactor.autofix import FixResult
 
 EXAMPLES = """\
@@ -52,22 +39,21 @@ exit codes: 0 success, 1 findings that fail, 2 wrong usage, 70 a bug in smachac,
 
 FORMATS = ("text", "json", "sarif", "github", "junit")
 
-WRONG_USAGE = (NothingFoundError, GitError, baseline.BaselineError, NoSimulationError)
-
 PAUSE = 0.3
 """Seconds between two reads of the times of watched files."""
 
 
 def check_arguments(parser: argparse.ArgumentParser) -> None:
     parser.epilog = EXAMPLES
-    parser.add_argument("script", nargs="*", type=Path, help=SCRIPTS)
+    parser.add_argument("script", nargs="*", type=as_path, help=SCRIPTS)
     search_folders(parser)
     parser.add_argument("--format", choices=FORMATS, default="text", help=FORMAT)
+    parser.add_argument("--notes", action="store_true", help="show notes, not only their number")
     parser.add_argument("--strict", action="store_true", help="warnings fail, as errors do")
     for name, what in (("select", "report only these codes"), ("ignore", "ignore these codes")):
         parser.add_argument(f"--{name}", action="append", default=[], metavar="CODE[,CODE]",
                             help=f"{what}; SM2 stands for all that begin so")  # fmt: skip
-    parser.add_argument("--baseline", type=Path, metavar="FILE",
+    parser.add_argument("--baseline", type=as_path, metavar="FILE",
                         help="ignore the findings that are listed in FILE")  # fmt: skip
     parser.add_argument("--write-baseline", action="store_true",
                         help="write all current findings to the file of --baseline")  # fmt: skip
@@ -86,6 +72,10 @@ def check_arguments(parser: argparse.ArgumentParser) -> None:
 
 def check_command(arguments: Namespace) -> int:
     """Check scripts once, or again and again; the exit code."""
+    from pathlib import Path
+
+    from smachac.driver import CODES
+
     arguments.script = arguments.script or [Path()]
     for code in (*_codes(arguments.select), *_codes(arguments.ignore)):
         if not any(known.startswith(code) for known in CODES):
@@ -94,8 +84,17 @@ def check_command(arguments: Namespace) -> int:
         return usage("--write-baseline needs --baseline FILE")
     try:
         return _watch(arguments) if arguments.watch else _once(arguments, set())
-    except WRONG_USAGE as error:
+    except _wrong_usage() as error:
         return usage(str(error))
+
+
+def _wrong_usage() -> tuple[type[Exception], ...]:
+    """The exceptions that mean wrong usage."""
+    from smachac.checks.workspace import NoSimulationError
+    from smachac.diagnostics.baseline import BaselineError
+    from smachac.frontend.discovery import GitError, NothingFoundError
+
+    return NothingFoundError, GitError, BaselineError, NoSimulationError
 
 
 def _codes(words: list[str]) -> list[str]:
@@ -105,6 +104,12 @@ def _codes(words: list[str]) -> list[str]:
 
 def _once(arguments: Namespace, used: set[str]) -> int:
     """Check once; the exit code. The real paths of all files that were read go into `used`."""
+    from smachac.batch import check_scripts
+    from smachac.checks.workspace import unreachable
+    from smachac.diagnostics.diagnostic import Severity
+    from smachac.frontend.discovery import changed_since, scripts_of
+    from smachac.frontend.files import Disk
+
     started = time.perf_counter()
     disk = Disk()
     paths = scripts_of(arguments.script, disk)
@@ -134,8 +139,11 @@ def _once(arguments: Namespace, used: set[str]) -> int:
             return FINDINGS
         found, notes = _counted(fixed.batch, changed, arguments)
         notes += [f"{fixes} fixed"] if fixes else []
-    elif fixable := sum(bool(item.finding.edits) for item in found.report):
-        notes.append(f"{fixable} fixable with --fix")
+    elif any(item.finding.edits for item in found.report):
+        from smachac.refactor.autofix import fixable
+
+        number = len(fixable(whole, found.report))
+        notes += [f"{number} fixable with --fix"] if number else []
     grave = {Severity.ERROR, Severity.WARNING} if arguments.strict else {Severity.ERROR}
     failing = {
         name: [item for item in each if item.severity in grave]
@@ -143,6 +151,8 @@ def _once(arguments: Namespace, used: set[str]) -> int:
     }
     if sys.stdout.isatty():
         notes.append(f"{time.perf_counter() - started:.2f} s")
+    if not arguments.notes and len(without_notes(found.report)) < len(found.report):
+        notes.append("--notes shows notes")
     if not arguments.diff:
         _put(found, failing, notes, arguments)
     return FINDINGS if any(failing.values()) or (arguments.diff and fixes) else OK
@@ -152,6 +162,9 @@ def _counted(
     found: Batch, changed: set[str] | None, arguments: Namespace
 ) -> tuple[Batch, list[str]]:
     """The findings that the arguments select, and notes on those that they do not."""
+    from smachac.diagnostics import baseline
+    from smachac.diagnostics.severities import select_findings
+
     if changed is not None:
         found = found.touched_by(changed)
     report = select_findings(found.report, _codes(arguments.select), _codes(arguments.ignore))
@@ -167,11 +180,16 @@ def _put_diff(fixed: FixResult) -> None:
     from smachac.refactor.autofix import differences
 
     sys.stdout.writelines(differences(fixed.texts, fixed.sources))
-    print(f"--fix would fix {fixed.count} findings in {len(fixed.texts)} files", file=sys.stderr)
+    findings = "1 finding" if fixed.count == 1 else f"{fixed.count} findings"
+    files = "1 file" if len(fixed.texts) == 1 else f"{len(fixed.texts)} files"
+    print(f"--fix would fix {findings} in {files}", file=sys.stderr)
 
 
 def _rewritten(fixed: FixResult) -> bool:
     """Write the fixed texts; whether that succeeded."""
+    from smachac.commands.files import ChangedError, not_written, rewrite_files
+    from smachac.commands.writing import PartlyWrittenError
+
     try:
         rewrite_files(fixed.texts, fixed.sources)
     except (OSError, ChangedError, PartlyWrittenError) as error:
@@ -183,6 +201,7 @@ def _rewritten(fixed: FixResult) -> bool:
 def _put(found: Batch, failing: dict[str, Report], notes: list[str], arguments: Namespace) -> None:
     """Print the findings in the requested format."""
     report = found.report
+    shown = report if arguments.notes else without_notes(report)
     match arguments.format:
         case "json":
             from smachac.report.json import render_json
@@ -195,15 +214,15 @@ def _put(found: Batch, failing: dict[str, Report], notes: list[str], arguments: 
         case "junit":
             from smachac.report.junit import render_junit
 
-            mild = {name: without_notes(each) for name, each in found.reports.items()}
+            mild = found.only(shown).reports
             sys.stdout.write(render_junit(mild, failing))
         case "github":
             from smachac.report.github import render_github
 
-            sys.stdout.write(render_github(without_notes(report)))
+            sys.stdout.write(render_github(shown))
             print(_summary(report, len(found.reports), notes))
         case _:
-            print_report(without_notes(report), arguments, sys.stdout)
+            print_report(shown, arguments, sys.stdout)
             print(_summary(report, len(found.reports), notes))
 
 
@@ -217,6 +236,11 @@ def _summary(report: Report, scripts: int, notes: list[str]) -> str:
 
 
 def _write_baseline(path: Path, report: Report) -> int:
+    from smachac.commands.files import write_files
+    from smachac.commands.writing import PartlyWrittenError
+    from smachac.diagnostics import baseline
+    from smachac.frontend.files import read_source
+
     if os.path.lexists(path):
         old = None if path.is_symlink() else read_source(path, [])
         if old is None or (old.text.strip() and not baseline.is_baseline(old.text)):
@@ -230,6 +254,9 @@ def _write_baseline(path: Path, report: Report) -> int:
 
 
 def _read_baseline(path: Path) -> Counter[str]:
+    from smachac.diagnostics import baseline
+    from smachac.frontend.files import read_source
+
     problems: Report = []
     source = read_source(path, problems)
     if source is None:
@@ -242,13 +269,15 @@ def _read_baseline(path: Path) -> Counter[str]:
 
 def _watch(arguments: Namespace) -> int:
     """Check, and check again when a file changes, until Ctrl-C."""
+    from smachac.frontend.files import stamps
+
     known: set[str] = set()
     while True:
         before = stamps(_watched(arguments, known))
         used: set[str] = set()
         try:
             _once(arguments, used)
-        except WRONG_USAGE as error:
+        except _wrong_usage() as error:
             if not known:
                 raise
             usage(str(error))  # a folder may be empty for some time
@@ -263,6 +292,8 @@ def _watch(arguments: Namespace) -> int:
 
 
 def _watched(arguments: Namespace, used: Iterable[str]) -> list[str]:
+    from smachac.frontend.discovery import yaml_files
+
     named = [str(path) for path in arguments.script if not os.path.isdir(path)]  # noqa: PTH112
     inside = map(str, yaml_files(arguments.script))
     return sorted({*named, *inside, *used})

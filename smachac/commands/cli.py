@@ -1,7 +1,8 @@
 """The command line: finds the module of a command, runs it, and turns exceptions into exit codes.
 
 The module of a command has two functions, `NAME_arguments(parser)` and `NAME_command(arguments)`.
-Only the module of the named command is imported, so that `smachac --version` and `--help` are fast.
+Only the module of the named command is imported, and its functions import what they use, so that
+`--version` and every `--help` are fast.
 """
 
 from __future__ import annotations

@@ -5,12 +5,9 @@ from __future__ import annotations
 import argparse
 import sys
 from argparse import Namespace
-from pathlib import Path
 
-from smachac.analysis.context import Context
 from smachac.commands.arguments import colour, search_folders
 from smachac.commands.output import FINDINGS, OK, print_report, usage, without_notes
-from smachac.driver import CODES, analyse_script
 
 EXAMPLES = """\
 examples:
@@ -40,6 +37,11 @@ def explain_arguments(parser: argparse.ArgumentParser) -> None:
 
 def explain_command(arguments: Namespace) -> int:
     """Explain what the words name; the exit code."""
+    from pathlib import Path
+
+    from smachac.analysis.context import Context
+    from smachac.driver import CODES, analyse_script
+
     words, form = arguments.words, arguments.format
     if form in ("md", "csv") and not arguments.failures:
         return usage(f"--format {form} needs --failures")
@@ -75,6 +77,9 @@ def explain_command(arguments: Namespace) -> int:
 
 def _explain_code(word: str) -> int:
     """Print what a code means; the exit code."""
+    from pathlib import Path
+
+    from smachac.driver import CODES
     from smachac.report.explain_code import render_code
 
     code = CODES.get(word.upper())

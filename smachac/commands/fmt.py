@@ -6,16 +6,14 @@ import argparse
 import os
 import sys
 from argparse import Namespace
-from pathlib import Path
 
-from smachac.commands.arguments import SCRIPTS, colour, dry_run
-from smachac.commands.files import put_changes
+from smachac.commands.arguments import SCRIPTS, as_path, colour, dry_run
 from smachac.commands.output import FINDINGS, print_report, usage
-from smachac.diagnostics.diagnostic import Report
-from smachac.diagnostics.source import Source
-from smachac.frontend.discovery import NothingFoundError, scripts_of
-from smachac.frontend.files import Disk
-from smachac.refactor.formatter import format_script
+
+TYPE_CHECKING = False  # annotations only: `--help` imports none of this
+if TYPE_CHECKING:
+    from smachac.diagnostics.diagnostic import Report
+    from smachac.diagnostics.source import Source
 
 EXAMPLES = """\
 examples:
@@ -31,7 +29,7 @@ exit codes: 0 success, 1 a file would change (--check, --diff), cannot be read o
 
 def fmt_arguments(parser: argparse.ArgumentParser) -> None:
     parser.epilog = EXAMPLES
-    parser.add_argument("script", nargs="*", type=Path, help=SCRIPTS)
+    parser.add_argument("script", nargs="*", type=as_path, help=SCRIPTS)
     dry_run(parser)
     spelling = parser.add_mutually_exclusive_group()
     for name in ("short", "long"):
@@ -42,6 +40,13 @@ def fmt_arguments(parser: argparse.ArgumentParser) -> None:
 
 def fmt_command(arguments: Namespace) -> int:
     """Format scripts; the exit code. A file that is not YAML is reported and left unchanged."""
+    from pathlib import Path
+
+    from smachac.commands.files import put_changes
+    from smachac.frontend.discovery import NothingFoundError, scripts_of
+    from smachac.frontend.files import Disk
+    from smachac.refactor.formatter import format_script
+
     disk = Disk()
     report: Report = []
     texts: dict[str, str] = {}

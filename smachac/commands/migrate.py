@@ -7,25 +7,21 @@ import os
 import re
 import sys
 from argparse import Namespace
-from collections.abc import Iterable, Iterator, Sequence
-from pathlib import Path
 
-from smachac.batch import analyse_alone
-from smachac.commands.arguments import FORMAT, search_folders
+from smachac.commands.arguments import FORMAT, as_path, search_folders
 from smachac.commands.output import FINDINGS, OK, usage
-from smachac.diagnostics.diagnostic import Diagnostic, Report, Severity, in_order
-from smachac.diagnostics.source import Source, Span
-from smachac.driver import CODES, analyse, compile_script
-from smachac.frontend.discovery import NothingFoundError, scripts_of
-from smachac.frontend.files import Disk, disk_library
-from smachac.frontend.schema import LONG
-from smachac.frontend.yaml_tree import Map, Scalar, Seq, Tree
-from smachac.ir.recursion import deep_recursion
-from smachac.refactor.smacha.report import File, MigrationItem, render_migration
-from smachac.refactor.smacha.script_differences import SmachaDifference, script_differences
-from smachac.refactor.smacha.template_differences import template_differences, top_level_sets
-from smachac.targets.python import TARGET
-from smachac.targets.templates.engine import BlockError, Blocks
+
+TYPE_CHECKING = False  # annotations only: `--help` imports none of this
+if TYPE_CHECKING:
+    from collections.abc import Iterable, Iterator, Sequence
+    from pathlib import Path
+
+    from smachac.diagnostics.diagnostic import Diagnostic, Report
+    from smachac.diagnostics.source import Source, Span
+    from smachac.frontend.files import Disk
+    from smachac.frontend.yaml_tree import Tree
+    from smachac.refactor.smacha.report import File, MigrationItem
+    from smachac.refactor.smacha.script_differences import SmachaDifference
 
 TEMPLATE = re.compile(r"[^.].*\.tpl(\.py)?$")
 """File names of templates."""
@@ -48,13 +44,21 @@ exit codes: 0 nothing to edit, 1 something to edit, 2 wrong usage, 70 a bug in s
 
 def migrate_arguments(parser: argparse.ArgumentParser) -> None:
     parser.epilog = EXAMPLES
-    parser.add_argument("folder", nargs="*", type=Path, help="folders (default: the current one)")
+    parser.add_argument(
+        "folder", nargs="*", type=as_path, help="folders (default: the current one)"
+    )
     search_folders(parser)
     parser.add_argument("--format", choices=("text", "json", "md"), default="text", help=FORMAT)
 
 
 def migrate_command(arguments: Namespace) -> int:
     """Report on folders; the exit code: 1 if something has to be edited."""
+    from pathlib import Path
+
+    from smachac.frontend.discovery import NothingFoundError, scripts_of
+    from smachac.frontend.files import Disk
+    from smachac.refactor.smacha.report import render_migration
+
     disk = Disk()
     folders: list[Path] = arguments.folder or [Path()]
     for folder in folders:
@@ -75,6 +79,8 @@ def migrate_command(arguments: Namespace) -> int:
 
 def template_files(folder: Path) -> Iterator[Path]:
     """The templates below a folder, sorted."""
+    from pathlib import Path
+
     for top, inner, names in os.walk(folder):
         inner[:] = sorted(name for name in inner if not name.startswith("."))
         yield from (Path(top, name) for name in sorted(names) if TEMPLATE.match(name))
@@ -84,6 +90,14 @@ def _files(
     scripts: Sequence[Path], templates: Sequence[Path], disk: Disk, arguments: Namespace
 ) -> Iterator[File]:
     """The report on each file, scripts first."""
+    from pathlib import Path
+
+    from smachac.diagnostics.diagnostic import Severity, in_order
+    from smachac.frontend.files import disk_library
+    from smachac.frontend.yaml_tree import Seq
+    from smachac.refactor.smacha.report import File
+    from smachac.refactor.smacha.template_differences import template_differences, top_level_sets
+
     texts = [(path, disk.read(path, [])) for path in scripts]
     alone = {path for path, text in texts if text and isinstance(disk.parse(text, []), Seq)}
     reports: dict[Path, Report] = {}
@@ -152,6 +166,11 @@ def _report(
     alone: bool = False,
 ) -> Report:
     """The findings of checking a script and of generating Python from it."""
+    from smachac.batch import analyse_alone
+    from smachac.driver import CODES, analyse, compile_script
+    from smachac.frontend.files import disk_library
+    from smachac.targets.python import TARGET
+
     report: Report = []
     if source is None:
         disk.read(path, report)
@@ -178,6 +197,9 @@ def _near(path: Path, files: Iterable[Path]) -> list[Path]:
 
 def _keys(tree: Tree) -> Iterator[str]:
     """The names of all variables in a script, in their long form."""
+    from smachac.frontend.schema import LONG
+    from smachac.frontend.yaml_tree import Map, Seq
+
     todo = [tree]
     while todo:
         each = todo.pop()
@@ -190,6 +212,8 @@ def _keys(tree: Tree) -> Iterator[str]:
 
 def _types(tree: Tree) -> Iterator[str]:
     """The templates that a script names."""
+    from smachac.frontend.yaml_tree import Map, Scalar, Seq
+
     todo = [tree]
     while todo:
         each = todo.pop()
@@ -222,6 +246,8 @@ def _unreported(found: Iterable[SmachaDifference], known: Report) -> Iterator[Sm
 
 
 def _difference(difference: SmachaDifference) -> MigrationItem:
+    from smachac.refactor.smacha.report import MigrationItem
+
     return MigrationItem(
         line=difference.span.line,
         column=difference.span.column,
@@ -233,6 +259,10 @@ def _difference(difference: SmachaDifference) -> MigrationItem:
 
 def _syntax_fault(source: Source) -> Diagnostic | None:
     """The error of a template that cannot be parsed."""
+    from pathlib import Path
+
+    from smachac.targets.templates.engine import BlockError, Blocks
+
     name = Path(source.name).name
     try:
         Blocks({name: source}.get).parsed(name)
@@ -246,11 +276,16 @@ def _is_at(span: Span, path: Path) -> bool:
 
 
 def _has_errors(found: Report, path: Path) -> bool:
+    from smachac.diagnostics.diagnostic import Severity
+
     return any(item.severity is Severity.ERROR and _is_at(item.span, path) for item in found)
 
 
 def _items(found: Report, path: Path, source: Source | None, disk: Disk) -> Iterator[MigrationItem]:
     """The findings in one script and its differences from SMACHA."""
+    from smachac.ir.recursion import deep_recursion
+    from smachac.refactor.smacha.script_differences import script_differences
+
     items = [_item(item) for item in found if _is_at(item.span, path)]
     with deep_recursion():
         tree = disk.parse(source, []) if source is not None else None
@@ -259,6 +294,9 @@ def _items(found: Report, path: Path, source: Source | None, disk: Disk) -> Iter
 
 
 def _item(item: Diagnostic) -> MigrationItem:
+    from smachac.diagnostics.diagnostic import Severity
+    from smachac.refactor.smacha.report import MigrationItem
+
     return MigrationItem(
         line=item.span.line,
         column=item.span.column,

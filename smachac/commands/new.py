@@ -5,29 +5,17 @@ from __future__ import annotations
 import argparse
 import sys
 from argparse import Namespace
-from dataclasses import replace
-from pathlib import Path
 
-from smachac.commands.files import present_files, write_files
 from smachac.commands.output import FINDINGS, OK, usage
-from smachac.commands.scaffold import (
-    BadNameError,
-    Files,
-    NewStateType,
-    code_file,
-    code_line,
-    interface,
-    is_type_name,
-    key_and_type,
-    project,
-    stub,
-)
-from smachac.commands.writing import PartlyWrittenError
-from smachac.diagnostics.diagnostic import Report
-from smachac.diagnostics.source import Source
-from smachac.frontend.files import disk_library
-from smachac.frontend.loader import Library
-from smachac.frontend.state_types import find_state_type
+
+TYPE_CHECKING = False  # annotations only: `--help` imports none of this
+if TYPE_CHECKING:
+    from pathlib import Path
+
+    from smachac.commands.scaffold import Files
+    from smachac.diagnostics.diagnostic import Report
+    from smachac.diagnostics.source import Source
+    from smachac.frontend.loader import Library
 
 EXAMPLES = """\
 examples:
@@ -57,6 +45,10 @@ def new_arguments(parser: argparse.ArgumentParser) -> None:
 
 def new_command(arguments: Namespace) -> int:
     """Create a project or a state type; the exit code."""
+    from pathlib import Path
+
+    from smachac.commands.scaffold import project
+
     words: list[str] = arguments.words
     if words[:1] == ["state"] and len(words) == 2:
         return _state(words[1], arguments)
@@ -72,6 +64,9 @@ def new_command(arguments: Namespace) -> int:
 
 def _put(folder: Path, files: Files) -> int:
     """Write files, unless one of them exists; the exit code."""
+    from smachac.commands.files import present_files, write_files
+    from smachac.commands.writing import PartlyWrittenError
+
     try:
         there = present_files(folder, files)
     except OSError as error:
@@ -93,6 +88,22 @@ def _put(folder: Path, files: Files) -> int:
 
 def _state(name: str, arguments: Namespace) -> int:
     """Create a state type, or the code of an existing one in another language; the exit code."""
+    from pathlib import Path
+
+    from smachac.commands.files import present_files
+    from smachac.commands.scaffold import (
+        BadNameError,
+        NewStateType,
+        code_file,
+        code_line,
+        interface,
+        is_type_name,
+        key_and_type,
+        stub,
+    )
+    from smachac.frontend.files import disk_library
+    from smachac.frontend.state_types import find_state_type
+
     language: str = arguments.target
     if not is_type_name(name):
         return usage(f"`{name}` is not a name for a state type: write it as `GraspPart`")
@@ -135,6 +146,10 @@ def _state(name: str, arguments: Namespace) -> int:
 
 def _with(library: Library, name: str, text: str) -> Library:
     """A library with one more interface."""
+    from dataclasses import replace
+
+    from smachac.diagnostics.source import Source
+
     source = Source(name, text)
 
     def template(wanted: str) -> Source | None:

@@ -5,10 +5,13 @@ from __future__ import annotations
 import os
 import sys
 from argparse import Namespace
-from collections.abc import Sequence
-from typing import Any
 
-from smachac.diagnostics.diagnostic import Report, Severity, did_you_mean
+TYPE_CHECKING = False  # annotations only: `--help` imports none of this
+if TYPE_CHECKING:
+    from collections.abc import Sequence
+    from typing import Any
+
+    from smachac.diagnostics.diagnostic import Report
 
 OK, FINDINGS, USAGE = 0, 1, 2
 """Exit codes: success; findings or failure; wrong usage."""
@@ -22,6 +25,8 @@ def wants_colour(arguments: Namespace, stream: Any) -> bool:
 
 def without_notes(report: Report) -> Report:
     """The findings that reports for people show: errors and warnings."""
+    from smachac.diagnostics.diagnostic import Severity
+
     return [item for item in report if item.severity is not Severity.INFO]
 
 
@@ -35,6 +40,8 @@ def print_report(report: Report, arguments: Namespace, stream: Any) -> None:
 def usage(message: str, word: str = "", known: Sequence[str] = ()) -> int:
     """Print an error of usage as argparse does, with the known name that is nearest to `word`, or
     all of them; the exit code."""
+    from smachac.diagnostics.diagnostic import did_you_mean
+
     print(f"smachac: error: {message}", file=sys.stderr)
     if known:
         print(did_you_mean(word, known) or f"known: {', '.join(known)}", file=sys.stderr)

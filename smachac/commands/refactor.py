@@ -11,34 +11,23 @@ import os
 import sys
 from argparse import Namespace
 from collections import Counter
-from collections.abc import Callable, Container, Iterator, Mapping
-from functools import partial
-from pathlib import Path
 
-from smachac.commands.arguments import SCRIPT, colour, dry_run, search_folders
-from smachac.commands.files import put_changes
+from smachac.commands.arguments import SCRIPT, as_path, colour, dry_run, search_folders
 from smachac.commands.output import FINDINGS, print_report, usage
-from smachac.diagnostics.diagnostic import Code, Diagnostic, Finding, Report, Severity, has_errors
-from smachac.diagnostics.source import Source, Span
-from smachac.diagnostics.spelling import is_plain
-from smachac.driver import CODES, Analysis, analyse
-from smachac.frontend.discovery import scripts_of
-from smachac.frontend.files import Disk, disk_library
-from smachac.frontend.loader import Library
-from smachac.frontend.smacha_meta import keys_in_code
-from smachac.frontend.yaml_tree import Map
-from smachac.ir.nodes import Leaf, Machine, Node, StateMachine, StateType
-from smachac.ir.recursion import deep_recursion
-from smachac.ir.traversal import walk
-from smachac.refactor.contain import contain, equal_after_contain, plan_container, preset_keys
-from smachac.refactor.cst import Atom, UnsupportedYamlError
-from smachac.refactor.editor import RefusedError, ScriptEditor, variable
-from smachac.refactor.equivalence import equal_after_rename, same_machine
-from smachac.refactor.extract_inline import extract, inline
-from smachac.refactor.field_order import variables_of
-from smachac.refactor.locate import NotFoundError, different_container_error, find_named, find_state
-from smachac.refactor.open_states import TemplateFacts, with_inferred_interfaces
-from smachac.refactor.rename import Renaming, rename_key, rename_outcome, rename_state
+
+TYPE_CHECKING = False  # annotations only: `--help` imports none of this
+if TYPE_CHECKING:
+    from collections.abc import Callable, Container, Iterator, Mapping
+    from pathlib import Path
+
+    from smachac.diagnostics.diagnostic import Report
+    from smachac.diagnostics.source import Source, Span
+    from smachac.driver import Analysis
+    from smachac.frontend.files import Disk
+    from smachac.frontend.loader import Library
+    from smachac.ir.nodes import Leaf, Machine, Node, StateType
+    from smachac.refactor.editor import ScriptEditor
+    from smachac.refactor.open_states import TemplateFacts
 
 EXIT_CODES = """\
 exit codes: 0 success, 1 refused, or a file would change (--check, --diff), 2 wrong usage,
@@ -81,7 +70,7 @@ examples:
 
 def contain_arguments(parser: argparse.ArgumentParser) -> None:
     parser.epilog = CONTAIN_EXAMPLES
-    parser.add_argument("script", type=Path, help=SCRIPT)
+    parser.add_argument("script", type=as_path, help=SCRIPT)
     parser.add_argument("name", metavar="NAME", help="the name of the new container")
     parser.add_argument("type", metavar="TYPE", choices=("StateMachine", "Concurrence"),
                         help="StateMachine or Concurrence")  # fmt: skip
@@ -92,17 +81,17 @@ def contain_arguments(parser: argparse.ArgumentParser) -> None:
 
 def extract_arguments(parser: argparse.ArgumentParser) -> None:
     parser.epilog = EXTRACT_EXAMPLES
-    parser.add_argument("script", type=Path, help=SCRIPT)
+    parser.add_argument("script", type=as_path, help=SCRIPT)
     parser.add_argument("state", metavar="STATE",
                         help="a container, by its path or the end of its path")  # fmt: skip
-    parser.add_argument("--to", type=Path, metavar="FILE",
+    parser.add_argument("--to", type=as_path, metavar="FILE",
                         help="name of the new file (default: that of the state)")  # fmt: skip
     _common_arguments(parser)
 
 
 def inline_arguments(parser: argparse.ArgumentParser) -> None:
     parser.epilog = INLINE_EXAMPLES
-    parser.add_argument("script", type=Path, help=SCRIPT)
+    parser.add_argument("script", type=as_path, help=SCRIPT)
     parser.add_argument("state", metavar="STATE", help="a state that calls a sub-script, by its"
                         " path or the end of its path")  # fmt: skip
     _common_arguments(parser)
@@ -110,7 +99,7 @@ def inline_arguments(parser: argparse.ArgumentParser) -> None:
 
 def rename_arguments(parser: argparse.ArgumentParser) -> None:
     parser.epilog = RENAME_EXAMPLES
-    parser.add_argument("script", type=Path, help=SCRIPT)
+    parser.add_argument("script", type=as_path, help=SCRIPT)
     parser.add_argument("path", metavar="PATH", help="a state, by its path or the end of its path;"
                         " or such a path and the name of an outcome or a key")  # fmt: skip
     parser.add_argument("new", metavar="NEW", help="the new name")
@@ -133,6 +122,8 @@ class Desk:
     """One script with all texts it is read from, before a change, with line feeds as line ends."""
 
     def __init__(self, arguments: Namespace) -> None:
+        from smachac.frontend.files import Disk
+
         self.arguments = arguments
         self.path: Path = arguments.script
         self.disk = Disk(plain=True)
@@ -142,6 +133,9 @@ class Desk:
 
     def read(self, disk: Disk, path: Path | None = None) -> Analysis:
         """The analysis of the script, or of another one, read from a disk."""
+        from smachac.driver import CODES, Analysis, analyse
+        from smachac.frontend.files import disk_library
+
         path = path or self.path
         report: Report = []
         source = disk.read(path, report)
@@ -159,6 +153,8 @@ class Desk:
 
     def library(self) -> Library:
         """The library of the script before the change."""
+        from smachac.frontend.files import disk_library
+
         return disk_library(self.path, [], scripts=self.arguments.scripts,
                             templates=self.arguments.templates, disk=self.disk)  # fmt: skip
 
@@ -171,6 +167,10 @@ class Desk:
 
     def sheet(self, source: Source) -> ScriptEditor:
         """The editable text of a source. Raises RefusedError."""
+        from smachac.diagnostics.source import Span
+        from smachac.refactor.cst import UnsupportedYamlError
+        from smachac.refactor.editor import RefusedError, ScriptEditor
+
         name = os.path.realpath(source.name)
         if name not in self.sheets:
             try:
@@ -191,6 +191,9 @@ class Desk:
     def others(self, changed: Container[str]) -> Iterator[tuple[Path, Machine]]:
         """The machines of the other scripts in the same folder that use one of these files and have
         no errors."""
+        from smachac.frontend.discovery import scripts_of
+        from smachac.frontend.yaml_tree import Map
+
         mine = os.path.realpath(self.path)
         for path in scripts_of([self.path.parent], self.disk):
             if os.path.realpath(path) == mine:
@@ -206,6 +209,10 @@ class Desk:
     def proven(self, span: Span, same: Callable[[Machine, Machine], bool]) -> Analysis:
         """The script after the change. Raises RefusedError unless it and every other script in the
         folder that uses a changed file behave as before."""
+        from smachac.diagnostics.diagnostic import Severity
+        from smachac.frontend.files import Disk
+        from smachac.refactor.editor import RefusedError
+
         texts = self.texts()
         disk = Disk(texts, plain=True)
         after = self.read(disk)
@@ -225,6 +232,12 @@ class Desk:
 
     def put(self) -> int:
         """Write the changes, or show them; the exit code."""
+        from pathlib import Path
+
+        from smachac.commands.files import put_changes
+        from smachac.diagnostics.source import Source
+        from smachac.frontend.files import Disk
+
         texts: dict[str, str] = {}
         sources: dict[str, Source] = {}
         disk = Disk()
@@ -246,6 +259,11 @@ class Desk:
 
 def perform(arguments: Namespace, command: str, change: Callable[[Desk], int]) -> int:
     """Run one of the commands below, and report why a change is refused; the exit code."""
+    from smachac.diagnostics.diagnostic import Code, Diagnostic, Finding, Severity, has_errors
+    from smachac.ir.recursion import deep_recursion
+    from smachac.refactor.editor import RefusedError
+    from smachac.refactor.locate import NotFoundError
+
     with deep_recursion():
         desk = Desk(arguments)
         try:
@@ -268,6 +286,12 @@ def perform(arguments: Namespace, command: str, change: Callable[[Desk], int]) -
 
 def extract_command(arguments: Namespace) -> int:
     """Move a container into a new sub-script; the exit code."""
+    from pathlib import Path
+
+    from smachac.refactor.editor import RefusedError
+    from smachac.refactor.equivalence import same_machine
+    from smachac.refactor.extract_inline import extract
+    from smachac.refactor.locate import find_state
 
     def change(desk: Desk) -> int:
         path, node = find_state(desk.machine, arguments.state)
@@ -293,6 +317,10 @@ def extract_command(arguments: Namespace) -> int:
 
 def inline_command(arguments: Namespace) -> int:
     """Replace the call of a sub-script by its content; the exit code."""
+    from smachac.refactor.editor import ScriptEditor
+    from smachac.refactor.equivalence import same_machine
+    from smachac.refactor.extract_inline import inline
+    from smachac.refactor.locate import find_state
 
     def change(desk: Desk) -> int:
         _, node = find_state(desk.machine, arguments.state)
@@ -307,6 +335,11 @@ def inline_command(arguments: Namespace) -> int:
 
 def rename_command(arguments: Namespace) -> int:
     """Rename a state, an outcome or a key; the exit code."""
+    from smachac.diagnostics.spelling import is_plain
+    from smachac.refactor.equivalence import equal_after_rename
+    from smachac.refactor.locate import find_named
+    from smachac.refactor.rename import Renaming, rename_key, rename_outcome, rename_state
+
     if not is_plain(arguments.new):
         return usage(f"`{arguments.new}` needs quotes in YAML: choose another name")
 
@@ -329,6 +362,9 @@ def rename_command(arguments: Namespace) -> int:
 
 def _check_written(machine: Machine, kind: str, declared: Span, old: str) -> None:
     """Raises RefusedError if a script does not contain the declaration of a name."""
+    from smachac.ir.traversal import walk
+    from smachac.refactor.editor import RefusedError
+
     nodes = [node for _, node in walk(machine.root)]
     texts = {id(node.span.source) for node in nodes}
     mine = next((node for node in nodes
@@ -346,6 +382,15 @@ def _check_written(machine: Machine, kind: str, declared: Span, old: str) -> Non
 
 def contain_command(arguments: Namespace) -> int:
     """Move states into a new container; the exit code."""
+    from functools import partial
+
+    from smachac.diagnostics.spelling import is_plain
+    from smachac.ir.nodes import Leaf, StateMachine
+    from smachac.refactor.contain import contain, equal_after_contain, plan_container, preset_keys
+    from smachac.refactor.editor import RefusedError
+    from smachac.refactor.locate import different_container_error, find_state
+    from smachac.refactor.open_states import with_inferred_interfaces
+
     if not is_plain(arguments.name):
         return usage(f"`{arguments.name}` needs quotes in YAML: choose another name")
 
@@ -378,6 +423,9 @@ def contain_command(arguments: Namespace) -> int:
 
 def _facts(types: Mapping[str, StateType], library: Library, leaf: Leaf) -> TemplateFacts:
     """Keys and outcomes of a state without an interface, read from its template."""
+    from smachac.frontend.smacha_meta import keys_in_code
+    from smachac.refactor.open_states import TemplateFacts
+
     type_ = types.get(leaf.type)
     template = library.template(type_.code.get("python", "")) if type_ is not None else None
     if type_ is None or template is None:
@@ -389,6 +437,8 @@ def _facts(types: Mapping[str, StateType], library: Library, leaf: Leaf) -> Temp
 
 def _no_worse(before: Analysis, after: Analysis, span: Span) -> None:
     """Raises RefusedError if the change adds a fault of the data flow."""
+    from smachac.diagnostics.diagnostic import Severity
+    from smachac.refactor.editor import RefusedError
 
     def flaws(analysis: Analysis) -> Counter[str]:
         grave = (each for each in analysis.report if each.severity is not Severity.INFO)
@@ -403,6 +453,10 @@ def _no_worse(before: Analysis, after: Analysis, span: Span) -> None:
 
 def _called(desk: Desk, node: Node) -> Source:
     """The text of the sub-script that a state calls. Raises RefusedError."""
+    from smachac.refactor.cst import Atom
+    from smachac.refactor.editor import RefusedError, variable
+    from smachac.refactor.field_order import variables_of
+
     sheet = desk.sheet(node.span.source)
     body = variables_of(sheet.state(node.span).item)
     script = variable(body, "script") if body is not None else None

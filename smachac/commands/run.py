@@ -6,15 +6,10 @@ import argparse
 import gc
 import os
 import sys
-import traceback
 from argparse import Namespace
-from collections.abc import Callable, Iterator
 from contextlib import ExitStack, contextmanager, suppress
-from functools import partial
-from pathlib import Path
-from typing import TYPE_CHECKING, Any
 
-from smachac.commands.arguments import SCRIPT, colour, count, names, search_folders
+from smachac.commands.arguments import SCRIPT, as_path, colour, count, names, search_folders
 from smachac.commands.output import (
     FINDINGS,
     OK,
@@ -23,16 +18,22 @@ from smachac.commands.output import (
     wants_colour,
     without_notes,
 )
-from smachac.driver import Analysis, analyse_script, compile_script
-from smachac.frontend.errors.script import wrong_shape
 
+TYPE_CHECKING = False  # annotations only: `--help` imports none of this
 if TYPE_CHECKING:
+    from collections.abc import Callable, Iterator
+    from pathlib import Path
+    from typing import Any
+
     from smachac.diagnostics.diagnostic import Report
     from smachac.diagnostics.source import Span
+    from smachac.driver import Analysis
     from smachac.frontend.yaml_tree import Tree
     from smachac.interpreter.result import RunResult
     from smachac.interpreter.scenario import Scenario, ScenarioProblem
     from smachac.ir.nodes import Machine
+
+    Event = dict[str, Any]
 
 EXAMPLES = """\
 examples:
@@ -50,15 +51,15 @@ script has errors, 2 wrong usage, 70 a bug in smachac, 130 interrupted
 
 def run_arguments(parser: argparse.ArgumentParser) -> None:
     parser.epilog = EXAMPLES
-    parser.add_argument("script", type=Path, help=SCRIPT)
+    parser.add_argument("script", type=as_path, help=SCRIPT)
     parser.add_argument("--gui", action="store_true", help="show the simulated arm in a window")
-    parser.add_argument("--record", type=Path, metavar="FILE",
+    parser.add_argument("--record", type=as_path, metavar="FILE",
                         help="make a film of the simulated arm: .gif or .mp4")  # fmt: skip
-    parser.add_argument("--trace", type=Path, metavar="FILE",
+    parser.add_argument("--trace", type=as_path, metavar="FILE",
                         help="write every event to FILE, as JSON lines")  # fmt: skip
     parser.add_argument("--seed", type=int, default=0,
                         help="seed of the simulation and random states (default: 0)")  # fmt: skip
-    parser.add_argument("--mock", type=Path, metavar="FILE",
+    parser.add_argument("--mock", type=as_path, metavar="FILE",
                         help="play the scenario in FILE, do not run the program")  # fmt: skip
     parser.add_argument("--schedule", type=names, metavar="A,B,...",
                         help="with --mock: the turns of concurrent branches")  # fmt: skip
@@ -75,6 +76,8 @@ def run_arguments(parser: argparse.ArgumentParser) -> None:
 
 def run_command(arguments: Namespace) -> int:
     """Run a script; the exit code."""
+    from smachac.driver import analyse_script
+
     record: Path | None = arguments.record
     if record is not None and record.suffix.lower() not in (".gif", ".mp4"):
         return usage(f"--record writes .gif and .mp4, not `{record}`")
@@ -122,6 +125,7 @@ NO_ARM = "--record and --gui need a program that uses the simulated arm; this ru
 
 def _run_program(arguments: Namespace, analysis: Analysis) -> int:
     """Generate the Python program and run it; the exit code."""
+    from smachac.driver import compile_script
     from smachac.targets.python import TARGET
 
     files, report = compile_script(analysis, TARGET)
@@ -181,9 +185,6 @@ def _where(errors: list[dict[str, Any]]) -> str:
         return ""
     source = f" ({errors[0]['src']})" if "src" in errors[0] else ""
     return f" in {errors[0]['path']}{source}"
-
-
-Event = dict[str, Any]
 
 
 class FailedError(Exception):
@@ -307,6 +308,9 @@ def _end(*_: object) -> None:
 
 def _failure(error: BaseException, name: str, folder: Path) -> str:
     """The first exception, with its places in the generated program and in code of the user."""
+    import traceback
+    from pathlib import Path
+
     first = error
     while (cause := first.__cause__ or first.__context__) is not None:
         first = cause
@@ -326,6 +330,8 @@ def watching(
     arguments: Namespace, colour: bool
 ) -> Iterator[tuple[Callable[[Event], None], list[Event]]]:
     """An observer that writes the trace and shows progress, and the error events it received."""
+    from functools import partial
+
     from smachac.runtime.tracing.progress import Progress
     from smachac.runtime.tracing.writer import TraceWriter
 
@@ -376,6 +382,7 @@ def _raise_first(failures: list[OSError]) -> None:
 
 def read_scenario_file(path: Path, machine: Machine, report: Report) -> Scenario | None:
     """The scenario of a file; None, with findings in the report, if it has faults."""
+    from smachac.frontend.errors.script import wrong_shape
     from smachac.frontend.files import read_source
     from smachac.frontend.yaml_tree import parse
     from smachac.interpreter.scenario import read_scenario

@@ -3,21 +3,19 @@
 from __future__ import annotations
 
 import argparse
-import json
 import sys
 from argparse import Namespace
-from pathlib import Path
 
 from smachac.commands.arguments import folder
 from smachac.commands.output import OK, usage
-from smachac.diagnostics.diagnostic import Report
-from smachac.frontend.files import disk_library
-from smachac.frontend.state_types import find_state_type
-from smachac.ir.nodes import StateType
-from smachac.report import state_types as shown_types
-from smachac.report.state_types import CONTAINERS, Known, container_type
-from smachac.targets import load_target, target_names
-from smachac.targets.interface_check import languages
+
+TYPE_CHECKING = False  # annotations only: `--help` imports none of this
+if TYPE_CHECKING:
+    from pathlib import Path
+
+    from smachac.diagnostics.diagnostic import Report
+    from smachac.ir.nodes import StateType
+    from smachac.report.state_types import Known
 
 EXAMPLES = """\
 examples:
@@ -39,6 +37,10 @@ def states_arguments(parser: argparse.ArgumentParser) -> None:
 
 def states_command(arguments: Namespace) -> int:
     """Print state types; the exit code."""
+    import json
+
+    from smachac.report import state_types as shown_types
+
     known = _known_types(arguments.templates)
     names = [each.type.name for each in known]
     if arguments.name is not None and arguments.name not in names:
@@ -61,6 +63,14 @@ def states_command(arguments: Namespace) -> int:
 
 def _known_types(templates: list[Path]) -> list[Known]:
     """The state types for scripts in the current folder: the user's, then the built-in ones."""
+    from pathlib import Path
+
+    from smachac.frontend.files import disk_library
+    from smachac.frontend.state_types import find_state_type
+    from smachac.report.state_types import CONTAINERS, Known, container_type
+    from smachac.targets import load_target, target_names
+    from smachac.targets.interface_check import languages
+
     found: Report = []
     library = disk_library(Path("main.yml"), found, templates=templates)
     targets = [target for name in target_names() if (target := load_target(name)) is not None]

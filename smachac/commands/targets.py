@@ -6,7 +6,6 @@ import argparse
 from argparse import Namespace
 
 from smachac.commands.output import OK
-from smachac.targets import load_target, target_names
 
 EXAMPLES = """\
 examples:
@@ -23,6 +22,8 @@ def targets_arguments(parser: argparse.ArgumentParser) -> None:
 
 def targets_command(arguments: Namespace) -> int:
     """Print the targets; the exit code."""
+    from smachac.targets import load_target, target_names
+
     for name in target_names():
         target = load_target(name)
         assert target is not None

@@ -6,26 +6,16 @@ import argparse
 import gc
 import sys
 from argparse import Namespace
-from pathlib import Path
 
-from smachac.commands.arguments import (
-    FORMAT,
-    SCRIPT,
-    colour,
-    count,
-    names,
-    search_folders,
-)
+from smachac.commands.arguments import FORMAT, SCRIPT, as_path, colour, count, names, search_folders
 from smachac.commands.output import FINDINGS, OK, print_report, usage, without_notes
-from smachac.diagnostics.diagnostic import Report, has_errors
-from smachac.driver import analyse_script, build, merged
-from smachac.frontend.loader import Library
-from smachac.ir.nodes import Checked
-from smachac.targets.python import TARGET
-from smachac.verify import verify
-from smachac.verify.players import cpp, python
-from smachac.verify.result import render_json, render_text
-from smachac.verify.test_case import Player, UnplayableError
+
+TYPE_CHECKING = False  # annotations only: `--help` imports none of this
+if TYPE_CHECKING:
+    from smachac.diagnostics.diagnostic import Report
+    from smachac.frontend.loader import Library
+    from smachac.ir.nodes import Checked
+    from smachac.verify.test_case import Player
 
 EXAMPLES = """\
 examples:
@@ -45,7 +35,7 @@ TARGETS = ("python", "cpp")
 
 def verify_arguments(parser: argparse.ArgumentParser) -> None:
     parser.epilog = EXAMPLES
-    parser.add_argument("script", type=Path, help=SCRIPT)
+    parser.add_argument("script", type=as_path, help=SCRIPT)
     parser.add_argument("--targets", type=names, default=["python"], metavar="A,B,...",
                         help="targets to compare: python, cpp (default: python)")  # fmt: skip
     parser.add_argument("--paths", type=count, metavar="N",
@@ -59,6 +49,11 @@ def verify_arguments(parser: argparse.ArgumentParser) -> None:
 
 def verify_command(arguments: Namespace) -> int:
     """Compare each target with the interpreter; the exit code."""
+    from smachac.driver import analyse_script
+    from smachac.verify import verify
+    from smachac.verify.result import render_json, render_text
+    from smachac.verify.test_case import UnplayableError
+
     for name in arguments.targets or [""]:
         if name not in TARGETS:
             return usage(f"`verify` cannot run the target `{name}`", name, TARGETS)
@@ -89,6 +84,11 @@ def _players(
     arguments: Namespace, machine: Checked, library: Library, report: Report
 ) -> dict[str, Player]:
     """The requested targets that can express the whole machine; the others are reported."""
+    from smachac.diagnostics.diagnostic import has_errors
+    from smachac.driver import build, merged
+    from smachac.targets.python import TARGET
+    from smachac.verify.players import cpp, python
+
     players: dict[str, Player] = {}
     for name in dict.fromkeys(arguments.targets):
         found: Report = []

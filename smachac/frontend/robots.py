@@ -5,7 +5,7 @@ from __future__ import annotations
 from dataclasses import replace
 
 from smachac.diagnostics.diagnostic import Related, Report, did_you_mean
-from smachac.diagnostics.source import Source, Word
+from smachac.diagnostics.source import NOWHERE, Source, Word
 from smachac.frontend.errors.references import bad_robot
 from smachac.frontend.loader import Library
 from smachac.frontend.script import State
@@ -24,7 +24,8 @@ def robot_of(base: State, source: Source, library: Library, report: Report) -> R
         found = _named(base.robot, base.type, source, library, report)
     if found is None:
         return None
-    return replace(found, added=frozenset(word.text for word in base.frames))
+    span = base.robot.span if base.robot is not None else NOWHERE
+    return replace(found, added=frozenset(word.text for word in base.frames), span=span)
 
 
 def default_robot(base: StateType) -> Robot | None:

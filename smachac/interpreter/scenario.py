@@ -6,6 +6,7 @@ from __future__ import annotations
 import copy
 from collections.abc import Iterable, Mapping
 from dataclasses import dataclass
+from itertools import groupby
 from typing import NamedTuple
 
 from smachac.diagnostics.diagnostic import did_you_mean
@@ -45,7 +46,8 @@ STEP_FIELDS = ("outcome", "set", "wait", "error", "stop")
 class Scenario:
     """The steps of leaves by path. Visit n performs step n; the last step repeats.
 
-    A path may be shortened to its end (`GRASP`, `PICK/GRASP`) if only one leaf has that end.
+    A path may be shortened to its end (`GRASP`, `PICK/GRASP`) if only one leaf has that end. The
+    path of a state with `retry`, `timeout` or `for_each` is the one that the script shows.
     """
 
     steps: Mapping[str, tuple[Step, ...]]
@@ -251,7 +253,17 @@ def _leaves(machine: Machine) -> dict[str, _LeafEntry]:
 
 
 def _matches(name: str, paths: Iterable[str]) -> list[str]:
-    return [path for path in paths if path == name or path.endswith(f"/{name}")]
+    """The paths that a name is the end of; if there are none, the paths whose written form it is
+    the end of."""
+    known = list(paths)
+    exact = [path for path in known if f"/{path}".endswith(f"/{name}")]
+    return exact or [path for path in known if f"/{_written(path)}".endswith(f"/{name}")]
+
+
+def _written(path: str) -> str:
+    """A path without the containers that `retry`, `timeout` and `for_each` put around a state: they
+    have the name of the state (`sm/DRIVE/DRIVE` is written `sm/DRIVE`)."""
+    return "/".join(name for name, _ in groupby(path.split("/")))
 
 
 def _found(name: str, leaves: Mapping[str, object]) -> str | None:

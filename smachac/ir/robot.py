@@ -28,7 +28,7 @@ class Robot:
 
     A limb is a chain of joints from the base to the hand, to which lists of joint positions refer.
     `frames` are the names of its links, empty if unknown; `added` are frames that the script
-    declares.
+    declares. `span` is the place where the script names the robot, NOWHERE if its base does.
     """
 
     name: str
@@ -36,6 +36,7 @@ class Robot:
     limbs: tuple[tuple[Joint, ...], ...]
     frames: frozenset[str] = frozenset()
     added: frozenset[str] = frozenset()
+    span: Span = field(default=NOWHERE, compare=False, repr=False)
 
 
 def _limb(names: list[str], limits: tuple[tuple[float, float], ...]) -> tuple[Joint, ...]:
@@ -83,3 +84,12 @@ BUILT_IN: Mapping[str, Robot] = {
     ),
 }
 """The built-in robots by name. Baxter has no frames here: its files define different sets."""
+
+SIMULATED = "panda"
+"""The robot that the simulation moves."""
+
+
+def same_joints(one: Robot, other: Robot) -> bool:
+    """Whether one description has the joints of the limbs of another one, by name."""
+    names = {joint.name for joint in one.joints}
+    return names.issuperset(joint.name for limb in other.limbs for joint in limb)

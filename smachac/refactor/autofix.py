@@ -11,14 +11,16 @@ from dataclasses import dataclass
 from pathlib import Path
 
 from smachac.batch import Batch
-from smachac.diagnostics.diagnostic import Diagnostic, Edit, Report, Severity, fingerprint
+from smachac.diagnostics.diagnostic import Diagnostic, Edit, Report, Severity, fingerprint, identity
 from smachac.diagnostics.source import Source
 from smachac.frontend.files import BUILT_IN
-from smachac.refactor.formatter import format_script
 
 Texts = Mapping[str, str]
 """Changed texts by the real path of their file."""
 
+
+UNCLEAR = frozenset(["SM001", "SM002", "SM106"])
+"""The codes of scripts that may mean something else: syntax errors, equal entries or states."""
 
 MAX_ROUNDS = 10
 """Rounds of analysis and edits: a fix can uncover findings with further edits."""
@@ -40,19 +42,17 @@ def apply_fixes(
 ) -> FixResult:
     """Apply the edits of the selected findings, and keep those that pass a new analysis.
 
-    `reanalyse` analyses the same scripts with changed texts. Overlapping edits are left out unless
-    they are equal; so are edits of files that come with smachac. If a batch fails it is bisected:
-    afterwards each fixed finding is gone, and there is no new error. Changed files are formatted as
-    by `smachac fmt`.
+    `reanalyse` analyses the same scripts with changed texts. If a batch of edits fails it is
+    bisected: afterwards each fixed finding is gone, and there is no new error. Only the spans of
+    the edits change; the layout of the rest stays.
     """
     count = 0
     current = before
     texts: dict[str, str] = {}
     sources: dict[str, Source] = {}
     for _ in range(MAX_ROUNDS):
-        kept, after = _fix_round(
-            current, selected(current), lambda new: reanalyse({**texts, **new})
-        )
+        found = fixable(current, selected(current))
+        kept, after = _fix_round(current, found, lambda new: reanalyse({**texts, **new}))
         if not kept:
             break
         for path, (source, text) in _apply_edits(kept).items():
@@ -60,22 +60,13 @@ def apply_fixes(
             sources.setdefault(path, source)
         count += len(kept)
         current = after
-    formatted = {
-        path: format_script(Source(sources[path].name, text)) for path, text in texts.items()
-    }
-    new = {
-        path: text for path, text in formatted.items() if text is not None and text != texts[path]
-    }
-    if new and _is_improvement(current, after := reanalyse({**texts, **new}), ()):
-        texts.update(new)
-        current = after
     return FixResult(count=count, texts=texts, sources=sources, batch=current)
 
 
 def _fix_round(
     before: Batch, report: Report, reanalyse: Callable[[Texts], Batch]
 ) -> tuple[list[Diagnostic], Batch]:
-    """The findings of a report that their edits fix, and the analysis after the edits."""
+    """The findings that their edits fix, of those with edits, and the analysis after the edits."""
     kept: list[Diagnostic] = []
     current = before
 
@@ -92,8 +83,25 @@ def _fix_round(
             bisect(batch[: len(batch) // 2])
             bisect(batch[len(batch) // 2 :])
 
-    bisect(_compatible([item for item in report if item.finding.edits]))
+    bisect(report)
     return kept, current
+
+
+def fixable(batch: Batch, report: Report) -> Report:
+    """The findings of a report with edits that can be applied.
+
+    Overlapping edits are left out unless they are equal; so are edits of files that come with
+    smachac, and all edits of scripts that are not read as they were meant: with a syntax error, or
+    with two entries or two states of one name.
+    """
+    unclear = {
+        identity(item)
+        for each in batch.reports.values()
+        if any(item.code in UNCLEAR for item in each)
+        for item in each
+    }
+    rest = [item for item in report if item.finding.edits and identity(item) not in unclear]
+    return _compatible(rest)
 
 
 def _path(edit: Edit) -> str:

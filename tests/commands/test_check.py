@@ -272,3 +272,18 @@ def test_watching_checks_at_every_change(folder: Path) -> None:
         told = process.communicate(timeout=60)[1]
     assert told.endswith("there is no script in `deep`\ninterrupted\n")
     assert process.returncode == 130
+
+
+def test_notes_are_shown_if_wanted(folder: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    (folder / "noted.yml").write_text(
+        "name: sm\ntemplate: Base\noutcomes: [done]\n"
+        "states:\n  - A: {template: ScriptedState, outcomes: [done]}\n"
+    )
+    assert main(["check", "noted.yml"]) == 0
+    assert capsys.readouterr().out == "1 note in noted.yml (--notes shows notes)\n"
+    assert main(["check", "noted.yml", "--notes"]) == 0
+    shown = capsys.readouterr().out
+    assert shown.startswith("info[SM105]: ")
+    assert shown.endswith("\n1 note in noted.yml\n")
+    assert main(["check", "noted.yml", "--format", "github", "--notes"]) == 0
+    assert capsys.readouterr().out.startswith("::notice ")

@@ -6,6 +6,7 @@ from typing import Any
 
 import pytest
 
+import smachac
 from smachac.interpreter.behaviours import builtin_behaviour
 from smachac.interpreter.scenario import (
     PlainStep,
@@ -16,7 +17,8 @@ from smachac.interpreter.scenario import (
     read_scenario,
     scenario_behaviour,
 )
-from smachac.ir.nodes import Machine
+from smachac.ir.nodes import Leaf, Machine
+from smachac.ir.traversal import walk
 from tests.support.ir_machines import concurrence, iterator, leaf, machine, ran, short
 
 
@@ -214,3 +216,34 @@ def test_a_scenario_for_no_leaf_is_refused() -> None:
     scenario = Scenario(steps={"GRASP": (Step(outcome="x"),)})
     with pytest.raises(ValueError, match="may be any of"):
         scenario_behaviour(scenario, picking(), builtin_behaviour())
+
+
+SUGAR = """\
+name: sm
+template: Base
+outcomes: [done, failed]
+states:
+  - LEG:
+      template: StateMachine
+      outcomes: [done, failed]
+      transitions: {done: done, failed: failed}
+      states:
+        - DRIVE:
+            template: ScriptedState
+            outcomes: [there, stuck, preempted]
+            timeout: 5
+            retry: {max: 2, on: [stuck]}
+            transitions: {there: done, preempted: failed, timeout: failed,
+                          exhausted: failed}
+"""
+
+
+@pytest.mark.parametrize("path", ["DRIVE", "LEG/DRIVE", "sm/LEG/DRIVE"])
+def test_a_state_with_sugar_has_the_path_that_the_script_shows(path: str) -> None:
+    loaded = smachac.load(SUGAR, name="main.yml")
+    leaves = [each for each, node in walk(loaded.root) if isinstance(node, Leaf)]
+    (inner,) = [each for each in leaves if each.endswith("DRIVE/DRIVE")]
+    scenario, found = read_scenario({"states": {path: "there"}}, loaded)
+    assert not found
+    assert list(scenario.steps) == [inner]
+    assert read_scenario({"states": {"LEG/DRIV": "there"}}, loaded)[1]

@@ -26,7 +26,6 @@ from smachac.diagnostics.source import Source, Span, Word
 from smachac.diagnostics.spelling import Guesser, respelt
 from smachac.frontend.files import Disk
 from smachac.refactor.autofix import FixResult, apply_fixes
-from smachac.refactor.formatter import format_script
 
 NAMES = ["PICK_BLOCK", "PLACE_BLOCK", "PICK_1", "GRASP", "LEFT", "done", "aborted", "Left_Arm"]
 
@@ -244,17 +243,65 @@ def test_keys_are_taken_in_by_every_container_between(end: str, tmp_path: Path) 
     assert text.replace("\r\n", "\n").count("\r") == 0
     lines = [line.strip() for line in text.split(end)]
     at = lines.index("- PICK:  # a container")
-    assert lines[at + 1 : at + 3] == ["# that takes nothing in", "template: StateMachine"]
-    assert lines[at + 4].startswith("input_keys: [")
-    assert {"pose", "speed", "name"} == set(lines[at + 4].partition("[")[2][:-1].split(", "))
-    at = lines.index("- REACH:")
-    assert {lines[at + 3][:12]} == {"input_keys: "}
+    assert lines[at + 2 : at + 4] == ["# that takes nothing in", "template: StateMachine"]
+    assert lines[at + 1].startswith("input_keys: [")
+    assert {"pose", "speed", "name"} == set(lines[at + 1].partition("[")[2][:-1].split(", "))
+    assert "- REACH: {input_keys: [" in text
     assert f"              - name  # of the block{end}              - pose{end}" in text
-    assert lay_out(text) == text
+    old = KEYS.splitlines()
+    assert [line for line in text.splitlines() if line in old] == [
+        line for line in old if "- REACH" not in line
+    ]  # the layout stays
 
 
-def lay_out(text: str) -> str | None:
-    return format_script(Source("x.yml", text))
+def transition(target: str, more: str = "") -> str:
+    """A script that is not formatted, with one transition."""
+    return (
+        "name:   sm\ntemplate: Base\noutcomes: [ placed,aborted ]\nstates:\n\n\n"
+        "  - PICK_BLOCK: {transitions: {picked:  " + target + "}, outcomes: [picked],"
+        " template: ScriptedState}\n  - PLACE_BLOCK:\n      template: ScriptedState\n"
+        "      outcomes: [there]\n      transitions: {there: placed}\n" + more
+    )
+
+
+@pytest.mark.parametrize(
+    ("target", "fixed"),
+    [
+        ("PALCE_BLOCK", "PLACE_BLOCK"),
+        ("place_block", None),  # the case alone
+        ("abroted", "aborted"),
+        ("ABROTED", None),  # a state that is missing
+        ("ABORTED", None),
+    ],
+)
+def test_a_target_stays_of_its_kind(
+    target: str, fixed: str | None, tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    path = tmp_path / "main.yml"
+    path.write_text(transition(target))
+    main(["check", str(path)])
+    assert ("fixable" in capsys.readouterr().out) == (fixed is not None)
+    main(["check", str(path), "--fix"])
+    assert path.read_text() == transition(fixed or target)
+    assert ("(1 fixed)" in capsys.readouterr().out) == (fixed is not None)
+
+
+@pytest.mark.parametrize(
+    "more",
+    [
+        "      outcomes: [there]\n",  # twice: SM002
+        "  - PICK_BLOCK: {template: ScriptedState, outcomes: [there]}\n",  # SM106
+    ],
+)
+def test_an_unclear_script_gets_no_fixes(
+    more: str, tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    path = tmp_path / "main.yml"
+    path.write_text(transition("PALCE_BLOCK", more))
+    assert main(["check", str(path)]) == 1
+    assert "fixable" not in capsys.readouterr().out
+    assert main(["check", str(path), "--fix"]) == 1
+    assert path.read_text() == transition("PALCE_BLOCK", more)
 
 
 COMMENTS = """\
@@ -334,10 +381,8 @@ def test_outputs_that_are_kept_or_dropped_are_handed_out(tmp_path: Path) -> None
     path.write_text(OUTPUTS)
     assert main(["check", str(path)]) == 1
     assert main(["check", str(path), "--fix"]) == 0
-    found = OUTPUTS.replace("[found]\n", "[found]\n      output_keys: [pose]\n", 1)
-    assert path.read_text() == found.replace(
-        "[tries]\n", "[tries]\n      output_keys: [tries]\n", 1
-    )
+    found = OUTPUTS.replace("- FIND:\n", "- FIND:\n      output_keys: [pose]\n")
+    assert path.read_text() == found.replace("- COUNT:\n", "- COUNT:\n      output_keys: [tries]\n")
 
 
 def test_an_output_that_was_misspelt_is_not_added(tmp_path: Path) -> None:

@@ -11,7 +11,9 @@ from __future__ import annotations
 from smachac.diagnostics.diagnostic import Report
 from smachac.frontend.loader import Library
 from smachac.ir.nodes import Checked, StateType
+from smachac.ir.robot import BUILT_IN, SIMULATED, same_joints
 from smachac.targets import BuildContext, Files, OptionError, Target, stem
+from smachac.targets.errors import unsupported_by_target
 from smachac.targets.python.class_reader import declared
 
 OPTIONS = {
@@ -27,8 +29,26 @@ def emit(machine: Checked, context: BuildContext, report: Report) -> Files:
     for name, value in context.options.items():
         if value not in ("yes", "no"):
             raise OptionError(f"`{name}` must be `yes` or `no`, not `{value}`")
+    if _moves_another_arm(machine, report):
+        return {}
     text = module_text(machine, context, report)
     return {} if text is None else {f"{stem(machine)}.py": text}
+
+
+def _moves_another_arm(machine: Checked, report: Report) -> bool:
+    """Whether the program would move the simulated arm in place of the robot that the script names,
+    which is reported."""
+    robot, simulated = machine.robot, BUILT_IN[SIMULATED]
+    if robot is None or same_joints(robot, simulated):
+        return False
+    if not any(type_.simulation for type_ in machine.state_types.values()):
+        return False
+    message = f"the simulated arm is the {simulated.name}, and the robot `{robot.name}` cannot be"
+    help = "use state types of your own for this robot; `smachac run --mock` tests the script"
+    report.append(
+        unsupported_by_target(robot.span, "Python", f"{message} simulated", help, (robot.name,))
+    )
+    return True
 
 
 def has_code(type_: StateType, library: Library) -> bool:
