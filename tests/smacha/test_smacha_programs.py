@@ -225,7 +225,7 @@ def test_shared_objects_are_made_once_in_the_function_that_builds() -> None:
 def test_blocks_go_where_smacha_put_them() -> None:
     text = text_of("recording")
     order = ["import heapq", "class Shared", "class Recorder", "def main",
-             "shared_recorder = Shared()", "sm = smach.StateMachine(", "footer_of_stop",
+             "shared_recorder = Shared()", "    sm = ", "footer_of_stop",
              "footer_of_pause", "footer_of_start",
              "before_stop", "before_start", "sm.execute()", "after_stop", "after_start",
              "__main__"]  # fmt: skip

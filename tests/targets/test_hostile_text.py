@@ -180,7 +180,7 @@ def test_no_name_of_a_file_becomes_code(text: str, tmp_path: Path) -> None:
         "variables: {class: {default: 1}}",
         "code: {cpp: {header: 'a.hpp\"\\n#include \"b', class: A}}",
         "code: {cpp: {header: a.hpp, class: 'A; int evil'}}",
-        "code: {cpp: {header: a.hpp, class: A, with: 'int a, int evil'}}",
+        "code: {cpp: {header: a.hpp, class: A, with: 'int a = evil()'}}",
         "code: {python: 'a:b, evil()'}",
     ],
 )

@@ -80,8 +80,7 @@ def _needs_exceptions(node: Node) -> str:
     outcome."""
     message = f"the script catches the exceptions of {identifier(node.name)}"
     message += f"{f' ({place(node)})' if place(node) else ''}: compile with -fexceptions"
-    condition = "#if !defined(__cpp_exceptions)"
-    return f"{condition}\nstatic_assert(false, {cpp_literal(message)});\n#endif"
+    return f"static_assert(smachac::has_exceptions,\n              {cpp_literal(message)});"
 
 
 @dataclass(slots=True, kw_only=True)

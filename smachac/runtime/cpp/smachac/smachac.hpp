@@ -44,6 +44,13 @@
 namespace smachac {
 inline namespace v0_1_0 {
 
+/// Whether the compiler has exceptions; machines whose states catch exceptions need them.
+#if defined(__cpp_exceptions)
+inline constexpr bool has_exceptions = true;
+#else
+inline constexpr bool has_exceptions = false;
+#endif
+
 /// Fails because a key was read that holds nothing.
 [[noreturn, gnu::cold, gnu::noinline]] inline void unset_key() {
   fail("reads a key that holds nothing");

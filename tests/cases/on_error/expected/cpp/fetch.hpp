@@ -3,9 +3,8 @@
 
 #include "smachac/smachac.hpp"
 
-#if !defined(__cpp_exceptions)
-static_assert(false, "the script catches the exceptions of FIND (main.yml:7): compile with -fexceptions");
-#endif
+static_assert(smachac::has_exceptions,
+              "the script catches the exceptions of FIND (main.yml:7): compile with -fexceptions");
 
 namespace fetch::EACH { // main.yml:50
 

@@ -22,14 +22,16 @@ def stoppable(container):
     """Let a container pass on every stop request, also an early one and a second one."""
     if not getattr(smach, "compat", True):  # the bundled runtime does so itself
         return container
-    run, request, children = container.execute, container.request_preempt, container.get_children
+    run, request = container.execute, container.request_preempt
+    children = container.get_children
     concurrent = isinstance(container, smach.Concurrence)
     container.busy = container.asked = False
 
     def pass_on():
         for label in container.get_active_states() or list(children()):
             child = children().get(label)
-            if hasattr(child, "get_children") or (child and not child.preempt_requested()):
+            again = hasattr(child, "get_children")
+            if child and (again or not child.preempt_requested()):
                 child.request_preempt()
 
     def request_preempt():
@@ -44,7 +46,7 @@ def stoppable(container):
         container.busy, container.asked = True, container.preempt_requested()
         if container.asked:
             pass_on()
-        if concurrent:  # SMACH for ROS 1 ends as preempted where it finds its own request answered
+        if concurrent:  # with its own request, SMACH for ROS 1 ends as preempted
             container.service_preempt()
         unanswered = True
         try:
@@ -60,7 +62,11 @@ def stoppable(container):
 
     if concurrent and container._child_termination_cb:
         ends = container._child_termination_cb
-        container._child_termination_cb = lambda ended: not container.asked and ends(ended)
+
+        def ends_others(outcomes):
+            return not container.asked and ends(outcomes)
+
+        container._child_termination_cb = ends_others
     container.execute, container.request_preempt = execute, request_preempt
     return container
 
@@ -81,8 +87,9 @@ def stoppable_again(machine):
 
 
 def ends_preempted(container):
-    """Let a time limit or loop end as preempted after a request to stop, whatever its state did."""
-    run, request, recall = container.execute, container.request_preempt, container.recall_preempt
+    """Let a time limit or loop end as preempted after a request to stop."""
+    run, request = container.execute, container.request_preempt
+    recall = container.recall_preempt
 
     def request_preempt():
         container.stopped = True
@@ -104,7 +111,8 @@ def ends_preempted(container):
             container.stopped = False
 
     container.execute, container.stopped = execute, False
-    container.request_preempt, container.recall_preempt = request_preempt, recall_preempt
+    container.request_preempt = request_preempt
+    container.recall_preempt = recall_preempt
     return container
 
 
