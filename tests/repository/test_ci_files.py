@@ -63,8 +63,10 @@ def installed(folder: Path) -> Path:
     """The program `smachac` as pip installs it: a script of Python that imports the package."""
     program = folder / "bin" / "smachac"
     program.parent.mkdir()
-    lines = [f"#!{sys.executable}", "import sys", "from smachac.commands.cli import main"]
-    program.write_text("\n".join([*lines, "sys.exit(main())", ""]))
+    # As pip writes it where the path of the interpreter has a space, which `#!` cannot hold.
+    lines = ["#!/bin/sh", f'\'\'\'exec\' "{sys.executable}" "$0" "$@"', "' '''"]
+    lines += ["import sys", "from smachac.commands.cli import main", "sys.exit(main())", ""]
+    program.write_text("\n".join(lines))
     program.chmod(0o755)
     return program
 
