@@ -113,7 +113,7 @@ def _scripted(leaf: Leaf, outcome: str, outputs: frozenset[str], raw: bool) -> W
         sets = [keys & outputs for keys in sets]
     perhaps = frozenset(outputs if not sets else (outputs - ever)).union(*sets)
     if outcome == PREEMPTED:
-        # It comes without a step when the state is asked to stop.
+        # A request to stop causes it without a step.
         return Writes(NONE, NONE, perhaps)
     sure = frozenset.intersection(*sets) if sets else NONE
     return Writes(sure, sure | (outputs if not sets else outputs - ever), perhaps)

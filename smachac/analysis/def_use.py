@@ -16,7 +16,8 @@ from smachac.ir.nodes import Concurrence, Key, Leaf, Node
 from smachac.ir.traversal import outcome_names, remapping
 
 KeyState = Literal["unset", "told", "set"]
-"""Whether the key is set on a path. `told`: unset, and a container on the path needed it."""
+"""Whether the key is set on a path. `told`: unset and already reported, because a container on
+the path needs it."""
 
 Status = Literal["always", "sometimes", "never", "unreachable"]
 """Whether a key is set when a state is entered: on every path to it, on some, on none; or there is

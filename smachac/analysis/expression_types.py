@@ -58,7 +58,7 @@ Names = Mapping[str, Type]
 """What names stand for; userdata is a record."""
 
 LONGEST_TUPLE = 64
-"""Items that are told apart in one list; of a longer one the items have one type."""
+"""The longest list whose items have separate types; the items of a longer one have one type."""
 
 DEEPEST = 12
 """Levels of one type; what is deeper is `any`."""
@@ -110,9 +110,9 @@ def _record(of: Iterable[tuple[str, Type]]) -> Type:
 
 
 def type_of(expr: Expr, names: Names) -> Type:
-    """The type of an expression over names; `any` where it cannot be told.
+    """The type of an expression over names; `any` if it is unknown.
 
-    Total: code that would fail has the type `any`. A lambda is `any`: ask for its body.
+    Total: code that would fail has the type `any`. A lambda is `any`; its body has a type.
     """
     match expr:
         case Constant(value):

@@ -92,7 +92,7 @@ class Rules:
         return None
 
     def _settle(self, domains: Domains, left: int, chosen: Combination) -> int:
-        """Choose outcomes that no rule left asks for, which costs nothing; the rules left then."""
+        """Choose outcomes that no remaining rule requires; return the rules that then remain."""
         before = 0
         while left and left != before:
             before = left
@@ -204,8 +204,8 @@ class Study:
 
 
 def study(path: str, node: Concurrence) -> Study | None:
-    """What the rules of a concurrence say; None where it has no states, two of one name, or a rule
-    that says nothing which can be understood."""
+    """The rules of a concurrence with misspelt names corrected; None if it has no states, two
+    states of one name, or a rule that cannot be corrected."""
     children = {child.name: child for child in node.children}
     if not children or len(children) < len(node.children):
         return None
@@ -224,7 +224,7 @@ def study(path: str, node: Concurrence) -> Study | None:
 
 
 def _is_sound(rule: OutcomeRule, ends: Mapping[str, frozenset[str] | None]) -> bool:
-    """Whether a rule asks each of some children once, for an outcome that it may have."""
+    """Whether the conditions of a rule have different children and possible outcomes of these."""
     for condition in rule.when:
         known = ends.get(condition.child, frozenset())
         if known is not None and condition.outcome not in known:
@@ -253,8 +253,8 @@ def _understood(rule: OutcomeRule, children: Mapping[str, Node]) -> OutcomeRule 
 
 
 def space(read: Study, known: OutcomesByPath) -> Space:
-    """How the branches may end. One that never does ends here with an outcome that is not known
-    where the others do not wait for it: that it does not end is told elsewhere."""
+    """The possible outcomes of each branch. Under `join: any` a branch that never ends has an
+    unknown outcome here; SM407 reports that it never ends."""
     asked: dict[str, list[str]] = {}
     for rule in read.written:
         for condition in rule.when:
@@ -273,9 +273,9 @@ def space(read: Study, known: OutcomesByPath) -> Space:
 def calm_spaces(
     read: Study, ever: OutcomesByPath, calm: OutcomesByPath
 ) -> Iterator[tuple[Space, str]]:
-    """How the branches may end while nobody asks the concurrence to stop, and for `join: any` the
-    branch that ends first. The others are preempted; one that answers has no other outcome here,
-    though it may have one in the moment in which two end at once."""
+    """The possible outcomes of the branches without a request to stop from outside, and for
+    `join: any` the branch that ends first. The other branches are preempted: one with the outcome
+    `preempted` has no other outcome here, although two branches can end at the same moment."""
     whole = space(read, ever)
     own = space(read, calm)
     if read.node.join == "all":

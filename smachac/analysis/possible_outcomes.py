@@ -108,7 +108,7 @@ def _linear(path: str, container: Linear, known: OutcomesByPath) -> set[str]:
     states: dict[str, Node] = {}
     for old, child in zip(container.children, whole.children, strict=True):
         states[child.name] = child
-        # What a misspelt leaf was mended to says more than what was known of it.
+        # The corrected leaf has more information than the misspelt one.
         told = old.outcomes or is_open(old)
         ends[child.name] = known[f"{path}/{old.name}"] if told else outcome_names(child)
     todo = [whole.initial] if whole.initial in names else list(states)
@@ -138,8 +138,8 @@ def _linear(path: str, container: Linear, known: OutcomesByPath) -> set[str]:
 def _iterator(
     path: str, container: nodes.Iterator, known: OutcomesByPath, *, asked: bool
 ) -> set[str]:
-    """What an iterator can end with. One that is asked to stop ends with its child's outcome, also
-    with one on which it goes on else (smach-semantics P9)."""
+    """The outcomes of an iterator. After a request to stop it ends with the outcome of its child,
+    also with a looping outcome (docs/semantics.md, Iterator)."""
     children = tuple(
         child
         if is_open(child)
@@ -178,7 +178,7 @@ def _results(node: Concurrence, read: Study | None, spaces: Sequence[Space]) -> 
 class Judged(NamedTuple):
     """A concurrence whose rules can be judged, at its path.
 
-    `whole` is how its branches may end, also when it is asked to stop; `calm` how they may while
+    `whole` is how its branches may end, also after a request to stop; `calm` how they may while
     nobody asks it to, as far as outcomes are known, and for `join: any` which branch ends first.
     """
 

@@ -200,7 +200,7 @@ def _misfit_struct(given: Type, wanted: Type) -> Misfit | None:
 
 
 MOST_CHOICES = 16
-"""Constants that one literal type tells apart; more are a `str` or an `int`."""
+"""The most constants of one literal type; with more, the type is `str` or `int`."""
 
 
 def constants(choices: Iterable[int | str]) -> Type:

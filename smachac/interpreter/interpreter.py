@@ -485,7 +485,7 @@ def _iterator(run: Interpreter, node: Iterator, path: str, own: dict[str, object
 
 def _loops(node: Iterator, child: Node, outcome: str | None) -> bool:
     """Whether an outcome of its state leads to the next item. An iterator without looping outcomes
-    goes on after an outcome that its state does not declare (smach-semantics I6)."""
+    goes on after an outcome that its state does not declare (docs/semantics.md, Iterator)."""
     if node.loop_outcomes or (isinstance(child, Leaf) and child.open):
         return outcome in node.loop_outcomes
     return outcome not in outcome_names(child)

@@ -53,7 +53,7 @@ class Edge(NamedTuple):
 
 
 def exit_vertex(outcome: str) -> Vertex:
-    """The place that stands for leaving the container with an outcome."""
+    """The vertex of the end of a container with an outcome."""
     return ("outcome", outcome)
 
 
@@ -86,7 +86,7 @@ def _is_open(child: Node) -> bool:
 
 
 def is_unread(child: Node) -> bool:
-    """Whether a state stands for one that could not be read: it may go anywhere."""
+    """Whether a state could not be read: its outcomes are unknown, and so are its targets."""
     return isinstance(child, Leaf) and child.open and not child.type
 
 
@@ -150,8 +150,8 @@ def _iterator_edges(container: nodes.Iterator) -> Iterator[Edge]:
 
 def stopped_endings(container: nodes.Iterator) -> dict[str, str]:
     """The outcomes of an iterator after a request to stop, by the outcome of its child: those that
-    are not among `edges`. After a looping outcome it ends too (smach-semantics P9); a retry or loop
-    always ends as `preempted`."""
+    are not among `edges`. After a looping outcome it ends too; a retry or a loop of a script always
+    ends as `preempted` (docs/semantics.md, Iterator and Preemption)."""
     own = {name: None for child in container.children[:1] for name in outcome_names(child)}
     if ends_preempted(container):
         return dict.fromkeys(own, PREEMPTED)

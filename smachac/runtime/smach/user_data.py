@@ -227,7 +227,7 @@ def _with_properties(keys: frozenset[str]) -> type[Remapper]:
 
 
 def store(ud: Any) -> Any:
-    """The mapping behind a plain UserData; anything else stands for itself.
+    """The mapping in a plain UserData; any other object is returned unchanged.
 
     A subclass of UserData may define item access, so it is read and written by item.
     """

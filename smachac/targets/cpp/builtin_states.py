@@ -152,7 +152,7 @@ class _BuiltInLeaf:
         return isinstance(self.scope.node, Iterator)
 
     def bound(self, key: str) -> str:
-        """The key of the container that a key of the leaf stands for."""
+        """The key of the container to which a key of the leaf is remapped."""
         return self.scope.names(self.leaf).get(key, key)
 
     def reads(self) -> dict[str, Spelling]:

@@ -44,8 +44,8 @@ MOST_STATES = 40
 with more it uses a table, and its own running time is quadratic in the branches of a function."""
 
 NEVER = ["default:", "  smachac::never();"]
-"""The last case of the switch over the states. It tells the compiler that there is no other state,
-so that the compiler omits the range check."""
+"""The last case of the switch over the states. There is no other state, so the compiler can
+omit the range check."""
 
 NO_OUTCOME = "run.no_outcome(places, state);"
 """The statement after the switch over the outcomes: the state has ended with none of them (a number

@@ -115,7 +115,7 @@ def inside(type_: Type) -> Type:
 
 
 def size_of(type_: Type) -> int | None:
-    """How many items a sequence has, where its type says so."""
+    """The number of items of a sequence, if its type has a length."""
     size = type_.args[1] if type_.name in ("array", "tuple") and len(type_.args) > 1 else None
     return size if isinstance(size, int) else None
 
