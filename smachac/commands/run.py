@@ -290,14 +290,6 @@ def perform(
     return outcome
 
 
-def message_of(error: BaseException) -> str:
-    """The message of an exception; empty if it raises another one."""
-    try:
-        return str(error)
-    except Exception:
-        return ""
-
-
 def _end(*_: object) -> None:
     """End the process at once: a container would wait for branches that may never return."""
     with suppress(OSError, RuntimeError):  # the signal may have come in the middle of a print
@@ -310,6 +302,8 @@ def _failure(error: BaseException, name: str, folder: Path) -> str:
     """The first exception, with its places in the generated program and in code of the user."""
     import traceback
     from pathlib import Path
+
+    from smachac.runtime.messages import message_of
 
     first = error
     while (cause := first.__cause__ or first.__context__) is not None:

@@ -6,6 +6,7 @@ import traceback
 from collections.abc import Callable, Iterable, Mapping, Sequence
 from typing import Any, TypeVar
 
+from smachac.runtime.messages import message_of
 from smachac.runtime.smach import settings
 from smachac.runtime.smach.container import Container, needs_request, open_container, withdraw
 from smachac.runtime.smach.exceptions import (
@@ -175,7 +176,8 @@ class Concurrence(Container):
         label, error = branches.failure
         if not (isinstance(error, Exception) or settings.compat):
             raise error
-        raise InvalidStateError(f"branch '{label}' failed: {error}") from error
+        message = message_of(error) or type(error).__name__
+        raise InvalidStateError(f"branch '{label}' failed: {message}") from error
 
     def _run_child(self, branches: Branches, label: str) -> None:
         """Run one child; the function of its thread."""

@@ -9,6 +9,7 @@ from contextlib import contextmanager
 from types import TracebackType
 from typing import Any, ClassVar, TypeVar
 
+from smachac.runtime.messages import described
 from smachac.runtime.smach import settings
 from smachac.runtime.smach.exceptions import (
     InvalidConstructionError,
@@ -114,7 +115,7 @@ class Container(State):
         if error is None:
             raise InvalidStateError(f"a {type(self).__name__} is closed before what it contains")
         if not isinstance(error, (InvalidStateError, InvalidTransitionError)):
-            settings.logerr(f"construction failed: {type(error).__name__}: {error}")
+            settings.logerr(f"construction failed: {described(error)}")
 
     def _abandon(self) -> None:
         """Remove this container, and those left open inside it, from the stack."""

@@ -7,6 +7,7 @@ from collections.abc import Callable, Mapping
 from operator import itemgetter
 from typing import Any
 
+from smachac.runtime.messages import message_of
 from smachac.runtime.tracing.writer import Event, Recorder
 
 
@@ -263,11 +264,7 @@ def _is_a(state: Any, kind: str) -> bool:
 
 def _message(error: BaseException) -> str:
     """The type and the first line of an exception."""
-    try:
-        text = str(error)
-    except Exception:  # its `__str__` raises
-        text = ""
-    first = next((line for line in text.splitlines() if line.strip()), "")
+    first = next((line for line in message_of(error).splitlines() if line.strip()), "")
     return f"{type(error).__name__}: {first}" if first else type(error).__name__
 
 

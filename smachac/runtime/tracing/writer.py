@@ -10,6 +10,8 @@ from collections import deque
 from collections.abc import Callable, Mapping, Sequence
 from typing import Any, Protocol
 
+from smachac.runtime.messages import described
+
 Event = dict[str, Any]
 Observer = Callable[[Event], None]
 
@@ -149,7 +151,7 @@ class Recorder:
                     self._seq = self._sink.put(prepared, self._seq, t, value)
             except Exception as error:
                 self._sink = None
-                print(f"the trace stops here: {type(error).__name__}: {error}", file=sys.stderr)
+                print(f"the trace stops here: {described(error)}", file=sys.stderr)
             finally:
                 self._recording = False
             while self._deferred:
