@@ -1,4 +1,4 @@
-"""The command `verify`: compare generated programs with the interpreter, path by path."""
+"""The command `verify`: compare programs with the interpreter, path by path."""
 
 from __future__ import annotations
 
@@ -12,7 +12,11 @@ from smachac.commands.output import FINDINGS, OK, print_report, usage, without_n
 
 TYPE_CHECKING = False  # annotations only: `--help` imports none of this
 if TYPE_CHECKING:
+    from collections.abc import Mapping
+    from pathlib import Path
+
     from smachac.diagnostics.diagnostic import Report
+    from smachac.diagnostics.source import Source
     from smachac.frontend.loader import Library
     from smachac.ir.nodes import Checked
     from smachac.verify.test_case import Player
@@ -21,6 +25,8 @@ EXAMPLES = """\
 examples:
   smachac verify main.yml                        compare the generated Python with the script
   smachac verify main.yml --targets python,cpp   compare the generated C++ too (needs a compiler)
+  smachac verify main.yml --program pick.py      compare this file, edited by hand or built before
+  smachac verify main.yml --header pick.hpp      compare this C++ header (needs a compiler)
   smachac verify main.yml --paths 2000           try more paths
   smachac verify main.yml --seed 7               try other random paths
   smachac verify main.yml --format json          for programs, with every transition not taken
@@ -32,12 +38,23 @@ exit codes: 0 success, 1 a program behaves differently, cannot be run, or the sc
 TARGETS = ("python", "cpp")
 """The targets whose programs `verify` can run."""
 
+SUFFIXES = {
+    "program": (".py",),
+    "header": (".hpp", ".h", ".hh", ".hxx"),
+}
+"""The usual suffixes of the files of the two options; a file with another suffix is taken too."""
+
 
 def verify_arguments(parser: argparse.ArgumentParser) -> None:
     parser.epilog = EXAMPLES
     parser.add_argument("script", type=as_path, help=SCRIPT)
-    parser.add_argument("--targets", type=names, default=["python"], metavar="A,B,...",
-                        help="targets to compare: python, cpp (default: python)")  # fmt: skip
+    parser.add_argument("--targets", type=names, metavar="A,B,...",
+                        help="targets to compare: python, cpp (default: those of --program and"
+                        " --header, else python)")  # fmt: skip
+    parser.add_argument("--program", type=as_path, metavar="FILE",
+                        help="compare this Python file, not a newly generated one")  # fmt: skip
+    parser.add_argument("--header", type=as_path, metavar="FILE",
+                        help="compare this C++ header, not a newly generated one")  # fmt: skip
     parser.add_argument("--paths", type=count, metavar="N",
                         help="try at most N paths (default: 200, or more if needed to take every"
                         " transition)")  # fmt: skip
@@ -54,23 +71,31 @@ def verify_command(arguments: Namespace) -> int:
     from smachac.verify.result import render_json, render_text
     from smachac.verify.test_case import UnplayableError
 
-    for name in arguments.targets or [""]:
-        if name not in TARGETS:
-            return usage(f"`verify` cannot run the target `{name}`", name, TARGETS)
+    if (wrong := _wrong_usage(arguments)) is not None:
+        return wrong
+    paths = {"python": arguments.program, "cpp": arguments.header}
+    files = {target: path for target, path in paths.items() if path is not None}
+    targets = list(dict.fromkeys([*(arguments.targets or ()), *files])) or ["python"]
     analysis = analyse_script(arguments.script, arguments.scripts, arguments.templates)
     machine, library, report = analysis.checked, analysis.library, [*analysis.report]
+    sources = _read(files, report)
     players: dict[str, Player] = {}
-    if machine is not None and library is not None:
-        players = _players(arguments, machine, library, report)
+    if machine is not None and library is not None and len(sources) == len(files):
+        players = _players(arguments.script, targets, sources, machine, library, report)
     print_report(without_notes(report), arguments, sys.stderr)
-    if machine is None or len(players) < len(set(arguments.targets)):
+    if machine is None or len(players) < len(targets):
         return FINDINGS
     gc.freeze()  # the script stays; each path makes new machines, which are collected
     gc.set_threshold(50_000)
     gc.enable()
     try:
         verdict = verify(
-            machine, players, script=machine.source, most=arguments.paths, seed=arguments.seed
+            machine,
+            players,
+            script=machine.source,
+            files={target: str(path) for target, path in files.items()},
+            most=arguments.paths,
+            seed=arguments.seed,
         )
     except UnplayableError as error:
         print(error, file=sys.stderr)
@@ -80,25 +105,76 @@ def verify_command(arguments: Namespace) -> int:
     return FINDINGS if verdict.disagreements else OK
 
 
+def _wrong_usage(arguments: Namespace) -> int | None:
+    """The exit code for an unknown target, or for a file with the suffix of the other option."""
+    for name in [""] if arguments.targets == [] else arguments.targets or ():
+        if name not in TARGETS:
+            return usage(f"`verify` cannot run the target `{name}`", name, TARGETS)
+    for option, other in (("program", "header"), ("header", "program")):
+        path: Path | None = getattr(arguments, option)
+        if path is not None and path.suffix.lower() in SUFFIXES[other]:
+            return usage(f"--{option} does not play {path}: `--{other} {path}` does")
+    return None
+
+
+def _read(files: Mapping[str, Path], report: Report) -> dict[str, Source]:
+    """The files on disk, by target; those that cannot be read are reported."""
+    from smachac.frontend.files import read_source
+
+    found = {target: read_source(path, report) for target, path in files.items()}
+    return {target: source for target, source in found.items() if source is not None}
+
+
 def _players(
-    arguments: Namespace, machine: Checked, library: Library, report: Report
+    script: Path,
+    targets: list[str],
+    sources: Mapping[str, Source],
+    machine: Checked,
+    library: Library,
+    report: Report,
 ) -> dict[str, Player]:
     """The requested targets that can express the whole machine; the others are reported."""
     from smachac.diagnostics.diagnostic import has_errors
-    from smachac.driver import build, merged
-    from smachac.targets.python import TARGET
-    from smachac.verify.players import cpp, python
+    from smachac.driver import merged
 
     players: dict[str, Player] = {}
-    for name in dict.fromkeys(arguments.targets):
+    for name in targets:
         found: Report = []
-        if name == "cpp":
-            player = cpp.player(machine, found)
+        if name in sources:
+            player = _file_player(name, script, sources[name], machine, found)
         else:
-            files = build(machine, TARGET, library, found)
-            ((file, text),) = files.items() or [("", "")]
-            player = python.player(file, text, machine, folder=arguments.script.parent)
+            player = _generated_player(name, script, machine, library, found)
         report[:] = merged(report, found)
         if not has_errors(found):
             players[name] = player
     return players
+
+
+def _generated_player(
+    target: str, script: Path, machine: Checked, library: Library, report: Report
+) -> Player:
+    """A player of the program that smachac generates now."""
+    from smachac.driver import build
+    from smachac.targets.python import TARGET
+    from smachac.verify.players import cpp, python
+
+    if target == "cpp":
+        return cpp.player(machine, report)
+    files = build(machine, TARGET, library, report)
+    ((file, text),) = files.items() or [("", "")]
+    return python.player(file, text, machine, folder=script.parent)
+
+
+def _file_player(
+    target: str, script: Path, source: Source, machine: Checked, report: Report
+) -> Player:
+    """A player of a file on disk, which may use modules or headers beside it and of the project."""
+    from pathlib import Path
+
+    from smachac.frontend.files import find_project
+    from smachac.verify.players import cpp_file, python_file
+
+    homes = [Path(source.name).parent, script.parent, *find_project(script, []).code]
+    if target == "cpp":
+        return cpp_file.file_player(source, machine, report, folders=homes)
+    return python_file.file_player(source, machine, folders=homes)

@@ -10,6 +10,7 @@ from __future__ import annotations
 
 from collections import Counter
 from collections.abc import Mapping, Sequence
+from contextlib import ExitStack
 
 from smachac.ir.nodes import Machine
 from smachac.verify.coverage import reasons
@@ -24,12 +25,14 @@ def verify(
     players: Mapping[str, Player],
     *,
     script: str,
+    files: Mapping[str, str] = {},
     most: int | None = None,
     seed: int = 0,
 ) -> Verdict:
     """Run the paths of a machine on every target, up to the first difference of each.
 
-    `most` and `seed` are those of `PathGenerator`. Exceptions of players are not caught.
+    `files` are the names of the files that players play, by target, where these are on disk. `most`
+    and `seed` are those of `PathGenerator`. Exceptions of players are not caught.
     """
     generator = PathGenerator(machine, most=most, seed=seed)
     runner = generator.runner
@@ -44,6 +47,7 @@ def verify(
     return Verdict(
         script=script,
         targets=tuple(players),
+        files=files,
         paths=Counter(path.kind for path in paths),
         taken=len(items) - len(missing),
         total=len(items),
@@ -61,17 +65,20 @@ def _first_difference(
     cases: Sequence[TestCase],
 ) -> Disagreement | None:
     """The first path on which a target differs from the interpreter."""
-    traces = zip(paths, cases, player(cases), strict=True)
-    for number, (path, case, theirs) in enumerate(traces, 1):
-        difference = compare_traces(expected_trace(machine, path.scenario, case), theirs)
-        if difference is not None:
-            return Disagreement(
-                target=target,
-                path=number,
-                expected=difference.first,
-                found=difference.second,
-                at=difference.at,
-                rows={path: row for path, row in case.rows.items() if row},
-                live=path.live,
-            )
+    with ExitStack() as stack:
+        played = player(cases)
+        stack.callback(getattr(played, "close", lambda: None))  # ends its processes
+        traces = zip(paths, cases, played, strict=True)
+        for number, (path, case, theirs) in enumerate(traces, 1):
+            difference = compare_traces(expected_trace(machine, path.scenario, case), theirs)
+            if difference is not None:
+                return Disagreement(
+                    target=target,
+                    path=number,
+                    expected=difference.first,
+                    found=difference.second,
+                    at=difference.at,
+                    rows={path: row for path, row in case.rows.items() if row},
+                    live=path.live,
+                )
     return None

@@ -33,26 +33,27 @@ inline std::size_t next(std::size_t leaf) {
   }
   return found->second.steps[found->second.visits++];
 }
-/// Whether a leaf has a request to stop; a leaf that waits gets one within five seconds.
+inline constexpr double longest_wait = 5.0; // s
+
+/// Whether a leaf has a request to stop; a leaf that waits gets one within `longest_wait`.
 inline bool preempted(smachac::Stop &stop, bool waits, bool requests) {
   if (requests) {
     machine->request();
   }
-  if (waits && !stop.wait(5.0)) {
+  if (waits && !stop.wait(longest_wait)) {
     throw std::runtime_error("was not asked to stop");
   }
   return stop.requested();
 }
+inline void service(smachac::Stop &stop) { stop.service(); }
 inline void read(const smachac::Place &place, const char *key, const std::string &value) {
   observer->tell({"read", place, nullptr, nullptr, key, value.c_str()});
 }
 
 /// Run the next test case of the input.
-template <class States, class Userdata, class Given, class Run>
-void play(Given given, Run run) {
+template <class Trace, class Userdata, class Given, class Run> void play(Given given, Run run) {
   smachac::Stop stop;
-  smachac::TraceWriter trace(stdout);
-  States states{};
+  Trace trace(stdout);
   Userdata userdata;
   given(userdata);
   machine = &stop;
@@ -76,7 +77,7 @@ void play(Given given, Run run) {
     }
   }
   try {
-    run(states, userdata, &trace, stop);
+    run(userdata, &trace, stop);
   } catch (const std::exception &) {
   }
   std::puts("--");

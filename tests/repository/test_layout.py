@@ -22,6 +22,8 @@ TOUCHES = {
     "smachac/frontend/files.py": "reads scripts, templates and project files",
     "smachac/targets/python/runner.py": "runs what was built, and keeps its output",
     "smachac/verify/players/python.py": "runs what was built, and keeps its output off the report",
+    "smachac/verify/players/python_file.py": "runs what a file builds, as python.py does",
+    "smachac/verify/players/cpp_file.py": "writes headers of stand-ins to a temporary folder",
     "smachac/runtime/tracing/writer.py": "reports that a trace broke off",
     "smachac/runtime/smach/log.py": "prints what SMACH prints",
     "smachac/sim/video.py": "writes films",

@@ -98,7 +98,7 @@ def declared(type_: StateType, library: Library) -> Declared | None:
     source = library.code(code.header) if code is not None else None
     if code is None or source is None or len(source.text) > LONGEST:
         return None
-    whole = _Part(source=source, text=_NO_CODE.sub(_blank, source.text))
+    whole = _Part(source=source, text=without_literals(source.text))
     head = whole.only(_CLASS.format(re.escape(code.name.rpartition("::")[2])))
     body = whole.inside(head)
     if head is None or body is None or "#" in body.text:
@@ -117,6 +117,12 @@ def declared(type_: StateType, library: Library) -> Declared | None:
         ),
         stale=_stale(body, interface_hash(type_)),
     )
+
+
+def without_literals(text: str) -> str:
+    """C++ in which comments and literals, except numbers, are replaced by blanks: every other
+    character keeps its offset."""
+    return _NO_CODE.sub(_blank, text)
 
 
 def _blank(found: re.Match[str]) -> str:

@@ -7,7 +7,7 @@ import random
 import signal
 import sys
 import threading
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Iterator, Sequence
 from contextlib import contextmanager
 from dataclasses import dataclass
 from pathlib import Path
@@ -132,31 +132,43 @@ def _watching(module: dict[str, Any], watch: Callable[[Any], None]) -> Iterator[
 
 
 @contextmanager
-def loaded(name: str, text: str, folder: Path) -> Iterator[dict[str, Any]]:
+def loaded(
+    name: str, text: str, *folders: Path, importable: bool = False
+) -> Iterator[dict[str, Any]]:
     """The namespace of the module `text`. Inside the context it can import modules of the user from
-    `folder`. Exceptions of the module are not caught."""
-    module = ModuleType(name.removesuffix(".py"))
+    `folders`. Exceptions of the module are not caught.
+
+    `importable`: the module is known by its own name, as dataclasses and pickle need it, unless
+    another module has that name.
+    """
+    module = ModuleType(Path(name).stem)
     module.__file__ = name
     linecache.cache[name] = (len(text), None, text.splitlines(keepends=True), name)
-    folder = folder.resolve()  # the program may change the working folder
-    sys.path.insert(0, str(folder))
+    # The program may change the working folder.
+    homes = list(dict.fromkeys(folder.resolve() for folder in folders))
+    sys.path[:0] = map(str, homes)
     before = set(sys.modules)
+    if importable:
+        sys.modules.setdefault(module.__name__, module)
     try:
         exec(compile(text, name, "exec"), module.__dict__)
         yield module.__dict__
     finally:
-        if str(folder) in sys.path:
-            sys.path.remove(str(folder))
-        _forget(before, folder)
+        for home in map(str, homes):
+            if home in sys.path:
+                sys.path.remove(home)
+        if sys.modules.get(module.__name__) is module:
+            del sys.modules[module.__name__]
+        _forget(before, homes)
 
 
-def _forget(before: set[str], folder: Path) -> None:
-    """Remove the modules and packages that stand in a folder and were imported since `before`: the
-    next script may have others of the same names."""
+def _forget(before: set[str], folders: Sequence[Path]) -> None:
+    """Remove the modules and packages that stand in some folders and were imported since `before`:
+    the next script may have others of the same names."""
     mine = {
         name
         for name in sys.modules.keys() - before
-        if "." not in name and _home(sys.modules[name]) == folder
+        if "." not in name and _home(sys.modules[name]) in folders
     }
     for name in [name for name in sys.modules if name.partition(".")[0] in mine]:
         del sys.modules[name]

@@ -5,13 +5,16 @@ from __future__ import annotations
 import functools
 import importlib.util
 import json
+import os
 import shutil
+import signal
 import subprocess
 import sys
 import tempfile
-from collections.abc import Iterator, Sequence
+from collections.abc import Callable, Iterator, Mapping, Sequence
+from contextlib import contextmanager, suppress
 from pathlib import Path
-from typing import NamedTuple
+from typing import IO, NamedTuple
 
 import smachac
 from smachac.diagnostics.diagnostic import Report
@@ -44,61 +47,137 @@ def player(machine: Machine, report: Report) -> Player:
     report.extend(Program(planned, ()).refused())
 
     def play(cases: Sequence[TestCase]) -> Iterator[list[Event]]:
-        found = compilers()
-        if not found:
-            words = "no C++ compiler is here: install g++ or clang++, or the Python package ziglang"
-            raise UnplayableError(words)
+        compiler = first_compiler()
         program = Program(planned, cases)
         try:
             text = program.text()
         except UnportableError as error:
             raise UnplayableError(f"the C++ program cannot be printed: {error}") from error
-        yield from traces(text, program.script(), found[0])
+        try:
+            yield from traces(text, program.script(), compiler)
+        except CompilationError as error:
+            lines = ["the C++ program does not compile:", *error.lines[:MOST_ERRORS]]
+            raise UnplayableError("\n".join(lines)) from error
 
     return play
 
 
-def traces(text: str, cases: str, compiler: Compiler) -> Iterator[list[Event]]:
+def traces(text: str, cases: str, compiler: Compiler, *flags: str) -> Iterator[list[Event]]:
     """The traces that a program prints, one after the other, while it runs.
 
-    If the program fails, the last trace ends with an error event.
+    If the program fails, the last trace ends with an error event. Raises CompilationError.
     """
     with tempfile.TemporaryDirectory() as folder, tempfile.TemporaryFile("w+") as given:
-        made = compiled(text, compiler, Path(folder))
+        made = compiled(text, compiler, Path(folder), *flags)
         given.write(cases)
         given.seek(0)
-        run = subprocess.Popen([made], stdin=given, stdout=subprocess.PIPE, text=True)
-        assert run.stdout is not None
-        events: list[Event] = []
-        try:
+        with _process([made], stdin=given) as run:
+            assert run.stdout is not None
+            events: list[Event] = []
             for line in run.stdout:
                 if line.strip() == DONE:
                     yield events
                     events = []
-                else:
-                    events.append(json.loads(line))
+                elif (event := _event(line)) is not None:
+                    events.append(event)
             if run.wait() != 0:
                 how = f"the program ended with {run.returncode}"
                 yield [*events, {"event": "error", "path": "", "outcome": how}]
-        finally:
-            run.kill()
-            run.wait()
-            run.stdout.close()
 
 
-def compiled(text: str, compiler: Compiler, folder: Path) -> str:
-    """Compile a program; the path of the executable. Raises UnplayableError with the first errors
-    of the compiler."""
+def _event(line: str) -> Event | None:
+    """The event of a line; None for a line of another kind, which code of the user printed."""
+    try:
+        event = json.loads(line)
+    except ValueError:
+        return None
+    return event if isinstance(event, dict) and "event" in event else None
+
+
+class CompilationError(Exception):
+    """A program that does not compile; `lines` are the errors that the compiler printed."""
+
+    def __init__(self, lines: Sequence[str]) -> None:
+        super().__init__(*lines[:1])
+        self.lines = lines
+
+
+def compiled(text: str, compiler: Compiler, folder: Path, *flags: str) -> str:
+    """Compile a program; the path of the executable. Raises CompilationError.
+
+    The compiler runs in `folder`: headers in the working folder of the user are found only there
+    where `flags` lead to.
+    """
     made = str(folder / "verify")
-    call = [*compiler.command, *FLAGS, "-x", "c++", "-", "-o", made]
-    run = subprocess.run(call, input=text, capture_output=True, text=True, check=False)
-    if run.returncode != 0:
-        lines = run.stderr.splitlines()
-        errors = [line for line in lines if "error" in line] or lines
-        raise UnplayableError(
-            "\n".join(["the C++ program does not compile:", *errors[:MOST_ERRORS]])
-        )
+    call = [*compiler.command, *flags, *FLAGS, "-x", "c++", "-", "-o", made]
+    environment = {**os.environ, "TMPDIR": str(folder)}
+    errors = subprocess.STDOUT
+    with _process(
+        call, stdin=subprocess.PIPE, stderr=errors, cwd=folder, env=environment
+    ) as process:
+        printed = process.communicate(text)[0]
+    if process.returncode != 0:
+        lines = printed.splitlines()
+        raise CompilationError([line for line in lines if "error: " in line] or lines)
     return made
+
+
+@contextmanager
+def _process(
+    command: Sequence[str],
+    *,
+    stdin: int | IO[str],
+    stderr: int | None = None,
+    cwd: Path | None = None,
+    env: Mapping[str, str] | None = None,
+) -> Iterator[subprocess.Popen[str]]:
+    """A process that leads a session of its own: if it still runs when the context ends, it is
+    ended with all processes that it started, such as those of a compiler. A Ctrl-C while it starts
+    comes when it has started."""
+    with _interrupts_later() as interrupts:
+        process = subprocess.Popen(
+            command,
+            stdin=stdin,
+            stdout=subprocess.PIPE,
+            stderr=stderr,
+            cwd=cwd,
+            env=env,
+            encoding="utf-8",
+            errors="replace",
+            start_new_session=True,
+        )
+        try:
+            interrupts()
+            yield process
+        finally:
+            if process.poll() is None:
+                _end_session(process)
+            process.wait()
+            for pipe in (process.stdin, process.stdout):
+                if pipe is not None:
+                    pipe.close()
+
+
+@contextmanager
+def _interrupts_later() -> Iterator[Callable[[], None]]:
+    """Delays Ctrl-C up to the call of the function, where the platform can."""
+    mask = getattr(signal, "pthread_sigmask", None)
+    if mask is None:
+        yield lambda: None
+        return
+    before = mask(signal.SIG_BLOCK, {signal.SIGINT})
+    try:
+        yield lambda: mask(signal.SIG_SETMASK, before)
+    finally:
+        mask(signal.SIG_SETMASK, before)
+
+
+def _end_session(process: subprocess.Popen[str]) -> None:
+    with suppress(ProcessLookupError):
+        if hasattr(os, "killpg"):
+            os.killpg(process.pid, signal.SIGKILL)
+        else:
+            process.kill()
 
 
 class Compiler(NamedTuple):
@@ -106,6 +185,15 @@ class Compiler(NamedTuple):
 
     name: str
     command: tuple[str, ...]
+
+
+def first_compiler() -> Compiler:
+    """The compiler that programs are compiled with. Raises UnplayableError if there is none."""
+    found = compilers()
+    if not found:
+        words = "no C++ compiler is here: install g++ or clang++, or the Python package ziglang"
+        raise UnplayableError(words)
+    return found[0]
 
 
 @functools.cache

@@ -9,7 +9,7 @@ one more machine for those.
 from __future__ import annotations
 
 import json
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from importlib import resources
 
@@ -113,22 +113,30 @@ class Program:
     def _main(self) -> Iterator[str]:
         scope = self._plan.scopes[self._plan.machine.root.name]
         name = scope_name(scope.path)
-        given = {key: value for case in self._test_cases for key, value in case.userdata.items()}
         yield "int main() {"
         yield "  for (std::size_t stage = 0; std::cin >> stage;) {"
         for number in range(len(self._stages)):
             here = f"stage{number}::{name}"
             yield f"    if (stage == {number}) {{"
-            yield f"      verify::play<{here}::States, {here}::Userdata>([](auto &ud) {{"
-            yield "        static_cast<void>(ud);"
-            for key, value in given.items():
-                if key in scope.keys:
-                    text = cpp_value(script_data(value), scope.keys[key])
-                    yield f"        ud.{identifier(key)}.hold({text});"
-            yield f"      }}, {here}::run);"
+            yield f"      verify::play<smachac::TraceWriter, {here}::Userdata>([](auto &ud) {{"
+            yield from given_inputs(self._test_cases, scope)
+            yield "      }, [](auto &ud, auto *observer, auto &stop) {"
+            yield f"        {here}::States states{{}};"
+            yield f"        {here}::run(states, ud, observer, stop);"
+            yield "      });"
             yield "    }"
         yield "  }"
         yield "}"
+
+
+def given_inputs(cases: Sequence[TestCase], scope: ContainerScope) -> Iterator[str]:
+    """The statements that give the machine, whose userdata is `ud`, the inputs of test cases."""
+    given = {key: value for case in cases for key, value in case.userdata.items()}
+    yield "        static_cast<void>(ud);"
+    for key, value in given.items():
+        if key in scope.keys:
+            text = cpp_value(script_data(value), scope.keys[key])
+            yield f"        ud.{identifier(key)}.hold({text});"
 
 
 @dataclass(slots=True, kw_only=True)
@@ -216,15 +224,17 @@ class CppLeaf:
             f"  const std::size_t step = next({self.number});",
             f"  [[maybe_unused]] constexpr smachac::Place place{spot};",
             *self._read_statements(reads.get(self.path, ()), keys["input_keys"]),
-            "  switch (step) {",
-            *self._cases(keys["output_keys"]),
-            "  default:",
-            "    smachac::never();",
-            "  }",
+            *self.switch(lambda key, value: self._write(keys["output_keys"], key, value)),
             "}",
             "};",
         ]
         return "\n".join(lines)
+
+    def _write(self, types: Mapping[str, Type], key: str, value: object) -> str:
+        """The statement that writes an output; empty for one that does not exist in C++."""
+        if key not in types:
+            return ""
+        return f"out.{identifier(key)} = {cpp_value(script_data(value), types[key])};"
 
     def _read_statements(self, reads: Sequence[str], types: Mapping[str, Type]) -> Iterator[str]:
         """The statements that record the inputs."""
@@ -235,22 +245,24 @@ class CppLeaf:
             else:
                 yield f"  read(place, {text}, {cpp_literal(json.dumps(OPAQUE))});"
 
-    def _cases(self, types: Mapping[str, Type]) -> Iterator[str]:
-        """The cases of the switch, one for each distinct step."""
+    def switch(self, write: Callable[[str, object], str]) -> Iterator[str]:
+        """The switch over `step`, with a case for each distinct step. `write` gives the statement
+        that writes a value to an output."""
+        yield "  switch (step) {"
         able = PREEMPTED in own_outcomes(self.leaf)
         for number, row in enumerate(self.rows):
             yield f"  case {number}:"
             waits, asks = (str(each).lower() for each in (row.wait, row.stop))
             yield f"    if (preempted(stop, {waits}, {asks}) && {str(able).lower()}) {{"
-            yield "      stop.service();"
+            yield "      service(stop);"
             outcome = PREEMPTED if able else row.outcome
             yield f"      return Outcome::{identifier(outcome)};"
             yield "    }"
             if row.error:
                 yield f"    throw std::runtime_error({cpp_literal(row.error)});"
                 continue
-            for key, value in row.writes.items():
-                if key in types:
-                    text = cpp_value(script_data(value), types[key])
-                    yield f"    out.{identifier(key)} = {text};"
+            yield from (f"    {write(key, value)}" for key, value in row.writes.items())
             yield f"    return Outcome::{identifier(row.outcome)};"
+        yield "  default:"
+        yield "    smachac::never();"
+        yield "  }"

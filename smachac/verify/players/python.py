@@ -31,7 +31,7 @@ def player(name: str, text: str, machine: Machine, *, folder: Path) -> Player:
             quiet(module["smach"], hidden),
         ):
             for case in cases:
-                yield _trace(module["build"](), machine.root.name, case, sources)
+                yield trace_of(module["build"](), machine.root.name, case, sources)
 
     return play
 
@@ -48,7 +48,7 @@ def _unplayable_errors() -> Iterator[None]:
         raise UnplayableError(words) from error
 
 
-def _trace(built: Any, name: str, case: TestCase, sources: dict[str, str]) -> list[Event]:
+def trace_of(built: Any, name: str, case: TestCase, sources: dict[str, str]) -> list[Event]:
     """The trace of one run; an error that ends the run is an event of it."""
     events: list[Event] = []
     for key, value in case.userdata.items():
