@@ -13,7 +13,7 @@ from functools import lru_cache
 from pathlib import PurePath
 from typing import NoReturn, TypeAlias
 
-from smachac.diagnostics.source import NOWHERE, Span
+from smachac.diagnostics.source import NOWHERE, Span, assert_never
 from smachac.interpreter.preemption import Preemption
 from smachac.interpreter.result import (
     NO_OUTCOME,
@@ -283,13 +283,16 @@ def container_coroutine(
     run: Interpreter, node: Container, path: str, own: dict[str, object]
 ) -> Coroutine:
     """The coroutine of a container between its entry and its exit, over its own userdata."""
-    if isinstance(node, Iterator):
-        return _iterator(run, node, path, own)
-    if not node.children:
+    if not node.children and not isinstance(node, Iterator):
         run.fail("no-state", path, "has no states", node.span)
-    if isinstance(node, Concurrence):
-        return _concurrence(run, node, path, own)
-    return _machine(run, node, path, own)
+    match node:
+        case StateMachine() | nodes.Sequence():
+            return _machine(run, node, path, own)
+        case Concurrence():
+            return _concurrence(run, node, path, own)
+        case Iterator():
+            return _iterator(run, node, path, own)
+    return assert_never(node)
 
 
 def _machine(

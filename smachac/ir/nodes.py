@@ -163,11 +163,12 @@ class OutcomeRule:
 class _State:
     """Fields of every node: its interface and its connections in the container around it.
 
-    `keyword` is the keyword of the class in the text form. `type` is the state type (the name of the template). `via` are the calls of sub-scripts that
-    lead to the node, outermost first. `inputs` and `outputs` are its userdata keys. `catches` is
-    the outcome that exceptions in the state become: it is one of `outcomes`, the state's own code
-    never returns it, and it is empty if exceptions are not caught. `written` are the fields of the
-    script, for templates that print them; empty for all others.
+    `keyword` is that of the class in the text form. `type` is the state type (the name of the
+    template). `via` are the calls of sub-scripts that lead to the node, outermost first. `inputs`
+    and `outputs` are its userdata keys. `catches` is the outcome that exceptions in the state
+    become: it is one of `outcomes`, the state's own code never returns it, and it is empty if
+    exceptions are not caught. `written` are the fields of the script, for templates that print
+    them; empty for all others.
     """
 
     keyword: ClassVar[str]
