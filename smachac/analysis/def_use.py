@@ -49,6 +49,9 @@ def search(
     count, and a leaf that reads the unset key ends the path. A container that can be entered again
     keeps what was set before (docs/semantics.md, Userdata).
     """
+    # By hand: networkx needs the product graph of vertices and key states, and takes 16 ms instead
+    # of 2 ms for 1,000 states and 177 ms instead of 24 ms for 10,000, that is 11 % of a check with
+    # one fault, 78 % with ten (python bench/searches.py).
     found: dict[Reached, tuple[Reached, str] | None] = {
         Reached(START, state): None for state in states
     }
