@@ -21,7 +21,7 @@ from contextlib import contextmanager
 from importlib import import_module
 from itertools import product
 from pathlib import Path
-from typing import Any, get_args
+from typing import Any
 
 from smachac.analysis import def_use, lost_outputs, reaching_values
 from smachac.analysis.def_use import KeyState, Reached
@@ -68,12 +68,14 @@ def search_in_product(flow: Any, scope: Any, key: str, states: Any, *, stops: bo
     graph = nx.DiGraph()
     origin = Reached("", "unset")
     graph.add_edges_from((origin, Reached(START, state)) for state in states)
-    key_states: tuple[KeyState, ...] = get_args(KeyState)
+    key_states: tuple[KeyState, ...] = ("unset", "reported", "set")
     for vertex in scope.steps:
-        for state in key_states:
-            here = Reached(vertex, state)
+        for key_state in key_states:
+            here = Reached(vertex, key_state)
             for step, after in def_use._following(scope, key, here, stops):
-                every = ("set", after) if step.target in beside and after != "set" else (after,)
+                every: tuple[KeyState, ...] = (after,)
+                if step.target in beside and after != "set":
+                    every = ("set", after)
                 for each in every:
                     target = Reached(step.target, each)
                     if not graph.has_edge(here, target):

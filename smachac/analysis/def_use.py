@@ -15,8 +15,8 @@ from smachac.ir.graph import START, Vertex
 from smachac.ir.nodes import Concurrence, Key, Leaf, Node
 from smachac.ir.traversal import outcome_names, remapping
 
-KeyState = Literal["unset", "told", "set"]
-"""Whether the key is set on a path. `told`: unset and already reported, because a container on
+KeyState = Literal["unset", "reported", "set"]
+"""Whether the key is set on a path. `reported`: unset and already reported, because a container on
 the path needs it."""
 
 Status = Literal["always", "sometimes", "never", "unreachable"]
@@ -81,7 +81,7 @@ def _following(
     if stops and state == "unset" and key in scope.reads.get(here.vertex, ()):
         if here.vertex not in scope.inner:
             return
-        state = "told"
+        state = "reported"
     for step in scope.steps.get(here.vertex, ()):
         writes = step.writes
         if state == "set" or writes.anything or key in writes.perhaps:

@@ -37,10 +37,10 @@ def lost_outputs(flow: DataFlow, lost_keys: Iterable[Missing]) -> tuple[Lost, ..
 
 
 def _lost(flow: DataFlow, lost_keys: Iterable[Missing]) -> Iterator[Lost]:
-    told: set[tuple[str, str]] = set()
+    reported: set[tuple[str, str]] = set()
     for missing in lost_keys:
         lost = _missed(flow, missing)
-        told.add((lost.keeper.path, lost.own))
+        reported.add((lost.keeper.path, lost.own))
         yield lost
     left = MOST_STEPS
     read = cache(lambda path: frozenset(chain(*flow.scopes[path].reads.values())))
@@ -51,7 +51,7 @@ def _lost(flow: DataFlow, lost_keys: Iterable[Missing]) -> Iterator[Lost]:
         for writer, written, own in _kept(scope):
             around_it = flow.scopes[outer]
             key = remapping(scope.container).get(own, own)
-            if key not in read(outer) or left <= 0 or (scope.path, own) in told:
+            if key not in read(outer) or left <= 0 or (scope.path, own) in reported:
                 continue
             left -= len(around_it.steps) + len(around_it.reads)
             vertex = _read_after(around_it, place_in(outer, scope.path), key)

@@ -101,8 +101,8 @@ def _linear(path: str, container: Linear, known: OutcomesByPath) -> set[str]:
     for old, child in zip(container.children, whole.children, strict=True):
         states[child.name] = child
         # The corrected leaf has more information than the misspelt one.
-        told = old.outcomes or is_open(old)
-        ends[child.name] = known[f"{path}/{old.name}"] if told else outcome_names(child)
+        is_known = old.outcomes or is_open(old)
+        ends[child.name] = known[f"{path}/{old.name}"] if is_known else outcome_names(child)
     todo = [whole.initial] if whole.initial in names else list(states)
     seen, found = set(todo), set[str]()
     while todo:

@@ -147,6 +147,6 @@ def replaces(child: Node, key: str, outcome: str) -> bool:
         return bool(own)
     if child.open and not child.outputs:
         return True
-    told = {name for _, names in child.writes for name in names}
+    listed = {name for _, names in child.writes for name in names}
     here = {name for ending, names in child.writes for name in names if ending == outcome}
-    return any(name in here if name in told else outcome != PREEMPTED for name in own)
+    return any(name in here if name in listed else outcome != PREEMPTED for name in own)

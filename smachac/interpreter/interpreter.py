@@ -20,9 +20,9 @@ from smachac.interpreter.result import (
     Behaviour,
     ErrorKind,
     Event,
+    InterpreterResult,
     RunError,
     RunFailure,
-    RunResult,
 )
 from smachac.interpreter.scheduler import Scheduler
 from smachac.interpreter.userdata import (
@@ -67,7 +67,7 @@ def run(
     max_steps: int = MAX_STEPS,
     userdata: Mapping[str, object] | None = None,
     preempt_at: Collection[int] = (),
-) -> RunResult:
+) -> InterpreterResult:
     """Run a machine once, from its start to an outcome or an error.
 
     `on_event` receives each event of the trace. `schedule` names the branch that continues at each
@@ -129,7 +129,7 @@ class Interpreter:
         self._scopes[self._root.name].update(userdata or {})
         self._sources = _trace_sources(self._root) if on_event else {}
 
-    def execute(self, parent: dict[str, object] | None = None) -> RunResult:
+    def execute(self, parent: dict[str, object] | None = None) -> InterpreterResult:
         """Run the machine once more. `parent` is the userdata around it, as if it were a nested
         state."""
         root, path = self._root, self._root.name
@@ -159,7 +159,7 @@ class Interpreter:
             if outcome is not None:
                 self.emit("finish", path, outcome=outcome)
         scopes = {where: dict(scope) for where, scope in self._scopes.items()}
-        return RunResult(
+        return InterpreterResult(
             outcome=outcome,
             userdata=scopes[path],
             error=failure,
