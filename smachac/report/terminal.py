@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from bisect import bisect_left, bisect_right
-from functools import lru_cache
 from typing import NamedTuple
 from unicodedata import category, combining, east_asian_width
 
@@ -44,7 +43,6 @@ def _joins(character: str) -> bool:
     )
 
 
-@lru_cache(maxsize=4096)
 def _glyph(character: str, *, alone: bool) -> tuple[str, int]:
     """The printed form of a character that is no tab, and its width in columns.
 
