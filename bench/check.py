@@ -186,7 +186,7 @@ def phases(path: str) -> dict[str, float]:
     from smachac.frontend.files import disk_library, read_source
     from smachac.frontend.lower import lower
     from smachac.frontend.resolve import resolve
-    from smachac.frontend.suppressions import allowances, heeded
+    from smachac.frontend.suppressions import apply_suppressions, suppressions_in
     from smachac.ir.recursion import deep_recursion
     from smachac.ir.traversal import walk
 
@@ -210,8 +210,8 @@ def phases(path: str) -> dict[str, float]:
         ]
         report += check_machine(machine, tuple(rules))
         parse, texts = library.parse, resolved.sources
-        given = [fit for text in texts for fit in allowances(text, report, CODES, parse)]
-        report = apply_severities(in_order(heeded(report, given)[0]), library.policy)
+        given = [fit for text in texts for fit in suppressions_in(text, report, CODES, parse)]
+        report = apply_severities(in_order(apply_suppressions(report, given)[0]), library.policy)
         laps("report")
     return {
         **laps.found,

@@ -17,7 +17,7 @@ from smachac.driver import CODES, Analysis, MachineCheck, analyse, read_machine
 from smachac.frontend.errors.suppressions import unused_allowances
 from smachac.frontend.files import Disk, disk_library
 from smachac.frontend.loader import Library
-from smachac.frontend.suppressions import Allowance
+from smachac.frontend.suppressions import Suppression
 from smachac.frontend.yaml_tree import Seq
 from smachac.ir.recursion import deep_recursion
 from smachac.ir.traversal import remapping
@@ -112,7 +112,7 @@ def check_scripts(
 
 def _report_unused_allowances(analyses: Mapping[str, Analysis], reports: dict[str, Report]) -> None:
     """SM021 for suppressions in sub-scripts that suppress nothing for any caller."""
-    needed: set[Allowance] = set()
+    needed: set[Suppression] = set()
     for analysis in analyses.values():
         needed |= set(analysis.given) - set(analysis.unused)
     done = set(needed)

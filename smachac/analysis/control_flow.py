@@ -13,7 +13,6 @@ from itertools import pairwise
 from typing import TYPE_CHECKING, TypeAlias
 
 from smachac.diagnostics.diagnostic import PathStep, ended, entered
-from smachac.diagnostics.source import assert_never
 from smachac.diagnostics.spelling import Guesser, guesser
 from smachac.ir import nodes
 from smachac.ir.graph import START, can_end, edges, reachable
@@ -152,10 +151,9 @@ def _never_ends(path: str, node: Node, inner: set[str]) -> bool:
         case Concurrence():
             lasting = [f"{path}/{child.name}" in inner for child in node.children]
             return bool(lasting) and (all(lasting) if node.join == "any" else any(lasting))
-        case nodes.Iterator():
-            skips = any(edge.source == START and edge.kind == "exhausted" for edge in edges(node))
-            return not skips and any(f"{path}/{c.name}" in inner for c in node.children)
-    return assert_never(node)
+    skips = any(edge.source == START and isinstance(edge.target, tuple) for edge in edges(node))
+    lasting = [f"{path}/{child.name}" in inner for child in node.children]
+    return bool(lasting) and all(lasting) and not skips
 
 
 MOST_STEPS = 50

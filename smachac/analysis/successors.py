@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from collections import deque
 from collections.abc import Iterable, Iterator, Mapping, Sequence
 from functools import cached_property, partial
 from typing import NamedTuple
@@ -51,20 +50,23 @@ class Routes:
 
     def arrivals(self, path: str, outcome: str) -> list[Arrival]:
         """Where an outcome of a state can lead, through the ends of containers."""
+        import networkx as nx
+
+        start: Event = (path, outcome)
+        through: dict[Event, tuple[Event, ...]] = {start: ()}
+        for last, event in nx.generic_bfs_edges(self.graph, start, self._ends_after):
+            through[event] = (*through[last], event)
         found: list[Arrival] = []
-        through: dict[Event, tuple[Event, ...]] = {(path, outcome): ()}
-        todo = deque(through)
-        while todo:
-            here = todo.popleft()
-            if through[here] and here[0] == self.root.name:
-                found.append(Arrival(through[here], ""))
-            for event in self.after(here):
-                if not event[1]:
-                    found.append(Arrival(through[here], event[0]))
-                elif event not in through:
-                    through[event] = (*through[here], event)
-                    todo.append(event)
+        for here, ended in through.items():
+            if ended and here[0] == self.root.name:
+                found.append(Arrival(ended, ""))
+            entered = (event[0] for event in self.after(here) if not event[1])
+            found += (Arrival(ended, target) for target in entered)
         return found
+
+    def _ends_after(self, event: Event) -> Iterator[Event]:
+        """The ends of containers that can follow an event at once."""
+        return (each for each in self.after(event) if each[1])
 
 
 def _possible_edges(known: Endings, path: str, container: Container) -> Iterator[Edge]:

@@ -38,7 +38,6 @@ def is_open(type_: Type) -> bool:
     return type_.name == "any" or (not type_.args and _is_unknown(type_.name))
 
 
-@lru_cache(maxsize=1000)
 def _is_unknown(name: str) -> bool:
     return name not in WORDS and name not in ("tuple", "record") and not re.search("[./]", name)
 
@@ -77,6 +76,8 @@ def unit_of(type_: Type) -> str:
     return str(type_.args[0]) if type_.name in ("int", "float") and type_.args else ""
 
 
+# Cached, because keys have few types: without, a check of 1,000 states whose keys have units takes
+# 301 ms instead of 281 ms.
 @lru_cache(maxsize=10_000)
 def misfit(given: Type, wanted: Type) -> Misfit | None:
     """Why a value of one type may not be read as another; None where it may."""
@@ -130,7 +131,6 @@ def _misfit_choice(choice: Type | int | str, wanted: Type) -> Misfit | None:
     return Misfit("type", Type("literal", (choice,)), wanted)
 
 
-@lru_cache(maxsize=1000)
 def _message(name: str) -> tuple[str, ...]:
     """A type of ROS without regard to how it is spelt: `a/B`, `a/msg/B`, `a.msg.B`."""
     return tuple(part for part in re.split("[./]", name) if part != "msg")
@@ -148,7 +148,6 @@ def _misfit_numbers(given: Type, wanted: Type) -> Misfit | None:
 _FACTOR = re.compile(r"([*/]?)([^*/^]+)(?:\^(-?\d+))?")
 
 
-@lru_cache(maxsize=1000)
 def _powers(unit: str) -> tuple[tuple[str, int], ...]:
     """A unit as its factors: `m/s^2` and `s^-2*m` are one."""
     powers: dict[str, int] = {}
@@ -210,7 +209,6 @@ def constants(choices: Iterable[int | str]) -> Type:
     return type_ if len(found) <= MOST_CHOICES else plain(type_)
 
 
-@lru_cache(maxsize=10_000)
 def join(one: Type, other: Type) -> Type:
     """The least type that both fit; `any` where there is none."""
     if one == other:
@@ -308,6 +306,8 @@ def plain(type_: Type) -> Type:
     return type_
 
 
+# Cached, because keys have few types: without, a check of 300 states that read long lists takes
+# 874 ms instead of 827 ms.
 @lru_cache(maxsize=10_000)
 def widened(type_: Type) -> Type:
     """A type with the forms of literals in it as a script would write them."""

@@ -61,15 +61,15 @@ def dead_key(context: Context) -> Iterator[Finding]:
               transitions: {succeeded: held}
     """
     flow = context.mended_flow
-    told = {(each.keeper.path, each.own) for each in context.lost_outputs}
-    told |= {(each.other, each.key) for each in context.missing_keys("outside")}
+    reported = {(each.keeper.path, each.own) for each in context.lost_outputs}
+    reported |= {(each.other, each.key) for each in context.missing_keys("outside")}
     for scope in flow.scopes.values():
         container = scope.container
         if container.sugar or _sees_everything(scope):
             continue
         read = _read_in(scope) | scope.outputs.keys()
         for key, node, span in _set_by_the_script(scope):
-            if key in read or (scope.path, key) in told:
+            if key in read or (scope.path, key) in reported:
                 continue
             # The userdata of the machine can be read after the run.
             is_result = container is flow.machine.root and node is not container

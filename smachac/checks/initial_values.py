@@ -62,21 +62,21 @@ def _overruled(path: str, preset: Preset) -> Iterator[Finding]:
     if not preset.given:
         return
     *others, last = preset.given
-    vain = [each for each in others if not _alike(each, last)]
-    if not vain:
+    unused = [each for each in others if not _alike(each, last)]
+    if not unused:
         return
-    giver = path.rpartition("/")[2] if vain[0].own else vain[0].state.text
+    owner = path.rpartition("/")[2] if unused[0].own else unused[0].state.text
     yield Finding(
-        span=_place(vain[0], last),
-        message=f"the initial value of `{preset.key}` in `{giver}` is never used:"
+        span=_place(unused[0], last),
+        message=f"the initial value of `{preset.key}` in `{owner}` is never used:"
         f" `{last.state.text}` overwrites it",
         arguments=(preset.key,),
         help="use another key in one of the two states, with `remapping`"
-        if not vain[0].own
+        if not unused[0].own
         else f"set `{preset.key}` only once, or use another key in the state, with `remapping`",
         related=(
-            *(Related(span=each.span, message="overwritten too") for each in vain[1:]),
-            Related(span=_place(last, vain[0]), message="this value is used"),
+            *(Related(span=each.span, message="overwritten too") for each in unused[1:]),
+            Related(span=_place(last, unused[0]), message="this value is used"),
         ),
         node=path,
     )

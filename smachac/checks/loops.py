@@ -271,8 +271,8 @@ def _spin(
     path: str, region: list[str], steps: SiblingSteps, waits: frozenset[str]
 ) -> list[PathStep]:
     """A cycle in a region on which no state waits; empty if there is none."""
-    hasty = [name for name in region if name not in waits]
-    circles = (circle(path, part, steps) for part in regions(hasty, steps))
+    without_wait = [name for name in region if name not in waits]
+    circles = (circle(path, part, steps) for part in regions(without_wait, steps))
     return next(filter(None, circles), [])
 
 

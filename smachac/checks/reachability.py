@@ -17,7 +17,6 @@ from smachac.checks.outcomes import endings, unhandled
 from smachac.checks.rule import rule
 from smachac.checks.timeouts import undeclared_stops
 from smachac.diagnostics.diagnostic import Finding, Severity
-from smachac.diagnostics.source import assert_never
 from smachac.diagnostics.spelling import guesser
 from smachac.diagnostics.wording import listed
 from smachac.ir import nodes
@@ -146,7 +145,7 @@ def _possible_outcomes(container: Container) -> frozenset[str] | None:
             return _if_declared(container, results)
         case nodes.Iterator():
             return _iterator_outcomes(container)
-    return assert_never(container)
+    return None
 
 
 def _if_declared(container: Container, results: set[str]) -> frozenset[str] | None:
@@ -253,7 +252,7 @@ def no_initial(context: Context) -> Iterator[Finding]:
                 related=calls(container, container.span),
                 node=path,
             )
-        elif not isinstance(container, nodes.Iterator):
+        elif isinstance(container, StateMachine | Sequence):
             yield from _unknown_initial(path, container)
 
 

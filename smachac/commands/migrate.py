@@ -228,19 +228,14 @@ def _types(tree: Tree) -> Iterator[str]:
 
 def _unreported(found: Iterable[SmachaDifference], known: Report) -> Iterator[SmachaDifference]:
     """The differences of a template that no finding reports: SM606 for a line of Python 2, SM605
-    for a line with an undefined name."""
+    for an undefined variable."""
     old_python = {item.span.line for item in known if item.code == "SM606"}
-    failing = [item.span.text for item in known if item.code == "SM605"]
+    undefined = {item.finding.arguments for item in known if item.code == "SM605"}
     for difference in found:
-        if (
-            difference.name == "python-2"
-            and difference.what == "note"
-            and difference.span.line in old_python
-        ):
+        is_old = difference.name == "python-2" and difference.what == "note"
+        if is_old and difference.span.line in old_python:
             continue
-        if difference.name == "unknown-name" and any(
-            difference.span.text in line for line in failing
-        ):
+        if difference.variable and ("undefined", difference.variable) in undefined:
             continue
         yield difference
 

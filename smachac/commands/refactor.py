@@ -118,7 +118,7 @@ class HasErrorsError(Exception):
     """The script has errors, so its machine is not known."""
 
 
-class Desk:
+class EditedScript:
     """One script with all texts it is read from, before a change, with line feeds as line ends."""
 
     def __init__(self, arguments: Namespace) -> None:
@@ -128,7 +128,7 @@ class Desk:
         self.path: Path = arguments.script
         self.disk = Disk(plain=True)
         self.analysis = self.read(self.disk)
-        self.sheets: dict[str, ScriptEditor] = {}
+        self.editors: dict[str, ScriptEditor] = {}
         self.made: dict[str, str] = {}
 
     def read(self, disk: Disk, path: Path | None = None) -> Analysis:
@@ -165,26 +165,26 @@ class Desk:
             raise HasErrorsError
         return self.analysis.checked
 
-    def sheet(self, source: Source) -> ScriptEditor:
+    def editor(self, source: Source) -> ScriptEditor:
         """The editable text of a source. Raises RefusedError."""
         from smachac.diagnostics.source import Span
         from smachac.refactor.cst import UnsupportedYamlError
         from smachac.refactor.editor import RefusedError, ScriptEditor
 
         name = os.path.realpath(source.name)
-        if name not in self.sheets:
+        if name not in self.editors:
             try:
-                self.sheets[name] = ScriptEditor(source)
+                self.editors[name] = ScriptEditor(source)
             except UnsupportedYamlError as error:
                 words = f"{source.name} cannot be rewritten: {error}"
                 raise RefusedError(Span(source, 0, 0), words) from error
-        return self.sheets[name]
+        return self.editors[name]
 
     def texts(self) -> dict[str, str]:
         """The changed texts and the new ones, by real path."""
-        found = {name: sheet.result() for name, sheet in self.sheets.items()}
+        found = {name: editor.result() for name, editor in self.editors.items()}
         changed = {
-            name: text for name, text in found.items() if text != self.sheets[name].source.text
+            name: text for name, text in found.items() if text != self.editors[name].source.text
         }
         return {**changed, **self.made}
 
@@ -242,8 +242,8 @@ class Desk:
         sources: dict[str, Source] = {}
         disk = Disk()
         for name, text in self.texts().items():
-            shown = next((sheet.source.name for path, sheet in self.sheets.items() if path == name),
-                         os.path.relpath(name))  # fmt: skip
+            known = self.editors.get(name)
+            shown = known.source.name if known is not None else os.path.relpath(name)
             if name in self.made:
                 texts[name], sources[name] = text, Source(shown, "")
                 continue
@@ -257,7 +257,7 @@ class Desk:
         return put_changes(texts, sources, self.arguments, "changed", new=frozenset(self.made))
 
 
-def perform(arguments: Namespace, command: str, change: Callable[[Desk], int]) -> int:
+def perform(arguments: Namespace, command: str, change: Callable[[EditedScript], int]) -> int:
     """Run one of the commands below, and report why a change is refused; the exit code."""
     from smachac.diagnostics.diagnostic import Code, Diagnostic, Finding, Severity, has_errors
     from smachac.ir.recursion import deep_recursion
@@ -265,13 +265,13 @@ def perform(arguments: Namespace, command: str, change: Callable[[Desk], int]) -
     from smachac.refactor.locate import NotFoundError
 
     with deep_recursion():
-        desk = Desk(arguments)
+        script = EditedScript(arguments)
         try:
-            return change(desk)
+            return change(script)
         except HasErrorsError:
-            errors = [each for each in desk.analysis.report if has_errors([each])]
+            errors = [each for each in script.analysis.report if has_errors([each])]
             print_report(errors, arguments, sys.stderr)
-            if desk.analysis.machine is not None:
+            if script.analysis.machine is not None:
                 print("nothing was changed: fix the errors of the script first", file=sys.stderr)
             return FINDINGS
         except NotFoundError as error:
@@ -293,24 +293,24 @@ def extract_command(arguments: Namespace) -> int:
     from smachac.refactor.extract_inline import extract
     from smachac.refactor.locate import find_state
 
-    def change(desk: Desk) -> int:
-        path, node = find_state(desk.machine, arguments.state)
-        if path == desk.machine.root.name:
+    def change(script: EditedScript) -> int:
+        path, node = find_state(script.machine, arguments.state)
+        if path == script.machine.root.name:
             raise RefusedError(node.span, "this is the whole script")
-        sheet = desk.sheet(node.span.source)
+        editor = script.editor(node.span.source)
         folder = Path(node.span.source.name).parent
         name = arguments.to or Path(f"{node.name.lower()}.yml")
         target = folder / name
         if name.suffix not in (".yml", ".yaml") or len(name.parts) != 1:
             return usage("--to needs the name of a file without a folder, such as `pick.yml`")
-        text = extract(sheet, node.span, name.stem)
-        if target.exists() or desk.disk.is_file(target):
+        text = extract(editor, node.span, name.stem)
+        if target.exists() or script.disk.is_file(target):
             raise RefusedError(
                 node.span, f"{target} exists already", "choose another name with --to"
             )
-        desk.made[os.path.realpath(target)] = text
-        desk.proven(node.span, same_machine)
-        return desk.put()
+        script.made[os.path.realpath(target)] = text
+        script.proven(node.span, same_machine)
+        return script.put()
 
     return perform(arguments, "extract", change)
 
@@ -322,13 +322,13 @@ def inline_command(arguments: Namespace) -> int:
     from smachac.refactor.extract_inline import inline
     from smachac.refactor.locate import find_state
 
-    def change(desk: Desk) -> int:
-        _, node = find_state(desk.machine, arguments.state)
-        sheet = desk.sheet(node.span.source)
-        sub = _called(desk, node)
-        inline(sheet, node.span, ScriptEditor(sub))
-        desk.proven(node.span, same_machine)
-        return desk.put()
+    def change(script: EditedScript) -> int:
+        _, node = find_state(script.machine, arguments.state)
+        editor = script.editor(node.span.source)
+        sub = _called(script, node)
+        inline(editor, node.span, ScriptEditor(sub))
+        script.proven(node.span, same_machine)
+        return script.put()
 
     return perform(arguments, "inline", change)
 
@@ -343,19 +343,21 @@ def rename_command(arguments: Namespace) -> int:
     if not is_plain(arguments.new):
         return usage(f"`{arguments.new}` needs quotes in YAML: choose another name")
 
-    def change(desk: Desk) -> int:
-        kind, declared, old = find_named(desk.machine, arguments.path, arguments.kind)
+    def change(script: EditedScript) -> int:
+        kind, declared, old = find_named(script.machine, arguments.path, arguments.kind)
         if old == arguments.new:
-            return desk.put()
-        _check_written(desk.machine, kind, declared, old)
-        work = Renaming(old, arguments.new, desk.sheet)
+            return script.put()
+        _check_written(script.machine, kind, declared, old)
+        work = Renaming(old, arguments.new, script.editor)
         rename = {"state": rename_state, "outcome": rename_outcome, "key": rename_key}[kind]
-        rename(work, desk.machine, declared)
-        shared = desk.sheets.keys() - {os.path.realpath(desk.path)}
-        for _, machine in desk.others(shared) if shared else ():
+        rename(work, script.machine, declared)
+        shared = script.editors.keys() - {os.path.realpath(script.path)}
+        for _, machine in script.others(shared) if shared else ():
             rename(work, machine, declared)
-        desk.proven(declared, lambda one, other: equal_after_rename(one, other, old, arguments.new))
-        return desk.put()
+        script.proven(
+            declared, lambda one, other: equal_after_rename(one, other, old, arguments.new)
+        )
+        return script.put()
 
     return perform(arguments, "rename", change)
 
@@ -394,8 +396,8 @@ def contain_command(arguments: Namespace) -> int:
     if not is_plain(arguments.name):
         return usage(f"`{arguments.name}` needs quotes in YAML: choose another name")
 
-    def change(desk: Desk) -> int:
-        before = desk.machine
+    def change(script: EditedScript) -> int:
+        before = script.machine
         path, _ = find_state(before, arguments.states[0])
         above = path.rpartition("/")[0]
         if not above:
@@ -403,7 +405,7 @@ def contain_command(arguments: Namespace) -> int:
         _, parent = find_state(before, above)
         assert not isinstance(parent, Leaf)
         if isinstance(parent, StateMachine):
-            facts = partial(_facts, before.state_types, desk.library())
+            facts = partial(_facts, before.state_types, script.library())
             parent = with_inferred_interfaces(parent, facts)
         known = {child.name: child for child in parent.children}
         names = [each.rpartition("/")[2] for each in arguments.states]
@@ -411,12 +413,12 @@ def contain_command(arguments: Namespace) -> int:
             if name not in known:
                 raise different_container_error(before, above, name, known)
         inside = [child for child in parent.children if child.name in names]
-        presets = preset_keys(desk.sheet(inside[0].span.source), inside)
+        presets = preset_keys(script.editor(inside[0].span.source), inside)
         made = plan_container(parent, inside, presets, arguments.name, arguments.type)
-        contain(desk.sheet, made)
-        after = desk.proven(inside[0].span, lambda one, two: equal_after_contain(one, two, made))
-        _no_worse(desk.analysis, after, inside[0].span)
-        return desk.put()
+        contain(script.editor, made)
+        after = script.proven(inside[0].span, lambda one, two: equal_after_contain(one, two, made))
+        _no_worse(script.analysis, after, inside[0].span)
+        return script.put()
 
     return perform(arguments, "contain", change)
 
@@ -451,20 +453,20 @@ def _no_worse(before: Analysis, after: Analysis, span: Span) -> None:
         raise RefusedError(span, message, found.help)
 
 
-def _called(desk: Desk, node: Node) -> Source:
+def _called(script: EditedScript, node: Node) -> Source:
     """The text of the sub-script that a state calls. Raises RefusedError."""
     from smachac.refactor.cst import Atom
     from smachac.refactor.editor import RefusedError, variable
     from smachac.refactor.field_order import variables_of
 
-    sheet = desk.sheet(node.span.source)
-    body = variables_of(sheet.state(node.span).item)
-    script = variable(body, "script") if body is not None else None
-    if script is None:
+    editor = script.editor(node.span.source)
+    body = variables_of(editor.state(node.span).item)
+    called = variable(body, "script") if body is not None else None
+    if called is None:
         help = "`smachac extract` makes a sub-script of a container"
         raise RefusedError(node.span, f"`{node.name}` calls no sub-script", help)
-    words = script.value.text.strip("'\"") if isinstance(script.value, Atom) else ""
-    found = desk.library().script(words, node.span.source.name)
+    words = called.value.text.strip("'\"") if isinstance(called.value, Atom) else ""
+    found = script.library().script(words, node.span.source.name)
     if found is None:
         message = "the name of the sub-script comes from a look-up"
         raise RefusedError(node.span, message, "replace the look-up by the name first")

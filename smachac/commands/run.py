@@ -29,7 +29,7 @@ if TYPE_CHECKING:
     from smachac.diagnostics.source import Span
     from smachac.driver import Analysis
     from smachac.frontend.yaml_tree import Tree
-    from smachac.interpreter.result import RunResult
+    from smachac.interpreter.result import InterpreterResult
     from smachac.interpreter.scenario import Scenario, ScenarioProblem
     from smachac.ir.nodes import Machine
 
@@ -230,7 +230,7 @@ def play_orders(machine: Machine, scenario: Scenario, seed: int, most: int) -> t
     from smachac.interpreter.scenario import scenario_behaviour
     from smachac.interpreter.userdata import trace_value
 
-    ends: dict[str, list[RunResult]] = {}
+    ends: dict[str, list[InterpreterResult]] = {}
     orders = explore(
         machine, lambda: scenario_behaviour(scenario, machine, builtin_behaviour(seed))
     )
@@ -252,7 +252,7 @@ def play_orders(machine: Machine, scenario: Scenario, seed: int, most: int) -> t
     return "\n".join(lines), len(ends) == 1
 
 
-def _short_turns(result: RunResult) -> Iterator[str]:
+def _short_turns(result: InterpreterResult) -> Iterator[str]:
     """The turns of a run in the form of `--schedule`: names, or paths where names are ambiguous."""
     for choice in result.choices:
         name = choice.taken.rpartition("/")[2]

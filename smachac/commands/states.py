@@ -66,8 +66,9 @@ def _known_types(templates: list[Path]) -> list[Known]:
     from pathlib import Path
 
     from smachac.frontend.files import disk_library
+    from smachac.frontend.schema import CONTAINERS
     from smachac.frontend.state_types import find_state_type
-    from smachac.report.state_types import CONTAINERS, Known, container_type
+    from smachac.report.state_types import Known, container_type
     from smachac.targets import load_target, target_names
     from smachac.targets.interface_check import languages
 
@@ -87,5 +88,5 @@ def _known_types(templates: list[Path]) -> list[Known]:
         if type_ is None or not (mine or library.template(f"{name}.yml")):
             continue  # a template that only other templates include
         known.append(row(type_, "of this project" if mine else "built-in"))
-    known += [row(container_type(name), "built-in") for name in CONTAINERS]
+    known += [row(container_type(name), "built-in") for name in CONTAINERS.values()]
     return sorted(known, key=lambda each: (each.place == "built-in", each.type.name))

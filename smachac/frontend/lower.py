@@ -9,7 +9,7 @@ from dataclasses import replace
 from pathlib import PurePath
 from typing import Any
 
-from smachac.diagnostics.source import Span, Word
+from smachac.diagnostics.source import Span, Word, assert_never
 from smachac.frontend import schema
 from smachac.frontend.desugar import desugared
 from smachac.frontend.script import ERROR, Keys, Script, State
@@ -19,6 +19,7 @@ from smachac.ir.nodes import (
     Concurrence,
     Condition,
     Container,
+    ContainerKind,
     Expression,
     Given,
     Key,
@@ -218,33 +219,40 @@ def _without_optional(child: Node, state: State, outcomes: frozenset[str]) -> No
     return child if len(kept) == len(child.outcomes) else replace(child, outcomes=kept)
 
 
-def _container(state: State, owner: str) -> Container:
+def _container(state: State, owner: ContainerKind) -> Container:
     children = tuple([_node(child) for child in state.states])
     fields = _interface(state)
     fields["outcomes"] = tuple(Outcome(name=word.text, span=word.span) for word in state.outcomes)
     fields["userdata"] = presets(state)
-    outcomes = frozenset(outcome.name for outcome in fields["outcomes"])
     match owner:
         case "Concurrence":
             return _concurrence(state, fields, children)
         case "Iterator":
             return _iterator(state, fields, children)
+        case "StateMachine":
+            return StateMachine(**fields, **_linear(state, children), forever=state.forever)
         case "Sequence":
             connector = _text(state.connector_outcome)
-            children = _linked(children, connector)
-            fields["connector_outcome"] = connector
+            linear = _linear(state, _linked(children, connector))
+            return Sequence(**fields, **linear, connector_outcome=connector)
+    return assert_never(owner)
+
+
+def _linear(state: State, children: tuple[Node, ...]) -> dict[str, Any]:
+    """The children of a state machine or sequence, with their implied edges, and its initial
+    state."""
+    outcomes = frozenset(word.text for word in state.outcomes)
     if state.on_error is not None:
         target = state.on_error
         children = tuple([_with_error_transition(child, target) for child in children])
     children = tuple(map(_without_optional, children, state.states, [outcomes] * len(children)))
-    fields["children"] = tuple(_with_implicit(child, outcomes) for child in children)
     first = children[0].name if children else ""
     initial = state.initial or Word(first, state.name.span)
-    fields["initial"] = initial.text
-    fields["initial_span"] = initial.span
-    if owner == "Sequence":
-        return Sequence(**fields)
-    return StateMachine(**fields, forever=state.forever)
+    return {
+        "children": tuple(_with_implicit(child, outcomes) for child in children),
+        "initial": initial.text,
+        "initial_span": initial.span,
+    }
 
 
 def _text(word: Word | None, default: str = "") -> str:
@@ -252,6 +260,7 @@ def _text(word: Word | None, default: str = "") -> str:
 
 
 def _node(state: State) -> Node:
+    assert state.owner != "base"
     node = _leaf(state) if state.owner == "state" else _container(state, state.owner)
     words = [key for key, _ in state.transitions]
     for part in (state.sugar.retry, state.sugar.for_each):

@@ -8,6 +8,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass, field, replace
+from typing import Literal
 
 from smachac.diagnostics.diagnostic import Related, Report
 from smachac.diagnostics.source import Source, Span, Word
@@ -39,6 +40,7 @@ from smachac.frontend.params import (
     size_up_to,
 )
 from smachac.frontend.robots import robot_of
+from smachac.frontend.schema import FieldOwner
 from smachac.frontend.script import TIMER, Pairs, Script, State, Sugar
 from smachac.frontend.state_fields import Entries, read_fields
 from smachac.frontend.state_types import find_state_type
@@ -152,7 +154,7 @@ class _Resolver:
         name: Word,
         own: dict[str, Entry],
         around: _Environment,
-        role: str = "",
+        role: Literal["", "base"] = "",
         begin: Mark | None = None,
     ) -> State:
         """The state with these fields. `role` is "base" for the script itself; `begin` is the mark
@@ -234,7 +236,7 @@ class _Resolver:
         self.report.append(too_big(span, message, help, arguments=("levels",)))
         return Entry(entry.key, known_wrong(span))
 
-    def children(self, tree: Tree, owner: str, around: _Environment) -> tuple[State, ...]:
+    def children(self, tree: Tree, owner: FieldOwner, around: _Environment) -> tuple[State, ...]:
         """The states of a list. An Iterator has one, which sees the Iterator's keys as they are."""
         if not isinstance(tree, Seq):
             wrong(tree, "states", self.report)
@@ -361,8 +363,8 @@ class _Resolver:
         return self.types[name]
 
     def type_of(
-        self, name: Word, entries: Entries, role: str, around: _Environment
-    ) -> tuple[StateType, str]:
+        self, name: Word, entries: Entries, role: Literal["", "base"], around: _Environment
+    ) -> tuple[StateType, FieldOwner]:
         """The state type of a state, and its owner in the schema."""
         entry = entries.get("template")
         word = as_name(entry.value, self.report) if entry else None
@@ -374,11 +376,12 @@ class _Resolver:
             related = tuple(Related(span=each, message=CALLED_HERE) for each in calls)
             owner = Owner(held.text, f"`{held.text}`")
             self.report.append(missing_variable(held.span, "template", owner, related))
-        nested = "StateMachine" if "states" in entries else "state"
+        nested: FieldOwner = "StateMachine" if "states" in entries else "state"
         if word is None or not word.text:
             return StateType(name="", open=True), role or nested
-        if not role and word.text in schema.CONTAINERS:
-            return StateType(name=word.text, kind="container"), word.text
+        kind = schema.CONTAINERS.get(word.text)
+        if not role and kind is not None:
+            return StateType(name=word.text, kind="container"), kind
         found = self.state_type(word.text)
         if found is None:
             searched, names = self.known_templates()

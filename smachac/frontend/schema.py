@@ -2,13 +2,27 @@
 
 from __future__ import annotations
 
-from typing import NamedTuple
+from collections.abc import Mapping
+from typing import Literal, NamedTuple, TypeAlias, get_args
 
-CONTAINERS = ("StateMachine", "Sequence", "Concurrence", "Iterator")
-"""The names of the built-in container types."""
+from smachac.ir.nodes import ContainerKind
 
-_ALL = "base StateMachine Sequence Concurrence Iterator state"
+FieldOwner: TypeAlias = Literal["base", "state"] | ContainerKind
+"""What has fields: the script itself, a state that is no container, or a container."""
+
+CONTAINERS: Mapping[str, ContainerKind] = {kind: kind for kind in get_args(ContainerKind)}
+"""The built-in container types by name."""
+
+CONTAINER_DOCS: Mapping[ContainerKind, str] = {
+    "StateMachine": "States that follow one another along transitions.",
+    "Sequence": "States in a row, linked by one outcome.",
+    "Concurrence": "States that run at once; an outcome map says what their outcomes mean.",
+    "Iterator": "One state, run once for each item of a list.",
+}
+"""The descriptions of the container types, as `smachac states` prints them."""
+
 _CONTAINERS = " ".join(CONTAINERS)
+_ALL = f"base {_CONTAINERS} state"
 
 
 class Field(NamedTuple):
@@ -72,7 +86,7 @@ sub-script and may have each field that the called state may have."""
 LONG: dict[str, str] = {row.short: row.name for row in VARIABLES.values() if row.short}
 """Short name to long name."""
 
-REQUIRED: dict[str, tuple[str, ...]] = {
+REQUIRED: Mapping[FieldOwner, tuple[str, ...]] = {
     "base": ("name", "outcomes", "states"),
     "StateMachine": ("outcomes", "states"),
     "Sequence": ("outcomes", "connector_outcome", "states"),

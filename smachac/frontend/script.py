@@ -10,6 +10,7 @@ from dataclasses import dataclass, field
 from typing import NamedTuple, TypeAlias
 
 from smachac.diagnostics.source import Source, Span, Word
+from smachac.frontend.schema import FieldOwner
 from smachac.ir.nodes import Preset, StateType, Unused, Value, Variable
 from smachac.ir.robot import Robot
 from smachac.ir.types import Type
@@ -81,7 +82,7 @@ class State(NamedTuple):
     """
 
     name: Word
-    owner: str
+    owner: FieldOwner
     type: StateType
     via: tuple[Span, ...] = ()
     states: tuple[State, ...] = ()

@@ -16,6 +16,7 @@ from smachac.frontend import schema
 from smachac.frontend.errors.script import Owner, missing_variable, unknown_variable, wrong_shape
 from smachac.frontend.fields import READERS, listed_keys, name_of
 from smachac.frontend.params import Scope
+from smachac.frontend.schema import FieldOwner
 from smachac.frontend.script import Keys, State
 from smachac.frontend.sugar import NAMES, is_own, read_sugar
 from smachac.frontend.unquoted import check_name, check_unquoted
@@ -40,7 +41,7 @@ _BASE_VARIABLES = ("node_name", "function_name", "manifest")
 def read_fields(
     name: Word,
     entries: Entries,
-    owner: str,
+    owner: FieldOwner,
     type_: StateType,
     report: Report,
     *,
@@ -71,7 +72,7 @@ def read_fields(
 
 
 def _known_fields(
-    entries: Entries, owner: str, type_: StateType, report: Report
+    entries: Entries, owner: FieldOwner, type_: StateType, report: Report
 ) -> tuple[dict[str, Any], set[str | None]]:
     """The fields of the schema, read, and for each unknown field the one that it looks like."""
     read: dict[str, Any] = {}
@@ -105,7 +106,7 @@ def _known_fields(
 def _check_required(
     name: Word,
     entries: Entries,
-    owner: str,
+    owner: FieldOwner,
     type_: StateType,
     meant: set[str | None],
     inner: Word | None,
@@ -157,7 +158,7 @@ def _listed_keys(entries: Entries, type_: StateType) -> Iterator[tuple[str, Keys
             yield f"{variable.keys}_keys", listed_keys(entries[name].value)
 
 
-def _variables(entries: Entries, owner: str, type_: StateType) -> Iterator[Variable]:
+def _variables(entries: Entries, owner: FieldOwner, type_: StateType) -> Iterator[Variable]:
     """The variables of the state type that a script sets: all fields that are not the owner's."""
     for name in (*_BASE_VARIABLES, *type_.variables) if owner == "base" else entries:
         entry, row = entries.get(name), schema.VARIABLES.get(name)
@@ -172,7 +173,7 @@ def _variables(entries: Entries, owner: str, type_: StateType) -> Iterator[Varia
         yield Variable(name=name, type=declared, role=role, value=value, span=entry.key.span)
 
 
-def _check_unquoted(entries: Entries, owner: str, type_: StateType, report: Report) -> None:
+def _check_unquoted(entries: Entries, owner: FieldOwner, type_: StateType, report: Report) -> None:
     """The shapes of the variables that programs contain without quotes."""
     if owner == "base" and "function_name" in entries:
         check_unquoted(entries["function_name"].value, "name", report)
@@ -192,7 +193,7 @@ def _written(name: Word, entries: Entries, scope: Scope) -> Iterator[Variable]:
         yield Variable(name="params", value=value, span=name.span)
 
 
-def _owner_of(owner: str, type_: StateType, *, of_type: bool) -> Owner:
+def _owner_of(owner: FieldOwner, type_: StateType, *, of_type: bool) -> Owner:
     """The owner of a variable: the state type, or an owner of the schema."""
     if of_type:
         return Owner(type_.name, f"state type `{type_.name}`")

@@ -20,7 +20,7 @@ from smachac.frontend.errors.suppressions import (
 from smachac.frontend.yaml_tree import Map, Scalar, Seq, Tree, parse
 
 
-class Allowance(NamedTuple):
+class Suppression(NamedTuple):
     """One code of a comment `# smachac: allow SM201 reason`, and the line that it applies to."""
 
     code: str
@@ -38,10 +38,10 @@ _COMMENT = re.compile(
 _CODE = re.compile(r"[^\S\n]*(?P<code>[A-Za-z]{2}\d+)\b[,:]?")
 
 
-def allowances(
+def suppressions_in(
     source: Source, report: Report, codes: Mapping[str, Code], parse: Parser = parse
-) -> list[Allowance]:
-    """The allowances of a text, in its order. SM022 for a comment that is incomplete or names a
+) -> list[Suppression]:
+    """The suppressions of a text, in its order. SM022 for a comment that is incomplete or names a
     code that is not in `codes`.
 
     A comment at the end of a line applies to that line, a comment on a line of its own to the next
@@ -51,7 +51,7 @@ def allowances(
         return []
     hidden = _scalars(source, parse)
     applied = _lines_applied_to(source)
-    found: list[Allowance] = []
+    found: list[Suppression] = []
     for comment in _COMMENT.finditer(source.text):
         before = bisect_right(hidden, (comment.start(), len(source.text)))
         if before and comment.start() < hidden[before - 1][1]:
@@ -96,7 +96,7 @@ def _codes(
     applied: Sequence[int],
     report: Report,
     known: Mapping[str, Code],
-) -> Iterator[Allowance]:
+) -> Iterator[Suppression]:
     line, column = source.position(comment.start())
     if not source.line(line)[: column - 1].strip():
         line = applied[line]
@@ -109,7 +109,7 @@ def _codes(
         if code.text not in known:
             report.append(unknown_code(code, known))
         else:
-            yield Allowance(code.text, code.span, line)
+            yield Suppression(code.text, code.span, line)
     if not words or not source.text[at:end].strip(" \t\r:,-"):
         report.append(unfounded_allowance(span, named=bool(words)))
 
@@ -129,8 +129,8 @@ class Suppressed(NamedTuple):
     the main script that suppressed nothing."""
 
     rest: Report
-    given: tuple[Allowance, ...]
-    unused: tuple[Allowance, ...]
+    given: tuple[Suppression, ...]
+    unused: tuple[Suppression, ...]
 
 
 def suppress(
@@ -145,25 +145,26 @@ def suppress(
     SM021 for a suppression of the main script that suppressed nothing.
     """
     texts = dict.fromkeys((*sources, *(item.span.source for item in report)))
-    given = [fit for text in texts for fit in allowances(text, report, codes, parse)]
-    rest, used = heeded(report, given)
+    given = [fit for text in texts for fit in suppressions_in(text, report, codes, parse)]
+    rest, used = apply_suppressions(report, given)
     unused = [fit for fit in given if fit not in used]
     rest += unused_allowances(Word(fit.code, fit.span) for fit in unused if fit.span.source is main)
     others = tuple(fit for fit in unused if fit.span.source is not main)
     return Suppressed(rest, tuple(given), others)
 
 
-def heeded(report: Report, given: Sequence[Allowance]) -> tuple[Report, set[Allowance]]:
-    """Apply suppressions: the findings that are left, and the allowances that were used.
+def apply_suppressions(
+    report: Report, given: Sequence[Suppression]
+) -> tuple[Report, set[Suppression]]:
+    """Apply suppressions: the findings that are left, and the suppressions that were used.
 
-    A firm finding cannot be suppressed; an allowance for one is reported (SM022).
+    A firm finding cannot be suppressed; a suppression of one is reported (SM022).
     """
     if not given:
         return report, set()
-    by_line: dict[tuple[Source, int, str], Allowance] = {}
-    for allowance in given:
-        line = (allowance.span.source, allowance.line, allowance.code)
-        by_line.setdefault(line, allowance)
+    by_line: dict[tuple[Source, int, str], Suppression] = {}
+    for each in given:
+        by_line.setdefault((each.span.source, each.line, each.code), each)
     kept, used = [], set()
     for item in report:
         fit = by_line.get((item.span.source, item.span.line, item.code))

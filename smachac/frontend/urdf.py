@@ -22,7 +22,7 @@ TURNING = frozenset(["revolute", "continuous"])
 MOVING = TURNING | {"prismatic", "planar", "floating"}
 KINDS = MOVING | {"fixed"}
 
-Stretch = tuple[Joint, ...]
+JointChain = tuple[Joint, ...]
 """Consecutive joints, each a child of the previous one."""
 
 XACRO = "expand the macro file with `xacro`, and name the resulting file"
@@ -210,25 +210,25 @@ def _limbs(joints: Mapping[str, _Link], links: Iterable[str]) -> tuple[tuple[Joi
     below: dict[str, list[_Link]] = {}
     for each in joints.values():
         below.setdefault(each.parent, []).append(each)
-    hanging = {each.child for each in joints.values()}
+    children = {each.child for each in joints.values()}
     moving = _moving(joints.values())
     found: dict[tuple[Joint, ...], None] = {}
-    todo: list[tuple[str, Stretch, Stretch]] = [
-        (link, (), ()) for link in sorted(links) if link not in hanging
+    todo: list[tuple[str, JointChain, JointChain]] = [
+        (link, (), ()) for link in sorted(links) if link not in children
     ]
     seen: set[str] = set()
     while todo:
-        link, stretch, before = todo.pop()
+        link, chain, before = todo.pop()
         ways = [each for each in below.get(link, ()) if each.child in moving]
         if link in seen:
             continue
         seen.add(link)
         if len(ways) == 1:
-            todo.append((ways[0].child, stretch + _commanded(ways[0]), before))
+            todo.append((ways[0].child, chain + _commanded(ways[0]), before))
             continue
-        if stretch:
-            found |= {stretch: None, (*before, *stretch): None}
-        todo += [(each.child, _commanded(each), (*before, *stretch)) for each in reversed(ways)]
+        if chain:
+            found |= {chain: None, (*before, *chain): None}
+        todo += [(each.child, _commanded(each), (*before, *chain)) for each in reversed(ways)]
     return tuple(found)
 
 

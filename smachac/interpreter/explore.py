@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Callable, Iterator, Mapping, Sequence
 
 from smachac.interpreter.interpreter import MAX_STEPS, run
-from smachac.interpreter.result import Behaviour, RunResult, SchedulingChoice
+from smachac.interpreter.result import Behaviour, InterpreterResult, SchedulingChoice
 from smachac.ir.nodes import Machine
 
 
@@ -15,7 +15,7 @@ def explore(
     *,
     max_steps: int = MAX_STEPS,
     userdata: Mapping[str, object] | None = None,
-) -> Iterator[RunResult]:
+) -> Iterator[InterpreterResult]:
     """Every schedule of a machine's concurrent branches, one run each.
 
     There can be very many schedules, so the results come from an iterator. `behaviour` creates the

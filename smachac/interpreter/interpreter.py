@@ -13,16 +13,16 @@ from functools import lru_cache
 from pathlib import PurePath
 from typing import NoReturn, TypeAlias
 
-from smachac.diagnostics.source import NOWHERE, Span
+from smachac.diagnostics.source import NOWHERE, Span, assert_never
 from smachac.interpreter.preemption import Preemption
 from smachac.interpreter.result import (
     NO_OUTCOME,
     Behaviour,
     ErrorKind,
     Event,
+    InterpreterResult,
     RunError,
     RunFailure,
-    RunResult,
 )
 from smachac.interpreter.scheduler import Scheduler
 from smachac.interpreter.userdata import (
@@ -67,7 +67,7 @@ def run(
     max_steps: int = MAX_STEPS,
     userdata: Mapping[str, object] | None = None,
     preempt_at: Collection[int] = (),
-) -> RunResult:
+) -> InterpreterResult:
     """Run a machine once, from its start to an outcome or an error.
 
     `on_event` receives each event of the trace. `schedule` names the branch that continues at each
@@ -129,7 +129,7 @@ class Interpreter:
         self._scopes[self._root.name].update(userdata or {})
         self._sources = _trace_sources(self._root) if on_event else {}
 
-    def execute(self, parent: dict[str, object] | None = None) -> RunResult:
+    def execute(self, parent: dict[str, object] | None = None) -> InterpreterResult:
         """Run the machine once more. `parent` is the userdata around it, as if it were a nested
         state."""
         root, path = self._root, self._root.name
@@ -159,7 +159,7 @@ class Interpreter:
             if outcome is not None:
                 self.emit("finish", path, outcome=outcome)
         scopes = {where: dict(scope) for where, scope in self._scopes.items()}
-        return RunResult(
+        return InterpreterResult(
             outcome=outcome,
             userdata=scopes[path],
             error=failure,
@@ -283,13 +283,16 @@ def container_coroutine(
     run: Interpreter, node: Container, path: str, own: dict[str, object]
 ) -> Coroutine:
     """The coroutine of a container between its entry and its exit, over its own userdata."""
-    if isinstance(node, Iterator):
-        return _iterator(run, node, path, own)
-    if not node.children:
+    if not node.children and not isinstance(node, Iterator):
         run.fail("no-state", path, "has no states", node.span)
-    if isinstance(node, Concurrence):
-        return _concurrence(run, node, path, own)
-    return _machine(run, node, path, own)
+    match node:
+        case StateMachine() | nodes.Sequence():
+            return _machine(run, node, path, own)
+        case Concurrence():
+            return _concurrence(run, node, path, own)
+        case Iterator():
+            return _iterator(run, node, path, own)
+    return assert_never(node)
 
 
 def _machine(

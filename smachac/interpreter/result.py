@@ -60,7 +60,7 @@ class SchedulingChoice:
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
-class RunResult:
+class InterpreterResult:
     """The result of a run: an outcome or an error, and the userdata at the end.
 
     `scopes` holds the userdata of every container by its path, `userdata` that of the outermost

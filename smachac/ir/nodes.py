@@ -9,7 +9,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from dataclasses import dataclass, field
-from typing import Literal, NamedTuple, NewType, TypeAlias
+from typing import ClassVar, Literal, NamedTuple, NewType, TypeAlias
 
 from smachac.diagnostics.source import NOWHERE, Span, Word
 from smachac.ir.robot import Robot
@@ -163,13 +163,15 @@ class OutcomeRule:
 class _State:
     """Fields of every node: its interface and its connections in the container around it.
 
-    `type` is the state type (the name of the template). `via` are the calls of sub-scripts that
-    lead to the node, outermost first. `inputs` and `outputs` are its userdata keys. `catches` is
-    the outcome that exceptions in the state become: it is one of `outcomes`, the state's own code
-    never returns it, and it is empty if exceptions are not caught. `written` are the fields of the
-    script, for templates that print them; empty for all others.
+    `keyword` is that of the class in the text form. `type` is the state type (the name of the
+    template). `via` are the calls of sub-scripts that lead to the node, outermost first. `inputs`
+    and `outputs` are its userdata keys. `catches` is the outcome that exceptions in the state
+    become: it is one of `outcomes`, the state's own code never returns it, and it is empty if
+    exceptions are not caught. `written` are the fields of the script, for templates that print
+    them; empty for all others.
     """
 
+    keyword: ClassVar[str]
     name: str
     type: str
     doc: str = ""
@@ -214,6 +216,7 @@ class Leaf(_State):
     name of the built-in state type; it is empty for a type of the user, also for one of that name.
     """
 
+    keyword: ClassVar[str] = "state"
     variables: tuple[Variable, ...] = ()
     writes: tuple[tuple[str, tuple[str, ...]], ...] = ()
     open: bool = False
@@ -243,6 +246,7 @@ class StateMachine(_Container):
     `initial` is empty if there is no state. `forever`: the machine is declared to have no end.
     """
 
+    keyword: ClassVar[str] = "machine"
     initial: str = ""
     forever: bool = False
     initial_span: Span = field(default=NOWHERE, compare=False, repr=False)
@@ -252,6 +256,7 @@ class StateMachine(_Container):
 class Sequence(_Container):
     """A state machine whose states are linked in order by one outcome."""
 
+    keyword: ClassVar[str] = "sequence"
     connector_outcome: str = ""
     initial: str = ""
     initial_span: Span = field(default=NOWHERE, compare=False, repr=False)
@@ -266,6 +271,7 @@ class Concurrence(_Container):
     several matching rules the one with most conditions applies.
     """
 
+    keyword: ClassVar[str] = "concurrence"
     default_outcome: str = ""
     rules: tuple[OutcomeRule, ...] = ()
     join: Literal["all", "any"] = "all"
@@ -281,6 +287,7 @@ class Iterator(_Container):
     or `exhausted_outcome`, is mapped by `final_map` (pairs from, to).
     """
 
+    keyword: ClassVar[str] = "iterator"
     items: Value | None = None
     items_key: str = ""
     item_key: str = "it_data"
@@ -291,6 +298,9 @@ class Iterator(_Container):
 
 Container: TypeAlias = StateMachine | Sequence | Concurrence | Iterator
 Node: TypeAlias = Leaf | Container
+
+ContainerKind = Literal["StateMachine", "Sequence", "Concurrence", "Iterator"]
+"""The names of the classes of `Container`, which are also those in scripts and in SMACH."""
 
 
 class Unused(NamedTuple):

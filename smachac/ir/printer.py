@@ -9,13 +9,14 @@ from __future__ import annotations
 import json
 import re
 from collections.abc import Iterable, Iterator, Mapping
+from dataclasses import Field, fields
 from functools import lru_cache
-from typing import Protocol
+from typing import Any, Protocol, get_args
 
 from smachac.diagnostics.source import assert_never
 from smachac.ir import nodes
 from smachac.ir.nodes import (
-    Concurrence,
+    Container,
     Data,
     Expression,
     Key,
@@ -26,6 +27,7 @@ from smachac.ir.nodes import (
     Preset,
     Struct,
     Transition,
+    Value,
     Variable,
 )
 from smachac.ir.parser import IrSyntaxError, parse_machine
@@ -43,6 +45,30 @@ _encode = json.JSONEncoder(ensure_ascii=False).encode
 
 MOST_BITS = 10_000
 """Integers with more bits are printed in hexadecimal; Python limits the length of decimal ones."""
+
+
+KEYWORDS: Mapping[str, str] = {
+    "connector_outcome": "connector",
+    "default_outcome": "default",
+    "rules": "rule",
+    "items_key": "items from",
+    "item_key": "item",
+    "exhausted_outcome": "exhausted",
+    "loop_outcomes": "loop",
+    "final_map": "final",
+}
+"""The keywords of the fields of containers; any other field is its own keyword."""
+
+OWN_FIELDS: Mapping[type[Container], tuple[Field[Any], ...]] = {
+    kind: tuple(
+        sorted(
+            (each for each in fields(kind) if each.compare and each not in fields(kind.__base__)),
+            key=lambda each: isinstance(each.default, tuple),
+        )
+    )
+    for kind in get_args(Container)
+}
+"""The fields that only containers of one kind have, those with several values last."""
 
 
 class KeyTypes(Protocol):
@@ -71,7 +97,7 @@ def print_machine(machine: Machine, types: KeyTypes | None = None) -> str:
         if node is None:
             lines.append(f"{margin}}}")
             continue
-        head = f"{_kind(node)} {_name(node.name)}: {_name(node.type)} {{"
+        head = f"{node.keyword} {_name(node.name)}: {_name(node.type)} {{"
         body = [*_statements(node), *_comments(node, inferred.get(path, ()))]
         children = () if isinstance(node, Leaf) else node.children
         lines.append("")
@@ -115,21 +141,6 @@ def _preamble(machine: Machine) -> Iterator[str]:
     yield from map(_variable, machine.variables)
 
 
-def _kind(node: Node) -> str:
-    match node:
-        case Leaf():
-            return "state"
-        case nodes.StateMachine():
-            return "machine"
-        case nodes.Sequence():
-            return "sequence"
-        case Concurrence():
-            return "concurrence"
-        case nodes.Iterator():
-            return "iterator"
-    return assert_never(node)
-
-
 def _statements(node: Node) -> Iterator[str]:
     """The statements of one node, without its children, in the order of the notation."""
     if node.doc:
@@ -142,27 +153,15 @@ def _statements(node: Node) -> Iterator[str]:
     if node.claims:
         yield f"claims {_names(node.claims)}"
     yield from _optional("catches", node.catches)
-    if not isinstance(node, Leaf):
+    if isinstance(node, Leaf):
+        yield from _leaf(node)
+    else:
         yield from _line("sugar", node.sugar)
-    match node:
-        case Leaf():
-            yield from _leaf(node)
-        case nodes.StateMachine():
-            yield from map(_preset, node.userdata)
-            yield from _optional("initial", node.initial)
-            yield from ("forever",) * node.forever
-        case nodes.Sequence():
-            yield from map(_preset, node.userdata)
-            yield from _optional("connector", node.connector_outcome)
-            yield from _optional("initial", node.initial)
-        case Concurrence():
-            yield from map(_preset, node.userdata)
-            yield from _concurrence(node)
-        case nodes.Iterator():
-            yield from map(_preset, node.userdata)
-            yield from _iterator(node)
-        case _:
-            assert_never(node)
+        yield from map(_preset, node.userdata)
+        for each in OWN_FIELDS[type(node)]:
+            value = getattr(node, each.name)
+            if value != each.default:
+                yield from _field(KEYWORDS.get(each.name, each.name), value)
     for remap in node.remaps:
         yield f"remap {_name(remap.key)} -> {_name(remap.to)}"
     yield from map(_transition, node.transitions)
@@ -186,25 +185,21 @@ def _leaf(leaf: Leaf) -> Iterator[str]:
     yield from map(_variable, leaf.variables)
 
 
-def _concurrence(node: Concurrence) -> Iterator[str]:
-    yield from _optional("default", node.default_outcome)
-    if node.join != "all":
-        yield f"join {node.join}"
-    yield from map(_rule, node.rules)
-
-
-def _iterator(node: nodes.Iterator) -> Iterator[str]:
-    if node.items is not None:
-        yield f"items {print_data(node.items.data)}"
-    if node.items_key:
-        yield f"items from {_name(node.items_key)}"
-    if node.item_key != "it_data":
-        yield f"item {_name(node.item_key)}"
-    if node.exhausted_outcome != "exhausted":
-        yield f"exhausted {_name(node.exhausted_outcome)}"
-    yield from _line("loop", _names(node.loop_outcomes))
-    for first, last in node.final_map:
-        yield f"final {_name(first)} -> {_name(last)}"
+def _field(keyword: str, value: Any) -> Iterator[str]:
+    """The statements for a field of a container: a name, a flag, a value, names, rules, pairs."""
+    match value:
+        case True:
+            yield keyword
+        case str():
+            yield f"{keyword} {_name(value)}"
+        case Value():
+            yield f"{keyword} {print_data(value.data)}"
+        case (str(), *_):
+            yield f"{keyword} {_names(value)}"
+        case (OutcomeRule(), *_):
+            yield from (f"{keyword} {_rule(each)}" for each in value)
+        case _:
+            yield from (f"{keyword} {_name(first)} -> {_name(last)}" for first, last in value)
 
 
 def _line(word: str, rest: str) -> Iterator[str]:
@@ -237,7 +232,7 @@ def _transition(step: Transition) -> str:
 
 def _rule(rule: OutcomeRule) -> str:
     conditions = ", ".join(f"{_name(each.child)} = {_name(each.outcome)}" for each in rule.when)
-    return f"rule {_name(rule.outcome)}{' when ' if conditions else ''}{conditions}"
+    return f"{_name(rule.outcome)}{' when ' if conditions else ''}{conditions}"
 
 
 def _type(type_: Type) -> str:

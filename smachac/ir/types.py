@@ -114,6 +114,7 @@ def unknown_words(type_: Type) -> tuple[str, ...]:
     return (type_.name, *found)
 
 
+# Cached, because its construction takes 12 ms.
 @cache
 def _parser() -> Lark:
     return load("type", builder=_TypeBuilder(), lexer="contextual")

@@ -160,6 +160,8 @@ def _container(
             found.structure.append((loops, pairs, keys, _position(node.exhausted_outcome, own)))
             if node.items is not None:
                 _data(node.items.data, found)
+        case _:  # of a kind without a case above, only an unchanged container is equal
+            found.structure.append(node)
     inside = frozenset(names)
     for child in node.children:
         steps = []

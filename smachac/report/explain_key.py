@@ -21,7 +21,7 @@ MOST_READERS = 100
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
-class Met:
+class UseStatus:
     """A use of a key. For a read: whether the key is set there, and a path on which it is not."""
 
     use: Use
@@ -43,11 +43,11 @@ class KeyPart:
     value: str
     given: bool
     inside: tuple[str, str] | None
-    met: tuple[Met, ...]
+    uses: tuple[UseStatus, ...]
     span: Span = field(compare=False, repr=False)
 
 
-KeyStory = tuple[KeyPart, ...]
+KeyExplanation = tuple[KeyPart, ...]
 """One key in all the containers that share it, outer ones first."""
 
 
@@ -76,7 +76,7 @@ def _names_in(scope: UserdataScope) -> Iterator[tuple[str, str]]:
             yield each.name, outer
 
 
-def key_stories(context: Context, pairs: Iterable[tuple[str, str]]) -> Iterator[KeyStory]:
+def explain_keys(context: Context, pairs: Iterable[tuple[str, str]]) -> Iterator[KeyExplanation]:
     """The explanations of some keys; keys that are copies of each other share one."""
     done: set[tuple[str, str]] = set()
     for pair in pairs:
@@ -104,17 +104,17 @@ def _part(context: Context, path: str, key: str) -> KeyPart:
         value=print_data(preset.value.data) if preset else "",
         given=outer is None and key in scope.inputs,
         inside=inside,
-        met=tuple(_met(flow, use, key, followed) for use in found),
+        uses=tuple(_use_status(flow, use, key, followed) for use in found),
         span=container.span,
     )
 
 
-def _met(flow: DataFlow, use: Use, key: str, followed: frozenset[str]) -> Met:
+def _use_status(flow: DataFlow, use: Use, key: str, followed: frozenset[str]) -> UseStatus:
     if use.path not in followed or use.kind not in ("reads", "copies in"):
-        return Met(use=use)
+        return UseStatus(use=use)
     status = key_status(flow, use.path, key)
     without = path_without(flow, use.path, key) if status in ("sometimes", "never") else ()
-    return Met(use=use, status=status, without=without)
+    return UseStatus(use=use, status=status, without=without)
 
 
 def key_text(part: KeyPart) -> tuple[str, list[Paragraph]]:
@@ -125,7 +125,7 @@ def key_text(part: KeyPart) -> tuple[str, list[Paragraph]]:
         words["is"].append(f"a copy of `{name}` of {path}")
     if part.given:
         words["set"].append("by the caller of the machine")
-    for each in part.met:
+    for each in part.uses:
         word, lines = _use_text(part, each)
         words[word] += lines
     if not (words["set"] or words["written"] or words["copied"] or words["is"]):
@@ -136,14 +136,14 @@ def key_text(part: KeyPart) -> tuple[str, list[Paragraph]]:
     return f"key `{part.key}` of {part.container}{type_}", list(words.items())
 
 
-def _use_text(part: KeyPart, met: Met) -> tuple[str, list[str]]:
+def _use_text(part: KeyPart, use_status: UseStatus) -> tuple[str, list[str]]:
     """The paragraph of a use, and its lines."""
-    use = met.use
+    use = use_status.use
     name = use.path.rpartition("/")[2]
     called = f" as `{use.key}`" if use.key != part.key else ""
     where = place(use.span)
-    status = f": {STATUS[met.status]}" if met.status else ""
-    unset = list(way("  unset on the path ", met.without))
+    status = f": {STATUS[use_status.status]}" if use_status.status else ""
+    unset = list(way("  unset on the path ", use_status.without))
     match use.kind:
         case "presets":
             return "set", [f"before {name} starts, to {part.value}{where}"]
@@ -168,7 +168,7 @@ def _on(use: Use) -> str:
     return f", only on {' and '.join(use.outcomes)}"
 
 
-def key_json(story: KeyStory) -> list[dict[str, Any]]:
+def key_json(explanation: KeyExplanation) -> list[dict[str, Any]]:
     """The explanation as data for JSON."""
     return [
         {
@@ -177,17 +177,17 @@ def key_json(story: KeyStory) -> list[dict[str, Any]]:
             "type": str(part.type),
             "copy_of": list(part.inside) if part.inside else None,
             "given": part.given,
-            "uses": [_met_json(each) for each in part.met],
+            "uses": [_use_json(each) for each in part.uses],
         }
-        for part in story
+        for part in explanation
     ]
 
 
-def _met_json(met: Met) -> dict[str, Any]:
-    use = met.use
+def _use_json(use_status: UseStatus) -> dict[str, Any]:
+    use = use_status.use
     found: dict[str, Any] = {"state": use.path, "use": use.kind, "as": use.key, "at": at(use.span)}
     if use.kind in ("writes", "copies out"):
         found |= {"on": list(use.outcomes), "always": use.always}
-    if met.status is not None:
-        found |= {"set": met.status, "unset_path": list(met.without)}
+    if use_status.status is not None:
+        found |= {"set": use_status.status, "unset_path": list(use_status.without)}
     return found

@@ -9,8 +9,14 @@ from smachac.analysis.context import Context
 from smachac.analysis.definite_assignment import DataFlow
 from smachac.diagnostics.diagnostic import Report, did_you_mean
 from smachac.diagnostics.wording import listed
-from smachac.report.explain_key import KeyStory, key_json, key_names, key_stories, key_text
-from smachac.report.explain_state import StateStory, state_json, state_story, state_text
+from smachac.report.explain_key import (
+    KeyExplanation,
+    explain_keys,
+    key_json,
+    key_names,
+    key_text,
+)
+from smachac.report.explain_state import StateExplanation, explain_state, state_json, state_text
 from smachac.report.outline import paragraphs
 
 MOST_NAMED = 20
@@ -38,9 +44,9 @@ def explain_name(context: Context, report: Report, name: str, form: str) -> str:
         raise UnclearError(_several_states(context, name, states, keys))
     if not states and len(keys) > 1 and all(key != name.rpartition("/")[2] for _, key in keys):
         raise UnclearError(_several_keys(name, keys))
-    found = [state_story(context, path, report) for path in exact or states]
-    stories = list(key_stories(context, keys))
-    return _json(found, stories) if form == "json" else _text(found, stories)
+    found = [explain_state(context, path, report) for path in exact or states]
+    explanations = list(explain_keys(context, keys))
+    return _json(found, explanations) if form == "json" else _text(found, explanations)
 
 
 def _ends(path: str, name: str) -> bool:
@@ -85,12 +91,12 @@ def _few(lines: list[str]) -> list[str]:
     return lines if more <= 0 else [*lines[:MOST_NAMED], f"  and {more} more"]
 
 
-def _text(states: list[StateStory], keys: list[KeyStory]) -> str:
-    parts = [state_text(story) for story in states]
-    parts += [key_text(part) for story in keys for part in story]
+def _text(states: list[StateExplanation], keys: list[KeyExplanation]) -> str:
+    parts = [state_text(explanation) for explanation in states]
+    parts += [key_text(part) for explanation in keys for part in explanation]
     return "\n".join(paragraphs(*part) for part in parts)
 
 
-def _json(states: list[StateStory], keys: list[KeyStory]) -> str:
+def _json(states: list[StateExplanation], keys: list[KeyExplanation]) -> str:
     found = {"states": [*map(state_json, states)], "keys": [*map(key_json, keys)]}
     return json.dumps(found, indent=2) + "\n"

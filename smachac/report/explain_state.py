@@ -19,7 +19,7 @@ from smachac.report.outline import STATUS, Paragraph, article, at, place, way
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
-class Taken:
+class StateKey:
     """A key of a state: its inferred type, its name in the container, and for an input whether it
     is set."""
 
@@ -39,8 +39,8 @@ class Exit:
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
-class StateStory:
-    """The explanation of the state at a path.
+class StateExplanation:
+    """The state of the state at a path.
 
     `entered` are the preceding states with their outcomes; an empty name is the start of the
     container. `way` is a shortest path to the state, empty if there is none.
@@ -48,8 +48,8 @@ class StateStory:
 
     path: str
     node: Node
-    reads: tuple[Taken, ...]
-    writes: tuple[Taken, ...]
+    reads: tuple[StateKey, ...]
+    writes: tuple[StateKey, ...]
     claims: tuple[str, ...]
     entered: tuple[tuple[str, str], ...]
     way: tuple[str, ...]
@@ -58,7 +58,7 @@ class StateStory:
     report: Report = field(compare=False, repr=False)
 
 
-def state_story(context: Context, path: str, report: Report) -> StateStory:
+def explain_state(context: Context, path: str, report: Report) -> StateExplanation:
     """The explanation of the state at a path, which must exist."""
     routes, types = context.routes, context.types
     node = routes.nodes[path]
@@ -69,18 +69,18 @@ def state_story(context: Context, path: str, report: Report) -> StateStory:
         if (path, "") in routes.after(before)
     }
 
-    def read(key: Key) -> Taken:
+    def read(key: Key) -> StateKey:
         outer = names.get(key.name, key.name)
         status = key_status(context.flow, path, outer) if node is not routes.root else None
         known = types.inputs.get((path, key.name)) or types.keys.get((path, key.name), key.type)
-        return Taken(key=key, type=known, outer=outer, status=status)
+        return StateKey(key=key, type=known, outer=outer, status=status)
 
-    def written(key: Key) -> Taken:
+    def written(key: Key) -> StateKey:
         known = types.outputs.get((path, key.name)) or types.keys.get((path, key.name), key.type)
-        return Taken(key=key, type=known, outer=names.get(key.name, key.name))
+        return StateKey(key=key, type=known, outer=names.get(key.name, key.name))
 
     found = [*outcome_names(node), *(step.outcome for step in node.transitions)]
-    return StateStory(
+    return StateExplanation(
         path=path,
         node=node,
         reads=tuple(map(read, node.inputs)),
@@ -101,22 +101,25 @@ def state_story(context: Context, path: str, report: Report) -> StateStory:
     )
 
 
-def state_text(story: StateStory) -> tuple[str, list[Paragraph]]:
+def state_text(state: StateExplanation) -> tuple[str, list[Paragraph]]:
     """A headline and its paragraphs."""
-    node = story.node
+    node = state.node
     lines = [f"{article(kind(node))}{place(node.span)}"]
     lines += [f"from the sub-script called at {call}" for call in node.via]
     if node.doc:
         lines.append(" ".join(node.doc.split()))
-    return f"state {story.path}", [
+    return f"state {state.path}", [
         ("is", lines),
         ("holds", list(_held(node))),
-        ("reads", [_read(each) for each in story.reads]),
-        ("writes", [_written(node, each) for each in story.writes]),
-        ("claims", list(story.claims)),
-        ("entered", list(_entered(story))),
-        ("left", [_left(story, each) for each in story.exits] or ["never: it has no outcome"]),
-        ("found", [_found(item) for item in story.report] or ["nothing"]),
+        ("reads", [_read(each) for each in state.reads]),
+        ("writes", [_written(node, each) for each in state.writes]),
+        ("claims", list(state.claims)),
+        ("entered", list(_entered(state))),
+        (
+            "left",
+            [_left(state, each) for each in state.exits] or ["never: it has no outcome"],
+        ),
+        ("found", [_found(item) for item in state.report] or ["nothing"]),
     ]
 
 
@@ -142,51 +145,51 @@ def _held(node: Node) -> Iterator[str]:
     yield f"the states {', '.join(names[:MOST_LISTED])}{more}" if names else "no state"
 
 
-def _named(taken: Taken) -> str:
-    type_ = "" if taken.type == ANY else f" of type {taken.type}"
-    around = f", remapped to `{taken.outer}`" if taken.outer != taken.key.name else ""
-    return f"`{taken.key.name}`{type_}{around}"
+def _named(state_key: StateKey) -> str:
+    type_ = "" if state_key.type == ANY else f" of type {state_key.type}"
+    around = f", remapped to `{state_key.outer}`" if state_key.outer != state_key.key.name else ""
+    return f"`{state_key.key.name}`{type_}{around}"
 
 
 def _doc(key: Key) -> str:
     return f" ({' '.join(key.doc.split())})" if key.doc else ""
 
 
-def _read(taken: Taken) -> str:
-    status = f": {STATUS[taken.status]}" if taken.status else ""
-    if taken.key.type.name == "optional" and taken.status in ("sometimes", "never"):
+def _read(state_key: StateKey) -> str:
+    status = f": {STATUS[state_key.status]}" if state_key.status else ""
+    if state_key.key.type.name == "optional" and state_key.status in ("sometimes", "never"):
         status += ", which is allowed because it is optional"
-    return f"{_named(taken)}{status}{_doc(taken.key)}"
+    return f"{_named(state_key)}{status}{_doc(state_key.key)}"
 
 
-def _written(node: Node, taken: Taken) -> str:
+def _written(node: Node, state_key: StateKey) -> str:
     writes = node.writes if isinstance(node, Leaf) else ()
-    on = [outcome for outcome, keys in writes if taken.key.name in keys]
-    return f"{_named(taken)}{', on ' + ' and '.join(on) if on else ''}{_doc(taken.key)}"
+    on = [outcome for outcome, keys in writes if state_key.key.name in keys]
+    return f"{_named(state_key)}{', on ' + ' and '.join(on) if on else ''}{_doc(state_key.key)}"
 
 
-def _entered(story: StateStory) -> Iterator[str]:
-    container = story.path.rpartition("/")[0].rpartition("/")[2]
-    if not story.reachable:
+def _entered(state: StateExplanation) -> Iterator[str]:
+    container = state.path.rpartition("/")[0].rpartition("/")[2]
+    if not state.reachable:
         yield "never: no path from the start leads to this state"
         return
     if not container:
         yield "at the start: it is the whole machine"
         return
-    for name, outcome in story.entered:
+    for name, outcome in state.entered:
         if name == container and not outcome:
             continue
         yield f"after {name} on {outcome}" if name else f"when {container} starts"
-    yield from way("shortest path: ", story.way)
+    yield from way("shortest path: ", state.way)
 
 
-def _left(story: StateStory, leaving: Exit) -> str:
-    if "/" not in story.path:
+def _left(state: StateExplanation, leaving: Exit) -> str:
+    if "/" not in state.path:
         return f"on {leaving.outcome}: the machine has ended"
     places = [step.span for step in leaving.steps if step.origin == "written"]
     where = place(places[0]) if places else ""
     if leaving.arrivals:
-        ways = " or ".join(dict.fromkeys(_arrival(story.node, each) for each in leaving.arrivals))
+        ways = " or ".join(dict.fromkeys(_arrival(state.node, each) for each in leaving.arrivals))
         return f"on {leaving.outcome}: {ways}{where}"
     if leaving.steps:
         return f"on {leaving.outcome}: to {leaving.steps[0].target}, which does not exist{where}"
@@ -207,29 +210,34 @@ def _found(item: Any) -> str:
     return f"{item.severity.value}[{item.code}] {finding.message}{place(finding.span)}"
 
 
-def state_json(story: StateStory) -> dict[str, Any]:
-    """The explanation as data for JSON."""
-    node = story.node
+def state_json(state: StateExplanation) -> dict[str, Any]:
+    """The state as data for JSON."""
+    node = state.node
     return {
-        "state": story.path,
+        "state": state.path,
         "type": kind(node),
         "doc": node.doc,
         "at": at(node.span),
         "called": [at(call) for call in node.via],
-        "reads": [_taken_json(each) for each in story.reads],
-        "writes": [_taken_json(each) for each in story.writes],
-        "claims": list(story.claims),
-        "entered": [{"after": name, "outcome": outcome} for name, outcome in story.entered],
-        "way": list(story.way),
-        "reachable": story.reachable,
-        "exits": [_exit_json(each) for each in story.exits],
-        "findings": [{"code": i.code, "message": i.finding.message} for i in story.report],
+        "reads": [_key_json(each) for each in state.reads],
+        "writes": [_key_json(each) for each in state.writes],
+        "claims": list(state.claims),
+        "entered": [{"after": name, "outcome": outcome} for name, outcome in state.entered],
+        "way": list(state.way),
+        "reachable": state.reachable,
+        "exits": [_exit_json(each) for each in state.exits],
+        "findings": [{"code": i.code, "message": i.finding.message} for i in state.report],
     }
 
 
-def _taken_json(taken: Taken) -> dict[str, Any]:
-    status = {} if taken.status is None else {"set": taken.status}
-    return {"key": taken.key.name, "type": str(taken.type), "outer": taken.outer, **status}
+def _key_json(state_key: StateKey) -> dict[str, Any]:
+    status = {} if state_key.status is None else {"set": state_key.status}
+    return {
+        "key": state_key.key.name,
+        "type": str(state_key.type),
+        "outer": state_key.outer,
+        **status,
+    }
 
 
 def _exit_json(leaving: Exit) -> dict[str, Any]:

@@ -27,13 +27,13 @@ def render_junit(reports: Mapping[str, Report], failing: Mapping[str, Report]) -
     for name, report in reports.items():
         shown = _text(on_one_line(name))
         test = ET.SubElement(suite, "testcase", name=shown, classname="smachac.check", file=shown)
-        grave = failing.get(name, [])
-        if grave:
-            codes = dict.fromkeys(item.code for item in grave)
-            failure = ET.SubElement(test, "failure", message=_text(summary(grave)))
+        failing_items = failing.get(name, [])
+        if failing_items:
+            codes = dict.fromkeys(item.code for item in failing_items)
+            failure = ET.SubElement(test, "failure", message=_text(summary(failing_items)))
             failure.set("type", " ".join(codes))
-            failure.text = "\n" + _text(render_text(grave))
-        ids = {id(item) for item in grave}
+            failure.text = "\n" + _text(render_text(failing_items))
+        ids = {id(item) for item in failing_items}
         mild = [item for item in report if id(item) not in ids]
         if mild:
             ET.SubElement(test, "system-out").text = "\n" + _text(render_text(mild))

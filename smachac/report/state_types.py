@@ -8,17 +8,8 @@ from collections.abc import Iterable, Sequence
 from typing import Any, NamedTuple
 
 from smachac.frontend import schema
-from smachac.ir.nodes import StateType, VariableType
+from smachac.ir.nodes import ContainerKind, StateType, VariableType
 from smachac.ir.types import ANY, Type
-
-CONTAINERS = {
-    "StateMachine": "States that follow one another along transitions.",
-    "Concurrence": "States that run at once; an outcome map says what their outcomes mean.",
-    "Sequence": "States in a row, linked by one outcome.",
-    "Iterator": "One state, run once for each item of a list.",
-}
-"""The containers of the language, which have no interface."""
-
 
 WIDTH = 90
 """Width of descriptions, in columns."""
@@ -33,14 +24,14 @@ class Known(NamedTuple):
     languages: tuple[str, ...] = ()
 
 
-def container_type(name: str) -> StateType:
+def container_type(name: ContainerKind) -> StateType:
     """A container as a state type; its variables are the fields of the schema."""
     names = schema.REQUIRED[name]
     own = [row for row in schema.VARIABLES.values() if name in row.owners]
     return StateType(
         name=name,
         kind="container",
-        doc=CONTAINERS[name],
+        doc=schema.CONTAINER_DOCS[name],
         variables={
             row.name: VariableType(name=row.name, required=row.name in names)
             for row in own

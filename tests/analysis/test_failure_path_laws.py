@@ -10,7 +10,7 @@ from smachac.analysis.failure_paths import Failure
 from smachac.analysis.successors import path_to
 from smachac.interpreter.behaviours import builtin_behaviour
 from smachac.interpreter.interpreter import run
-from smachac.interpreter.result import Event, RunResult
+from smachac.interpreter.result import Event, InterpreterResult
 from smachac.ir.nodes import Concurrence, Leaf, Machine
 from smachac.ir.outcome_names import is_failure
 from smachac.ir.traversal import walk
@@ -37,7 +37,7 @@ def failed(machine: Machine, trace: list[Event]) -> list[tuple[int, tuple[str, s
     ]
 
 
-def ran(machine: Machine, seed: int) -> tuple[RunResult, list[Event]]:
+def ran(machine: Machine, seed: int) -> tuple[InterpreterResult, list[Event]]:
     trace: list[Event] = []
     return run(machine, builtin_behaviour(seed), trace.append, seed=seed, max_steps=200), trace
 

@@ -260,6 +260,21 @@ def test_what_must_be_edited_fails(tmp_path: Path, capsys: pytest.CaptureFixture
     assert "| edit | SM003 | `ode_name` is not a variable of the script |" in table
 
 
+def test_an_error_covers_the_name_that_it_is_about_and_no_other(
+    tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    (tmp_path / "main.yml").write_text(
+        "name: sm\ntemplate: Base\noutcomes: [done]\nstates:\n"
+        "  - A: {template: Bad, transitions: {done: done}}\n"
+    )
+    template = "{% block body %}{{ gone }}\n{{ go }}{% endblock %}"
+    (tmp_path / "Bad.tpl.py").write_text(template)
+    text = migrated(capsys, str(tmp_path))[1]
+    assert "Bad.tpl.py:1:1: edit: 'gone' is undefined [SM605]" in text
+    assert "no script gives `go`" in text
+    assert "no script gives `gone`" not in text
+
+
 def test_the_same_report_each_time(capsys: pytest.CaptureFixture[str]) -> None:
     assert migrated(capsys, str(SMACHA)) == migrated(capsys, str(SMACHA))
 

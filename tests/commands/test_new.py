@@ -13,8 +13,8 @@ from smachac.commands.scaffold import BadNameError, file_stem, key_and_type
 from smachac.diagnostics.diagnostic import Report
 from smachac.diagnostics.source import NOWHERE
 from smachac.frontend.files import disk_library
+from smachac.frontend.schema import CONTAINERS
 from smachac.ir.nodes import Checked, Leaf, Machine, Outcome, StateMachine
-from smachac.report.state_types import CONTAINERS
 from smachac.targets import BuildContext, load_target
 from tests.support.typed_machines import with_state_types
 

@@ -8,7 +8,7 @@ from typing import Any, cast
 
 from smachac.diagnostics.source import NOWHERE
 from smachac.interpreter.interpreter import Interpreter
-from smachac.interpreter.result import Event, RunResult
+from smachac.interpreter.result import Event, InterpreterResult
 from smachac.interpreter.userdata import Userdata
 from smachac.ir.nodes import (
     Concurrence,
@@ -247,7 +247,7 @@ class Replay:
         if case.get("preempt_before"):
             self.interpreter.preemption.request("")
 
-    def run(self, parent: dict[str, object] | None) -> tuple[RunResult, list[Event]]:
+    def run(self, parent: dict[str, object] | None) -> tuple[InterpreterResult, list[Event]]:
         """One more run and its events."""
         self.events = []
         return self.interpreter.execute(parent), self.events

@@ -18,7 +18,7 @@ import pytest
 
 from smachac.checks import check_machine
 from smachac.diagnostics.diagnostic import has_errors
-from smachac.interpreter.result import Event, RunResult
+from smachac.interpreter.result import Event, InterpreterResult
 from tests.conformance_ir import generated_vectors
 from tests.conformance_ir.ir_vectors import Replay, machine_of, nodes_of
 
@@ -106,7 +106,7 @@ def replay(case: Json) -> list[Json]:
     return runs
 
 
-def _told(case: Json, result: RunResult, events: list[Event], parent: Json) -> Json:
+def _told(case: Json, result: InterpreterResult, events: list[Event], parent: Json) -> Json:
     concurrences = {path for path, node in nodes_of(case) if node["type"] == "concurrence"}
     leaves = {path for path, node in nodes_of(case) if node["type"] == "leaf"}
     told = {
@@ -119,7 +119,7 @@ def _told(case: Json, result: RunResult, events: list[Event], parent: Json) -> J
     return told if parent is None else {**told, "parent": parent}
 
 
-def _category(result: RunResult) -> str | None:
+def _category(result: InterpreterResult) -> str | None:
     if result.error is not None:
         return KINDS[result.error.kind]
     return "no_outcome" if result.outcome is None else None

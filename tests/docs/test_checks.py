@@ -14,7 +14,7 @@ import smachac
 from smachac.commands.cli import main
 from smachac.interpreter.behaviours import builtin_behaviour
 from smachac.interpreter.interpreter import run
-from smachac.interpreter.result import RunResult
+from smachac.interpreter.result import InterpreterResult
 from smachac.interpreter.scenario import read_scenario, scenario_behaviour
 from smachac.runtime import smach
 from tests.support.golden import REWRITE
@@ -117,7 +117,7 @@ def test_smach_does_not_look_at_states_that_nothing_leads_to() -> None:
     assert machine(PICK=there, LET_GO=there).execute() == "delivered"
 
 
-def played(name: str, states: dict[str, object]) -> RunResult:
+def played(name: str, states: dict[str, object]) -> InterpreterResult:
     """How a script of the page ends when its states do as a scenario says."""
     whole = smachac.load(name)
     scenario, wrong = read_scenario({"states": states}, whole)

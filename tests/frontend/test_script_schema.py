@@ -3,12 +3,21 @@
 from __future__ import annotations
 
 from pathlib import Path
-from typing import Any
+from typing import Any, get_args
 
 import pytest
 from ruamel.yaml import YAML
 
-from smachac.frontend.schema import CONTAINERS, LONG, REQUIRED, VARIABLES, names_for
+from smachac.frontend.schema import (
+    CONTAINER_DOCS,
+    CONTAINERS,
+    LONG,
+    REQUIRED,
+    VARIABLES,
+    FieldOwner,
+    names_for,
+)
+from smachac.ir.nodes import Container
 from tests.support.json_schema import faults, load_schema
 
 SCHEMA = load_schema("script")
@@ -23,6 +32,11 @@ SCRIPTS = [
 
 def with_short(names: list[str]) -> set[str]:
     return {*names, *(SHORT[name] for name in names if name in SHORT)}
+
+
+def test_the_tables_have_every_kind_of_container() -> None:
+    kinds = {kind.__name__ for kind in get_args(Container)}
+    assert set(CONTAINERS) == set(CONTAINER_DOCS) == set(REQUIRED) - {"base", "state"} == kinds
 
 
 def test_it_has_every_variable_and_says_what_it_is() -> None:
@@ -47,7 +61,7 @@ def test_a_state_may_have_what_any_container_or_call_has() -> None:
 
 
 @pytest.mark.parametrize("owner", ["base", *CONTAINERS])
-def test_each_owner_lacks_nothing_that_it_must_have(owner: str) -> None:
+def test_each_owner_lacks_nothing_that_it_must_have(owner: FieldOwner) -> None:
     whole = {name: [] if name == "states" else "x" for name in REQUIRED[owner]}
     whole["outcomes"] = ["x"]
     assert faults(whole, DEFINITIONS[owner], SCHEMA) == []

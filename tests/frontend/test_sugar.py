@@ -14,7 +14,7 @@ from smachac.frontend.sugar import duration
 from smachac.frontend.yaml_tree import parse
 from smachac.interpreter.behaviours import builtin_behaviour
 from smachac.interpreter.interpreter import run
-from smachac.interpreter.result import Event, RunResult
+from smachac.interpreter.result import Event, InterpreterResult
 from smachac.interpreter.scenario import read_scenario, scenario_behaviour
 
 SCRIPT = """
@@ -30,7 +30,7 @@ states:
 
 def played(
     folder: Path, sugar: str, script: str, steps: Any, **options: Any
-) -> tuple[RunResult, list[str]]:
+) -> tuple[InterpreterResult, list[str]]:
     """A run of one state with sugar: the result, and what each state ended with, in order."""
     path = folder / "main.yml"
     path.write_text(script.replace("SUGAR", sugar), encoding="utf-8")

@@ -14,7 +14,7 @@ from smachac.diagnostics.severities import Policy, apply_severities, select_find
 from smachac.diagnostics.source import NOWHERE, Source
 from smachac.driver import CODES, Analysis, analyse, build
 from smachac.frontend.files import disk_library, read_source
-from smachac.frontend.suppressions import MARK, allowances
+from smachac.frontend.suppressions import MARK, suppressions_in
 from smachac.report.explain_code import MAIN, explanation
 from smachac.targets import load_target, target_names
 
@@ -70,7 +70,7 @@ def test_comments(states: str, expected: list[str], tmp_path: Path) -> None:
 
 def test_a_comment_ends_with_its_line() -> None:
     report: Report = []
-    assert allowances(Source("main.yml", "#\nsmachac: allow SM201 x\n"), report, CODES) == []
+    assert suppressions_in(Source("main.yml", "#\nsmachac: allow SM201 x\n"), report, CODES) == []
     assert report == []
 
 
@@ -238,7 +238,7 @@ WORDS = st.sampled_from(
 def test_any_text_with_comments_is_read(text: str) -> None:
     report: Report = []
     source = Source("main.yml", text)
-    for fit in allowances(source, report, CODES):
+    for fit in suppressions_in(source, report, CODES):
         assert fit.code == fit.span.text
         assert 1 <= fit.line <= len(source.line_starts)
     assert {each.code for each in report} <= {"SM022"}

@@ -8,20 +8,20 @@ from typing import Any
 import pytest
 
 from smachac.interpreter.behaviours import builtin_behaviour
-from smachac.interpreter.result import RunResult
+from smachac.interpreter.result import InterpreterResult
 from tests.support.ir_machines import leaf, machine, ran, short
 
 
 def single(
     type: str, outcomes: str, *, held: Mapping[str, Any] = {}, seed: int = 0, **more: Any
-) -> RunResult:
+) -> InterpreterResult:
     """The run of a machine of one leaf, whose outcomes are those of the machine."""
     to = {name: name for name in outcomes.split()}
     root = machine("sm", outcomes, leaf("A", to, type=type, **more), held=held)
     return ran(root, builtin_behaviour(seed), seed=seed)[0]
 
 
-def message(result: RunResult) -> str:
+def message(result: InterpreterResult) -> str:
     assert result.error is not None
     assert result.error.kind == "behaviour"
     return result.error.message

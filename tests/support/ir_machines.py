@@ -7,7 +7,7 @@ from typing import Any
 
 from smachac.diagnostics.source import NOWHERE
 from smachac.interpreter.interpreter import run
-from smachac.interpreter.result import Behaviour, Event, RunResult
+from smachac.interpreter.result import Behaviour, Event, InterpreterResult
 from smachac.interpreter.userdata import Userdata
 from smachac.ir.nodes import (
     Concurrence,
@@ -220,7 +220,7 @@ def acting(acts: Act) -> Behaviour:
 
 def ran(
     root: StateMachine, acts: Act | Behaviour | None = None, **options: Any
-) -> tuple[RunResult, list[Event]]:
+) -> tuple[InterpreterResult, list[Event]]:
     """A run of a machine and its events."""
     events: list[Event] = []
     behaviour = acts if callable(acts) else acting(acts or {})

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import json
 from pathlib import Path
-from typing import Any
+from typing import Any, get_args
 
 import pytest
 
@@ -18,6 +18,7 @@ from smachac.ir.nodes import (
     Key,
     Leaf,
     Machine,
+    Node,
     Outcome,
     Remap,
     StateMachine,
@@ -71,6 +72,13 @@ def machine() -> Machine:
         span=Span(SOURCE, 6, 8),
     )
     return Machine(root=root, source="main.yml", digest="0" * 64)
+
+
+def test_the_schema_has_every_kind_of_node() -> None:
+    kinds = [kind.__name__ for kind in get_args(Node)]
+    definitions = load_schema("machine")["definitions"]
+    assert definitions["state"]["oneOf"] == [{"$ref": f"#/definitions/{name}"} for name in kinds]
+    assert set(kinds) <= set(definitions)
 
 
 def test_a_leaf_in_full() -> None:

@@ -8,7 +8,7 @@ from collections.abc import Iterator
 
 from smachac.diagnostics.diagnostic import Report, Severity
 from smachac.interpreter.interpreter import run
-from smachac.interpreter.result import Behaviour, Event, RunResult
+from smachac.interpreter.result import Behaviour, Event, InterpreterResult
 from smachac.interpreter.userdata import Userdata
 from smachac.ir.leaf import default_outcome, variable
 from smachac.ir.nodes import Leaf, Machine, Struct
@@ -83,7 +83,7 @@ def _steps(leaf: Leaf) -> Iterator[tuple[object, set[str]]]:
         yield told.get("outcome", default_outcome(leaf)), keys
 
 
-def runs(machine: Machine, count: int) -> Iterator[tuple[RunResult, list[Event]]]:
+def runs(machine: Machine, count: int) -> Iterator[tuple[InterpreterResult, list[Event]]]:
     """So many runs with their events; in every third one somebody asks the machine to stop."""
     for seed in range(count):
         events: list[Event] = []

@@ -19,7 +19,7 @@ from smachac.diagnostics.diagnostic import Report, Severity
 from smachac.diagnostics.source import NOWHERE
 from smachac.interpreter.behaviours import builtin_behaviour
 from smachac.interpreter.interpreter import run
-from smachac.interpreter.result import Event, RunResult
+from smachac.interpreter.result import Event, InterpreterResult
 from smachac.ir.nodes import Key, Leaf, Machine, Node, StateMachine
 from tests.conformance_ir.ir_vectors import machine_of
 from tests.conformance_ir.test_ir_vectors import CASES
@@ -36,7 +36,7 @@ DAMAGED = 6
 RUNS = 9
 
 
-def fault(machine: Machine, report: Report, result: RunResult, asked: bool) -> str | None:
+def fault(machine: Machine, report: Report, result: InterpreterResult, asked: bool) -> str | None:
     """How a run failed that must not fail; None where all is well.
 
     A key that is perhaps missing has been told, as such or as a race; one that goes round is cut

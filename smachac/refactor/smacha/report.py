@@ -99,10 +99,10 @@ def _markdown(files: Sequence[File]) -> str:
         lines.append(
             f"| {_cell(file.name)} | {file.kind} | {'no' if file.fails else 'yes'} | {counts} |"
         )
-    told = list(_reported(files))
-    if told:
+    reported = list(_reported(files))
+    if reported:
         lines += ["", "| place | what | name | message |", "| --- | --- | --- | --- |"]
-    for file, item in told:
+    for file, item in reported:
         place = f"{file.name}:{item.line}"
         lines.append(f"| {_cell(place)} | {item.what} | {item.name} | {_cell(item.message)} |")
     return "\n".join([*lines, "", f"{_summary(files)}.", ""])

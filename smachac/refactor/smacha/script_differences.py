@@ -31,12 +31,13 @@ _NUMBER = re.compile(r"[-+]?(\d+(\.\d*)?|\.\d+)([eE][-+]?\d+)?|[-+]?(inf|nan|inf
 @dataclass(frozen=True, slots=True, kw_only=True)
 class SmachaDifference:
     """A difference at a span: its name, what SMACHA did and what smachac does, and the required
-    action."""
+    action. `variable` is the undefined variable of a template, if the difference is about one."""
 
     span: Span
     name: str
     message: str
     what: What = "changed"
+    variable: str = ""
 
 
 def script_differences(tree: Tree | None) -> Iterator[SmachaDifference]:

@@ -218,7 +218,7 @@ def _of_names(
             hint = did_you_mean(name, sorted({*known, *given}))
             message = f"no script gives `{name}`: SMACHA printed nothing, here it is an error"
             message += f"; {hint}" if hint else ""
-            yield SmachaDifference(span=span, name="unknown-name", message=message)
+            yield SmachaDifference(span=span, name="unknown-name", message=message, variable=name)
     if "params" in own.used and "params" not in own.tested:
         span = _word(source, own.used["params"], "params")
         message = "SMACHA gave the params of the container; here the state's own are in as well"

@@ -217,7 +217,8 @@ class Remapper:
 
 @functools.cache
 def _with_properties(keys: frozenset[str]) -> type[Remapper]:
-    """The Remapper class with a property for each of these keys, cached for the process.
+    """The Remapper class with a property for each of these keys, cached for the process,
+    because making a class takes 22 us.
 
     Without properties, a read by attribute goes through `__getattr__`, which costs 1.4 us in
     CPython 3.11, because it first creates an AttributeError.

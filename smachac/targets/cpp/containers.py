@@ -12,6 +12,7 @@ from collections.abc import Set as AbstractSet
 from dataclasses import dataclass, replace
 from itertools import islice
 
+from smachac.diagnostics.source import assert_never
 from smachac.ir.nodes import (
     Concurrence,
     Container,
@@ -157,13 +158,16 @@ def all_results(node: Node) -> tuple[str, ...]:
 
 def execute(plan: ContainerPlan) -> Lines:
     """The function that runs a container from its entry to its outcome."""
-    match plan.node:
-        case Iterator() as node:
+    node = plan.node
+    match node:
+        case Iterator():
             body = _iterator(plan, node)
-        case Concurrence() as node:
+        case Concurrence():
             body = _concurrence(plan, node)
-        case StateMachine() | Sequence() as node:
+        case StateMachine() | Sequence():
             body = _machine(plan, node)
+        case _:
+            assert_never(node)
     # A container is run from one place only: if it is small, its caller takes it in.
     small = len(list(islice(walk(plan.node), MOST_STATES + 1))) <= MOST_STATES
     inline = "[[gnu::always_inline]] inline" if small else "inline"

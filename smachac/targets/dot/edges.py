@@ -5,9 +5,9 @@ from __future__ import annotations
 from collections.abc import Iterable, Iterator
 from typing import NamedTuple
 
-from smachac.diagnostics.source import assert_never
-from smachac.ir import nodes
-from smachac.ir.nodes import Concurrence, Container, Data, Expression, Sequence, StateMachine
+from smachac.ir import graph, nodes
+from smachac.ir.graph import START
+from smachac.ir.nodes import Concurrence, Container, Data, Expression
 from smachac.ir.traversal import leads_to_child, outcome_names
 from smachac.targets.dot.style import (
     FAINT,
@@ -110,14 +110,12 @@ def _short(data: Data) -> str:
 def edges(container: Container, start: str, exits: dict[str, str], drawn: Drawn) -> Iterator[Edge]:
     """The edges of a container: from its start, between its children and to its outcomes."""
     match container:
-        case StateMachine() | Sequence():
-            found = list(_transitions(container, start, exits, drawn))
         case Concurrence():
             found = list(_rules(container, start, exits, drawn))
         case nodes.Iterator():
             found = list(_loop(container, start, exits, drawn))
         case _:
-            assert_never(container)
+            found = list(_transitions(container, start, exits, drawn))
     yield from found
     if container.catches in exits:
         yield Edge(start, Spot(exits[container.catches]), container.catches, dashed=True)
@@ -147,10 +145,11 @@ def _leave(piece: Piece, outcome: str, head: Spot, exit: str = "") -> Edge:
 
 
 def _transitions(
-    container: StateMachine | Sequence, start: str, exits: dict[str, str], drawn: Drawn
+    container: Container, start: str, exits: dict[str, str], drawn: Drawn
 ) -> Iterator[Edge]:
-    if container.initial in drawn:
-        yield Edge(start, drawn[container.initial].entry, main=True)
+    for flow in graph.edges(container):
+        if flow.source == START and isinstance(flow.target, str):
+            yield Edge(start, drawn[flow.target].entry, main=True)
     order = {name: index for index, name in enumerate(drawn)}
     names = frozenset(order)
     for child in container.children:

@@ -79,7 +79,7 @@ def execute(
 
         with (
             _watching(module, watch) as outcomes,
-            quiet(module["smach"], _told),
+            quiet(module["smach"], _print_log),
             _preempting(built, on_preempt, on_interrupt),
         ):
             outcome: str | None = module[main_function(machine)]()
@@ -184,7 +184,7 @@ def hidden(message: str, *arguments: object) -> None:
     """A logger that drops its messages."""
 
 
-def _told(message: str, *arguments: object) -> None:
+def _print_log(message: str, *arguments: object) -> None:
     print(message % arguments if arguments else message, file=sys.stderr)
 
 

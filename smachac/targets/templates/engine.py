@@ -294,7 +294,9 @@ class _Located:
             return
         span = self._place(error, trace)
         message, help = _words(error)
-        raise BlockError(template_error(span, message, help, (message,))) from error
+        name = getattr(error, "undefined_name", None)
+        names = (message,) if name is None else ("undefined", name)
+        raise BlockError(template_error(span, message, help, names)) from error
 
     def _place(self, error: Exception, trace: Any) -> Span:
         """The line of the template that an exception comes from."""

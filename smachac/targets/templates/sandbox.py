@@ -10,14 +10,15 @@ from __future__ import annotations
 
 import re
 from collections.abc import Callable, Iterator, Mapping, Sized
-from functools import wraps
+from functools import partial, wraps
 from string import Formatter
 from typing import TYPE_CHECKING, Any, TypeVar
 
-from jinja2 import TemplateRuntimeError, Undefined, nodes
+from jinja2 import TemplateRuntimeError, Undefined, UndefinedError, nodes
 from jinja2.filters import FILTERS
 from jinja2.sandbox import SandboxedEnvironment
 from jinja2.tests import TESTS
+from jinja2.utils import missing
 from jinja2.visitor import NodeTransformer
 
 if TYPE_CHECKING:
@@ -66,11 +67,30 @@ class TooMuchError(TemplateRuntimeError):
     """A template exceeds its budget; the message has the reason."""
 
 
+class UndefinedNameError(UndefinedError):
+    """A template uses a variable that is not defined, `undefined_name`."""
+
+    def __init__(self, undefined_name: str, message: str):
+        super().__init__(message)
+        self.undefined_name = undefined_name
+
+
 class Missing(Undefined):
     """An undefined name: it may be tested, as in `{% if x %}`, but not printed."""
 
     __slots__ = ()
     __str__ = Undefined._fail_with_undefined_error
+
+    def __init__(
+        self,
+        hint: str | None = None,
+        obj: Any = missing,
+        name: Any = None,
+        exc: Any = UndefinedError,
+    ):
+        if obj is missing and name is not None:
+            exc = partial(UndefinedNameError, name)
+        super().__init__(hint, obj, name, exc)
 
 
 class Meter:

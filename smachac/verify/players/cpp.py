@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import functools
 import importlib.util
 import json
 import os
@@ -196,7 +195,6 @@ def first_compiler() -> Compiler:
     return found[0]
 
 
-@functools.cache
 def compilers() -> tuple[Compiler, ...]:
     """The installed compilers, at most one of each kind; the package `ziglang` if there is none."""
     versions = [f"clang++-{number}" for number in range(22, 11, -1)]
