@@ -15,6 +15,7 @@ from smachac.analysis.lost_outputs import Lost, lost_outputs
 from smachac.analysis.possible_outcomes import Endings, Judged, endings, judged
 from smachac.analysis.reaching_values import reaching_clashes
 from smachac.analysis.resource_claims import Held, claims
+from smachac.analysis.stop_paths import StopPaths, stop_paths
 from smachac.analysis.successors import Routes
 from smachac.analysis.type_inference import Clash, Types, infer
 from smachac.analysis.type_lattice import MisfitKind
@@ -122,6 +123,16 @@ class Context:
     def judged(self) -> list[Judged]:
         """The concurrences whose rules can be judged."""
         return judged(self.containers, self.endings)
+
+    @cached_property
+    def stop_paths(self) -> StopPaths:
+        """Where the machine continues after a stop."""
+        judged = {each.path: each for each in self.judged}
+
+        def holds(path: str) -> bool:
+            return bool(self.claims.get(path))
+
+        return stop_paths(self.containers, judged, self.endless, holds)
 
     @cached_property
     def routes(self) -> Routes:

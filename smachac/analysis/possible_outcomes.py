@@ -63,7 +63,7 @@ def _ever(path: str, node: Node, known: OutcomesByPath) -> tuple[str, ...]:
         case Concurrence():
             read = study(path, node)
             spaces = [space(read, known)] if read else []
-            return _declared(node, [*_results(node, read, spaces), PREEMPTED])
+            return _declared(node, [*results(node, read, spaces), PREEMPTED])
     return _of_container(path, node, known, asked=True)
 
 
@@ -74,7 +74,7 @@ def _calm(path: str, node: Node, found: Endings) -> tuple[str, ...]:
         case Concurrence():
             read = study(path, node)
             spaces = [each for each, _ in calm_spaces(read, *found)] if read else []
-            return _declared(node, _results(node, read, spaces))
+            return _declared(node, results(node, read, spaces))
     return _of_container(path, node, found.calm, asked=False)
 
 
@@ -147,7 +147,7 @@ def _only(node: Node, names: Sequence[str]) -> tuple[nodes.Outcome, ...]:
     return tuple(outcome for outcome in node.outcomes if outcome.name in names)
 
 
-def _results(node: Concurrence, read: Study | None, spaces: Sequence[Space]) -> set[str]:
+def results(node: Concurrence, read: Study | None, spaces: Sequence[Space]) -> set[str]:
     """The results of the rules that can win, and of the default if none has to hold."""
     if read is None:
         return set(outcome_names(node)) if node.children else set()

@@ -21,8 +21,9 @@ from smachac.diagnostics.diagnostic import Finding, Severity
 from smachac.diagnostics.spelling import guesser
 from smachac.diagnostics.wording import listed
 from smachac.ir import nodes
-from smachac.ir.nodes import Concurrence, Node
-from smachac.ir.traversal import outcome_names
+from smachac.ir.nodes import Concurrence, Leaf, Node
+from smachac.ir.outcome_names import PREEMPTED
+from smachac.ir.traversal import ends_preempted, leads_to_child, outcome_names
 
 
 @rule("SM403", "dead-rule", Severity.ERROR, firm=True)
@@ -34,9 +35,12 @@ def dead_rule(context: Context) -> Iterator[Finding]:
     versions disagree about a rule without conditions.
 
     Exactly: an error if the rule has no conditions, or if it names a state or an outcome that does
-    not exist. A warning if a rule with more conditions holds whenever this rule holds. An outcome
-    that a container declares but never ends with is reported by SM203 only. The entries of the
-    final outcome map of an iterator count as rules.
+    not exist. A warning if a rule with more conditions holds whenever this rule holds; or with
+    `join: any`, if the rule needs two branches that end by themselves, although the first one to
+    end preempts the other (a branch that answers with `preempted`, or a machine of such states that
+    leads every `preempted` out of it; two branches that end at the same moment do not count). An
+    outcome that a container declares but never ends with is reported by SM203 only. The entries of
+    the final outcome map of an iterator count as rules.
 
     Wrong:
         name: sm
@@ -78,6 +82,8 @@ def dead_rule(context: Context) -> Iterator[Finding]:
                 yield from _dead_renames(path, container)
     for each in context.judged:
         yield from _shadowed_rules(each)
+        if each.read.node.join == "any":
+            yield from _rules_for_both(each)
 
 
 def _dead_rules(path: str, container: Concurrence) -> Iterator[Finding]:
@@ -149,6 +155,52 @@ def _shadowed_rules(each: Judged) -> Iterator[Finding]:
             severity=Severity.WARNING,
             node=each.path,
         )
+
+
+def _rules_for_both(each: Judged) -> Iterator[Finding]:
+    """The rules of a race that need two branches to end by themselves: the first to end preempts
+    the other."""
+    node = each.read.node
+    for entry in each.read.written:
+        needed = {
+            one.child: one.outcome
+            for one in entry.when
+            if _ends_otherwise(each.read.children[one.child], one.outcome)
+        }
+        if len(needed) < 2:
+            continue
+        yield Finding(
+            span=entry.span,
+            message=f"the rule for `{entry.outcome}` needs {written(needed)}, but `join: any` of"
+            f" `{node.name}` preempts the others when the first of them ends",
+            arguments=(entry.outcome, *_names(needed)),
+            help="write `join: all`, or list only one of them in the rule",
+            related=calls(node, entry.span),
+            severity=Severity.WARNING,
+            node=each.path,
+        )
+
+
+def _ends_otherwise(branch: Node, outcome: str) -> bool:
+    """Whether a preempt request surely ends a branch with another outcome than this."""
+    if outcome == PREEMPTED:
+        return False
+    match branch:
+        case Leaf():
+            return PREEMPTED in outcome_names(branch) and not branch.open
+        case nodes.StateMachine() if not branch.sugar:
+            states = frozenset(child.name for child in branch.children)
+            return all(
+                _ends_otherwise(child, outcome)
+                and isinstance(child, Leaf)
+                and all(
+                    step.outcome != PREEMPTED
+                    or not (step.target == outcome or leads_to_child(step, states))
+                    for step in child.transitions
+                )
+                for child in branch.children
+            )
+    return ends_preempted(branch)
 
 
 def _dead_renames(path: str, container: nodes.Iterator) -> Iterator[Finding]:

@@ -2,20 +2,25 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Iterable, Iterator, Mapping
 from collections.abc import Set as AbstractSet
 
 from smachac.analysis.context import Context
 from smachac.analysis.possible_outcomes import Endings
-from smachac.checks.messages import calls
+from smachac.analysis.stop_paths import branch_around, stoppable_branches
+from smachac.checks.messages import calls, own_name
 from smachac.checks.rule import rule
+from smachac.checks.stops import answered_here, way_out, witness
 from smachac.diagnostics.diagnostic import Finding, Severity
 from smachac.diagnostics.wording import listed
 from smachac.ir import nodes
 from smachac.ir.graph import stopped_endings
-from smachac.ir.nodes import Concurrence, Leaf
-from smachac.ir.outcome_names import PREEMPTED
+from smachac.ir.nodes import Concurrence, Leaf, StateType, VariableType
+from smachac.ir.outcome_names import PREEMPTED, is_failure
 from smachac.ir.traversal import outcome_names
+
+SLEEP = "SleepState"
+"""The built-in state type that waits for a time."""
 
 TIMEOUTS = frozenset(["timeout", "timed_out"])
 
@@ -27,10 +32,12 @@ def no_timeout(context: Context) -> Iterator[Finding]:
     If a message is lost, the robot waits forever. In a concurrence the other branches wait as
     well, even when one of them has failed; there it is a warning.
 
-    Exactly: the state type is `blocking` in its interface and has none of the outcomes `timeout`,
-    `timed_out` and `preempted`, and the state sets no variable whose name ends with `timeout`.
-    The `timeout:` of a script sends a preempt request to the state, which therefore needs the
-    outcome `preempted`.
+    Exactly: the state type is `blocking` in its interface, has none of the outcomes `timeout` and
+    `timed_out`, and the state sets no variable whose name ends with `timeout`. The outcome
+    `preempted` is a limit only where something in the script sends a preempt request: a `timeout:`
+    around the state, or another branch of a concurrence with `join: any`. A state with `preempted`
+    and an outcome of failure limits itself, unless its type has a variable for a time limit that is
+    not set. A SleepState ends by itself.
 
     Wrong:
         name: sm
@@ -61,7 +68,7 @@ def no_timeout(context: Context) -> Iterator[Finding]:
               outcomes: [done]
               default_outcome: done
               states:
-                - WAIT: {template: WaitForButton}
+                - WAIT: {template: WaitForButton, timeout: 20s}
                 - BLINK: {template: ScriptedState, outcomes: [ok]}
               transitions: {done: done}
         == templates/WaitForButton.yml ==
@@ -71,18 +78,28 @@ def no_timeout(context: Context) -> Iterator[Finding]:
         code: {python: my_robot.states:WaitForButton}
     """
     around: dict[str, Concurrence] = {}
+    stoppable = stoppable_branches(context.containers, context.endings)
+    limits = _time_limits(context.machine.state_types)
     for path, node in context.states:
         outer = around.get(path)
         if not isinstance(node, Leaf):
             outer = node if isinstance(node, Concurrence) else outer
             if outer is not None:
                 around.update((f"{path}/{child.name}", outer) for child in node.children)
-        elif node.blocking and not _is_limited(node):
+        elif node.blocking and not _is_limited(node, limits.get(node.type, ())):
+            answers = PREEMPTED in outcome_names(node)
+            timed = outer is not None and outer.sugar == "timeout"
+            if (answers and branch_around(path, stoppable)) or (
+                node.built_in == SLEEP and not timed
+            ):
+                continue
             yield Finding(
                 span=node.span,
                 message=_unlimited(node, outer),
                 arguments=(node.name,),
-                help=f"add an outcome `preempted` or `timeout` to the state type `{node.type}`",
+                help=f"write a time limit, as in `timeout: 20s`, for `{node.name}`"
+                if answers
+                else f"add an outcome `preempted` or `timeout` to the state type `{node.type}`",
                 related=calls(node, node.span),
                 severity=Severity.WARNING if outer is not None else None,
                 node=path,
@@ -90,20 +107,35 @@ def no_timeout(context: Context) -> Iterator[Finding]:
 
 
 def _unlimited(leaf: Leaf, outer: Concurrence | None) -> str:
+    answers = PREEMPTED in outcome_names(leaf)
     if outer is not None and outer.sugar == "timeout":
         limited = f"the time limit of `{outer.name}` cannot stop `{leaf.name}`"
         return f"{limited}, which has no outcome `preempted`"
     waits = f"block `{outer.name}`" if outer is not None else "wait"
+    if answers:
+        return f"`{leaf.name}` can {waits} forever: it has no time limit, and nothing preempts it"
     return f"`{leaf.name}` can {waits} forever: it has no time limit and no outcome `preempted`"
 
 
-def _is_limited(leaf: Leaf) -> bool:
+def _is_limited(leaf: Leaf, limits: Iterable[VariableType]) -> bool:
+    """Whether a wait ends by itself. `limits` are the variables of its type for a time limit."""
     names = frozenset(outcome_names(leaf))
-    if leaf.open or PREEMPTED in names or not TIMEOUTS.isdisjoint(names):
+    if leaf.open or not TIMEOUTS.isdisjoint(names):
         return True
-    return any(
-        one.name.endswith("timeout") and one.value.data is not None for one in leaf.variables
-    )
+    values = {one.name: one.default.data if one.default else None for one in limits}
+    given = (one for one in leaf.variables if one.name.endswith("timeout"))
+    values.update((one.name, one.value.data) for one in given)
+    if any(value is not None for value in values.values()):
+        return True
+    return PREEMPTED in names and not values and any(map(is_failure, names))
+
+
+def _time_limits(types: Mapping[str, StateType]) -> dict[str, list[VariableType]]:
+    """By state type the variables for a time limit."""
+    return {
+        name: [one for one in type_.variables.values() if one.name.endswith("timeout")]
+        for name, type_ in types.items()
+    }
 
 
 @rule("SM407", "never-ends", Severity.WARNING)
@@ -115,8 +147,10 @@ def never_ends(context: Context) -> Iterator[Finding]:
 
     Exactly: at least one other branch ends without a preempt request. With `join: all` this branch
     ends only after a preempt request, which no branch sends. With `join: any` this branch has
-    `forever: true`, and does not end after a preempt request either. A branch that never ends
-    without `forever: true` is an error of SM202; a single state that waits is SM207.
+    `forever: true`, and does not end after a preempt request either; or a state in it starts again
+    after a preempt request, as in SM209, so that the branch ends only by itself. The same holds for
+    what a time limit cannot stop. A branch that never ends without `forever: true` is an error of
+    SM202; a single state that waits is SM207.
 
     Wrong:
         name: sm
@@ -166,6 +200,7 @@ def never_ends(context: Context) -> Iterator[Finding]:
     endless = context.endless
     for path, container in concurrences:
         yield from _lasting(path, container, found, endless)
+    yield from _starting_again(context)
 
 
 def _lasting(
@@ -196,6 +231,31 @@ def _lasting(
             help=help,
             related=calls(child, child.span),
             node=here,
+        )
+
+
+def _starting_again(context: Context) -> Iterator[Finding]:
+    """The loops that a sibling, or a time limit, cannot stop."""
+    again = context.stop_paths.again
+    branches = stoppable_branches(context.containers, context.endings) if again else {}
+    for found in again:
+        path, _, child, step, _ = found.stop
+        branch = branch_around(path, branches)
+        if not branch or (branch in context.endless and not context.endings.ever[branch]):
+            continue
+        around, name = branches[branch], branch.rpartition("/")[2]
+        if around.sugar == "timeout":
+            what = f"the time limit of `{around.name}` cannot stop it"
+        else:
+            what = f"`{name}` does not stop when another branch of `{around.name}` ends"
+        yield Finding(
+            span=step.span,
+            message=f"{what}: after the preempt request `{child.name}` starts again",
+            arguments=(own_name(child, step.span), step.outcome),
+            help=way_out(found),
+            related=(*answered_here(found), *calls(child, step.span)),
+            path=witness(found),
+            node=f"{path}/{child.name}",
         )
 
 

@@ -304,5 +304,5 @@ def test_select_and_ignore(
     assert main(["check", str(path), "--format", "json", *options]) == ended
     data = json.loads(capsys.readouterr().out)
     assert sorted(item["code"] for item in data["diagnostics"]) == codes
-    assert main(["check", str(path), "--select", "SM21"]) == 2
-    assert "there is no code `SM21`\ndid you mean" in capsys.readouterr().err
+    assert main(["check", str(path), "--select", "SM29"]) == 2
+    assert "there is no code `SM29`\ndid you mean" in capsys.readouterr().err

@@ -1,0 +1,134 @@
+"""Task flow of a container: the states of its ordinary task, and what can follow a state.
+
+The ordinary task are the states that can run without a failure and without a request to stop. The
+flow has the transitions that are taken while nothing fails: those of a failure only where the state
+has no success. It ends at a decision after a stop: a state that runs only after a stop and leads to
+several places, such as one that waits for an operator.
+"""
+
+from __future__ import annotations
+
+from collections import deque
+from collections.abc import Callable, Iterable, Mapping
+from collections.abc import Set as AbstractSet
+from dataclasses import dataclass
+from typing import TypeAlias
+
+from smachac.analysis.control_flow import Linear, children_names, fails
+from smachac.ir.nodes import Node, Transition
+from smachac.ir.outcome_names import successes
+from smachac.ir.traversal import leads_to_child, outcome_names
+
+CalmOutcomes = Callable[[Node], AbstractSet[str]]
+"""The outcomes with which a child can end without a request to stop."""
+
+Way = tuple[tuple[str, str], ...]
+"""Outcomes, each with the state that it leads to."""
+
+_Leads: TypeAlias = "list[tuple[str, str]]"
+
+
+@dataclass(frozen=True, slots=True)
+class TaskFlow:
+    """`steps` are the outcomes and siblings that can follow each state, `exits` the outcomes of the
+    container. `ordinary` are the states of the ordinary task. `calm_exits` are the outcomes of the
+    container without a stop, also after failures."""
+
+    steps: Mapping[str, _Leads]
+    exits: Mapping[str, frozenset[str]]
+    ordinary: frozenset[str]
+    calm_exits: frozenset[str]
+
+
+def task_flow(container: Linear, calm_outcomes: CalmOutcomes) -> TaskFlow:
+    """The task flow of a container. Linear in its size."""
+    names = children_names(container)
+    every: dict[str, _Leads] = {}
+    steps: dict[str, _Leads] = {}
+    exits: dict[str, frozenset[str]] = {}
+    leaving: dict[str, frozenset[str]] = {}
+    for child in container.children:
+        possible = calm_outcomes(child)
+        taken = [step for step in child.transitions if step.outcome in possible]
+        every[child.name], leaving[child.name] = _parted(taken, names)
+        if not successes(outcome_names(child)).isdisjoint(possible):
+            taken = [step for step in taken if not fails(child, step.outcome)]
+        steps[child.name], exits[child.name] = _parted(taken, names)
+    ordinary = reached([container.initial], steps)
+    calm = reached([container.initial], every)
+    for name, following in steps.items():
+        if name not in calm and len({target for _, target in following} | exits[name]) > 1:
+            steps[name], exits[name] = [], frozenset()
+    calm_exits = frozenset(end for name in calm for end in leaving.get(name, ()))
+    return TaskFlow(steps, exits, ordinary, calm_exits)
+
+
+def _parted(steps: Iterable[Transition], names: frozenset[str]) -> tuple[_Leads, frozenset[str]]:
+    """The steps to siblings, and the targets of the others."""
+    leads: _Leads = []
+    exits: list[str] = []
+    for step in steps:
+        if leads_to_child(step, names):
+            leads.append((step.outcome, step.target))
+        else:
+            exits.append(step.target)
+    return leads, frozenset(exits)
+
+
+def reached(starts: Iterable[str], steps: Mapping[str, _Leads]) -> frozenset[str]:
+    """The states to which steps lead from some states, and these."""
+    seen = {*starts}
+    todo = list(seen)
+    while todo:
+        more = [target for _, target in steps.get(todo.pop(), ()) if target not in seen]
+        seen.update(more)
+        todo += more
+    return frozenset(seen)
+
+
+def way_between(flow: TaskFlow, start: str, goal: str, within: AbstractSet[str]) -> Way | None:
+    """The shortest way from one state to another through some states, if there is one."""
+    before: dict[str, tuple[str, str]] = {start: ("", "")}
+    todo = deque([start])
+    while todo and goal not in before:
+        here = todo.popleft()
+        for outcome, target in flow.steps.get(here, ()):
+            if target in within and target not in before:
+                before[target] = (outcome, here)
+                todo.append(target)
+    if goal not in before:
+        return None
+    found: list[tuple[str, str]] = []
+    while goal != start:
+        outcome, last = before[goal]
+        found.append((outcome, goal))
+        goal = last
+    return tuple(reversed(found))
+
+
+def nearest(flow: TaskFlow, goals: Iterable[str]) -> Mapping[str, tuple[str, str] | None]:
+    """The states from which one of the goals can be reached, each with the next step of a shortest
+    way: an outcome and a state; None for the goals themselves. Linear in the container."""
+    leading: dict[str, list[tuple[str, str]]] = {}
+    for name, following in flow.steps.items():
+        for outcome, target in following:
+            leading.setdefault(target, []).append((outcome, name))
+    found: dict[str, tuple[str, str] | None] = dict.fromkeys(goals)
+    todo = deque(found)
+    while todo:
+        here = todo.popleft()
+        for outcome, name in leading.get(here, ()):
+            if name not in found:
+                found[name] = (outcome, here)
+                todo.append(name)
+    return found
+
+
+def way_along(steps: Mapping[str, tuple[str, str] | None], start: str, most: int) -> Way:
+    """The way that the steps of `nearest` lead, at most so many states of it."""
+    found: list[tuple[str, str]] = []
+    step = steps[start]
+    while step is not None and len(found) < most:
+        found.append(step)
+        step = steps[step[1]]
+    return tuple(found)
