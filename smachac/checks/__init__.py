@@ -48,6 +48,8 @@ RULES: tuple[Rule, ...] = (
     stops.ignored_stop,
     stops.stop_as_success,
     stops.task_after_stop,
+    timeouts.short_time_limit,
+    loops.unchanging_condition,
     userdata.read_before_write,
     userdata.unknown_remap,
     userdata.undeclared_container_key,

@@ -2,9 +2,9 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Iterable, Iterator
 from dataclasses import replace
-from typing import NamedTuple
+from typing import NamedTuple, TypeGuard
 
 from smachac.analysis.context import Context
 from smachac.analysis.control_flow import (
@@ -12,6 +12,7 @@ from smachac.analysis.control_flow import (
     SiblingSteps,
     circle,
     dead_ends,
+    fails,
     outline,
     regions,
     shortest_paths,
@@ -24,10 +25,18 @@ from smachac.checks.messages import calls, own_name
 from smachac.checks.rule import rule
 from smachac.diagnostics.diagnostic import Finding, PathStep, Severity
 from smachac.diagnostics.wording import listed
+from smachac.ir.expressions import parse_expression
 from smachac.ir.graph import can_end, reachable
+from smachac.ir.leaf import functions, variable_of
 from smachac.ir.nodes import Leaf, Node, StateMachine, Transition
-from smachac.ir.outcome_names import PREEMPTED, is_failure
-from smachac.ir.traversal import leads_to_child, outcome_names
+from smachac.ir.outcome_names import PREEMPTED, is_failure, successes
+from smachac.ir.traversal import leads_to_child, outcome_names, remapping, walk
+
+NUMBERS = frozenset(["int", "float"])
+"""The names of the types of numbers."""
+
+SCALARS = NUMBERS | {"bool", "str"}
+"""The names of the types whose values cannot be changed in place."""
 
 
 @rule("SM202", "trap", Severity.ERROR)
@@ -286,5 +295,150 @@ def _spins(path: str, container: Linear, spin: list[PathStep]) -> Finding:
         help="add a state that waits to the loop, such as a SleepState",
         related=calls(child, child.span),
         path=tuple(spin),
+        node=f"{path}/{child.name}",
+    )
+
+
+@rule("SM213", "unchanging-condition", Severity.WARNING)
+def unchanging_condition(context: Context) -> Iterator[Finding]:
+    """The condition of a loop reads only keys that nothing in the loop sets.
+
+    The robot leaves the loop in the first round or never, for example because a counter is not
+    increased.
+
+    Exactly: a state with conditions, such as a ConditionalOutcomeState, is in a cycle and can leave
+    it. It reads at least one key. All keys that it reads are numbers, strings or booleans, and no
+    state in the cycle has an output of such a key; its conditions are portable expressions, and no
+    state in the cycle has an unknown interface. If the loop can also end by another state that does
+    not fail, at least one key must be a number: a string or a boolean can be a setting of the task.
+
+    Wrong:
+        name: sm
+        template: Base
+        outcomes: [picked, lost]
+        userdata: {tries: 0}
+        states:
+          - PICK:
+              template: ScriptedState
+              outcomes: [done, failed]
+              transitions: {done: picked, failed: AGAIN}
+          - AGAIN:
+              template: ConditionalOutcomeState
+              input_keys: [tries]
+              outcomes: [again]
+              callbacks: {again: 'lambda ud: ud.tries < 3'}
+              default_outcome: enough
+              transitions: {again: PICK, enough: lost}
+
+    Right:
+        name: sm
+        template: Base
+        outcomes: [picked, lost]
+        userdata: {tries: 0}
+        states:
+          - PICK:
+              template: ScriptedState
+              outcomes: [done, failed]
+              transitions: {done: picked, failed: COUNT}
+          - COUNT:
+              template: CallbacksState
+              input_keys: [tries]
+              output_keys: [tries]
+              callbacks: {tries: 'lambda ud: ud.tries + 1'}
+              transitions: {succeeded: AGAIN}
+          - AGAIN:
+              template: ConditionalOutcomeState
+              input_keys: [tries]
+              outcomes: [again]
+              callbacks: {again: 'lambda ud: ud.tries < 3'}
+              default_outcome: enough
+              transitions: {again: PICK, enough: lost}
+    """
+    for path, container in context.linear:
+        deciding = list(filter(_is_condition, container.children))
+        if not deciding or not _goes_back(container):
+            continue
+        flow = _unpreempted(container)
+        steps = steps_of(flow)
+        by_name = {child.name: child for child in reversed(flow.children)}
+        for region in regions(steps, steps):
+            names = frozenset(region)
+            inside = [child for child in deciding if child.name in names]
+            if inside and any(target in names for name in region for _, target in steps[name]):
+                states = [by_name[name] for name in region]
+                yield from _unchanging(context, path, inside, states, steps)
+
+
+def _is_condition(node: Node) -> TypeGuard[Leaf]:
+    """Whether a state ends as its conditions say, which have no effect of their own."""
+    if not isinstance(node, Leaf) or node.open or not node.inputs:
+        return False
+    conditions = functions(node, "conditions") if variable_of(node, "conditions") else None
+    if not conditions:
+        return False
+    return all(parse_expression(code.text) is not None for code in conditions.values())
+
+
+def _unchanging(
+    context: Context, path: str, deciding: list[Leaf], region: list[Node], steps: SiblingSteps
+) -> Iterator[Finding]:
+    names = frozenset(child.name for child in region)
+    written = _written_in(region)
+    if written is None:
+        return
+    fixed: list[tuple[Leaf, set[str], set[str]]] = []
+    for child in deciding:
+        outer = remapping(child)
+        keys = {outer.get(key.name, key.name) for key in child.inputs}
+        types = {
+            context.types.inputs[f"{path}/{child.name}", key.name].name for key in child.inputs
+        }
+        if written.isdisjoint({*keys, *(key.name for key in child.inputs)}) and types <= SCALARS:
+            fixed.append((child, keys, types))
+    constant = {child.name for child, _, _ in fixed}
+    ways_out = {child.name for child in region if _leaves(child, names)}
+    for child, keys, types in fixed:
+        if child.name not in ways_out or not steps[child.name]:
+            continue
+        if ways_out <= constant or not types.isdisjoint(NUMBERS):
+            yield _unchanged(path, child, keys, region, steps)
+
+
+def _written_in(region: Iterable[Node]) -> frozenset[str] | None:
+    """The keys that states can set, under all names they have; None where that is not known."""
+    found: set[str] = set()
+    for child in region:
+        for _, node in walk(child):
+            if isinstance(node, Leaf) and node.open:
+                return None
+            found.update(key.name for key in node.outputs)
+            found.update(remapping(node).get(key.name, "") for key in node.outputs)
+            if isinstance(node, Leaf) and node.body is not None:
+                found.update(word.text for word in node.body.writes)
+    return frozenset(found)
+
+
+def _leaves(child: Node, names: frozenset[str]) -> bool:
+    """Whether a state leads out of a region; by a failure, only if it has no success."""
+    succeeds = bool(successes(outcome_names(child)))
+    return any(
+        not leads_to_child(step, names) and not (succeeds and fails(child, step.outcome))
+        for step in child.transitions
+    )
+
+
+def _unchanged(
+    path: str, child: Node, keys: Iterable[str], region: list[Node], steps: SiblingSteps
+) -> Finding:
+    names = [child.name, *(one.name for one in region if one is not child)]
+    names = list(dict.fromkeys(names))
+    return Finding(
+        span=child.span,
+        message=f"the condition of `{child.name}` never changes in the loop of {listed(names)}:"
+        f" nothing in the loop sets {listed(keys)}",
+        arguments=(own_name(child, child.span), *sorted(keys)),
+        help="set the key in the loop, or move the condition out of the loop",
+        related=calls(child, child.span),
+        path=tuple(circle(path, names, steps)),
         node=f"{path}/{child.name}",
     )

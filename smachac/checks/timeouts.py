@@ -6,6 +6,7 @@ from collections.abc import Iterable, Iterator, Mapping
 from collections.abc import Set as AbstractSet
 
 from smachac.analysis.context import Context
+from smachac.analysis.durations import SLEEP, Ends, ends_of, shortest_ends, time_limit
 from smachac.analysis.possible_outcomes import Endings
 from smachac.analysis.stop_paths import branch_around, stoppable_branches
 from smachac.checks.messages import calls, own_name
@@ -18,9 +19,6 @@ from smachac.ir.graph import stopped_endings
 from smachac.ir.nodes import Concurrence, Leaf, StateType, VariableType
 from smachac.ir.outcome_names import PREEMPTED, is_failure
 from smachac.ir.traversal import outcome_names
-
-SLEEP = "SleepState"
-"""The built-in state type that waits for a time."""
 
 TIMEOUTS = frozenset(["timeout", "timed_out"])
 
@@ -61,16 +59,17 @@ def no_timeout(context: Context) -> Iterator[Finding]:
     Right:
         name: sm
         template: Base
-        outcomes: [done]
+        outcomes: [done, failed]
         states:
           - BOTH:
               template: Concurrence
-              outcomes: [done]
-              default_outcome: done
+              outcomes: [done, failed]
+              default_outcome: failed
+              outcome_map: {done: {WAIT: pressed}}
               states:
                 - WAIT: {template: WaitForButton, timeout: 20s}
                 - BLINK: {template: ScriptedState, outcomes: [ok]}
-              transitions: {done: done}
+              transitions: {done: done, failed: failed}
         == templates/WaitForButton.yml ==
         name: WaitForButton
         outcomes: {pressed: {}, preempted: {}}
@@ -326,3 +325,64 @@ def undeclared_stops(container: nodes.Iterator) -> list[str]:
     own = outcome_names(container)
     ends = stopped_endings(container)
     return [] if container.catches else [each for each, result in ends.items() if result not in own]
+
+
+@rule("SM212", "short-time-limit", Severity.WARNING)
+def short_time_limit(context: Context) -> Iterator[Finding]:
+    """A time limit is over before the state inside it can end.
+
+    The state is always preempted, and the machine always continues as after a timeout.
+
+    Exactly: the shortest way through the state to one of its outcomes takes as long as its time
+    limit, or longer. Only times that stand in the script count: the `time` of a SleepState, the
+    items of a loop and the tries and delays of a `retry:` where their number is known. If both
+    times are the same, two threads race.
+
+    Wrong:
+        name: sm
+        template: Base
+        outcomes: [settled, moving]
+        states:
+          - SETTLE:
+              template: SleepState
+              time: 3
+              timeout: 2s
+              transitions: {succeeded: settled, preempted: moving, timeout: moving}
+
+    Right:
+        name: sm
+        template: Base
+        outcomes: [settled, moving]
+        states:
+          - SETTLE:
+              template: SleepState
+              time: 3
+              timeout: 5s
+              transitions: {succeeded: settled, preempted: moving, timeout: moving}
+    """
+    limited = [
+        (path, one)
+        for path, one in context.containers
+        if isinstance(one, Concurrence) and one.sugar == "timeout"
+    ]
+    known = shortest_ends(context.containers) if limited else {}
+    for path, container in limited:
+        yield from _short_limit(path, container, known)
+
+
+def _short_limit(path: str, container: Concurrence, known: Mapping[str, Ends]) -> Iterator[Finding]:
+    inner = next(child for child in container.children if child.name == container.name)
+    limit = time_limit(container)
+    ends = ends_of(f"{path}/{inner.name}", inner, known)
+    late = {name: ends[name] for name in outcome_names(inner) if ends.get(name, -1.0) >= limit}
+    if not late:
+        return
+    yield Finding(
+        span=container.default_span,
+        message=f"`{container.name}` takes {min(late.values()):g} s or more to end with"
+        f" {listed(late)}, but its time limit is {limit:g} s",
+        arguments=(own_name(container, container.default_span), *late),
+        help=f"write a time limit of more than {max(late.values()):g} s",
+        related=calls(container, container.default_span),
+        node=path,
+    )
