@@ -88,7 +88,7 @@ def _linear_ends(container: Linear, ends: Mapping[str, Ends]) -> Ends:
 def _limited_ends(container: Concurrence, ends: Mapping[str, Ends]) -> Ends:
     """Those of the state under a time limit, and the limit."""
     limit = time_limit(container)
-    own = {name: time for name, time in ends[container.name].items() if time < limit}
+    own = {name: time for name, time in ends.get(container.name, {}).items() if time < limit}
     return {**own, container.default_outcome: limit}
 
 

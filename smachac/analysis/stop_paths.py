@@ -159,6 +159,8 @@ def _linear(
         ends = _continued(onward, flow, found, endless, holds)
     good = task_successes(container) & calm
     for stop in leaving:
+        if stop.step.outcome in task_successes(stop.child):
+            continue
         if stop.step.target in good:
             found.praised.append(Resumed(stop, end=stop.step.target))
         elif stop.step.target in exits:
@@ -216,6 +218,8 @@ def _continued(
             clean.append(stop)
         elif target in moving:
             found.moving.append(Resumed(stop, way_along(moving, target, MOST_STEPS)))
+        elif stop.step.outcome in task_successes(stop.child):
+            continue
         elif target in to_good and target not in to_others:
             way = way_along(to_good, target, len(flow.steps))
             last = way[-1][1] if way else target

@@ -76,7 +76,7 @@ def ignored_stop(context: Context) -> Iterator[Finding]:
         yield Finding(
             span=step.span,
             message=f"after a preempt request{_inside(found)} `{child.name}` starts again, and"
-            f" `{container.name}` does not end",
+            f" `{container.name}` continues",
             arguments=(own_name(child, step.span), step.outcome),
             help=way_out(found),
             related=(*answered_here(found), *calls(child, step.span)),
@@ -99,8 +99,9 @@ def stop_as_success(context: Context) -> Iterator[Finding]:
     outcome `preempted`. It counts only if the container also ends with it without a preempt
     request: a machine that works until it is stopped may end so with a success. A concurrence is
     reported if it ends with a success after all its branches have been preempted, and an iterator
-    if it ends after an item as it does after the last one. A transition that a failure of the same
-    state shares is not reported (see SM206).
+    if it ends after an item as it does after the last one. Not reported: a way through a state to
+    which a failure of the same state leads as well, and a container that has itself called the stop
+    a success.
 
     Wrong:
         name: sm
@@ -137,8 +138,8 @@ def stop_as_success(context: Context) -> Iterator[Finding]:
             message=f"after a preempt request in `{child.name}`, `{container.name}` ends with"
             f" `{found.end}`, as if its task were done",
             arguments=(own_name(child, step.span), step.outcome, found.end),
-            help=f"lead `{step.outcome}` to an outcome of `{container.name}` that is no success,"
-            " such as `preempted`",
+            help=f"lead `{step.outcome}` to an outcome of `{container.name}` that does not mean"
+            " success, such as `preempted`",
             related=(*answered_here(found), *calls(child, step.span)),
             path=witness(found),
             node=f"{path}/{child.name}",
@@ -168,7 +169,7 @@ def _stopped_branches(context: Context, each: Judged) -> Iterator[Finding]:
             message=f"after a preempt request `{node.name}` ends with `{name}`, although its"
             " branches were stopped",
             arguments=(own_name(node, span), name),
-            help=f"use an outcome that is no success {place}, such as `preempted`",
+            help=f"use an outcome that does not mean success {place}, such as `preempted`",
             related=calls(node, span),
             node=each.path,
         )

@@ -17,7 +17,7 @@ from smachac.diagnostics.wording import listed
 from smachac.ir import nodes
 from smachac.ir.graph import stopped_endings
 from smachac.ir.nodes import Concurrence, Leaf, StateType, VariableType
-from smachac.ir.outcome_names import PREEMPTED, is_failure
+from smachac.ir.outcome_names import PREEMPTED
 from smachac.ir.traversal import outcome_names
 
 TIMEOUTS = frozenset(["timeout", "timed_out"])
@@ -33,9 +33,9 @@ def no_timeout(context: Context) -> Iterator[Finding]:
     Exactly: the state type is `blocking` in its interface, has none of the outcomes `timeout` and
     `timed_out`, and the state sets no variable whose name ends with `timeout`. The outcome
     `preempted` is a limit only where something in the script sends a preempt request: a `timeout:`
-    around the state, or another branch of a concurrence with `join: any`. A state with `preempted`
-    and an outcome of failure limits itself, unless its type has a variable for a time limit that is
-    not set. A SleepState ends by itself.
+    around the state, or another branch of a concurrence with `join: any`. A state with several
+    outcomes beside `preempted` may limit its wait itself, unless its type has a variable for a time
+    limit that is not set. A SleepState ends by itself.
 
     Wrong:
         name: sm
@@ -126,7 +126,7 @@ def _is_limited(leaf: Leaf, limits: Iterable[VariableType]) -> bool:
     values.update((one.name, one.value.data) for one in given)
     if any(value is not None for value in values.values()):
         return True
-    return PREEMPTED in names and not values and any(map(is_failure, names))
+    return PREEMPTED in names and not values and len(names) > 2
 
 
 def _time_limits(types: Mapping[str, StateType]) -> dict[str, list[VariableType]]:
@@ -371,9 +371,9 @@ def short_time_limit(context: Context) -> Iterator[Finding]:
 
 
 def _short_limit(path: str, container: Concurrence, known: Mapping[str, Ends]) -> Iterator[Finding]:
-    inner = next(child for child in container.children if child.name == container.name)
     limit = time_limit(container)
-    ends = ends_of(f"{path}/{inner.name}", inner, known)
+    inner = next((child for child in container.children if child.name == container.name), container)
+    ends = ends_of(f"{path}/{container.name}", inner, known)
     late = {name: ends[name] for name in outcome_names(inner) if ends.get(name, -1.0) >= limit}
     if not late:
         return

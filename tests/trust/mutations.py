@@ -2,7 +2,13 @@
 
 from __future__ import annotations
 
-from tests.trust import mutate_concurrences, mutate_data, mutate_graph, mutate_names
+from tests.trust import (
+    mutate_concurrences,
+    mutate_data,
+    mutate_graph,
+    mutate_names,
+    mutate_stops,
+)
 from tests.trust.mutants import MUTATIONS
 
 __all__ = [
@@ -11,4 +17,5 @@ __all__ = [
     "mutate_data",
     "mutate_graph",
     "mutate_names",
+    "mutate_stops",
 ]

@@ -1,0 +1,130 @@
+"""Mutations of what happens after a stop, and of limits: SM207, SM209 to SM213, SM403, SM407."""
+
+from __future__ import annotations
+
+from smachac.ir.nodes import Leaf
+from smachac.ir.outcome_names import PREEMPTED
+from smachac.ir.traversal import outcome_names
+from tests.trust.mutants import Mutant, Subject, mutation
+from tests.trust.mutate_concurrences import concurrences
+from tests.trust.mutate_names import MACHINES, renamed
+from tests.trust.project_text import Site
+
+
+def answering(subject: Subject) -> list[Site]:
+    """The leaves in machines that lead `preempted` somewhere."""
+    return [
+        site
+        for site in subject.sites()
+        if site.around is not None and site.around.target in MACHINES
+        if isinstance(subject.node(site), Leaf) and PREEMPTED in site.pairs("transitions")
+    ]
+
+
+def led(site: Site, target: str, *codes: str) -> Mutant:
+    site.body["transitions"][PREEMPTED] = target
+    place = (*site.path, "transitions", PREEMPTED)
+    return Mutant(codes=codes, places=((site.file, place),))
+
+
+def leads_back(site: Site) -> bool:
+    """Whether a transition leads to a state that stands before this one."""
+    names = [each.name for each in site.siblings()]
+    earlier = names[: names.index(site.name)] if site.name in names else []
+    return any(target in earlier for target in site.pairs("transitions").values())
+
+
+@mutation
+def start_again_after_a_stop(subject: Subject) -> Mutant | None:
+    site = subject.pick(
+        site for site in answering(subject) if site.pairs("transitions")[PREEMPTED] != site.name
+    )
+    return None if site is None else led(site, site.name, "SM209", "SM407", "SM202")
+
+
+@mutation
+def call_a_stop_a_success(subject: Subject) -> Mutant | None:
+    found = [
+        (site, target)
+        for site in answering(subject)
+        for outcome, target in site.pairs("transitions").items()
+        if outcome != PREEMPTED and target == "succeeded"
+        if site.around is not None and "aborted" in site.around.keys("outcomes")
+    ]
+    if not found:
+        return None
+    site, target = subject.draw.choice(found)
+    return led(site, target, "SM210")
+
+
+@mutation
+def make_a_race_need_both(subject: Subject) -> Mutant | None:
+    """The first branch to end preempts the other, but the rule needs both."""
+    found = [
+        (site, [child for child in node.children if PREEMPTED in outcome_names(child)])
+        for site, node in concurrences(subject)
+        if len(node.outcomes) > 1
+    ]
+    found = [(site, leaves) for site, leaves in found if len(leaves) > 1]
+    if not found:
+        return None
+    site, leaves = subject.draw.choice(found)
+    site.body["join"] = "any"
+    outcome = next(iter(site.keys("outcomes")))
+    site.body["outcome_map"] = {outcome: {each.name: outcome_names(each)[0] for each in leaves[:2]}}
+    return Mutant(codes=("SM403",), places=((site.file, (*site.path, "outcome_map", outcome)),))
+
+
+@mutation
+def move_on_after_a_stop(subject: Subject) -> Mutant | None:
+    """A stop leads where a success leads: to a state that holds a resource."""
+    found = [
+        (site, other.name)
+        for site in answering(subject)
+        for other in site.siblings()
+        if getattr(subject.node(other), "claims", ())
+        if other.name != site.name and site.pairs("transitions").get("succeeded") == other.name
+        if other.name
+        not in [to for out, to in site.pairs("transitions").items() if out != "succeeded"]
+    ]
+    if not found:
+        return None
+    site, target = subject.draw.choice(found)
+    return led(site, target, "SM211", "SM209")
+
+
+@mutation
+def shorten_a_time_limit(subject: Subject) -> Mutant | None:
+    site = subject.pick(
+        site
+        for site in answering(subject)
+        if site.template == "SleepState" and isinstance(site.body.get("time"), int | float)
+        if not {"timeout", "retry", "for_each"} & set(site.body)
+    )
+    if site is None:
+        return None
+    site.body["timeout"] = f"{site.body['time'] / 2}s"
+    site.body["transitions"]["timeout"] = site.body["transitions"][PREEMPTED]
+    return Mutant(codes=("SM212",), places=((site.file, (*site.path, "timeout")),))
+
+
+@mutation
+def forget_to_count(subject: Subject) -> Mutant | None:
+    """A loop counts under another name than its condition reads."""
+    found = [
+        (site, other, key)
+        for site in subject.sites()
+        if site.template == "ConditionalOutcomeState" and leads_back(site)
+        for other in site.siblings()
+        if other.template == "CallbacksState" and "remapping" not in other.body
+        if isinstance(other.body.get("output_keys"), list)
+        for key in other.pairs("callbacks")
+        if key in site.keys("input_keys") and key in other.body["output_keys"]
+    ]
+    if not found:
+        return None
+    site, other, key = subject.draw.choice(found)
+    renamed(other.body["callbacks"], key, f"{key}_too")
+    other.body["output_keys"].append(f"{key}_too")
+    other.body["output_keys"].remove(key)
+    return Mutant(codes=("SM213",), owners=(site, other))
