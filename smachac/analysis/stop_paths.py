@@ -6,7 +6,7 @@ end as docs/semantics.md (Preemption, Iterator) defines it.
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Callable, Collection, Mapping, Sequence
 from collections.abc import Set as AbstractSet
 from dataclasses import dataclass, field
 from functools import partial
@@ -67,12 +67,13 @@ class StopStep(NamedTuple):
 
 
 class Resumed(NamedTuple):
-    """The machine continues after `stop`: `way` are the steps from its target to a state. `end` is
-    the outcome with which the container then ends, if it does."""
+    """The machine continues after `stop`: `way` are the steps from its target on. `end` is the
+    success with which the container then ends; `mover`, the state that holds a resource."""
 
     stop: StopStep
     way: Way = ()
     end: str = ""
+    mover: Node | None = None
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -142,9 +143,11 @@ def _linear(
     leaving: list[StopStep] = []
     calm: set[str] = set()
     for child in container.children:
-        here = f"{path}/{child.name}"
-        answers = found.answers_of(here, child)
-        only = found.only.get(here, NO_ANSWERS) if not isinstance(child, Leaf) else (PREEMPTED,)
+        answers: Answers = {PREEMPTED: child}
+        only: Collection[str] = answers
+        if not isinstance(child, Leaf):
+            here = f"{path}/{child.name}"
+            answers, only = found.answers.get(here, NO_ANSWERS), found.only.get(here, ())
         for step in child.transitions:
             beside = leads_to_child(step, names)
             if step.outcome in answers:
@@ -207,6 +210,7 @@ def _continued(
     good = task_successes(container) & flow.calm_exits
     to_good = nearest(flow, (name for name, ends in flow.exits.items() if ends & good))
     to_others = nearest(flow, (name for name, ends in flow.exits.items() if ends - good))
+    children = {child.name: child for child in container.children}
     clean: list[StopStep] = []
     for number, stop in enumerate(onward):
         target = stop.step.target
@@ -217,13 +221,13 @@ def _continued(
         elif stop.is_like_a_failure():
             clean.append(stop)
         elif target in moving:
-            found.moving.append(Resumed(stop, way_along(moving, target, MOST_STEPS)))
+            way, goal = way_along(moving, target, MOST_STEPS), moving[target].goal
+            found.moving.append(Resumed(stop, way, mover=children[goal]))
         elif stop.step.outcome in task_successes(stop.child):
             continue
         elif target in to_good and target not in to_others:
-            way = way_along(to_good, target, len(flow.steps))
-            last = way[-1][1] if way else target
-            found.praised.append(Resumed(stop, way[-MOST_STEPS:], min(flow.exits[last] & good)))
+            way, goal = way_along(to_good, target, MOST_STEPS), to_good[target].goal
+            found.praised.append(Resumed(stop, way, end=min(flow.exits[goal] & good)))
         else:
             clean.append(stop)
     return _ends_after(clean, flow)

@@ -12,7 +12,7 @@ from collections import deque
 from collections.abc import Callable, Iterable, Mapping
 from collections.abc import Set as AbstractSet
 from dataclasses import dataclass
-from typing import TypeAlias
+from typing import NamedTuple, TypeAlias
 
 from smachac.analysis.control_flow import Linear, children_names, fails
 from smachac.ir.nodes import Node, Transition
@@ -106,29 +106,36 @@ def way_between(flow: TaskFlow, start: str, goal: str, within: AbstractSet[str])
     return tuple(reversed(found))
 
 
-def nearest(flow: TaskFlow, goals: Iterable[str]) -> Mapping[str, tuple[str, str] | None]:
-    """The states from which one of the goals can be reached, each with the next step of a shortest
-    way: an outcome and a state; None for the goals themselves. Linear in the container."""
-    leading: dict[str, list[tuple[str, str]]] = {}
+class Nearest(NamedTuple):
+    """The next step of a shortest way to a goal; that of the goal itself is empty."""
+
+    goal: str
+    outcome: str = ""
+    next: str = ""
+
+
+def nearest(flow: TaskFlow, goals: Iterable[str]) -> Mapping[str, Nearest]:
+    """The states from which one of the goals can be reached. Linear in the container."""
+    leading: dict[str, _Leads] = {}
     for name, following in flow.steps.items():
         for outcome, target in following:
             leading.setdefault(target, []).append((outcome, name))
-    found: dict[str, tuple[str, str] | None] = dict.fromkeys(goals)
+    found = {name: Nearest(name) for name in goals}
     todo = deque(found)
     while todo:
         here = todo.popleft()
         for outcome, name in leading.get(here, ()):
             if name not in found:
-                found[name] = (outcome, here)
+                found[name] = Nearest(found[here].goal, outcome, here)
                 todo.append(name)
     return found
 
 
-def way_along(steps: Mapping[str, tuple[str, str] | None], start: str, most: int) -> Way:
-    """The way that the steps of `nearest` lead, at most so many states of it."""
+def way_along(steps: Mapping[str, Nearest], start: str, most: int) -> Way:
+    """The first steps of the way from a state to its goal, at most so many."""
     found: list[tuple[str, str]] = []
     step = steps[start]
-    while step is not None and len(found) < most:
-        found.append(step)
-        step = steps[step[1]]
+    while step.next and len(found) < most:
+        found.append((step.outcome, step.next))
+        step = steps[step.next]
     return tuple(found)

@@ -25,12 +25,15 @@ from smachac.checks.messages import calls, own_name
 from smachac.checks.rule import rule
 from smachac.diagnostics.diagnostic import Finding, PathStep, Severity
 from smachac.diagnostics.wording import listed
-from smachac.ir.expressions import parse_expression
+from smachac.ir.expressions import Lambda, Name, parse_expression, parts
 from smachac.ir.graph import can_end, reachable
 from smachac.ir.leaf import functions, variable_of
 from smachac.ir.nodes import Leaf, Node, StateMachine, Transition
 from smachac.ir.outcome_names import PREEMPTED, is_failure, successes
 from smachac.ir.traversal import leads_to_child, outcome_names, remapping, walk
+
+PURE = frozenset(["abs", "bool", "float", "int", "len", "max", "min", "round", "str"])
+"""Functions whose result depends on their arguments only."""
 
 NUMBERS = frozenset(["int", "float"])
 """The names of the types of numbers."""
@@ -308,9 +311,10 @@ def unchanging_condition(context: Context) -> Iterator[Finding]:
 
     Exactly: a state with conditions, such as a ConditionalOutcomeState, is in a cycle and can leave
     it. It reads at least one key. All keys that it reads are numbers, strings or booleans, and no
-    state in the cycle has an output of such a key; its conditions are portable expressions, and no
-    state in the cycle has an unknown interface. If the loop can also end by another state that does
-    not fail, at least one key must be a number: a string or a boolean can be a setting of the task.
+    state in the cycle has an output of such a key; its conditions use nothing but these keys and
+    functions such as `abs` and `len`, and no state in the cycle has an unknown interface. If the
+    loop can also end by another state that does not fail, at least one key must be a number: a
+    string or a boolean can be a setting of the task.
 
     Wrong:
         name: sm
@@ -376,7 +380,24 @@ def _is_condition(node: Node) -> TypeGuard[Leaf]:
     conditions = functions(node, "conditions") if variable_of(node, "conditions") else None
     if not conditions:
         return False
-    return all(parse_expression(code.text) is not None for code in conditions.values())
+    return all(_is_pure(code.text) for code in conditions.values())
+
+
+def _is_pure(text: str) -> bool:
+    """Whether code computes its value from userdata alone."""
+    expr = parse_expression(text)
+    if expr is None:
+        return False
+    known = {"ud", "userdata", *PURE}
+    todo = [expr]
+    while todo:
+        each = todo.pop()
+        if isinstance(each, Lambda) and each.parameter is not None:
+            known.add(each.parameter)
+        if isinstance(each, Name) and each.name not in known:
+            return False
+        todo += parts(each)
+    return True
 
 
 def _unchanging(

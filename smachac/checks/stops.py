@@ -265,15 +265,14 @@ def task_after_stop(context: Context) -> Iterator[Finding]:
     """
     for found in context.stop_paths.moving:
         path, container, child, step, _ = found.stop
-        last = found.way[-1][1] if found.way else step.target
-        moves = f"{path}/{last}"
-        mover = next(one for one in container.children if one.name == last)
-        held = context.claims[moves]
+        mover = found.mover
+        assert mover is not None
+        held = context.claims[f"{path}/{mover.name}"]
         yield Finding(
             span=step.span,
-            message=f"after a preempt request in `{child.name}` the task continues: `{last}`"
+            message=f"after a preempt request in `{child.name}` the task continues: `{mover.name}`"
             f" holds {listed(held)}",
-            arguments=(own_name(child, step.span), step.outcome, last),
+            arguments=(own_name(child, step.span), step.outcome, mover.name),
             help=f"lead `{step.outcome}` to an outcome of `{container.name}`, or to a state that"
             " only makes the robot safe",
             related=(

@@ -15,7 +15,7 @@ from smachac.analysis import outcome_rules
 from smachac.analysis.outcome_rules import Combination, Rules, UndecidedError, study
 from smachac.checks.concurrence import written
 from smachac.diagnostics.diagnostic import Diagnostic, Severity
-from smachac.ir.nodes import Concurrence, StateMachine
+from smachac.ir.nodes import Concurrence, Node, StateMachine
 from tests.support.ir_machines import concurrence, iterator, leaf, machine, ran
 from tests.support.rule_findings import report
 
@@ -359,3 +359,30 @@ def test_a_misspelt_rule_is_one_fault() -> None:
         whole = replace(node, default_outcome="")
         missed = said(whole, "SM401")
         assert bool(missed) == ((child, outcome) in (("RIHGT", "done"), ("RIGHT", "doen")))
+
+
+@pytest.mark.parametrize(
+    ("right", "wanted", "join", "dead"),
+    [
+        (leaf("RIGHT", outcomes="ok preempted"), "ok", "any", True),
+        (leaf("RIGHT", outcomes="ok preempted"), "ok", "all", False),
+        (leaf("RIGHT", outcomes="ok preempted"), "preempted", "any", False),
+        (leaf("RIGHT", outcomes="ok"), "ok", "any", False),
+        (machine("RIGHT", "ok off", leaf("A", {"ok": "ok", "preempted": "off"})),
+         "ok", "any", True),
+        (machine("RIGHT", "ok off", leaf("A", {"ok": "ok", "preempted": "ok"})),
+         "ok", "any", False),
+        (machine("RIGHT", "ok off", leaf("A", {"ok": "B", "preempted": "off"}),
+                 leaf("B", {"ok": "ok"})), "ok", "any", False),
+    ],
+    ids=["both", "all", "one stops the other", "does not answer", "machine", "machine succeeds",
+         "machine goes on"],
+)  # fmt: skip
+def test_a_rule_of_a_race_that_needs_both(right: Node, wanted: str, join: str, dead: bool) -> None:
+    rules = (("good", {"LEFT": "ok", "RIGHT": wanted}), ("bad", {"LEFT": "preempted"}))
+    node = concurrence("BOTH", "good bad", leaf("LEFT", outcomes="ok preempted"), right,
+                       default="bad", rules=rules, join=join,
+                       to={"good": "done", "bad": "done"})  # fmt: skip
+    items = [item for item in report(machine("sm", "done", node)) if item.code == "SM403"]
+    assert [item.severity for item in items] == ([Severity.WARNING] if dead else [])
+    assert all(f"`LEFT: ok`, `RIGHT: {wanted}`" in item.message for item in items)

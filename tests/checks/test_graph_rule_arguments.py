@@ -28,6 +28,11 @@ ARGUMENTS = {
     "SM206": ("PLACE", "timeout", "PLACE"),
     "SM207": ("WAIT",),
     "SM208": ("EACH", "done"),
+    "SM209": ("WAIT", "preempted"),
+    "SM210": ("WAIT", "preempted", "succeeded"),
+    "SM211": ("WAIT", "preempted", "LIFT"),
+    "SM212": ("SETTLE", "succeeded"),
+    "SM213": ("AGAIN", "tries"),
     "SM404": ("BOTH", "ready", "", "LEFT", "RIGHT"),
     "SM407": ("WATCH",),
 }

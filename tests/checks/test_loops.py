@@ -3,12 +3,14 @@
 from __future__ import annotations
 
 from dataclasses import replace
+from typing import Any
 
 import pytest
 
 from smachac.diagnostics.diagnostic import Severity
 from smachac.ir.nodes import Leaf, Node, StateMachine
-from tests.support.ir_machines import iterator, leaf, machine
+from smachac.ir.types import Type
+from tests.support.ir_machines import iterator, leaf, machine, value
 from tests.support.rule_findings import blocking, found, looping, one, report
 
 RETRY = {"ok": "done", "failed": "A"}
@@ -104,3 +106,48 @@ def test_an_iterator_bounds_its_tries() -> None:
                     items=[1, 2, 3], final={"failed": "exhausted"},
                     to={"ok": "done", "exhausted": "lost"})  # fmt: skip
     assert report(machine("sm", "done lost", node)) == []
+
+
+def asking(*keys: str, to: dict[str, str], types: str = "int", **more: Any) -> Leaf:
+    """A state that ends as a condition over keys says."""
+    text = " + ".join(f"ud.{key}" for key in keys)
+    made = leaf("ASK", to, ins=" ".join(keys), callbacks={"again": f"`lambda ud: {text} < 3`"},
+                type="ConditionalOutcomeState", **more)  # fmt: skip
+    variables = tuple(replace(each, role="conditions") for each in made.variables)
+    inputs = tuple(replace(key, type=Type(types)) for key in made.inputs)
+    return replace(made, variables=variables, inputs=inputs)
+
+
+AGAIN = {"again": "A", "enough": "done"}
+
+
+@pytest.mark.parametrize(
+    ("states", "ends"),
+    [
+        ([leaf("A", {"ok": "ASK"}), asking("n", to=AGAIN)], True),
+        ([leaf("A", {"ok": "done", "failed": "ASK"}), asking("n", to=AGAIN)], True),
+        ([leaf("A", {"ok": "ASK"}, ins="n"), asking("n", "m", to=AGAIN)], True),
+        ([leaf("A", {"ok": "ASK"}), asking("n", to=AGAIN, types="str")], True),
+        ([leaf("A", {"ok": "ASK"}, outs="n"), asking("n", to=AGAIN)], False),
+        ([leaf("A", {"ok": "ASK"}, outs="k", remaps={"k": "n"}), asking("n", to=AGAIN)], False),
+        ([leaf("A", {"ok": "ASK"}, outs="m"), asking("n", "m", to=AGAIN)], False),
+        ([leaf("A", {"ok": "ASK"}, open=True), asking("n", to=AGAIN)], False),
+        ([leaf("A", {"ok": "ASK"}), asking("n", to=AGAIN, types="any")], False),
+        ([leaf("A", {"ok": "ASK", "far": "done"}), asking("n", to=AGAIN, types="bool")], False),
+        ([leaf("A", {"ok": "ASK"}), asking("n", to={"again": "done", "enough": "done"})], False),
+        ([machine("A", "ok", leaf("IN", {"ok": "ok"}, outs="n"), to={"ok": "ASK"}),
+          asking("n", to=AGAIN)], False),
+    ],
+    ids=["counter", "retry", "read elsewhere", "a setting ends it", "written", "remapped",
+         "one of two", "open", "type not known", "a setting beside", "no loop", "lost inside"],
+)  # fmt: skip
+def test_a_condition_that_never_changes(states: list[Node], ends: bool) -> None:
+    root = machine("sm", "done", *states, held={"m": 2})
+    assert found(root, "SM213") == (["SM213 sm/ASK"] if ends else [])
+
+
+def test_a_condition_in_python_can_change_by_itself() -> None:
+    ask = asking("n", to=AGAIN)
+    code = replace(ask.variables[0], value=value({"again": "`lambda ud: clock() < ud.n`"}))
+    root = machine("sm", "done", leaf("A", {"ok": "ASK"}), replace(ask, variables=(code,)))
+    assert found(root, "SM213") == []

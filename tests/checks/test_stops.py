@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from dataclasses import replace
 from itertools import pairwise
+from typing import Any
 
 import pytest
 from hypothesis import given, settings
@@ -82,7 +83,7 @@ def test_a_machine_without_an_end_that_ignores_stops() -> None:
     ],
 )
 def test_a_branch_that_a_sibling_cannot_stop(
-    join: str, sugar: str, code: str, message: str
+    join: str, sugar: Any, code: str, message: str
 ) -> None:
     branch = machine("IN" if not sugar else "BOTH", "seen",
                      leaf("WAIT", {"ok": "seen", "preempted": "WAIT"}))  # fmt: skip
@@ -148,7 +149,8 @@ def test_a_loop_that_ends_early_and_succeeds(
                     loop="succeeded", final=final, exhausted=exhausted,
                     to={"succeeded": "succeeded", "failed": "failed"})  # fmt: skip
     helps = [item.help for item in report(sm(loop)) if item.code == "SM210"]
-    assert [help in (each or "") for each in helps] == ([True] if help else [])
+    assert len(helps) == bool(help)
+    assert all(help is not None and help in (each or "") for each in helps)
     answering = replace(loop, children=(leaf("A", outcomes="succeeded preempted"),))
     assert [item for item in report(sm(answering)) if item.code == "SM210"] == []
 

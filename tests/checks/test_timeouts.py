@@ -10,9 +10,10 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from smachac.analysis.context import Context
+from smachac.checks import check_machine
 from smachac.diagnostics.diagnostic import Severity
-from smachac.ir.nodes import Machine, Node, StateMachine
-from tests.support.ir_machines import concurrence, iterator, leaf, machine
+from smachac.ir.nodes import Leaf, Machine, Node, StateMachine, StateType, Value, VariableType
+from tests.support.ir_machines import concurrence, iterator, leaf, machine, value
 from tests.support.rule_findings import blocking, found, one, report
 
 WORK = leaf("WORK", outcomes="done")
@@ -68,7 +69,11 @@ def test_a_trap_in_a_branch_is_reported_as_a_trap() -> None:
     ("outcomes", "variables", "limited"),
     [
         ("ok", {}, False),
-        ("ok preempted", {}, True),
+        ("ok preempted", {}, False),
+        ("ok preempted", {"timeout": None}, False),
+        ("ok preempted", {"timeout": 3}, True),
+        ("ok lost preempted", {}, True),
+        ("ok lost preempted", {"timeout": None}, False),
         ("ok timeout", {}, True),
         ("ok timed_out", {}, True),
         ("ok", {"timeout": 3}, True),
@@ -94,6 +99,112 @@ def test_a_time_limit_needs_a_state_that_answers() -> None:
                        join="any", to={"ok": "done", "timeout": "lost"})  # fmt: skip
     item = one(machine("sm", "done lost", replace(node, sugar="timeout")), "SM207")
     assert "the time limit of `WAIT` cannot stop `WAIT`" in item.finding.message
+
+
+@pytest.mark.parametrize(
+    ("join", "sugar", "other", "limited"),
+    [
+        ("all", "", "ok", False),
+        ("any", "", "ok", True),
+        ("any", "timeout", "ok", True),
+        ("any", "", "preempted", False),
+    ],
+    ids=["nothing preempts it", "a sibling", "a time limit", "no sibling ends"],
+)
+def test_preempted_is_a_limit_where_something_sends_a_request(
+    join: str, sugar: Any, other: str, limited: bool
+) -> None:
+    wait = blocking(leaf("WAIT", outcomes="pressed preempted"))
+    to = dict.fromkeys(["done", "preempted"], "done")
+    node = concurrence("WAIT", "done preempted", wait, leaf("OTHER", outcomes=other),
+                       default="done", join=join, to=to)  # fmt: skip
+    root = machine("sm", "done", replace(node, sugar=sugar))
+    items = [each for each in report(root) if each.code == "SM207"]
+    assert [item.severity for item in items] == ([] if limited else [Severity.WARNING])
+
+
+def test_a_time_limit_of_a_state_type_counts_when_it_is_set() -> None:
+    def said(default: Value | None) -> list[str]:
+        variables = {"timeout": VariableType(name="timeout", default=default)}
+        type_ = StateType(name="Wait", variables=variables)
+        to = dict.fromkeys(["ok", "lost", "preempted"], "done")
+        root = machine("sm", "done", blocking(leaf("WAIT", to, type="Wait")))
+        items = check_machine(Machine(root=root, state_types={"Wait": type_}))
+        return [item.code for item in items if item.code == "SM207"]
+
+    assert said(None) == ["SM207"]
+    assert said(value(10.0)) == []
+
+
+def sleep(seconds: Any, to: dict[str, str] | None = None, name: str = "WAIT") -> Leaf:
+    made = leaf(name, to or {}, outcomes="succeeded preempted", time=seconds)
+    return replace(made, built_in="SleepState")
+
+
+def limited(seconds: float, inner: Node) -> StateMachine:
+    """A machine with a state under a time limit."""
+    names = [each.name for each in inner.outcomes]
+    node = concurrence("WAIT", " ".join([*names, "timeout"]), inner, sleep(seconds, name="TIMER"),
+                       default="timeout", join="any",
+                       to=dict.fromkeys([*names, "timeout"], "done"))  # fmt: skip
+    return machine("sm", "done", replace(node, sugar="timeout"))
+
+
+def row(*states: Node, outcomes: str = "ok lost") -> StateMachine:
+    return machine("WAIT", outcomes, *states)
+
+
+LONG = {"succeeded": "B", "preempted": "lost"}
+END = {"succeeded": "ok", "preempted": "lost"}
+TRIES = iterator("WAIT", "done gone", sleep(2, name="A"), items=[1, 2, 3], loop="succeeded",
+                 exhausted="done")  # fmt: skip
+TRY = replace(
+    row(sleep("`lambda ud: ud.pause`", {"succeeded": "A", "preempted": "bad"}, "PAUSE"),
+        leaf("A", {"bad": "bad"}), outcomes="bad"),
+    sugar="retry", name="TRY",
+)  # fmt: skip
+RETRY = replace(
+    iterator("WAIT", "exhausted", TRY, items=[0.0, 2.0, 2.0], loop="bad"), sugar="retry"
+)
+
+
+@pytest.mark.parametrize(
+    ("inner", "least"),
+    [
+        (sleep(3), 3),
+        (row(sleep(1, LONG, "A"), sleep(2, END, "B")), 3),
+        (row(leaf("A", {"near": "C", "far": "B"}), sleep(9, {"succeeded": "C"}, "B"),
+             sleep(2, END, "C")), 2),
+        (TRIES, 6),
+        (RETRY, 4),
+        (concurrence("WAIT", "ok", sleep(2, name="A"), sleep(3, name="B"), default="ok"), 3),
+        (concurrence("WAIT", "ok", sleep(2, name="A"), sleep(3, name="B"), default="ok",
+                     join="any"), 2),
+    ],
+    ids=["sleep", "row", "shortest way", "loop", "delays of a retry", "all", "any"],
+)  # fmt: skip
+def test_a_time_limit_that_is_too_short(inner: Node, least: float) -> None:
+    assert found(limited(least + 0.5, inner), "SM212") == []
+    for seconds in (least, least - 0.5):
+        item = one(limited(seconds, inner), "SM212")
+        assert f"takes {least} s or more" in item.message
+        assert item.help == f"write a time limit of more than {least} s"
+
+
+@pytest.mark.parametrize(
+    "inner",
+    [
+        sleep("`lambda ud: ud.t`"),
+        leaf("WAIT", outcomes="ok", time=9),
+        iterator("WAIT", "done", sleep(2, name="A"), items_key="k", loop="succeeded",
+                 exhausted="done"),
+        row(leaf("A", {"skip": "ok", "wait": "B"}), sleep(9, {"succeeded": "ok"}, "B"),
+            outcomes="ok"),
+    ],
+    ids=["function", "another type", "unknown items", "a way round"],
+)  # fmt: skip
+def test_times_that_are_not_known(inner: Node) -> None:
+    assert found(limited(1, inner), "SM212") == []
 
 
 Flow = dict[str, dict[str, str]]
