@@ -8,13 +8,10 @@ from heapq import heappop, heappush
 from smachac.analysis.control_flow import Linear, children_names
 from smachac.diagnostics.source import assert_never
 from smachac.ir import nodes
-from smachac.ir.leaf import variable
+from smachac.ir.leaf import variable_of
 from smachac.ir.nodes import Concurrence, Container, Data, Leaf, Node
 from smachac.ir.outcome_names import PREEMPTED
 from smachac.ir.traversal import leads_to_child, outcome_names
-
-SLEEP = "SleepState"
-"""The built-in state type that waits for a time."""
 
 Ends = Mapping[str, float]
 """The outcomes that a state can end with, each with the seconds that it takes at least. A request
@@ -37,9 +34,15 @@ def ends_of(path: str, node: Node, known: Mapping[str, Ends]) -> Ends:
     """The ends of the state at a path."""
     if not isinstance(node, Leaf):
         return known.get(path, {})
-    seconds = number(variable(node, "time")) if node.built_in == SLEEP else 0.0
+    seconds = duration(node)
     names = {*outcome_names(node), *(step.outcome for step in node.transitions)} - {PREEMPTED}
     return {name: seconds if name != node.catches else 0.0 for name in names}
+
+
+def duration(leaf: Leaf) -> float:
+    """The seconds that a leaf waits, if they stand in the script."""
+    held = variable_of(leaf, "duration")
+    return number(held.value.data) if held is not None else 0.0
 
 
 def number(data: Data) -> float:
@@ -95,7 +98,7 @@ def _limited_ends(container: Concurrence, ends: Mapping[str, Ends]) -> Ends:
 def time_limit(container: Concurrence) -> float:
     """The seconds of a time limit."""
     timers = (child for child in container.children if child.name != container.name)
-    return next((number(variable(each, "time")) for each in timers if isinstance(each, Leaf)), 0.0)
+    return next((duration(each) for each in timers if isinstance(each, Leaf)), 0.0)
 
 
 def _iterator_ends(container: nodes.Iterator, ends: Mapping[str, Ends]) -> Ends:

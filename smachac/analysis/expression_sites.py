@@ -81,7 +81,7 @@ def _expressions(
                 for expression in expressions_in(value):
                     yield expression, called.get(key) if expression is value else None
         else:
-            called_alone = held.role == "function"
+            called_alone = held.role in ("function", "duration")
             for expression in expressions_in(data):
                 yield expression, {} if called_alone and expression is data else None
 

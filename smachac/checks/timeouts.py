@@ -6,7 +6,7 @@ from collections.abc import Iterable, Iterator, Mapping
 from collections.abc import Set as AbstractSet
 
 from smachac.analysis.context import Context
-from smachac.analysis.durations import SLEEP, Ends, ends_of, shortest_ends, time_limit
+from smachac.analysis.durations import Ends, ends_of, shortest_ends, time_limit
 from smachac.analysis.possible_outcomes import Endings
 from smachac.analysis.stop_paths import branch_around, stoppable_branches
 from smachac.checks.messages import calls, own_name
@@ -16,6 +16,7 @@ from smachac.diagnostics.diagnostic import Finding, Severity
 from smachac.diagnostics.wording import listed
 from smachac.ir import nodes
 from smachac.ir.graph import stopped_endings
+from smachac.ir.leaf import variable_of
 from smachac.ir.nodes import Concurrence, Leaf, StateType, VariableType
 from smachac.ir.outcome_names import PREEMPTED
 from smachac.ir.traversal import outcome_names
@@ -35,7 +36,7 @@ def no_timeout(context: Context) -> Iterator[Finding]:
     `preempted` is a limit only where something in the script sends a preempt request: a `timeout:`
     around the state, or another branch of a concurrence with `join: any`. A state with several
     outcomes beside `preempted` may limit its wait itself, unless its type has a variable for a time
-    limit that is not set. A SleepState ends by itself.
+    limit that is not set. A state with a `duration`, such as a SleepState, ends by itself.
 
     Wrong:
         name: sm
@@ -89,7 +90,7 @@ def no_timeout(context: Context) -> Iterator[Finding]:
             answers = PREEMPTED in outcome_names(node)
             timed = outer is not None and outer.sugar == "timeout"
             if (answers and branch_around(path, stoppable)) or (
-                node.built_in == SLEEP and not timed
+                variable_of(node, "duration") and not timed
             ):
                 continue
             yield Finding(
@@ -334,9 +335,9 @@ def short_time_limit(context: Context) -> Iterator[Finding]:
     The state is always preempted, and the machine always continues as after a timeout.
 
     Exactly: the shortest way through the state to one of its outcomes takes as long as its time
-    limit, or longer. Only times that stand in the script count: the `time` of a SleepState, the
-    items of a loop and the tries and delays of a `retry:` where their number is known. If both
-    times are the same, two threads race.
+    limit, or longer. Only times that stand in the script count: the `time` of a SleepState (a
+    variable with the role `duration`), the items of a loop and the tries and delays of a `retry:`
+    where their number is known. If both times are the same, two threads race.
 
     Wrong:
         name: sm

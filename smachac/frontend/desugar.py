@@ -80,7 +80,7 @@ def _pause(name: str, seconds: Value, node: Node, reads: tuple[Key, ...] = ()) -
         type=TIMER,
         inputs=reads,
         outcomes=tuple(Outcome(name=each, span=node.span) for each in ("succeeded", PREEMPTED)),
-        variables=(Variable(name="time", role="function", value=seconds, span=seconds.span),),
+        variables=(Variable(name="time", role="duration", value=seconds, span=seconds.span),),
         blocking=True,
         built_in=TIMER,
         adds_frames=(),

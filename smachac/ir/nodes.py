@@ -43,7 +43,9 @@ class Value:
     span: Span = field(compare=False, repr=False)
 
 
-VariableRole = Literal["", "callbacks", "conditions", "function", "steps", "limb", "grasp", "frame"]
+VariableRole = Literal[
+    "", "callbacks", "conditions", "function", "duration", "steps", "limb", "grasp", "frame"
+]
 """The meaning of a variable's value for a state (docs/state_types.md, Facts)."""
 
 KeyRole = Literal[

@@ -138,7 +138,8 @@ def test_a_time_limit_of_a_state_type_counts_when_it_is_set() -> None:
 
 def sleep(seconds: Any, to: dict[str, str] | None = None, name: str = "WAIT") -> Leaf:
     made = leaf(name, to or {}, outcomes="succeeded preempted", time=seconds)
-    return replace(made, built_in="SleepState")
+    variables = tuple(replace(each, role="duration") for each in made.variables)
+    return replace(made, variables=variables)
 
 
 def limited(seconds: float, inner: Node) -> StateMachine:
