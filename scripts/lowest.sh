@@ -8,15 +8,17 @@ python=${PYTHON:-$(command -v python3.11 || command -v python3)}
 venv=${VENV:-.venv-lowest}
 [[ -x $venv/bin/python ]] || "$python" -m venv "$venv"
 mapfile -t lowest < <("$venv/bin/python" - <<'END'
-import re, sys
+import re
 text = open("pyproject.toml", encoding="utf-8").read()
-rows = re.search(r"^dependencies = \[\n(.*?)^\]", text, re.M | re.S)[1]
-for name, version, rest in re.findall(r'"([\w.]+)>=([\d.]+)([^"]*)"', rows):
-    print(f"{name}=={version}{rest}")
+for table in ("dependencies", "sim"):
+    rows = re.search(rf"^{table} = \[(.*?)\]$", text, re.M | re.S)[1]
+    for name, version, rest in re.findall(r'"([\w.-]+)>=([\d.]+)([^"]*)"', rows):
+        print(f"{name}=={version}{rest}")
 END
 )
 echo "lowest versions: ${lowest[*]}"
-"$venv/bin/python" -m pip install -q --disable-pip-version-check "${lowest[@]}" \
+# Installed, because the targets are found through the metadata of the package.
+"$venv/bin/python" -m pip install -q --disable-pip-version-check -e . "${lowest[@]}" \
   'pytest>=8' 'pytest-xdist>=3.6' 'hypothesis>=6.100' 'jsonschema>=4.20'
 tests=("$@")
 ((${#tests[@]})) || tests=(tests/diagnostics tests/frontend tests/ir tests/analysis tests/checks tests/interpreter

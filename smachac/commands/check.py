@@ -12,6 +12,7 @@ from collections import Counter
 
 from smachac.commands.arguments import FORMAT, SCRIPTS, as_path, colour, search_folders
 from smachac.commands.output import FINDINGS, OK, print_report, usage, without_notes
+from smachac.commands.streams import print_failure
 
 TYPE_CHECKING = False  # annotations only: `--help` imports none of this
 if TYPE_CHECKING:
@@ -285,6 +286,8 @@ def _watch(arguments: Namespace) -> int:
         now = stamps(_watched(arguments, known))
         base = {**now, **{path: before[path] for path in now if path in before}}
         print(f"watching {len(base)} files; Ctrl-C ends", flush=True)
+        if print_failure() is not None:
+            return OK
         gc.collect()  # automatic collection is off
         while stamps(_watched(arguments, known)) == base:
             time.sleep(PAUSE)

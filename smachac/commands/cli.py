@@ -2,13 +2,12 @@
 
 The module of a command has two functions, `NAME_arguments(parser)` and `NAME_command(arguments)`.
 Only the module of the named command is imported, and its functions import what they use, so that
-`--version` and every `--help` are fast.
+`--version` and every `--help` are fast. This module itself imports only what the interpreter has
+already loaded: all else is imported inside `main`, where Ctrl-C is handled.
 """
 
 from __future__ import annotations
 
-import argparse
-import errno
 import gc
 import os
 import sys
@@ -17,11 +16,13 @@ from smachac.version import __version__
 
 TYPE_CHECKING = False  # typing costs more than the rest of `smachac --help`
 if TYPE_CHECKING:
+    import argparse
     from collections.abc import Sequence
     from typing import Any
 
-BUG, INTERRUPTED = 70, 130
-"""Exit codes beside those of output.py: an exception that is a bug of smachac; Ctrl-C."""
+FAILED, BUG, INTERRUPTED, UNREAD = 1, 70, 130, 141
+"""Exit codes: a failure; an exception that is a bug of smachac; Ctrl-C; the reader of standard
+output ended before all was printed (128 + SIGPIPE, as of programs that this signal ends)."""
 
 COMMANDS = {
     "check": ("check", "find the errors in scripts"),
@@ -55,34 +56,50 @@ examples:
 `smachac COMMAND --help` shows the options of a command.
 
 exit codes: 0 success, 1 findings or failure, 2 wrong usage, 70 a bug in smachac,
-130 interrupted
+130 interrupted, 141 the reader of the output ended early
 """
 
 
 def main(arguments: Sequence[str] | None = None) -> int:
-    """Run the command line; the exit code. An exception that gets here is a bug of smachac."""
-    _never_fail_to_print()
-    gc.disable()  # the objects of a compiler live to its end; collection costs a third of the time
+    """Run the command line; the exit code. Without `arguments` this is the whole program, whose
+    arguments are in sys.argv."""
     try:
-        words = sys.argv[1:] if arguments is None else arguments
-        command = next((word for word in words if word in COMMANDS), "")
-        given, unknown = _parser(command).parse_known_args(words)
-        if unknown:
-            given.parser.error(f"unrecognized arguments: {' '.join(unknown)}")
-        code: int = _function(given.command, "command")(given)
-        sys.stdout.flush()
-        return code
-    except BrokenPipeError:  # the reader, such as `head`, needs no more
-        os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
-        return 0
+        return _whole_program() if arguments is None else _guarded(arguments)
     except KeyboardInterrupt:
         print("interrupted", file=sys.stderr, flush=True)
         return INTERRUPTED
-    except Exception as error:
-        if (reason := _why_not_printed(error)) is not None:
-            os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
-            print(f"cannot print: {reason}", file=sys.stderr)
-            return 1
+
+
+def _whole_program() -> int:
+    """Run the command in sys.argv; the exit code, also if standard output did not accept all."""
+    from smachac.commands.interrupts import end_at_interrupts
+    from smachac.commands.streams import open_streams, print_failure
+
+    end_at_interrupts()
+    open_streams()
+    try:
+        code = _guarded(sys.argv[1:])
+    except SystemExit as ended:  # argparse ends so after --help and after wrong usage
+        code = int(ended.code or 0)
+    sys.stdout.flush()
+    error = print_failure()
+    if error is None:
+        return code
+    if isinstance(error, BrokenPipeError):  # the reader, such as `head`, needs no more
+        return code or UNREAD
+    print(f"cannot print: {error.strerror}", file=sys.stderr)
+    return code or FAILED
+
+
+def _guarded(words: Sequence[str]) -> int:
+    """Run a command; the exit code. An exception that gets here is a bug of smachac."""
+    from smachac.commands.streams import escape_unknown_characters
+
+    escape_unknown_characters()
+    gc.disable()  # the objects of a compiler live to its end; collection costs a third of the time
+    try:
+        return _run(words)
+    except Exception:
         import traceback
 
         traceback.print_exc()
@@ -91,8 +108,19 @@ def main(arguments: Sequence[str] | None = None) -> int:
         return BUG
 
 
+def _run(words: Sequence[str]) -> int:
+    command = next((word for word in words if word in COMMANDS), "")
+    given, unknown = _parser(command).parse_known_args(words)
+    if unknown:
+        given.parser.error(f"unrecognized arguments: {' '.join(unknown)}")
+    code: int = _function(given.command, "command")(given)
+    return code
+
+
 def _parser(command: str) -> argparse.ArgumentParser:
     """The parser of all commands; only `command` has its arguments."""
+    import argparse
+
     parser = argparse.ArgumentParser(
         prog="smachac",
         description="Checks robot task state machines in YAML and generates code from them.",
@@ -120,6 +148,8 @@ def _function(command: str, part: str) -> Any:
 
 def _formatter(prog: str) -> argparse.HelpFormatter:
     """Argparse's formatter with a given width: to find the width, argparse would import shutil."""
+    import argparse
+
     try:
         columns = int(os.environ.get("COLUMNS", "")) or 80
     except ValueError:
@@ -128,24 +158,3 @@ def _formatter(prog: str) -> argparse.HelpFormatter:
         except (OSError, ValueError):
             columns = 80
     return argparse.RawDescriptionHelpFormatter(prog, width=max(columns - 2, 40))
-
-
-def _why_not_printed(error: Exception) -> str | None:
-    """The reason why standard output accepts no more, such as a full disk; None for other errors.
-    Such an error names no file, and the commands handle those of the files that they write."""
-    if not isinstance(error, OSError) or error.filename is not None:
-        return None
-    full = error.errno in (errno.ENOSPC, errno.EIO, errno.EBADF, errno.EFBIG)
-    return error.strerror if full else None
-
-
-def _never_fail_to_print() -> None:
-    """Streams that cannot show a character show an escape instead; closed ones drop the text."""
-    if sys.stdout is None:
-        sys.stdout = open(os.devnull, "w", encoding="utf-8")  # noqa: PTH123, SIM115
-    if sys.stderr is None:
-        sys.stderr = open(os.devnull, "w", encoding="utf-8")  # noqa: PTH123, SIM115
-    for stream in (sys.stdout, sys.stderr):
-        reconfigure = getattr(stream, "reconfigure", None)
-        if reconfigure is not None:
-            reconfigure(errors="backslashreplace")

@@ -10,6 +10,7 @@ from argparse import Namespace
 from contextlib import ExitStack, contextmanager, suppress
 
 from smachac.commands.arguments import SCRIPT, as_path, colour, count, names, search_folders
+from smachac.commands.interrupts import end_at_once
 from smachac.commands.output import (
     FINDINGS,
     OK,
@@ -281,21 +282,13 @@ def perform(
             on_preempt=lambda: print(
                 "preemption requested: the states stop; Ctrl-C again ends at once", file=sys.stderr
             ),
-            on_interrupt=_end,
+            on_interrupt=end_at_once,  # a container would wait for branches that may never return
         ).outcome
     except Exception as error:
         raise FailedError(_failure(error, name, folder)) from error
     if outcome is None:
         raise FailedError("the machine ended without an outcome")
     return outcome
-
-
-def _end(*_: object) -> None:
-    """End the process at once: a container would wait for branches that may never return."""
-    with suppress(OSError, RuntimeError):  # the signal may have come in the middle of a print
-        sys.stdout.flush()
-    os.write(2, b"interrupted\n")
-    os._exit(130)
 
 
 def _failure(error: BaseException, name: str, folder: Path) -> str:

@@ -8,6 +8,7 @@ import sys
 from argparse import Namespace
 
 from smachac.commands.arguments import FORMAT, SCRIPT, as_path, colour, count, names, search_folders
+from smachac.commands.interrupts import interrupts_raise
 from smachac.commands.output import FINDINGS, OK, print_report, usage, without_notes
 
 TYPE_CHECKING = False  # annotations only: `--help` imports none of this
@@ -89,14 +90,15 @@ def verify_command(arguments: Namespace) -> int:
     gc.set_threshold(50_000)
     gc.enable()
     try:
-        verdict = verify(
-            machine,
-            players,
-            script=machine.source,
-            files={target: str(path) for target, path in files.items()},
-            most=arguments.paths,
-            seed=arguments.seed,
-        )
+        with interrupts_raise():  # compiled programs and their folder are removed
+            verdict = verify(
+                machine,
+                players,
+                script=machine.source,
+                files={target: str(path) for target, path in files.items()},
+                most=arguments.paths,
+                seed=arguments.seed,
+            )
     except UnplayableError as error:
         print(error, file=sys.stderr)
         return FINDINGS

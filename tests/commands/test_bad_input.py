@@ -106,17 +106,64 @@ def test_huge_numbers(script: Path) -> None:
         assert ended.value.code == 2
 
 
-@pytest.mark.parametrize(
-    "command", [["check"], ["build", "-t", "json", "-o", "-"], ["fmt", "--diff"]]
-)
-def test_standard_output_is_full_or_closed(script: Path, command: list[str]) -> None:
-    words = [sys.executable, "-m", "smachac", *command, str(script)]
+COMMANDS = [
+    (["--help"], 0),
+    (["--version"], 0),
+    (["check", "--help"], 0),
+    (["check", "main.yml"], 0),
+    (["check", "broken.yml", "--format", "json"], 1),
+    (["build", "main.yml", "-t", "json", "-o", "-"], 0),
+    (["build", "main.yml", "-t", "json", "-o", "out"], 0),
+    (["run", "main.yml", "--mock", "scenario.yml"], 0),
+    (["fmt", "main.yml", "--diff"], 1),
+    (["states"], 0),
+    (["explain", "SM999"], 2),
+    (["build", "main.yml", "-t", "nothing"], 2),
+]
+
+
+@pytest.mark.parametrize(("command", "code"), COMMANDS, ids=lambda each: " ".join(map(str, each))
+                         if isinstance(each, list) else None)  # fmt: skip
+def test_standard_output_is_full_closed_or_unread(
+    script: Path, command: list[str], code: int
+) -> None:
+    script.with_name("broken.yml").write_text(SCRIPT.replace("done: succeeded", "done: nowhere"))
+    script.with_name("scenario.yml").write_text("states: {A: [done]}\n")
+    words = [sys.executable, "-m", "smachac", *command]
+    prints = code != 2
     with Path("/dev/full").open("w") as full:
         ended = subprocess.run(words, stdout=full, stderr=subprocess.PIPE, text=True, check=False)
-    assert (ended.returncode, ended.stderr) == (1, "cannot print: No space left on device\n")
-    for closed in ("1>&-", "2>&-"):
+        assert ended.returncode == (code or 1)
+        assert ("cannot print: No space left on device" in ended.stderr) == prints
+        assert ended.stderr.count("\n") == 1 or not prints
+        assert subprocess.run(words, stderr=full, check=False).returncode == code
+    for closed in ("1>&-", "2>&-", "1>&- 2>&-"):
         shell = ["sh", "-c", f'exec "$@" {closed}', "sh", *words]
-        assert subprocess.run(shell, check=False, capture_output=True).returncode in (0, 1)
+        assert subprocess.run(shell, check=False, capture_output=True).returncode == code
+    read_end, write_end = os.pipe()
+    os.close(read_end)
+    with os.fdopen(write_end, "w") as unread:
+        ended = subprocess.run(words, stdout=unread, stderr=subprocess.PIPE, text=True, check=False)
+    assert ended.returncode == (code or 141)
+    assert (ended.stderr == "") == prints
+
+
+def test_a_pipe_that_does_not_block(script: Path) -> None:
+    read_end, write_end = os.pipe()
+    os.set_blocking(write_end, False)
+    words = [sys.executable, "-m", "smachac", "explain", "SM201"]
+    text = subprocess.run(words, capture_output=True, check=True).stdout
+    room = 0
+    try:
+        while True:
+            room += os.write(write_end, bytes(4096))
+    except BlockingIOError:
+        pass
+    with subprocess.Popen(words, stdout=write_end) as process:
+        os.close(write_end)
+        with os.fdopen(read_end, "rb") as stream:
+            assert stream.read()[room:] == text
+        assert process.wait() == 0
 
 
 def test_an_output_folder_without_rights(script: Path, monkeypatch: pytest.MonkeyPatch) -> None:

@@ -224,22 +224,6 @@ def test_check_loads_only_what_it_needs() -> None:
     assert ended.stdout == "no findings\n[]\n"
 
 
-def test_a_closed_pipe_is_no_error() -> None:
-    read_end, write_end = os.pipe()
-    os.close(read_end)
-    with os.fdopen(write_end, "w") as closed:
-        ended = subprocess.run(
-            [sys.executable, "-m", "smachac", "build", GOOD, "-t", "python", "-o", "-"],
-            stdout=closed,
-            stderr=subprocess.PIPE,
-            text=True,
-            timeout=120,
-            check=False,
-        )
-    assert ended.returncode == 0
-    assert ended.stderr == ""
-
-
 def test_ascii_terminals_get_escapes(tmp_path: Path) -> None:
     path = tmp_path / "main.yml"
     path.write_text("name: \u00fc\noutcomes: [a]\nstates:\n  - \u2713: {template: X}\n")

@@ -216,7 +216,8 @@ def _preempting(
     def preempt(number: int, frame: FrameType | None) -> None:
         signal.signal(signal.SIGINT, on_interrupt)
         if not built:
-            raise KeyboardInterrupt
+            on_interrupt(number, frame)
+            return
         # Not from here: the signal may have come in the middle of a write to the trace.
         threading.Thread(target=request, daemon=True).start()
 
