@@ -19,7 +19,7 @@ END
 echo "lowest versions: ${lowest[*]}"
 # Installed, because the targets are found through the metadata of the package.
 "$venv/bin/python" -m pip install -q --disable-pip-version-check -e . "${lowest[@]}" \
-  'pytest>=8' 'pytest-xdist>=3.6' 'hypothesis>=6.100' 'jsonschema>=4.20'
+  'pytest>=8' 'pytest-xdist>=3.6' 'hypothesis>=6.100' 'jsonschema>=4.20' 'ruff>=0.6' 'mypy>=1.11'
 tests=("$@")
 ((${#tests[@]})) || tests=(tests/diagnostics tests/frontend tests/ir tests/analysis tests/checks tests/interpreter
   tests/targets tests/report tests/refactor tests/pipeline)

@@ -237,20 +237,22 @@ class EditedScript:
         from smachac.commands.files import put_changes
         from smachac.diagnostics.source import Source
         from smachac.frontend.files import Disk
+        from smachac.refactor.line_ends import with_line_ends
 
         texts: dict[str, str] = {}
         sources: dict[str, Source] = {}
         disk = Disk()
+        script = disk.read(self.path, [])
         for name, text in self.texts().items():
             known = self.editors.get(name)
             shown = known.source.name if known is not None else os.path.relpath(name)
             if name in self.made:
-                texts[name], sources[name] = text, Source(shown, "")
+                texts[name] = with_line_ends(text, script.text) if script is not None else text
+                sources[name] = Source(shown, "")
                 continue
             before = disk.read(Path(shown), [])
             assert before is not None
-            crlf = "\r\n" in before.text[: before.text.find("\n") + 1]
-            texts[name] = text.replace("\n", "\r\n") if crlf else text
+            texts[name] = with_line_ends(text, before.text)
             sources[name] = before
         if not texts:
             print("nothing to change")

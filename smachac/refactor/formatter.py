@@ -13,11 +13,13 @@ from collections.abc import Iterator
 
 from smachac.diagnostics.source import Source
 from smachac.frontend import schema
+from smachac.frontend.files import with_line_feeds
 from smachac.frontend.params import look_up_word
 from smachac.frontend.yaml_tree import Map, Scalar, Seq, Tree, parse
 from smachac.ir.recursion import deep_recursion
 from smachac.refactor.cst import Atom, Collection, Document, Item, UnsupportedYamlError, parse_cst
 from smachac.refactor.field_order import Spelling, order_fields
+from smachac.refactor.line_ends import with_line_ends
 
 WIDTH = 100
 """The line length, in characters, at which flow collections are broken."""
@@ -26,16 +28,15 @@ WIDTH = 100
 def format_script(source: Source, spelling: Spelling = "kept") -> str | None:
     """A script in the standard layout; None if the layout would change its meaning.
 
-    The text must be one that `parse` accepts. Line ends are kept: CRLF if the first line has it.
-    Formatting is idempotent.
+    The text must be one that `parse` accepts. Each line keeps its line end. Formatting is
+    idempotent.
     """
-    crlf = "\r\n" in source.text[: source.text.find("\n") + 1]
-    plain = Source(source.name, source.text.replace("\r\n", "\n").replace("\r", "\n"))
+    plain = Source(source.name, with_line_feeds(source.text))
     with deep_recursion():
         for ordered in (True, False):  # an alias must not come to stand before its anchor
             found = _format_script(plain, spelling, ordered)
             if found is not None:
-                return found.replace("\n", "\r\n") if crlf else found
+                return with_line_ends(found, source.text)
     return None
 
 
