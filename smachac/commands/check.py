@@ -11,7 +11,7 @@ from argparse import Namespace
 from collections import Counter
 
 from smachac.commands.arguments import FORMAT, SCRIPTS, as_path, colour, search_folders
-from smachac.commands.output import FINDINGS, OK, print_report, usage, without_notes
+from smachac.commands.output import FINDINGS, OK, print_report, shown, usage, without_notes
 from smachac.commands.streams import print_failure
 
 TYPE_CHECKING = False  # annotations only: `--help` imports none of this
@@ -202,7 +202,7 @@ def _rewritten(fixed: FixResult) -> bool:
 def _put(found: Batch, failing: dict[str, Report], notes: list[str], arguments: Namespace) -> None:
     """Print the findings in the requested format."""
     report = found.report
-    shown = report if arguments.notes else without_notes(report)
+    listed = report if arguments.notes else without_notes(report)
     match arguments.format:
         case "json":
             from smachac.report.json import render_json
@@ -215,15 +215,15 @@ def _put(found: Batch, failing: dict[str, Report], notes: list[str], arguments: 
         case "junit":
             from smachac.report.junit import render_junit
 
-            mild = found.only(shown).reports
+            mild = found.only(listed).reports
             sys.stdout.write(render_junit(mild, failing))
         case "github":
             from smachac.report.github import render_github
 
-            sys.stdout.write(render_github(shown))
+            sys.stdout.write(render_github(listed))
             print(_summary(report, len(found.reports), notes))
         case _:
-            print_report(shown, arguments, sys.stdout)
+            print_report(listed, arguments, sys.stdout)
             print(_summary(report, len(found.reports), notes))
 
 
@@ -250,7 +250,7 @@ def _write_baseline(path: Path, report: Report) -> int:
         write_files(path.parent, {path.name: baseline.render(report)})
     except (OSError, PartlyWrittenError) as error:
         return usage(f"cannot write {path}: {getattr(error, 'strerror', None) or error}")
-    print(f"wrote {path}: {len(report)} findings, which --baseline ignores from now on")
+    print(f"wrote {shown(path)}: {len(report)} findings, which --baseline ignores from now on")
     return OK
 
 

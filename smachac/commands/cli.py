@@ -18,7 +18,7 @@ TYPE_CHECKING = False  # typing costs more than the rest of `smachac --help`
 if TYPE_CHECKING:
     import argparse
     from collections.abc import Sequence
-    from typing import Any
+    from typing import Any, NoReturn
 
 FAILED, BUG, INTERRUPTED, UNREAD = 1, 70, 130, 141
 """Exit codes: a failure; an exception that is a bug of smachac; Ctrl-C; the reader of standard
@@ -121,7 +121,15 @@ def _parser(command: str) -> argparse.ArgumentParser:
     """The parser of all commands; only `command` has its arguments."""
     import argparse
 
-    parser = argparse.ArgumentParser(
+    class Parser(argparse.ArgumentParser):
+        """A parser whose messages quote words that shells make of file names."""
+
+        def error(self, message: str) -> NoReturn:
+            from smachac.report.terminal import on_one_line
+
+            super().error(on_one_line(message))
+
+    parser = Parser(
         prog="smachac",
         description="Checks robot task state machines in YAML and generates code from them.",
         epilog=EPILOG,

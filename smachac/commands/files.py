@@ -10,7 +10,7 @@ from argparse import Namespace
 from collections.abc import Iterable, Mapping
 from pathlib import Path
 
-from smachac.commands.output import FINDINGS, OK
+from smachac.commands.output import FINDINGS, OK, shown
 from smachac.commands.writing import PartlyWrittenError, put_all
 from smachac.diagnostics.source import Source
 from smachac.frontend.files import TooBigError, decoded, read_bytes
@@ -132,10 +132,10 @@ def _encoded(text: str, like: bytes) -> bytes:
 def not_written(error: Exception) -> str:
     """The message about an error of `write_files` or `rewrite_files`."""
     if isinstance(error, PartlyWrittenError):
-        return f"not all files were written: {error}"
+        return shown(f"not all files were written: {error}")
     where = getattr(error, "filename", None)
     message = getattr(error, "strerror", None) or str(error)
-    return f"nothing was written: {f'{where}: ' if where else ''}{message}"
+    return shown(f"nothing was written: {f'{where}: ' if where else ''}{message}")
 
 
 def put_changes(
@@ -158,7 +158,7 @@ def put_changes(
         return FINDINGS if texts else OK
     if arguments.check:
         for name, word in words.items():
-            print(f"{name} would be {word}")
+            print(f"{shown(name)} would be {word}")
         return FINDINGS if texts else OK
     try:
         rewrite_files(texts, {path: sources[path] for path in sources.keys() - new})
@@ -166,5 +166,5 @@ def put_changes(
         print(not_written(error), file=sys.stderr)
         return FINDINGS
     for name, word in words.items():
-        print(f"{word} {name}")
+        print(f"{word} {shown(name)}")
     return OK

@@ -8,7 +8,7 @@ import sys
 from argparse import Namespace
 
 from smachac.commands.arguments import SCRIPTS, as_path, colour, dry_run
-from smachac.commands.output import FINDINGS, print_report, usage
+from smachac.commands.output import FINDINGS, print_report, shown, usage
 
 TYPE_CHECKING = False  # annotations only: `--help` imports none of this
 if TYPE_CHECKING:
@@ -65,7 +65,9 @@ def fmt_command(arguments: Namespace) -> int:
             continue
         new = format_script(source, arguments.spelling)
         if new is None:
-            print(f"{path} was not changed: `fmt` does not support its YAML", file=sys.stderr)
+            print(
+                f"{shown(path)} was not changed: `fmt` does not support its YAML", file=sys.stderr
+            )
             failed += 1
         elif new != source.text:
             name = os.path.realpath(path)

@@ -6,7 +6,7 @@ import argparse
 import sys
 from argparse import Namespace
 
-from smachac.commands.output import FINDINGS, OK, usage
+from smachac.commands.output import FINDINGS, OK, shown, usage
 
 TYPE_CHECKING = False  # annotations only: `--help` imports none of this
 if TYPE_CHECKING:
@@ -70,18 +70,18 @@ def _put(folder: Path, files: Files) -> int:
     try:
         there = present_files(folder, files)
     except OSError as error:
-        print(f"cannot write to {folder}: {error.strerror}", file=sys.stderr)
+        print(f"cannot write to {shown(folder)}: {error.strerror}", file=sys.stderr)
         return FINDINGS
     for path in there:
-        print(f"{path} exists already: nothing was written", file=sys.stderr)
+        print(f"{shown(path)} exists already: nothing was written", file=sys.stderr)
     if there:
         return FINDINGS
     try:
         for path in write_files(folder, files):
-            print(f"created {path}")
+            print(f"created {shown(path)}")
     except (OSError, PartlyWrittenError) as error:
         words = getattr(error, "strerror", None) or error
-        print(f"cannot write to {folder}: {words}", file=sys.stderr)
+        print(f"cannot write to {shown(folder)}: {words}", file=sys.stderr)
         return FINDINGS
     return OK
 

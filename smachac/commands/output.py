@@ -37,12 +37,20 @@ def print_report(report: Report, arguments: Namespace, stream: Any) -> None:
         print(render_text(report, colour=wants_colour(arguments, stream)), file=stream)
 
 
+def shown(path: object) -> str:
+    """The name of a file on one line, without characters that control a terminal or a CI log."""
+    from smachac.report.terminal import on_one_line
+
+    return on_one_line(str(path))
+
+
 def usage(message: str, word: str = "", known: Sequence[str] = ()) -> int:
     """Print an error of usage as argparse does, with the known name that is nearest to `word`, or
     all of them; the exit code."""
     from smachac.diagnostics.diagnostic import did_you_mean
+    from smachac.report.terminal import visible
 
-    print(f"smachac: error: {message}", file=sys.stderr)
+    print(f"smachac: error: {visible(message)}", file=sys.stderr)
     if known:
         print(did_you_mean(word, known) or f"known: {', '.join(known)}", file=sys.stderr)
     return USAGE

@@ -37,9 +37,9 @@ def states_arguments(parser: argparse.ArgumentParser) -> None:
 
 def states_command(arguments: Namespace) -> int:
     """Print state types; the exit code."""
-    import json
-
     from smachac.report import state_types as shown_types
+    from smachac.report.json import json_text
+    from smachac.report.terminal import visible
 
     known = _known_types(arguments.templates)
     names = [each.type.name for each in known]
@@ -49,15 +49,14 @@ def states_command(arguments: Namespace) -> int:
     match arguments.format:
         case "json":
             rows = [shown_types.type_json(each) for each in some]
-            text = json.dumps(rows if arguments.name is None else rows[0], indent=2,
-                              ensure_ascii=False) + "\n"  # fmt: skip
+            text = json_text(rows if arguments.name is None else rows[0])
         case "md":
             text = "\n".join(map(shown_types.type_markdown, some))
         case _ if arguments.name is None:
             text = shown_types.list_text(some)
         case _:
             text = shown_types.type_text(some[0])
-    sys.stdout.write(text)
+    sys.stdout.write(visible(text))
     return OK
 
 

@@ -5,12 +5,12 @@ from __future__ import annotations
 
 import csv
 import io
-import json
 import re
 from collections import Counter
 from collections.abc import Iterable, Iterator, Sequence
 
 from smachac.analysis.failure_paths import Answer, Failure
+from smachac.report.json import json_text
 from smachac.report.outline import alternatives, at
 from smachac.report.terminal import on_one_line, visible
 from smachac.report.text import steps
@@ -116,7 +116,7 @@ def _json(found: Iterable[Failure]) -> str:
         }
         for each in found
     ]
-    return json.dumps({"failures": rows}, indent=2) + "\n"
+    return json_text({"failures": rows})
 
 
 def _csv(found: Iterable[Failure]) -> str:

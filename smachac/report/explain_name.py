@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import json
 from collections.abc import Iterable
 
 from smachac.analysis.context import Context
@@ -17,6 +16,7 @@ from smachac.report.explain_key import (
     key_text,
 )
 from smachac.report.explain_state import StateExplanation, explain_state, state_json, state_text
+from smachac.report.json import json_text
 from smachac.report.outline import paragraphs
 
 MOST_NAMED = 20
@@ -99,4 +99,4 @@ def _text(states: list[StateExplanation], keys: list[KeyExplanation]) -> str:
 
 def _json(states: list[StateExplanation], keys: list[KeyExplanation]) -> str:
     found = {"states": [*map(state_json, states)], "keys": [*map(key_json, keys)]}
-    return json.dumps(found, indent=2) + "\n"
+    return json_text(found)

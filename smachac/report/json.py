@@ -7,6 +7,7 @@ from typing import Any
 
 from smachac.diagnostics.diagnostic import Diagnostic, Report, Severity
 from smachac.diagnostics.source import NOWHERE, Span
+from smachac.report.terminal import COMMAND
 
 VERSION = 2
 """The version of the schema; it increases with every change."""
@@ -18,7 +19,13 @@ def render_json(report: Report) -> str:
         severity.value: sum(item.severity is severity for item in report) for severity in Severity
     }
     whole = {"version": VERSION, "diagnostics": list(map(_diagnostic, report)), "counts": counts}
-    return json.dumps(whole, indent=2, sort_keys=True) + "\n"
+    return json_text(whole, sort_keys=True)
+
+
+def json_text(data: object, *, sort_keys: bool = False) -> str:
+    """Data as JSON in ASCII, in which no line has the beginning of a command of a CI log."""
+    text = json.dumps(data, indent=2, sort_keys=sort_keys)
+    return text.replace(COMMAND, "##\\u005b") + "\n"
 
 
 def _diagnostic(item: Diagnostic) -> dict[str, Any]:

@@ -6,7 +6,6 @@ relative to the working directory.
 
 from __future__ import annotations
 
-import json
 from collections import Counter
 from pathlib import PurePath
 from typing import Any
@@ -15,6 +14,7 @@ from urllib.parse import quote
 from smachac.diagnostics.diagnostic import Code, Diagnostic, Report, Severity, fingerprint
 from smachac.diagnostics.source import NOWHERE, Source, Span
 from smachac.report.explain_code import explanation, render_code, render_section
+from smachac.report.json import json_text
 from smachac.version import __version__
 
 SCHEMA = "https://json.schemastore.org/sarif-2.1.0.json"
@@ -47,7 +47,7 @@ def render_sarif(report: Report) -> str:
         "results": results,
     }
     log = {"$schema": SCHEMA, "version": "2.1.0", "runs": [run]}
-    return json.dumps(log, indent=2) + "\n"
+    return json_text(log)
 
 
 def _rule(code: Code) -> dict[str, Any]:

@@ -10,6 +10,7 @@ from typing import Any, NamedTuple
 from smachac.frontend import schema
 from smachac.ir.nodes import ContainerKind, StateType, VariableType
 from smachac.ir.types import ANY, Type
+from smachac.report.terminal import on_one_line
 
 WIDTH = 90
 """Width of descriptions, in columns."""
@@ -47,7 +48,10 @@ def list_text(known: Sequence[Known]) -> str:
     lines: list[str] = []
     for title, some in _grouped(known):
         lines += ["", title] if lines else [title]
-        lines += [f"  {each.type.name:<{width}}  {_first(each.type.doc)}".rstrip() for each in some]
+        lines += [
+            f"  {on_one_line(each.type.name):<{width}}  {_first(each.type.doc)}".rstrip()
+            for each in some
+        ]
     return "\n".join([*lines, "", "smachac states NAME tells more of one."]) + "\n"
 
 
@@ -57,7 +61,7 @@ def _grouped(known: Sequence[Known]) -> Iterable[tuple[str, list[Known]]]:
         for kind, word in kinds.items():
             some = [each for each in known if each.place == place and each.type.kind == kind]
             if some:
-                yield f"{word} ({place})", some
+                yield f"{word} ({on_one_line(place)})", some
 
 
 def _first(doc: str) -> str:
@@ -70,7 +74,7 @@ def _first(doc: str) -> str:
 def type_text(known: Known) -> str:
     """One type as text."""
     type_ = known.type
-    lines = [f"{type_.name}: a {type_.kind} ({known.place})"]
+    lines = [f"{on_one_line(type_.name)}: a {type_.kind} ({on_one_line(known.place)})"]
     if type_.doc:
         lines += ["", *textwrap.wrap(type_.doc, WIDTH)]
     if type_.open:

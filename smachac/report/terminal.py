@@ -11,6 +11,10 @@ TAB = 4
 """Columns between two tab stops."""
 
 ELLIPSIS = "…"
+COMMAND = "##["
+"""The beginning of a command of GitHub Actions and Azure Pipelines, anywhere in a line of a log;
+its bracket is printed as `<U+005B>`."""
+
 LEAD = 8
 """Columns kept before a span that is wider than the screen."""
 
@@ -71,7 +75,7 @@ def _glyph(character: str, *, alone: bool) -> tuple[str, int]:
 def _glyphs(text: str) -> tuple[list[str], list[int]]:
     """The printed form of each character, and the columns where they start and the last one
     ends."""
-    if text.isascii() and text.isprintable():
+    if text.isascii() and text.isprintable() and COMMAND not in text:
         return list(text), list(range(len(text) + 1))
     printed: list[str] = []
     starts = [0]
@@ -79,6 +83,9 @@ def _glyphs(text: str) -> tuple[list[str], list[int]]:
         if character == "\t":
             size = TAB - starts[-1] % TAB
             glyph = " " * size
+        elif character == "[" and printed[-2:] == ["#", "#"]:
+            glyph = "<U+005B>"
+            size = len(glyph)
         else:
             glyph, size = _glyph(character, alone=not printed)
         printed.append(glyph)
@@ -87,8 +94,14 @@ def _glyphs(text: str) -> tuple[list[str], list[int]]:
 
 
 def visible(text: str) -> str:
-    """A text with all invisible characters made visible, except line feeds."""
-    return "\n".join("".join(_glyphs(line)[0]) for line in text.split("\n"))
+    """A text with all invisible characters made visible, except line feeds. No line is a command of
+    a CI log."""
+    return "\n".join(_no_command("".join(_glyphs(line)[0])) for line in text.split("\n"))
+
+
+def _no_command(line: str) -> str:
+    """A line that does not begin with `::`, as a command of GitHub Actions does."""
+    return line.replace(":", "<U+003A>", 1) if line.lstrip().startswith("::") else line
 
 
 def on_one_line(text: str) -> str:

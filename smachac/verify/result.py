@@ -9,6 +9,7 @@ from typing import Any
 
 from smachac.diagnostics.source import Span
 from smachac.interpreter.scenario import PlainStep
+from smachac.report.json import json_text
 from smachac.report.terminal import on_one_line
 from smachac.verify.coverage import CoverageItem, Reason
 
@@ -101,7 +102,7 @@ def render_json(verdict: Verdict) -> str:
             for each in verdict.disagreements
         ],
     }  # fmt: skip
-    return json.dumps(data, indent=2, ensure_ascii=False) + "\n"
+    return json_text(data)
 
 
 def render_text(verdict: Verdict) -> str:

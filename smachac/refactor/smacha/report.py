@@ -2,11 +2,12 @@
 
 from __future__ import annotations
 
-import json
 from collections.abc import Iterator, Sequence
 from dataclasses import asdict, dataclass
 
 from smachac.refactor.smacha.script_differences import What
+from smachac.report.json import json_text
+from smachac.report.terminal import on_one_line, visible
 
 FORMATS = ("text", "json", "md")
 
@@ -67,18 +68,18 @@ def _summary(files: Sequence[File]) -> str:
 
 
 def _text(files: Sequence[File]) -> str:
-    width = max((len(file.name) for file in files), default=0)
+    names = [on_one_line(file.name) for file in files]
+    width = max(map(len, names), default=0)
     lines = []
-    for file in files:
+    for file, name in zip(files, names, strict=True):
         counts = _counts(file)
-        lines.append(f"{file.name:<{width}}  {file.kind:<10}  {_state(file):<5}  {counts}".rstrip())
+        lines.append(f"{name:<{width}}  {file.kind:<10}  {_state(file):<5}  {counts}".rstrip())
     for file, item in _reported(files):
         lines.append("")
-        lines.append(
-            f"{file.name}:{item.line}:{item.column}: {item.what}: {item.message} [{item.name}]"
-        )
+        place = f"{file.name}:{item.line}:{item.column}"
+        lines.append(on_one_line(f"{place}: {item.what}: {item.message} [{item.name}]"))
         if item.help and item.what != "changed":
-            lines.append(f"  help: {item.help}")
+            lines.append(f"  help: {on_one_line(item.help)}")
     return "\n".join([*lines, "", _summary(files), ""])
 
 
@@ -109,7 +110,7 @@ def _markdown(files: Sequence[File]) -> str:
 
 
 def _cell(text: str) -> str:
-    return text.replace("|", "\\|").replace("\n", " ")
+    return visible(text.replace("|", "\\|").replace("\n", " "))
 
 
 def _json(files: Sequence[File]) -> str:
@@ -119,4 +120,4 @@ def _json(files: Sequence[File]) -> str:
         "edit": sum(file.fails for file in files),
         "changed": sum(file.count("changed") for file in files),
     }
-    return json.dumps(data, indent=2, ensure_ascii=False) + "\n"
+    return json_text(data)
