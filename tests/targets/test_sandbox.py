@@ -34,6 +34,8 @@ HARMFUL = {
     "nested loops": ("{% for a in range(90000) %}{% for b in range(90000) %}x{% endfor %}{% endfor %}", NO_END),
     "a long range": ("{% for a in range(10**9) %}x{% endfor %}", "Range too big"),
     "a product": ("{{ 'x' * 10**10 }}", NO_END),
+    "a product of bytes": ("{{ 'x'.encode() * 10**14 }}", NO_END),
+    "a wide % of bytes": ("{{ 'x%99999999999999d'.encode() % 1 }}", NO_END),
     "a product of variables": ("{% set n = 10**9 %}{{ given * n }}", NO_END),
     "a power": ("{{ 9 ** (9 ** 9) }}", NO_END),
     "squares": ("{% set ns = namespace(n=7) %}{% for i in range(60) %}{% set ns.n = ns.n * ns.n %}{% endfor %}{{ ns.n }}", BITS),

@@ -249,10 +249,11 @@ class BoundedEnvironment(SandboxedEnvironment):
     def call_binop(self, context: Context, operator: str, left: Any, right: Any) -> Any:
         meter = self.meter
         meter.charge(1 + meter.size(left) + meter.size(right))
-        if operator == "%" and isinstance(left, str):
-            meter.charge(_widths(left, right))
+        if operator == "%" and isinstance(left, _TEXTS):
+            text = left if isinstance(left, str) else left.decode("latin-1")
+            meter.charge(_widths(text, right))
             if isinstance(right, dict):
-                meter.charge(left.count("%") * meter.size(right))
+                meter.charge(text.count("%") * meter.size(right))
         elif operator == "*":
             meter.charge(_product(left, right))
         elif operator == "**" and isinstance(left, int) and isinstance(right, int):
@@ -349,7 +350,7 @@ def _lines(value: object) -> int:
 def _product(left: object, right: object) -> int:
     """The size of a product."""
     for row, number in ((left, right), (right, left)):
-        if isinstance(row, str | list | tuple) and isinstance(number, int):
+        if isinstance(row, (*_TEXTS, list, tuple)) and isinstance(number, int):
             return len(row) * max(0, number)
     return 0
 
