@@ -5,6 +5,7 @@ from __future__ import annotations
 import contextlib
 import errno
 import os
+import re
 import sys
 from argparse import Namespace
 from collections.abc import Iterable, Mapping
@@ -15,10 +16,12 @@ from smachac.commands.writing import PartlyWrittenError, put_all
 from smachac.diagnostics.source import Source
 from smachac.frontend.files import TooBigError, decoded, read_bytes
 
-MARK = "Made by smachac"
-"""Words that begin a comment, or a field of JSON, at the head of every generated file."""
+MARK = re.compile(
+    r"""\s*(?:# |// |<!-- |"made_by": ")Made by smachac(?: \d\S* from |, as it is )"""
+)
+"""Beginning of a comment, or of a field of JSON, at the head of every file that smachac writes: of
+generated files with the name of the script, and of copied ones."""
 
-HEADS = ("# ", "// ", "<!-- ", '"made_by": "')
 HEAD_LINES = 3
 
 
@@ -38,7 +41,7 @@ def _is_place(path: Path, folder: Path) -> bool:
 
 def _is_generated(path: Path) -> bool:
     lines = first_lines(path, HEAD_LINES)
-    return any(line.lstrip().startswith(f"{head}{MARK}") for line in lines for head in HEADS)
+    return any(map(MARK.match, lines))
 
 
 def first_lines(path: Path, count: int) -> list[str]:

@@ -101,11 +101,11 @@ def run_command(arguments: Namespace) -> int:
 
 def in_the_way(path: Path, is_ours: Callable[[bytes], bool]) -> bool:
     """Whether a file must not be overwritten: it has content, and that is not of the kind to write.
-    A pipe or a device may be written to."""
+    A trace may be written to a pipe or a device."""
     from smachac.frontend.files import TooBigError, read_bytes
 
     if not path.is_file():
-        return False
+        return is_ours is _is_film and os.path.lexists(path)  # a film replaces what is there
     try:
         head = read_bytes(path)[:2000]
     except (OSError, TooBigError):
@@ -118,7 +118,7 @@ def _is_trace(head: bytes) -> bool:
 
 
 def _is_film(head: bytes) -> bool:
-    return head.startswith(b"GIF8") or head[4:8] == b"ftyp"
+    return head[:6] in (b"GIF87a", b"GIF89a") or head[4:8] == b"ftyp"
 
 
 NO_ARM = "--record and --gui need a program that uses the simulated arm; this run does not"

@@ -8,7 +8,7 @@ from pathlib import Path
 import pytest
 
 from smachac.commands.cli import main
-from smachac.commands.files import MARK, changed_files, foreign_files, write_files
+from smachac.commands.files import changed_files, foreign_files, write_files
 from smachac.diagnostics.diagnostic import Report
 from smachac.frontend.files import disk_library, find_project, read_source
 
@@ -117,7 +117,7 @@ def test_writing_is_exact(tmp_path: Path) -> None:
 
 def test_files_of_others_are_known(tmp_path: Path) -> None:
     (tmp_path / "mine.py").write_text("print(1)")
-    (tmp_path / "ours.py").write_text(f"# {MARK} 0.1\n")
+    (tmp_path / "ours.py").write_text("# Made by smachac 0.1 from main.yml (sha256 0).\n")
     found = foreign_files(tmp_path, {"mine.py": "", "ours.py": "", "new.py": ""})
     assert found == [tmp_path / "mine.py"]
 

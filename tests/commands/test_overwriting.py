@@ -103,3 +103,15 @@ def test_a_linked_folder_below_the_output_is_not_entered(script: Path) -> None:
     (out / "smachac").rename(elsewhere)
     (out / "smachac").symlink_to(elsewhere)
     assert main(words) == 1
+
+
+def test_only_the_whole_mark_makes_a_file_ours(script: Path) -> None:
+    path = script.with_name("sm.json")
+    words = ["build", str(script), "-t", "json", "-o", str(script.parent)]
+    for text in ("# Made by smachac is what my notes are about\n", "# Made by smachac\n"):
+        path.write_text(text)
+        assert main(words) == 1
+        assert path.read_text() == text
+    path.unlink()
+    assert main(words) == 0
+    assert main(words) == 0
