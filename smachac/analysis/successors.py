@@ -50,11 +50,12 @@ class Routes:
 
     def arrivals(self, path: str, outcome: str) -> list[Arrival]:
         """Where an outcome of a state can lead, through the ends of containers."""
-        import networkx as nx
+        # networkx 3.0 does not export it at its top.
+        from networkx.algorithms.traversal.breadth_first_search import generic_bfs_edges
 
         start: Event = (path, outcome)
         through: dict[Event, tuple[Event, ...]] = {start: ()}
-        for last, event in nx.generic_bfs_edges(self.graph, start, self._ends_after):
+        for last, event in generic_bfs_edges(self.graph, start, self._ends_after):
             through[event] = (*through[last], event)
         found: list[Arrival] = []
         for here, ended in through.items():
