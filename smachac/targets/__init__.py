@@ -94,6 +94,21 @@ def comment(text: str) -> str:
     return f"{text} //" if text.rstrip().endswith(("\\", "??/")) else text
 
 
+def comment_lines(text: str, width: int) -> list[str]:
+    """A text of several lines as lines of comments: long lines are broken between words."""
+    lines: list[str] = []
+    for paragraph in text.strip().splitlines():
+        line = ""
+        for word in paragraph.split():
+            if line and len(line) + 1 + len(word) > width:
+                lines.append(line)
+                line = word
+            else:
+                line = f"{line} {word}".lstrip()
+        lines.append(line)
+    return [comment(line) for line in lines]
+
+
 def stem(machine: Machine) -> str:
     """The name of the machine as a file name without suffix, and as a module name of Python."""
     word = re.sub(r"\W+", "_", machine.root.name).strip("_") or "machine"

@@ -13,6 +13,7 @@ from smachac.ir.nodes import Node, StateType
 from smachac.targets import BuildContext
 from smachac.targets.errors import defined_twice, python_2_code
 from smachac.targets.python import structure
+from smachac.targets.python.functions import Plan
 from smachac.targets.python.python2 import modern
 from smachac.targets.python.smacha_context import Headers
 from smachac.targets.templates.engine import BlockError, Blocks, Page
@@ -48,21 +49,33 @@ class UsedType:
     whole: bool = False
 
 
+@dataclass(frozen=True, slots=True, kw_only=True)
+class PrintedFunction:
+    """A function of the module that builds a container."""
+
+    name: str
+    text: str = ""
+
+
 @dataclass(slots=True)
 class ModuleParts:
     """The contributions of the states to a module, by block, and the state of its generation.
 
-    `faults` are the findings about templates, without duplicates.
+    `plan` holds the containers that functions build, and `functions` those functions, by their key.
+    `own_templates` are the files of the templates of the user for containers, by type. `faults` are
+    the findings about templates, without duplicates.
     """
 
     blocks: Blocks
     context: BuildContext
     state_types: Mapping[str, StateType]
-    fresh: Callable[[str, bool], str] = field(default_factory=structure.variable_names)
+    plan: Plan = field(default_factory=dict)
+    fresh: Callable[[str, str], str] = field(default_factory=structure.variable_names)
     buffers: Buffers = field(default_factory=buffers)
     used: dict[str, UsedType] = field(default_factory=dict)
     defined_headers: Headers = field(default_factory=Headers)
-    functions: list[str] = field(default_factory=list)
+    functions: dict[str, PrintedFunction] = field(default_factory=dict)
+    own_templates: dict[str, str | None] = field(default_factory=dict)
     faults: Report = field(default_factory=list)
     defined: dict[str, tuple[str, Node]] = field(default_factory=dict)
 

@@ -11,6 +11,7 @@ from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
 from smachac.ir.nodes import Data, Expression, Struct
+from smachac.targets import comment_lines
 
 if TYPE_CHECKING:
     from smachac.ir.expressions import Expr
@@ -80,6 +81,18 @@ def string(text: str) -> str:
 def docstring(text: str) -> str:
     """A text as part of a docstring: it neither ends the string nor escapes anything."""
     return text.replace("\\", "\\\\").replace('"""', "'''").rstrip('"')
+
+
+def docstring_lines(text: str, width: int) -> str:
+    """The docstring of a text, in lines of a width. The quotes at the end of several lines stand
+    alone."""
+    lines = [
+        line.replace("\\", "\\\\").replace('"""', "'''") for line in comment_lines(text, width - 6)
+    ]
+    first = f" {lines[0]}" if lines[0].startswith('"') else lines[0]
+    if len(lines) > 1:
+        return "\n".join([f'"""{first}', *lines[1:], '"""'])
+    return f'"""{first} """' if first.endswith('"') else f'"""{first}"""'
 
 
 def expression(text: str) -> Doc:

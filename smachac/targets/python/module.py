@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import ast
 import re
+from functools import partial
 from textwrap import indent
 
 from smachac.diagnostics.diagnostic import Report, has_errors
@@ -12,8 +13,10 @@ from smachac.ir.nodes import Machine
 from smachac.ir.traversal import ends_preempted, walk
 from smachac.targets import BuildContext, made_by
 from smachac.targets.errors import python_2_code
+from smachac.targets.python import structure
 from smachac.targets.python.buffers import PREPENDED, ModuleParts
-from smachac.targets.python.formatter import docstring
+from smachac.targets.python.formatter import WIDTH, docstring_lines
+from smachac.targets.python.functions import functions, one_function, stand_alone
 from smachac.targets.python.imports import (
     import_lines,
     standard_imports,
@@ -28,10 +31,11 @@ from smachac.targets.python.states import (
     children,
     container_block,
     headers,
+    is_printed_by_template,
     joined,
     lost,
 )
-from smachac.targets.python.structure import stoppable
+from smachac.targets.python.template_sources import uses_own_templates
 from smachac.targets.templates.engine import BlockError, Blocks
 
 ONE_FUNCTION = {"Program.tpl.py": "Base.tpl.py", "ROSProgram.tpl.py": "ROSBase.tpl.py"}
@@ -181,24 +185,33 @@ def module_text(machine: Machine, context: BuildContext, report: Report) -> str 
         for name in names
     )
     blocks = Blocks(context.library.template, filters=FILTERS, tests=TESTS, shown=shown)
-    module = ModuleParts(blocks, context, machine.state_types)
-    text = None
-    try:
-        text = _text(machine, context, module)
-    except BlockError as error:
-        module.fault(error, machine.root)
-    report.extend(module.faults)
+    text, faults = None, report[:0]
+    for plan in (functions, one_function):
+        module = ModuleParts(blocks, context, machine.state_types)
+        module.plan = plan(machine, partial(is_printed_by_template, module))
+        try:
+            text = _text(machine, context, module, whole=plan is one_function)
+        except BlockError as error:
+            module.fault(error, machine.root)
+        faults = module.faults
+        if text is not None or has_errors(faults):
+            break
+    report.extend(faults)
     return text
 
 
-def _text(machine: Machine, context: BuildContext, module: ModuleParts) -> str | None:
+def _text(
+    machine: Machine, context: BuildContext, module: ModuleParts, *, whole: bool
+) -> str | None:
+    """The text of the module; None if there are errors, and if the program must be one function,
+    unless it is planned so (`whole`)."""
     template = _base_template(machine, context, module)
-    root = module.fresh(machine.root.name, True)
+    root = module.fresh(machine.root.name, "")
     inside = EmittedContainer(node=machine.root, variable=root, path=machine.root.name, depth=1)
     states = children(inside, module)
     if has_errors(module.faults):
         return None
-    wrappers = {stoppable(node) for _, node in walk(machine.root)}
+    wrappers = {structure.stoppable(node) for _, node in walk(machine.root)}
     for wrapper, text in (("stoppable", PASSING_ON), ("stoppable_again", SECOND_REQUEST)):
         if wrapper in wrappers:
             module.buffers["defs"][text] = None
@@ -207,9 +220,11 @@ def _text(machine: Machine, context: BuildContext, module: ModuleParts) -> str |
     if any(node.catches for _, node in walk(machine.root)):
         module.buffers["imports"]["import traceback"] = None
         module.buffers["defs"][CATCHING] = None
-    lines = module.blocks.render("Container.tpl.py", "body", container_block(inside, None, states))
+    block = container_block(inside, None, states, structure.notes(machine.root, 1, ""))
+    lines = module.blocks.render("Container.tpl.py", "body", block)
     texts = joined(module.buffers)
-    parts = [*texts.values(), lines, *module.functions]
+    built = [function.text for function in module.functions.values()]
+    parts = [*texts.values(), lines, *built]
     if template == "Program.tpl.py" and any(map(_NEEDS_NODE.search, parts)):
         template = "ROSProgram.tpl.py"
     if template in ONE_FUNCTION and any(texts[name] for name in PREPENDED):
@@ -234,7 +249,7 @@ def _text(machine: Machine, context: BuildContext, module: ModuleParts) -> str |
         "made_by": f"# {made_by(machine)}",
         "body": states,
         "machine": indent(lines, "    "),
-        "functions": "\n\n\n".join(module.functions),
+        "functions": "\n\n\n".join(built),
         "defined_headers": module.defined_headers,
         "smach_ros": any("smach_ros." in part for part in parts),
         "introspection": context.options.get("introspection", "no") == "yes",
@@ -243,7 +258,9 @@ def _text(machine: Machine, context: BuildContext, module: ModuleParts) -> str |
     if lost(states, text):
         span = module.blocks.block_span(template, "body") or machine.root.span
         raise BlockError(template_error(span, *NO_BODY, ("body",)))
-    return _checked(text, template, machine, module)
+    if built and not whole and texts["main_def"]:
+        return None
+    return _checked(text, template, machine, module, whole=whole)
 
 
 def _rendered(
@@ -271,9 +288,9 @@ def _rendered(
 
 
 def _title(machine: Machine) -> str:
-    """The first line of the docstring, escaped so that it does not end the string."""
+    """The docstring of the module, without its quotes."""
     doc = machine.root.doc or f"The state machine `{machine.root.name}`."
-    return docstring(doc)
+    return docstring_lines(doc, WIDTH).removeprefix('"""').removesuffix('"""')
 
 
 def _base_template(machine: Machine, context: BuildContext, module: ModuleParts) -> str:
@@ -286,9 +303,11 @@ def _base_template(machine: Machine, context: BuildContext, module: ModuleParts)
     return file
 
 
-def _checked(text: str, template: str, machine: Machine, module: ModuleParts) -> str | None:
-    """The module, without surplus blank lines and trailing spaces. Raises BlockError if it is no
-    Python."""
+def _checked(
+    text: str, template: str, machine: Machine, module: ModuleParts, *, whole: bool
+) -> str | None:
+    """The module, without surplus blank lines and trailing spaces; None as in `_text`. Raises
+    BlockError if it is no Python."""
     text, changes = modern(text)
     for old, new in changes:
         place = module.blocks.line_span(template, old) or machine.root.span
@@ -305,6 +324,11 @@ def _checked(text: str, template: str, machine: Machine, module: ModuleParts) ->
         help = f"correct the printed line `{line.strip()}`"
         names = (machine.base, line.strip())
         raise BlockError(template_error(place, message, help, names)) from error
+    if module.functions and not whole:
+        named = ["build", *(each.name for each in module.functions.values())]
+        own = uses_own_templates(machine, module.context.library)
+        if not stand_alone(tree, named, with_names=own):
+            return None
     text = with_fallback(text, tree)
     tree = ast.parse(text)
     lines = _BLANKS.sub("\n\n\n", text).split("\n")

@@ -4,18 +4,37 @@ user."""
 from __future__ import annotations
 
 import re
+from collections.abc import Mapping
 from dataclasses import dataclass, field
 from textwrap import indent
 
 from smachac.frontend import schema
 from smachac.frontend.errors.references import template_error
 from smachac.ir.leaf import variable_of
-from smachac.ir.nodes import Container, Iterator, Leaf, Node, StateType, Variable
+from smachac.ir.nodes import Container, Data, Iterator, Leaf, Node, StateType, Variable
 from smachac.ir.traversal import own_outcomes
 from smachac.targets.python import structure
 from smachac.targets.python.add_call import NotAddedError, adapted
-from smachac.targets.python.buffers import KEYED, PREPENDED, Buffers, ModuleParts, UsedType, buffers
-from smachac.targets.python.formatter import call, docstring, literal, names
+from smachac.targets.python.buffers import (
+    KEYED,
+    PREPENDED,
+    Buffers,
+    ModuleParts,
+    PrintedFunction,
+    UsedType,
+    buffers,
+)
+from smachac.targets.python.formatter import (
+    WIDTH,
+    Doc,
+    Group,
+    call,
+    docstring_lines,
+    laid_out,
+    literal,
+    names,
+)
+from smachac.targets.python.functions import ITEMS, Function, Place
 from smachac.targets.python.smacha_context import adding, container_variables, state_variables
 from smachac.targets.templates.engine import BlockError, Page
 
@@ -48,9 +67,11 @@ Headers = dict[str, dict[str, list[str]]]
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class EmittedContainer:
-    """The container whose states are printed: its node, its variable, its path and its depth.
+    """The container whose states are printed: its node, its variable, its path and its depth in the
+    function.
 
     `headers` are the lines that states add to containers, by block and name of the container.
+    `parameters` are those of the function, by the place of the value that they stand for.
     """
 
     node: Container
@@ -58,48 +79,71 @@ class EmittedContainer:
     path: str
     depth: int
     headers: Headers = field(default_factory=lambda: {name: {} for name in KEYED})
+    parameters: Mapping[Place, str] = field(default_factory=dict)
 
     def lines(self) -> list[str]:
         """The header lines of this container, which precede its states."""
         return [line for name in KEYED for line in self.headers[name].get(self.node.name, ())]
 
+    def value(self, path: str, name: str, data: Data) -> Doc:
+        """A value of a state in the container: the parameter that stands for it, or the literal."""
+        return self.parameters.get((path, name)) or literal(data)
 
-def container(
-    node: Container,
-    parent: EmittedContainer | None,
-    variable: str,
-    depth: int,
-    path: str,
-    module: ModuleParts,
-) -> str:
-    """The code of a container and everything in it, without the indentation of its block."""
-    template = _own_template(node, module) if parent is not None else None
-    if template is not None and parent is not None:
+
+def container(node: Container, parent: EmittedContainer, path: str, module: ModuleParts) -> str:
+    """The code of a container in another one and of everything in it, without the indentation of
+    its block."""
+    template = own_template(node, module)
+    if template is not None:
         return _by_template(node, parent, template, path, module)
-    if depth % structure.MOST_NESTED == 0:
-        return _function(node, parent, variable, depth, path, module)
-    inside = EmittedContainer(node=node, variable=variable, path=path, depth=depth)
+    if path in module.plan:
+        return _called(node, parent, path, module)
+    inside = EmittedContainer(
+        node=node,
+        variable=module.fresh(node.name, "sm_"),
+        path=path,
+        depth=parent.depth + 1,
+        parameters=parent.parameters,
+    )
     states = children(inside, module)
-    return module.blocks.render("Container.tpl.py", "body", container_block(inside, parent, states))
+    block = container_block(inside, parent, states, structure.notes(node, inside.depth))
+    return module.blocks.render("Container.tpl.py", "body", block)
 
 
 def container_block(
-    inside: EmittedContainer, parent: EmittedContainer | None, states: str
+    inside: EmittedContainer, parent: EmittedContainer | None, states: str, notes: str
 ) -> dict[str, object]:
-    """The variables of the built-in template of a container. `states` is the code of its states."""
+    """The variables of the built-in template of a container. `states` is the code of its states,
+    `notes` the comment above it. Without `parent` it is the result of a function."""
     node, variable, depth = inside.node, inside.variable, inside.depth
     return {
         "place": structure.place(node),
+        "notes": notes,
         "name": node.name,
         "sm_name": variable,
-        "construct": structure.construct(node, variable, depth),
-        "presets": [*structure.userdata(node, variable, depth), *inside.lines()],
+        "construct": structure.construct(node, variable, depth, _items(inside)),
+        "presets": [*structure.userdata(variable, depth, _presets(inside)), *inside.lines()],
         "children": indent(states or "pass", "    "),
         "after": structure.initial(node, variable),
         "add": structure.add(node, parent.node, structure.made(node, variable), depth)
         if parent is not None
         else "",
     }
+
+
+def _items(inside: EmittedContainer) -> Doc | None:
+    """The items of an Iterator; None if they are userdata, and for other containers."""
+    if not isinstance(inside.node, Iterator) or inside.node.items is None:
+        return None
+    return inside.value(inside.path, ITEMS, inside.node.items.data)
+
+
+def _presets(inside: EmittedContainer) -> list[tuple[str, Doc]]:
+    """The userdata that a container sets: keys and values."""
+    return [
+        (preset.key, inside.value(inside.path, preset.key, preset.value.data))
+        for preset in inside.node.userdata
+    ]
 
 
 def children(inside: EmittedContainer, module: ModuleParts) -> str:
@@ -111,25 +155,34 @@ def children(inside: EmittedContainer, module: ModuleParts) -> str:
             if isinstance(child, Leaf):
                 states.append(_leaf(child, inside, below, module))
             else:
-                variable = module.fresh(child.name, False)
-                depth = inside.depth + 1
-                states.append(container(child, inside, variable, depth, below, module))
+                states.append(container(child, inside, below, module))
         except BlockError as error:
             module.fault(error, child)
     return "\n\n".join(states)
 
 
-def _own_template(node: Container, module: ModuleParts) -> str | None:
+def own_template(node: Container, module: ModuleParts) -> str | None:
     """The template of the user that prints a container; None for a container made from sugar."""
     if node.sugar or not node.type:
         return None
+    if node.type not in module.own_templates:
+        module.own_templates[node.type] = _own_template(node.type, module)
+    return module.own_templates[node.type]
+
+
+def is_printed_by_template(module: ModuleParts, node: Container) -> bool:
+    """Whether a template of the user prints a container."""
+    return own_template(node, module) is not None
+
+
+def _own_template(type_name: str, module: ModuleParts) -> str | None:
     library = module.context.library
-    for file in (f"{node.type}.tpl.py", f"{node.type}.tpl"):
+    for file in (f"{type_name}.tpl.py", f"{type_name}.tpl"):
         if library.own_template(file) is not None:
             return file
-    if node.type in schema.CONTAINERS:
+    if type_name in schema.CONTAINERS:
         return None
-    type_ = module.state_types.get(node.type)
+    type_ = module.state_types.get(type_name)
     return type_.code.get("python") if type_ is not None else None
 
 
@@ -150,7 +203,7 @@ def _by_template(
         page = module.blocks.page(
             template,
             {
-                **container_block(inside, parent, states), **variables, **joined(inner),
+                **container_block(inside, parent, states, ""), **variables, **joined(inner),
                 **headers(inside), "body": states, "defined_headers": module.defined_headers,
             },
         )  # fmt: skip
@@ -164,7 +217,7 @@ def _by_template(
         if lost(states, text):
             span = module.blocks.block_span(template, "body") or node.span
             raise BlockError(template_error(span, *NO_BODY, ("body",)))
-        return f"# {structure.place(node)}\n{text}"
+        return f"{structure.notes(node, inside.depth)}\n{text}"
     finally:
         _pass_on(module.buffers, outer)
         module.buffers = outer
@@ -207,22 +260,58 @@ def _pass_on(inner: Buffers, outer: Buffers) -> None:
         outer[name].update(texts)
 
 
+def _called(node: Container, parent: EmittedContainer, path: str, module: ModuleParts) -> str:
+    """The code that adds a container which a function of the module builds. The function is printed
+    at its first call."""
+    planned = module.plan[path]
+    function = planned.function
+    outer = {
+        (state, name): parameter
+        for (state, name), parameter in parent.parameters.items()
+        if f"{state}/".startswith(f"{path}/")
+    }
+    parameters = {
+        (path + state, name): parameter for (state, name), parameter in function.parameters.items()
+    }
+    # A function for one call alone takes the parameters of the function around it.
+    parameters = parameters or outer
+    arguments = {
+        parameter: outer.get(place) or literal(planned.arguments[parameter])
+        for place, parameter in parameters.items()
+    }
+    if function.key not in module.functions:
+        name = module.fresh(function.word, "build_")
+        module.functions[function.key] = PrintedFunction(name=name)  # its place in the order
+        variable = module.fresh(function.word, "sm_")
+        inside = EmittedContainer(
+            node=node, variable=variable, path=path, depth=1, parameters=parameters
+        )
+        text = _function(name, [*arguments], inside, function, module)
+        module.functions[function.key] = PrintedFunction(name=name, text=text)
+    name, depth = module.functions[function.key].name, parent.depth + 1
+    made = call(name, [(f"{parameter}=", value) for parameter, value in arguments.items()])
+    doc = node.doc if node.doc != function.doc else ""
+    added = structure.add(node, parent.node, structure.made(node, made), depth)
+    return f"{structure.notes(node, depth, doc)}\n{added}"
+
+
 def _function(
-    node: Container,
-    parent: EmittedContainer | None,
-    variable: str,
-    depth: int,
-    path: str,
+    name: str,
+    parameters: list[str],
+    inside: EmittedContainer,
+    function: Function,
     module: ModuleParts,
 ) -> str:
-    """The call of a new function of the module, which makes a deeply nested container."""
-    inner = container(node, None, variable, 1, path, module)
-    text = (
-        f'def _{variable}():\n    """The container `{docstring(path)}`."""\n{indent(inner, "    ")}'
-    )
-    module.functions.append(f"{text}\n    return {variable}")
-    assert parent is not None
-    return structure.add(node, parent.node, structure.made(node, f"_{variable}()"), depth)
+    """The function that builds a container."""
+    states = children(inside, module)
+    block = container_block(inside, None, states, "")
+    lines = module.blocks.render("Container.tpl.py", "body", block)
+    head = Group(f"def {name}(", tuple(("", parameter) for parameter in parameters), "):")
+    kind = structure.WORDS[structure.kind(inside.node)]
+    what = f"of `{function.script}`" if function.script else f"`{inside.node.name}`"
+    doc = docstring_lines(f"Build the {kind} {what}.\n\n{function.doc}", WIDTH - 4)
+    body = f"{doc}\n{lines}\nreturn {inside.variable}"
+    return f"{laid_out(head, WIDTH)}\n{indent(body, '    ')}"
 
 
 def _leaf(leaf: Leaf, inside: EmittedContainer, path: str, module: ModuleParts) -> str:
@@ -235,7 +324,9 @@ def _leaf(leaf: Leaf, inside: EmittedContainer, path: str, module: ModuleParts) 
         arguments.append(("outcomes=", names(own_outcomes(leaf))))
     called = _called_first(leaf, used, module)
     arguments += [
-        (f"{one.name}=", literal(one.value.data)) for one in leaf.variables if one is not called
+        (f"{one.name}=", inside.value(path, one.name, one.value.data))
+        for one in leaf.variables
+        if one is not called
     ]
     given = used.type.given
     arguments += structure.key_arguments(
@@ -244,7 +335,8 @@ def _leaf(leaf: Leaf, inside: EmittedContainer, path: str, module: ModuleParts) 
     )
     callbacks = called.value.data if called is not None else None
     made = structure.made(leaf, call(used.class_name, arguments), callbacks)
-    return f"# {structure.place(leaf)}\n{structure.add(leaf, inside.node, made, inside.depth + 1)}"
+    depth = inside.depth + 1
+    return f"{structure.notes(leaf, depth)}\n{structure.add(leaf, inside.node, made, depth)}"
 
 
 def _called_first(leaf: Leaf, used: UsedType, module: ModuleParts) -> Variable | None:
@@ -305,7 +397,8 @@ def _whole(
     module.gather(page, leaf)
     _headers(page, inside, leaf, module)
     text = module.code(page, "body", leaf)
-    return f"# {structure.place(leaf)}\n{_adapted(text, leaf, inside) if own else text}"
+    notes = structure.notes(leaf, inside.depth + 1)
+    return f"{notes}\n{_adapted(text, leaf, inside) if own else text}"
 
 
 def _adapted(text: str, node: Node, inside: EmittedContainer) -> str:

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import re
 import unicodedata
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Iterable, Iterator
 from dataclasses import replace
 from keyword import iskeyword
 
@@ -22,7 +22,7 @@ from smachac.ir.nodes import (
 )
 from smachac.ir.nodes import Iterator as IteratorNode
 from smachac.ir.traversal import ends_preempted
-from smachac.targets import comment
+from smachac.targets import comment, comment_lines
 from smachac.targets.python.formatter import (
     WIDTH,
     Doc,
@@ -43,8 +43,13 @@ OURS = (
 )
 """Names of the module that variables of containers must not have."""
 
-MOST_NESTED = 12
-"""Containers nested deeper get a function of their own: Python allows 20 nested blocks."""
+WORDS = {
+    "StateMachine": "state machine",
+    "Sequence": "sequence",
+    "Concurrence": "concurrence",
+    "Iterator": "iterator",
+}
+"""The names of SMACH's classes for containers in words."""
 
 _METHODS = frozenset(["keys", "update", "extract", "merge"])
 """Attributes of smach.UserData that a key of the same name must not replace."""
@@ -52,24 +57,25 @@ _METHODS = frozenset(["keys", "update", "extract", "merge"])
 Arguments = list[tuple[str, Doc]]
 
 
-def variable_names() -> Callable[[str, bool], str]:
-    """A function that makes a fresh variable name for a container, as SMACHA named them."""
+def variable_names() -> Callable[[str, str], str]:
+    """A function that makes a fresh name with a prefix: `sm_` for the variable of a container, as
+    SMACHA named them, and no prefix for that of the outermost one."""
     taken: dict[str, int] = dict.fromkeys(OURS, 1)
 
-    def fresh(name: str, root: bool) -> str:
+    def fresh(name: str, prefix: str) -> str:
         word = unicodedata.normalize("NFKC", name.lower())
         word = "".join(each if f"_{each}".isidentifier() else " " for each in word)
         word = re.sub(r"\W+", "_", word).strip("_")
-        if not root or not word or word[0].isdigit() or iskeyword(word) or word in taken:
-            word = f"sm_{word}".rstrip("_")
+        if prefix or not word or word[0].isdigit() or iskeyword(word) or word in taken:
+            word = f"{prefix or 'sm_'}{word}".rstrip("_")
         taken[word] = taken.get(word, 0) + 1
-        return word if taken[word] == 1 else fresh(f"{name}_{taken[word]}", root)
+        return word if taken[word] == 1 else fresh(f"{name}_{taken[word]}", prefix)
 
     return fresh
 
 
-def construct(node: Container, variable: str, depth: int) -> str:
-    """The line that makes a container."""
+def construct(node: Container, variable: str, depth: int, items: Doc | None = None) -> str:
+    """The line that makes a container. `items` are those of an Iterator that are not userdata."""
     arguments: Arguments = [("outcomes=", names(outcome.name for outcome in node.outcomes))]
     match node:
         case Sequence():
@@ -79,10 +85,8 @@ def construct(node: Container, variable: str, depth: int) -> str:
             default = node.default_outcome or node.rules[-1].outcome
             arguments.append(("default_outcome=", string(default)))
         case IteratorNode():
-            items: Doc = f"lambda: {variable}.userdata[{string(node.items_key)}]"
-            if node.items is not None:
-                items = literal(node.items.data)
-            arguments.append(("it=", items))
+            from_userdata = f"lambda: {variable}.userdata[{string(node.items_key)}]"
+            arguments.append(("it=", items or from_userdata))
             arguments.append(("it_label=", string(node.item_key)))
             arguments.append(("exhausted_outcome=", string(node.exhausted_outcome)))
         case StateMachine():
@@ -156,15 +160,14 @@ def _outcome_function(node: Concurrence) -> str:
     return f"lambda ended: {text}"
 
 
-def userdata(node: Container, variable: str, depth: int) -> list[str]:
-    """The statements that set the userdata of a container before the run."""
+def userdata(variable: str, depth: int, presets: Iterable[tuple[str, Doc]]) -> list[str]:
+    """The statements that set the userdata of a container before the run: keys and values."""
     lines = []
-    for preset in node.userdata:
-        key = preset.key
+    for key, value in presets:
         plain = key.isidentifier() and not iskeyword(key) and key[0] != "_"
         place = f".{key}" if plain and key not in _METHODS else f"[{string(key)}]"
         head = f"{variable}.userdata{place} = "
-        lines.append(head + laid_out(literal(preset.value.data), width(depth), len(head)))
+        lines.append(head + laid_out(value, width(depth), len(head)))
     return lines
 
 
@@ -243,3 +246,10 @@ def place(node: Node) -> str:
     """The place of a state in its script, without folders: `pick_block.yml:12`."""
     name = node.span.source.name.replace("\\", "/").rsplit("/", 1)[-1]
     return comment(f"{name}:{node.span.line}")
+
+
+def notes(node: Node, depth: int, doc: str | None = None) -> str:
+    """The comment above a state: its place, and its documentation unless `doc` replaces it."""
+    text = node.doc if doc is None else doc
+    lines = [place(node), *(comment_lines(text, width(depth) - 2) if text else ())]
+    return "\n".join(f"# {line}".rstrip() for line in lines)

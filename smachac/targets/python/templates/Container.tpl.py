@@ -1,6 +1,6 @@
 {% block body %}
-# {{ place }}
-{{ construct }}
+{% if notes %}{{ notes }}
+{% endif %}{{ construct }}
 {% for line in presets %}{{ line }}
 {% endfor %}with {{ sm_name }}:
 {{ children }}

@@ -81,16 +81,7 @@ def build():
     sm.userdata.way = "/left"
     with sm:
         # main.yml:10
-        sm_call = smach.StateMachine(outcomes=["done"])
-        with sm_call:
-            # sub.yml:6
-            smach.StateMachine.add(
-                "SAY",
-                ScriptedState(outcomes=["done"], steps=[{"outcome": "done"}]),
-                transitions={"done": "done"},
-            )
-
-        smach.StateMachine.add("CALL", sm_call, transitions={"done": "JUDGE"})
+        smach.StateMachine.add("CALL", build_sub(), transitions={"done": "JUDGE"})
 
         # main.yml:14
         smach.StateMachine.add(
@@ -104,6 +95,20 @@ def build():
             transitions={"large": "done", "small": "failed", "tiny": "failed"},
         )
     return sm
+
+
+def build_sub():
+    """Build the state machine of `sub.yml`."""
+    sm_sub = smach.StateMachine(outcomes=["done"])
+    with sm_sub:
+        # sub.yml:6
+        # at2
+        smach.StateMachine.add(
+            "SAY",
+            ScriptedState(outcomes=["done"], steps=[{"outcome": "done"}]),
+            transitions={"done": "done"},
+        )
+    return sm_sub
 
 
 def main():

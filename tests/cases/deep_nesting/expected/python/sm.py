@@ -54,100 +54,145 @@ def build():
     sm = stoppable_again(smach.StateMachine(outcomes=["done"]))
     with sm:
         # main.yml:6
-        sm_c0 = stoppable_again(smach.StateMachine(outcomes=["done"]))
-        with sm_c0:
-            # main.yml:10
-            sm_c1 = stoppable_again(smach.StateMachine(outcomes=["done"]))
-            with sm_c1:
-                # main.yml:14
-                sm_c2 = stoppable_again(smach.StateMachine(outcomes=["done"]))
-                with sm_c2:
-                    # main.yml:18
-                    sm_c3 = stoppable_again(smach.StateMachine(outcomes=["done"]))
-                    with sm_c3:
-                        # main.yml:22
-                        sm_c4 = stoppable_again(smach.StateMachine(outcomes=["done"]))
-                        with sm_c4:
-                            # main.yml:26
-                            sm_c5 = stoppable_again(
-                                smach.StateMachine(outcomes=["done"]),
-                            )
-                            with sm_c5:
-                                # main.yml:30
-                                sm_c6 = stoppable_again(
-                                    smach.StateMachine(outcomes=["done"]),
-                                )
-                                with sm_c6:
-                                    # main.yml:34
-                                    sm_c7 = stoppable_again(
-                                        smach.StateMachine(outcomes=["done"]),
-                                    )
-                                    with sm_c7:
-                                        # main.yml:38
-                                        sm_c8 = stoppable_again(
-                                            smach.StateMachine(outcomes=["done"]),
-                                        )
-                                        with sm_c8:
-                                            # main.yml:42
-                                            sm_c9 = stoppable_again(
-                                                smach.StateMachine(outcomes=["done"]),
-                                            )
-                                            with sm_c9:
-                                                smach.StateMachine.add(
-                                                    "C10",
-                                                    _sm_c10(),
-                                                    transitions={"done": "done"},
-                                                )
-
-                                            smach.StateMachine.add(
-                                                "C9",
-                                                sm_c9,
-                                                transitions={"done": "done"},
-                                            )
-
-                                        smach.StateMachine.add(
-                                            "C8",
-                                            sm_c8,
-                                            transitions={"done": "done"},
-                                        )
-
-                                    smach.StateMachine.add(
-                                        "C7",
-                                        sm_c7,
-                                        transitions={"done": "done"},
-                                    )
-
-                                smach.StateMachine.add(
-                                    "C6",
-                                    sm_c6,
-                                    transitions={"done": "done"},
-                                )
-
-                            smach.StateMachine.add(
-                                "C5",
-                                sm_c5,
-                                transitions={"done": "done"},
-                            )
-
-                        smach.StateMachine.add(
-                            "C4",
-                            sm_c4,
-                            transitions={"done": "done"},
-                        )
-
-                    smach.StateMachine.add("C3", sm_c3, transitions={"done": "done"})
-
-                smach.StateMachine.add("C2", sm_c2, transitions={"done": "done"})
-
-            smach.StateMachine.add("C1", sm_c1, transitions={"done": "done"})
-
-        smach.StateMachine.add("C0", sm_c0, transitions={"done": "done"})
+        smach.StateMachine.add("C0", build_c0(), transitions={"done": "done"})
     return sm
 
 
-def _sm_c21():
-    """The container `sm/C0/C1/C2/C3/C4/C5/C6/C7/C8/C9/C10/C11/C12/C13/C14/C15/C16/C17/C18/C19/C20/C21`."""
-    # main.yml:90
+def build_c0():
+    """Build the state machine `C0`."""
+    sm_c0 = stoppable_again(smach.StateMachine(outcomes=["done"]))
+    with sm_c0:
+        # main.yml:10
+        sm_c1 = stoppable_again(smach.StateMachine(outcomes=["done"]))
+        with sm_c1:
+            # main.yml:14
+            sm_c2 = stoppable_again(smach.StateMachine(outcomes=["done"]))
+            with sm_c2:
+                # main.yml:18
+                smach.StateMachine.add("C3", build_c3(), transitions={"done": "done"})
+
+            smach.StateMachine.add("C2", sm_c2, transitions={"done": "done"})
+
+        smach.StateMachine.add("C1", sm_c1, transitions={"done": "done"})
+    return sm_c0
+
+
+def build_c3():
+    """Build the state machine `C3`."""
+    sm_c3 = stoppable_again(smach.StateMachine(outcomes=["done"]))
+    with sm_c3:
+        # main.yml:22
+        sm_c4 = stoppable_again(smach.StateMachine(outcomes=["done"]))
+        with sm_c4:
+            # main.yml:26
+            sm_c5 = stoppable_again(smach.StateMachine(outcomes=["done"]))
+            with sm_c5:
+                # main.yml:30
+                smach.StateMachine.add("C6", build_c6(), transitions={"done": "done"})
+
+            smach.StateMachine.add("C5", sm_c5, transitions={"done": "done"})
+
+        smach.StateMachine.add("C4", sm_c4, transitions={"done": "done"})
+    return sm_c3
+
+
+def build_c6():
+    """Build the state machine `C6`."""
+    sm_c6 = stoppable_again(smach.StateMachine(outcomes=["done"]))
+    with sm_c6:
+        # main.yml:34
+        sm_c7 = stoppable_again(smach.StateMachine(outcomes=["done"]))
+        with sm_c7:
+            # main.yml:38
+            sm_c8 = stoppable_again(smach.StateMachine(outcomes=["done"]))
+            with sm_c8:
+                # main.yml:42
+                smach.StateMachine.add("C9", build_c9(), transitions={"done": "done"})
+
+            smach.StateMachine.add("C8", sm_c8, transitions={"done": "done"})
+
+        smach.StateMachine.add("C7", sm_c7, transitions={"done": "done"})
+    return sm_c6
+
+
+def build_c9():
+    """Build the state machine `C9`."""
+    sm_c9 = stoppable_again(smach.StateMachine(outcomes=["done"]))
+    with sm_c9:
+        # main.yml:46
+        sm_c10 = stoppable_again(smach.StateMachine(outcomes=["done"]))
+        with sm_c10:
+            # main.yml:50
+            sm_c11 = stoppable_again(smach.StateMachine(outcomes=["done"]))
+            with sm_c11:
+                # main.yml:54
+                smach.StateMachine.add("C12", build_c12(), transitions={"done": "done"})
+
+            smach.StateMachine.add("C11", sm_c11, transitions={"done": "done"})
+
+        smach.StateMachine.add("C10", sm_c10, transitions={"done": "done"})
+    return sm_c9
+
+
+def build_c12():
+    """Build the state machine `C12`."""
+    sm_c12 = stoppable_again(smach.StateMachine(outcomes=["done"]))
+    with sm_c12:
+        # main.yml:58
+        sm_c13 = stoppable_again(smach.StateMachine(outcomes=["done"]))
+        with sm_c13:
+            # main.yml:62
+            sm_c14 = stoppable_again(smach.StateMachine(outcomes=["done"]))
+            with sm_c14:
+                # main.yml:66
+                smach.StateMachine.add("C15", build_c15(), transitions={"done": "done"})
+
+            smach.StateMachine.add("C14", sm_c14, transitions={"done": "done"})
+
+        smach.StateMachine.add("C13", sm_c13, transitions={"done": "done"})
+    return sm_c12
+
+
+def build_c15():
+    """Build the state machine `C15`."""
+    sm_c15 = stoppable_again(smach.StateMachine(outcomes=["done"]))
+    with sm_c15:
+        # main.yml:70
+        sm_c16 = stoppable_again(smach.StateMachine(outcomes=["done"]))
+        with sm_c16:
+            # main.yml:74
+            sm_c17 = stoppable_again(smach.StateMachine(outcomes=["done"]))
+            with sm_c17:
+                # main.yml:78
+                smach.StateMachine.add("C18", build_c18(), transitions={"done": "done"})
+
+            smach.StateMachine.add("C17", sm_c17, transitions={"done": "done"})
+
+        smach.StateMachine.add("C16", sm_c16, transitions={"done": "done"})
+    return sm_c15
+
+
+def build_c18():
+    """Build the state machine `C18`."""
+    sm_c18 = stoppable_again(smach.StateMachine(outcomes=["done"]))
+    with sm_c18:
+        # main.yml:82
+        sm_c19 = stoppable_again(smach.StateMachine(outcomes=["done"]))
+        with sm_c19:
+            # main.yml:86
+            sm_c20 = stoppable_again(smach.StateMachine(outcomes=["done"]))
+            with sm_c20:
+                # main.yml:90
+                smach.StateMachine.add("C21", build_c21(), transitions={"done": "done"})
+
+            smach.StateMachine.add("C20", sm_c20, transitions={"done": "done"})
+
+        smach.StateMachine.add("C19", sm_c19, transitions={"done": "done"})
+    return sm_c18
+
+
+def build_c21():
+    """Build the state machine `C21`."""
     sm_c21 = stoppable_again(smach.StateMachine(outcomes=["done"]))
     with sm_c21:
         # main.yml:94
@@ -157,61 +202,7 @@ def _sm_c21():
             sm_c23 = stoppable_again(smach.StateMachine(outcomes=["done"]))
             with sm_c23:
                 # main.yml:102
-                sm_c24 = stoppable_again(smach.StateMachine(outcomes=["done"]))
-                with sm_c24:
-                    # main.yml:106
-                    sm_c25 = stoppable_again(smach.StateMachine(outcomes=["done"]))
-                    with sm_c25:
-                        # main.yml:110
-                        sm_c26 = stoppable_again(smach.StateMachine(outcomes=["done"]))
-                        with sm_c26:
-                            # main.yml:114
-                            sm_c27 = stoppable_again(
-                                smach.StateMachine(outcomes=["done"]),
-                            )
-                            with sm_c27:
-                                # main.yml:118
-                                sm_c28 = stoppable_again(
-                                    smach.StateMachine(outcomes=["done"]),
-                                )
-                                with sm_c28:
-                                    # main.yml:122
-                                    sm_c29 = smach.StateMachine(outcomes=["done"])
-                                    with sm_c29:
-                                        # main.yml:126
-                                        smach.StateMachine.add(
-                                            "LEAF",
-                                            ScriptedState(outcomes=["done"]),
-                                            transitions={"done": "done"},
-                                        )
-
-                                    smach.StateMachine.add(
-                                        "C29",
-                                        sm_c29,
-                                        transitions={"done": "done"},
-                                    )
-
-                                smach.StateMachine.add(
-                                    "C28",
-                                    sm_c28,
-                                    transitions={"done": "done"},
-                                )
-
-                            smach.StateMachine.add(
-                                "C27",
-                                sm_c27,
-                                transitions={"done": "done"},
-                            )
-
-                        smach.StateMachine.add(
-                            "C26",
-                            sm_c26,
-                            transitions={"done": "done"},
-                        )
-
-                    smach.StateMachine.add("C25", sm_c25, transitions={"done": "done"})
-
-                smach.StateMachine.add("C24", sm_c24, transitions={"done": "done"})
+                smach.StateMachine.add("C24", build_c24(), transitions={"done": "done"})
 
             smach.StateMachine.add("C23", sm_c23, transitions={"done": "done"})
 
@@ -219,101 +210,46 @@ def _sm_c21():
     return sm_c21
 
 
-def _sm_c10():
-    """The container `sm/C0/C1/C2/C3/C4/C5/C6/C7/C8/C9/C10`."""
-    # main.yml:46
-    sm_c10 = stoppable_again(smach.StateMachine(outcomes=["done"]))
-    with sm_c10:
-        # main.yml:50
-        sm_c11 = stoppable_again(smach.StateMachine(outcomes=["done"]))
-        with sm_c11:
-            # main.yml:54
-            sm_c12 = stoppable_again(smach.StateMachine(outcomes=["done"]))
-            with sm_c12:
-                # main.yml:58
-                sm_c13 = stoppable_again(smach.StateMachine(outcomes=["done"]))
-                with sm_c13:
-                    # main.yml:62
-                    sm_c14 = stoppable_again(smach.StateMachine(outcomes=["done"]))
-                    with sm_c14:
-                        # main.yml:66
-                        sm_c15 = stoppable_again(smach.StateMachine(outcomes=["done"]))
-                        with sm_c15:
-                            # main.yml:70
-                            sm_c16 = stoppable_again(
-                                smach.StateMachine(outcomes=["done"]),
-                            )
-                            with sm_c16:
-                                # main.yml:74
-                                sm_c17 = stoppable_again(
-                                    smach.StateMachine(outcomes=["done"]),
-                                )
-                                with sm_c17:
-                                    # main.yml:78
-                                    sm_c18 = stoppable_again(
-                                        smach.StateMachine(outcomes=["done"]),
-                                    )
-                                    with sm_c18:
-                                        # main.yml:82
-                                        sm_c19 = stoppable_again(
-                                            smach.StateMachine(outcomes=["done"]),
-                                        )
-                                        with sm_c19:
-                                            # main.yml:86
-                                            sm_c20 = stoppable_again(
-                                                smach.StateMachine(outcomes=["done"]),
-                                            )
-                                            with sm_c20:
-                                                smach.StateMachine.add(
-                                                    "C21",
-                                                    _sm_c21(),
-                                                    transitions={"done": "done"},
-                                                )
+def build_c24():
+    """Build the state machine `C24`."""
+    sm_c24 = stoppable_again(smach.StateMachine(outcomes=["done"]))
+    with sm_c24:
+        # main.yml:106
+        sm_c25 = stoppable_again(smach.StateMachine(outcomes=["done"]))
+        with sm_c25:
+            # main.yml:110
+            sm_c26 = stoppable_again(smach.StateMachine(outcomes=["done"]))
+            with sm_c26:
+                # main.yml:114
+                smach.StateMachine.add("C27", build_c27(), transitions={"done": "done"})
 
-                                            smach.StateMachine.add(
-                                                "C20",
-                                                sm_c20,
-                                                transitions={"done": "done"},
-                                            )
+            smach.StateMachine.add("C26", sm_c26, transitions={"done": "done"})
 
-                                        smach.StateMachine.add(
-                                            "C19",
-                                            sm_c19,
-                                            transitions={"done": "done"},
-                                        )
+        smach.StateMachine.add("C25", sm_c25, transitions={"done": "done"})
+    return sm_c24
 
-                                    smach.StateMachine.add(
-                                        "C18",
-                                        sm_c18,
-                                        transitions={"done": "done"},
-                                    )
 
-                                smach.StateMachine.add(
-                                    "C17",
-                                    sm_c17,
-                                    transitions={"done": "done"},
-                                )
+def build_c27():
+    """Build the state machine `C27`."""
+    sm_c27 = stoppable_again(smach.StateMachine(outcomes=["done"]))
+    with sm_c27:
+        # main.yml:118
+        sm_c28 = stoppable_again(smach.StateMachine(outcomes=["done"]))
+        with sm_c28:
+            # main.yml:122
+            sm_c29 = smach.StateMachine(outcomes=["done"])
+            with sm_c29:
+                # main.yml:126
+                smach.StateMachine.add(
+                    "LEAF",
+                    ScriptedState(outcomes=["done"]),
+                    transitions={"done": "done"},
+                )
 
-                            smach.StateMachine.add(
-                                "C16",
-                                sm_c16,
-                                transitions={"done": "done"},
-                            )
+            smach.StateMachine.add("C29", sm_c29, transitions={"done": "done"})
 
-                        smach.StateMachine.add(
-                            "C15",
-                            sm_c15,
-                            transitions={"done": "done"},
-                        )
-
-                    smach.StateMachine.add("C14", sm_c14, transitions={"done": "done"})
-
-                smach.StateMachine.add("C13", sm_c13, transitions={"done": "done"})
-
-            smach.StateMachine.add("C12", sm_c12, transitions={"done": "done"})
-
-        smach.StateMachine.add("C11", sm_c11, transitions={"done": "done"})
-    return sm_c10
+        smach.StateMachine.add("C28", sm_c28, transitions={"done": "done"})
+    return sm_c27
 
 
 def main():

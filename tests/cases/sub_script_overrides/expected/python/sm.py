@@ -54,63 +54,59 @@ def build():
     sm = stoppable_again(smach.StateMachine(outcomes=["succeeded", "aborted"]))
     with sm:
         # main.yml:7
-        sm_plain = smach.StateMachine(outcomes=["done", "aborted"])
-        sm_plain.userdata.a = 1
-        sm_plain.userdata.b = 2
-        sm_plain.userdata.tool = "nobody_gripper"
-        with sm_plain:
-            # sub.yml:7
-            smach.StateMachine.add(
-                "A",
-                ScriptedState(outcomes=["done", "aborted", "extra"]),
-                transitions={"extra": "done", "done": "done", "aborted": "aborted"},
-            )
-
         smach.StateMachine.add(
             "PLAIN",
-            sm_plain,
+            build_sub(tool="nobody_gripper"),
             transitions={"done": "OTHER", "aborted": "aborted"},
         )
 
         # main.yml:10
-        sm_other = smach.StateMachine(outcomes=["done", "aborted", "extra"])
-        sm_other.userdata.a = 1
-        sm_other.userdata.b = 20
-        sm_other.userdata.tool = "right_gripper"
-        sm_other.userdata.c = 30
-        with sm_other:
-            # sub.yml:7
-            smach.StateMachine.add(
-                "A",
-                ScriptedState(outcomes=["done", "aborted", "extra"]),
-                transitions={"extra": "done", "done": "done", "aborted": "aborted"},
-            )
-
         smach.StateMachine.add(
             "OTHER",
-            sm_other,
+            build_sub_2(),
             transitions={"done": "THROUGH", "aborted": "aborted", "extra": "aborted"},
         )
 
         # main.yml:16
-        sm_through = smach.StateMachine(outcomes=["done", "aborted"])
-        sm_through.userdata.a = 1
-        sm_through.userdata.b = 2
-        sm_through.userdata.tool = "through_gripper"
-        with sm_through:
-            # sub.yml:7
-            smach.StateMachine.add(
-                "A",
-                ScriptedState(outcomes=["done", "aborted", "extra"]),
-                transitions={"extra": "done", "done": "done", "aborted": "aborted"},
-            )
-
         smach.StateMachine.add(
             "THROUGH",
-            sm_through,
+            build_sub(tool="through_gripper"),
             transitions={"done": "succeeded", "aborted": "aborted"},
         )
     return sm
+
+
+def build_sub(tool):
+    """Build the state machine of `sub.yml`."""
+    sm_sub = smach.StateMachine(outcomes=["done", "aborted"])
+    sm_sub.userdata.a = 1
+    sm_sub.userdata.b = 2
+    sm_sub.userdata.tool = tool
+    with sm_sub:
+        # sub.yml:7
+        smach.StateMachine.add(
+            "A",
+            ScriptedState(outcomes=["done", "aborted", "extra"]),
+            transitions={"extra": "done", "done": "done", "aborted": "aborted"},
+        )
+    return sm_sub
+
+
+def build_sub_2():
+    """Build the state machine of `sub.yml`."""
+    sm_sub_2 = smach.StateMachine(outcomes=["done", "aborted", "extra"])
+    sm_sub_2.userdata.a = 1
+    sm_sub_2.userdata.b = 20
+    sm_sub_2.userdata.tool = "right_gripper"
+    sm_sub_2.userdata.c = 30
+    with sm_sub_2:
+        # sub.yml:7
+        smach.StateMachine.add(
+            "A",
+            ScriptedState(outcomes=["done", "aborted", "extra"]),
+            transitions={"extra": "done", "done": "done", "aborted": "aborted"},
+        )
+    return sm_sub_2
 
 
 def main():

@@ -209,79 +209,9 @@ def build():
     tour.userdata.count = 0
     with tour:
         # main.yml:6
-        sm_look = stoppable(
-            smach.Iterator(
-                outcomes=["succeeded", "preempted", "exhausted"],
-                it=[0.0, 0.1, 0.1],
-                it_label="pause",
-                exhausted_outcome="exhausted",
-                input_keys=[],
-                output_keys=[],
-            ),
-        )
-        with sm_look:
-            # main.yml:6
-            sm_try = stoppable_again(
-                smach.StateMachine(
-                    outcomes=["succeeded", "aborted", "preempted", "timeout"],
-                    input_keys=["pause"],
-                ),
-            )
-            with sm_try:
-                # main.yml:6
-                smach.StateMachine.add(
-                    "PAUSE",
-                    SleepState(time=lambda ud: ud.pause, input_keys=["pause"]),
-                    transitions={"succeeded": "LOOK", "preempted": "preempted"},
-                )
-
-                # main.yml:6
-                sm_look_2 = stoppable(
-                    smach.Concurrence(
-                        outcomes=["succeeded", "aborted", "preempted", "timeout"],
-                        default_outcome="timeout",
-                        outcome_map={
-                            "succeeded": {"LOOK": "succeeded", "TIMER": "preempted"},
-                            "aborted": {"LOOK": "aborted", "TIMER": "preempted"},
-                            "preempted": {"LOOK": "preempted", "TIMER": "preempted"},
-                        },
-                        child_termination_cb=lambda outcomes: True,
-                    ),
-                )
-                with sm_look_2:
-                    # main.yml:6
-                    smach.Concurrence.add(
-                        "LOOK",
-                        ScriptedState(
-                            outcomes=["succeeded", "aborted", "preempted"],
-                            steps=[{"outcome": "aborted"}, {"outcome": "succeeded"}],
-                        ),
-                    )
-
-                    # main.yml:6
-                    smach.Concurrence.add("TIMER", SleepState(time=20.0))
-
-                smach.StateMachine.add(
-                    "LOOK",
-                    ends_preempted(sm_look_2),
-                    transitions={
-                        "succeeded": "succeeded",
-                        "aborted": "aborted",
-                        "preempted": "preempted",
-                        "timeout": "timeout",
-                    },
-                )
-
-            smach.Iterator.set_contained_state(
-                "TRY",
-                sm_try,
-                loop_outcomes=["aborted", "timeout"],
-                final_outcome_map={"aborted": "preempted", "timeout": "preempted"},
-            )
-
         smach.StateMachine.add(
             "LOOK",
-            ends_preempted(sm_look),
+            ends_preempted(build_look()),
             transitions={
                 "succeeded": "VISIT",
                 "exhausted": "failed",
@@ -325,6 +255,7 @@ def build():
         )
 
         # main.yml:21
+        # It takes longer than it may.
         sm_haste = stoppable(
             smach.Concurrence(
                 outcomes=["succeeded", "preempted", "timeout"],
@@ -489,6 +420,80 @@ def build():
             transitions={"succeeded": "done"},
         )
     return tour
+
+
+def build_look():
+    """Build the iterator `LOOK`."""
+    sm_look = stoppable(
+        smach.Iterator(
+            outcomes=["succeeded", "preempted", "exhausted"],
+            it=[0.0, 0.1, 0.1],
+            it_label="pause",
+            exhausted_outcome="exhausted",
+            input_keys=[],
+            output_keys=[],
+        ),
+    )
+    with sm_look:
+        # main.yml:6
+        sm_try = stoppable_again(
+            smach.StateMachine(
+                outcomes=["succeeded", "aborted", "preempted", "timeout"],
+                input_keys=["pause"],
+            ),
+        )
+        with sm_try:
+            # main.yml:6
+            smach.StateMachine.add(
+                "PAUSE",
+                SleepState(time=lambda ud: ud.pause, input_keys=["pause"]),
+                transitions={"succeeded": "LOOK", "preempted": "preempted"},
+            )
+
+            # main.yml:6
+            sm_look_2 = stoppable(
+                smach.Concurrence(
+                    outcomes=["succeeded", "aborted", "preempted", "timeout"],
+                    default_outcome="timeout",
+                    outcome_map={
+                        "succeeded": {"LOOK": "succeeded", "TIMER": "preempted"},
+                        "aborted": {"LOOK": "aborted", "TIMER": "preempted"},
+                        "preempted": {"LOOK": "preempted", "TIMER": "preempted"},
+                    },
+                    child_termination_cb=lambda outcomes: True,
+                ),
+            )
+            with sm_look_2:
+                # main.yml:6
+                smach.Concurrence.add(
+                    "LOOK",
+                    ScriptedState(
+                        outcomes=["succeeded", "aborted", "preempted"],
+                        steps=[{"outcome": "aborted"}, {"outcome": "succeeded"}],
+                    ),
+                )
+
+                # main.yml:6
+                smach.Concurrence.add("TIMER", SleepState(time=20.0))
+
+            smach.StateMachine.add(
+                "LOOK",
+                ends_preempted(sm_look_2),
+                transitions={
+                    "succeeded": "succeeded",
+                    "aborted": "aborted",
+                    "preempted": "preempted",
+                    "timeout": "timeout",
+                },
+            )
+
+        smach.Iterator.set_contained_state(
+            "TRY",
+            sm_try,
+            loop_outcomes=["aborted", "timeout"],
+            final_outcome_map={"aborted": "preempted", "timeout": "preempted"},
+        )
+    return sm_look
 
 
 def main():

@@ -67,55 +67,41 @@ def build():
     wave = stoppable_again(smach.StateMachine(outcomes=["succeeded", "aborted"]))
     with wave:
         # main.yml:9
-        sm_wave_left = smach.StateMachine(outcomes=["succeeded", "aborted"])
-        sm_wave_left.userdata.topic = "/left/joint_command"
-        sm_wave_left.userdata.times = 2
-        with sm_wave_left:
-            # wave.yml:10
-            smach.StateMachine.add(
-                "TELL",
-                PrintUserdataState(input_keys=["topic", "times"]),
-                transitions={"succeeded": "MOVE"},
-            )
-
-            # wave.yml:14
-            smach.StateMachine.add(
-                "MOVE",
-                ScriptedState(outcomes=["succeeded", "aborted"]),
-                transitions={"succeeded": "succeeded", "aborted": "aborted"},
-            )
-
         smach.StateMachine.add(
             "WAVE_LEFT",
-            sm_wave_left,
+            build_wave(topic="/left/joint_command", times=2),
             transitions={"succeeded": "WAVE_RIGHT", "aborted": "aborted"},
         )
 
         # main.yml:14
-        sm_wave_right = smach.StateMachine(outcomes=["succeeded", "aborted"])
-        sm_wave_right.userdata.topic = "/right/joint_command"
-        sm_wave_right.userdata.times = 3
-        with sm_wave_right:
-            # wave.yml:10
-            smach.StateMachine.add(
-                "TELL",
-                PrintUserdataState(input_keys=["topic", "times"]),
-                transitions={"succeeded": "MOVE"},
-            )
-
-            # wave.yml:14
-            smach.StateMachine.add(
-                "MOVE",
-                ScriptedState(outcomes=["succeeded", "aborted"]),
-                transitions={"succeeded": "succeeded", "aborted": "aborted"},
-            )
-
         smach.StateMachine.add(
             "WAVE_RIGHT",
-            sm_wave_right,
+            build_wave(topic="/right/joint_command", times=3),
             transitions={"succeeded": "succeeded", "aborted": "aborted"},
         )
     return wave
+
+
+def build_wave(topic, times):
+    """Build the state machine of `wave.yml`."""
+    sm_wave = smach.StateMachine(outcomes=["succeeded", "aborted"])
+    sm_wave.userdata.topic = topic
+    sm_wave.userdata.times = times
+    with sm_wave:
+        # wave.yml:10
+        smach.StateMachine.add(
+            "TELL",
+            PrintUserdataState(input_keys=["topic", "times"]),
+            transitions={"succeeded": "MOVE"},
+        )
+
+        # wave.yml:14
+        smach.StateMachine.add(
+            "MOVE",
+            ScriptedState(outcomes=["succeeded", "aborted"]),
+            transitions={"succeeded": "succeeded", "aborted": "aborted"},
+        )
+    return sm_wave
 
 
 def main():

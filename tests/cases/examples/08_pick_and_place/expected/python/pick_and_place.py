@@ -235,178 +235,17 @@ def build():
         )
 
         # main.yml:44
-        sm_pick_block = smach.StateMachine(
-            outcomes=["succeeded", "aborted"],
-            input_keys=["pick_pose", "hover_offset"],
-        )
-        with sm_pick_block:
-            # pick_block.yml:8
-            smach.StateMachine.add(
-                "OPEN_GRIPPER",
-                GripperState(command="open"),
-                transitions={
-                    "succeeded": "PLAN_HOVER",
-                    "aborted": "aborted",
-                    "preempted": "aborted",
-                },
-            )
-
-            # pick_block.yml:13
-            smach.StateMachine.add(
-                "PLAN_HOVER",
-                PoseToJointPositionsState(grasp=True),
-                transitions={"succeeded": "MOVE_TO_HOVER", "aborted": "aborted"},
-                remapping={
-                    "pose": "pick_pose",
-                    "offset": "hover_offset",
-                    "joints": "hover_joints",
-                },
-            )
-
-            # pick_block.yml:19
-            smach.StateMachine.add(
-                "MOVE_TO_HOVER",
-                MoveToJointPositionsState(),
-                transitions={
-                    "succeeded": "MOVE_DOWN",
-                    "aborted": "aborted",
-                    "preempted": "aborted",
-                },
-                remapping={"positions": "hover_joints"},
-            )
-
-            # pick_block.yml:24
-            smach.StateMachine.add(
-                "MOVE_DOWN",
-                MoveAlongState(grasp=True),
-                transitions={
-                    "succeeded": "CLOSE_GRIPPER",
-                    "aborted": "aborted",
-                    "preempted": "aborted",
-                },
-                remapping={"pose": "pick_pose"},
-            )
-
-            # pick_block.yml:30
-            smach.StateMachine.add(
-                "CLOSE_GRIPPER",
-                GripperState(command="close"),
-                transitions={
-                    "succeeded": "LIFT",
-                    "aborted": "aborted",
-                    "preempted": "aborted",
-                },
-            )
-
-            # pick_block.yml:35
-            smach.StateMachine.add(
-                "LIFT",
-                MoveAlongState(grasp=True),
-                transitions={
-                    "succeeded": "CHECK_GRASP",
-                    "aborted": "aborted",
-                    "preempted": "aborted",
-                },
-                remapping={"pose": "pick_pose", "offset": "hover_offset"},
-            )
-
-            # pick_block.yml:41
-            smach.StateMachine.add(
-                "CHECK_GRASP",
-                CheckGraspState(body="block"),
-                transitions={"succeeded": "succeeded", "aborted": "aborted"},
-            )
-
         smach.StateMachine.add(
             "PICK_BLOCK",
-            sm_pick_block,
+            build_pick_block(),
             transitions={"succeeded": "PLACE_BLOCK", "aborted": "LET_GO"},
             remapping={"pick_pose": "block_pose", "hover_offset": "hover_offset"},
         )
 
         # main.yml:50
-        sm_place_block = smach.StateMachine(
-            outcomes=["succeeded", "aborted"],
-            input_keys=["place_pose", "hover_offset"],
-        )
-        with sm_place_block:
-            # place_block.yml:9
-            smach.StateMachine.add(
-                "PLAN_HOVER",
-                PoseToJointPositionsState(grasp=True),
-                transitions={"succeeded": "MOVE_TO_HOVER", "aborted": "aborted"},
-                remapping={
-                    "pose": "place_pose",
-                    "offset": "hover_offset",
-                    "joints": "hover_joints",
-                },
-            )
-
-            # place_block.yml:15
-            smach.StateMachine.add(
-                "MOVE_TO_HOVER",
-                MoveToJointPositionsState(),
-                transitions={
-                    "succeeded": "CHECK_GRASP",
-                    "aborted": "aborted",
-                    "preempted": "aborted",
-                },
-                remapping={"positions": "hover_joints"},
-            )
-
-            # place_block.yml:20
-            smach.StateMachine.add(
-                "CHECK_GRASP",
-                CheckGraspState(body="block"),
-                transitions={"succeeded": "MOVE_DOWN", "aborted": "aborted"},
-            )
-
-            # place_block.yml:25
-            smach.StateMachine.add(
-                "MOVE_DOWN",
-                MoveAlongState(grasp=True),
-                transitions={
-                    "succeeded": "OPEN_GRIPPER",
-                    "aborted": "aborted",
-                    "preempted": "aborted",
-                },
-                remapping={"pose": "place_pose"},
-            )
-
-            # place_block.yml:31
-            smach.StateMachine.add(
-                "OPEN_GRIPPER",
-                GripperState(command="open"),
-                transitions={
-                    "succeeded": "MOVE_UP",
-                    "aborted": "aborted",
-                    "preempted": "aborted",
-                },
-            )
-
-            # place_block.yml:36
-            smach.StateMachine.add(
-                "MOVE_UP",
-                MoveAlongState(grasp=True),
-                transitions={
-                    "succeeded": "CHECK_PLACED",
-                    "aborted": "aborted",
-                    "preempted": "aborted",
-                },
-                remapping={"pose": "place_pose", "offset": "hover_offset"},
-            )
-
-            # place_block.yml:42
-            smach.StateMachine.add(
-                "CHECK_PLACED",
-                CheckPlacedState(body="block"),
-                transitions={"succeeded": "succeeded", "aborted": "aborted"},
-                remapping={"pose": "place_pose", "error": "placing_error"},
-            )
-
         smach.StateMachine.add(
             "PLACE_BLOCK",
-            sm_place_block,
+            build_place_block(),
             transitions={"succeeded": "GO_HOME", "aborted": "LET_GO"},
             remapping={"place_pose": "goal_pose", "hover_offset": "hover_offset"},
         )
@@ -447,6 +286,181 @@ def build():
             remapping={"positions": "home"},
         )
     return pick_and_place
+
+
+def build_pick_block():
+    """Build the state machine of `pick_block.yml`.
+
+    Grasp a block from above and lift it.
+    """
+    sm_pick_block = smach.StateMachine(
+        outcomes=["succeeded", "aborted"],
+        input_keys=["pick_pose", "hover_offset"],
+    )
+    with sm_pick_block:
+        # pick_block.yml:8
+        smach.StateMachine.add(
+            "OPEN_GRIPPER",
+            GripperState(command="open"),
+            transitions={
+                "succeeded": "PLAN_HOVER",
+                "aborted": "aborted",
+                "preempted": "aborted",
+            },
+        )
+
+        # pick_block.yml:13
+        smach.StateMachine.add(
+            "PLAN_HOVER",
+            PoseToJointPositionsState(grasp=True),
+            transitions={"succeeded": "MOVE_TO_HOVER", "aborted": "aborted"},
+            remapping={
+                "pose": "pick_pose",
+                "offset": "hover_offset",
+                "joints": "hover_joints",
+            },
+        )
+
+        # pick_block.yml:19
+        smach.StateMachine.add(
+            "MOVE_TO_HOVER",
+            MoveToJointPositionsState(),
+            transitions={
+                "succeeded": "MOVE_DOWN",
+                "aborted": "aborted",
+                "preempted": "aborted",
+            },
+            remapping={"positions": "hover_joints"},
+        )
+
+        # pick_block.yml:24
+        smach.StateMachine.add(
+            "MOVE_DOWN",
+            MoveAlongState(grasp=True),
+            transitions={
+                "succeeded": "CLOSE_GRIPPER",
+                "aborted": "aborted",
+                "preempted": "aborted",
+            },
+            remapping={"pose": "pick_pose"},
+        )
+
+        # pick_block.yml:30
+        smach.StateMachine.add(
+            "CLOSE_GRIPPER",
+            GripperState(command="close"),
+            transitions={
+                "succeeded": "LIFT",
+                "aborted": "aborted",
+                "preempted": "aborted",
+            },
+        )
+
+        # pick_block.yml:35
+        smach.StateMachine.add(
+            "LIFT",
+            MoveAlongState(grasp=True),
+            transitions={
+                "succeeded": "CHECK_GRASP",
+                "aborted": "aborted",
+                "preempted": "aborted",
+            },
+            remapping={"pose": "pick_pose", "offset": "hover_offset"},
+        )
+
+        # pick_block.yml:41
+        smach.StateMachine.add(
+            "CHECK_GRASP",
+            CheckGraspState(body="block"),
+            transitions={"succeeded": "succeeded", "aborted": "aborted"},
+        )
+    return sm_pick_block
+
+
+def build_place_block():
+    """Build the state machine of `place_block.yml`.
+
+    Place the block in the gripper and look whether it lies there.
+    """
+    sm_place_block = smach.StateMachine(
+        outcomes=["succeeded", "aborted"],
+        input_keys=["place_pose", "hover_offset"],
+    )
+    with sm_place_block:
+        # place_block.yml:9
+        smach.StateMachine.add(
+            "PLAN_HOVER",
+            PoseToJointPositionsState(grasp=True),
+            transitions={"succeeded": "MOVE_TO_HOVER", "aborted": "aborted"},
+            remapping={
+                "pose": "place_pose",
+                "offset": "hover_offset",
+                "joints": "hover_joints",
+            },
+        )
+
+        # place_block.yml:15
+        smach.StateMachine.add(
+            "MOVE_TO_HOVER",
+            MoveToJointPositionsState(),
+            transitions={
+                "succeeded": "CHECK_GRASP",
+                "aborted": "aborted",
+                "preempted": "aborted",
+            },
+            remapping={"positions": "hover_joints"},
+        )
+
+        # place_block.yml:20
+        smach.StateMachine.add(
+            "CHECK_GRASP",
+            CheckGraspState(body="block"),
+            transitions={"succeeded": "MOVE_DOWN", "aborted": "aborted"},
+        )
+
+        # place_block.yml:25
+        smach.StateMachine.add(
+            "MOVE_DOWN",
+            MoveAlongState(grasp=True),
+            transitions={
+                "succeeded": "OPEN_GRIPPER",
+                "aborted": "aborted",
+                "preempted": "aborted",
+            },
+            remapping={"pose": "place_pose"},
+        )
+
+        # place_block.yml:31
+        smach.StateMachine.add(
+            "OPEN_GRIPPER",
+            GripperState(command="open"),
+            transitions={
+                "succeeded": "MOVE_UP",
+                "aborted": "aborted",
+                "preempted": "aborted",
+            },
+        )
+
+        # place_block.yml:36
+        smach.StateMachine.add(
+            "MOVE_UP",
+            MoveAlongState(grasp=True),
+            transitions={
+                "succeeded": "CHECK_PLACED",
+                "aborted": "aborted",
+                "preempted": "aborted",
+            },
+            remapping={"pose": "place_pose", "offset": "hover_offset"},
+        )
+
+        # place_block.yml:42
+        smach.StateMachine.add(
+            "CHECK_PLACED",
+            CheckPlacedState(body="block"),
+            transitions={"succeeded": "succeeded", "aborted": "aborted"},
+            remapping={"pose": "place_pose", "error": "placing_error"},
+        )
+    return sm_place_block
 
 
 def main():

@@ -54,29 +54,24 @@ def build():
     sm = stoppable_again(smach.StateMachine(outcomes=["succeeded"]))
     with sm:
         # main.yml:6
-        sm_left = smach.StateMachine(outcomes=["done"])
-        with sm_left:
-            # part.yml:5
-            smach.StateMachine.add(
-                "SAY",
-                ScriptedState(outcomes=["done"]),
-                transitions={"done": "done"},
-            )
-
-        smach.StateMachine.add("LEFT", sm_left, transitions={"done": "RIGHT"})
+        smach.StateMachine.add("LEFT", build_part(), transitions={"done": "RIGHT"})
 
         # main.yml:7
-        sm_right = smach.StateMachine(outcomes=["done"])
-        with sm_right:
-            # part.yml:5
-            smach.StateMachine.add(
-                "SAY",
-                ScriptedState(outcomes=["done"]),
-                transitions={"done": "done"},
-            )
-
-        smach.StateMachine.add("RIGHT", sm_right, transitions={"done": "succeeded"})
+        smach.StateMachine.add("RIGHT", build_part(), transitions={"done": "succeeded"})
     return sm
+
+
+def build_part():
+    """Build the state machine of `part.yml`."""
+    sm_part = smach.StateMachine(outcomes=["done"])
+    with sm_part:
+        # part.yml:5
+        smach.StateMachine.add(
+            "SAY",
+            ScriptedState(outcomes=["done"]),
+            transitions={"done": "done"},
+        )
+    return sm_part
 
 
 def main():

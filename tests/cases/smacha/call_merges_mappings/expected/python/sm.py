@@ -57,33 +57,37 @@ def build():
     sm.userdata.bolt = 1
     with sm:
         # main.yml:8
-        sm_first = smach.StateMachine(
-            outcomes=["picked", "lost"],
-            input_keys=["block"],
-            output_keys=["grip"],
-        )
-        sm_first.userdata.height = 0.2
-        sm_first.userdata.tool = "right"
-        with sm_first:
-            # pick.yml:10
-            smach.StateMachine.add(
-                "GRASP",
-                ScriptedState(
-                    outcomes=["picked", "lost"],
-                    steps=[{"outcome": "picked", "set": {"grip": 1}}],
-                    input_keys=["block", "height", "tool"],
-                    output_keys=["grip"],
-                ),
-                transitions={"picked": "picked", "lost": "lost"},
-            )
-
         smach.StateMachine.add(
             "FIRST",
-            sm_first,
+            build_pick(),
             transitions={"picked": "succeeded", "lost": "failed"},
             remapping={"block": "bolt", "grip": "held"},
         )
     return sm
+
+
+def build_pick():
+    """Build the state machine of `pick.yml`."""
+    sm_pick = smach.StateMachine(
+        outcomes=["picked", "lost"],
+        input_keys=["block"],
+        output_keys=["grip"],
+    )
+    sm_pick.userdata.height = 0.2
+    sm_pick.userdata.tool = "right"
+    with sm_pick:
+        # pick.yml:10
+        smach.StateMachine.add(
+            "GRASP",
+            ScriptedState(
+                outcomes=["picked", "lost"],
+                steps=[{"outcome": "picked", "set": {"grip": 1}}],
+                input_keys=["block", "height", "tool"],
+                output_keys=["grip"],
+            ),
+            transitions={"picked": "picked", "lost": "lost"},
+        )
+    return sm_pick
 
 
 def main():

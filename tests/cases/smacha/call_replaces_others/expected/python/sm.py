@@ -65,6 +65,7 @@ def build():
     sm = smach.StateMachine(outcomes=["succeeded"])
     with sm:
         # main.yml:6
+        # Longer than usual.
         smach.StateMachine.add(
             "WAIT",
             SleepState(time=2.5),

@@ -54,17 +54,21 @@ def build():
     sm = stoppable_again(smach.StateMachine(outcomes=["succeeded"]))
     with sm:
         # main.yml:6
-        sm_a = smach.StateMachine(outcomes=["done"])
-        with sm_a:
-            # box.yml:5
-            smach.StateMachine.add(
-                "IN",
-                ScriptedState(outcomes=["done"]),
-                transitions={"done": "done"},
-            )
-
-        smach.StateMachine.add("A", sm_a, transitions={"done": "succeeded"})
+        smach.StateMachine.add("A", build_box(), transitions={"done": "succeeded"})
     return sm
+
+
+def build_box():
+    """Build the state machine of `box.yml`."""
+    sm_box = smach.StateMachine(outcomes=["done"])
+    with sm_box:
+        # box.yml:5
+        smach.StateMachine.add(
+            "IN",
+            ScriptedState(outcomes=["done"]),
+            transitions={"done": "done"},
+        )
+    return sm_box
 
 
 def main():

@@ -57,29 +57,9 @@ def build():
     sm.userdata.part = 1
     with sm:
         # main.yml:8
-        sm_pick = smach.StateMachine(
-            outcomes=["picked", "lost"],
-            input_keys=["block"],
-            output_keys=["grip"],
-        )
-        sm_pick.userdata.height = 0.1
-        sm_pick.userdata.tool = "left"
-        with sm_pick:
-            # pick.yml:10
-            smach.StateMachine.add(
-                "GRASP",
-                ScriptedState(
-                    outcomes=["picked", "lost"],
-                    steps=[{"outcome": "picked", "set": {"grip": 1}}],
-                    input_keys=["block", "height", "tool"],
-                    output_keys=["grip"],
-                ),
-                transitions={"picked": "picked", "lost": "lost"},
-            )
-
         smach.StateMachine.add(
             "PICK",
-            sm_pick,
+            build_pick(),
             transitions={"picked": "SAY", "lost": "failed"},
             remapping={"block": "part"},
         )
@@ -91,6 +71,30 @@ def build():
             transitions={"done": "succeeded"},
         )
     return sm
+
+
+def build_pick():
+    """Build the state machine of `pick.yml`."""
+    sm_pick = smach.StateMachine(
+        outcomes=["picked", "lost"],
+        input_keys=["block"],
+        output_keys=["grip"],
+    )
+    sm_pick.userdata.height = 0.1
+    sm_pick.userdata.tool = "left"
+    with sm_pick:
+        # pick.yml:10
+        smach.StateMachine.add(
+            "GRASP",
+            ScriptedState(
+                outcomes=["picked", "lost"],
+                steps=[{"outcome": "picked", "set": {"grip": 1}}],
+                input_keys=["block", "height", "tool"],
+                output_keys=["grip"],
+            ),
+            transitions={"picked": "picked", "lost": "lost"},
+        )
+    return sm_pick
 
 
 def main():
