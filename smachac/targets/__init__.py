@@ -19,6 +19,9 @@ from smachac.version import __version__
 
 GROUP = "smachac.targets"
 
+COMMENT_WIDTH = 88
+"""The length of a line with documentation in a program."""
+
 Files = dict[str, str]
 """The output of a target: relative file name to text. The caller writes the files."""
 

@@ -13,7 +13,7 @@ from typing import NamedTuple
 
 from smachac.ir.nodes import Iterator, Leaf, Machine, Node
 from smachac.ir.traversal import walk
-from smachac.targets import comment, made_by
+from smachac.targets import COMMENT_WIDTH, comment_lines, made_by
 from smachac.targets.cpp.builtin_states import LeafCode, built_in, enumeration
 from smachac.targets.cpp.containers import ContainerPlan, Lines, execute, parts, results
 from smachac.targets.cpp.identifiers import identifier
@@ -163,8 +163,13 @@ def _container(printing: _Printing, scope: ContainerScope) -> Lines:
         blocks.append(_root(plan.machine))
     inner = "\n\n".join("\n".join(block) for block in blocks if block)
     where = f" // {place(node)}" if place(node) else ""
-    doc = [f"// {comment(line)}" for line in node.doc.splitlines()]
-    return [*doc, f"namespace {name} {{{where}", "", inner, "", f"}} // namespace {name}"]
+    return [*_doc(node), f"namespace {name} {{{where}", "", inner, "", f"}} // namespace {name}"]
+
+
+def _doc(node: Node, indent: str = "") -> Lines:
+    """The documentation of a state as comments."""
+    lines = comment_lines(node.doc, COMMENT_WIDTH - len(indent) - 3)
+    return [f"{indent}// {line}".rstrip() for line in lines]
 
 
 def _leaves(printing: _Printing, scope: ContainerScope) -> Mapping[str, LeafCode] | None:
@@ -228,7 +233,7 @@ def _types(leaves: Mapping[str, LeafCode]) -> Lines:
 
 def _states(printing: _Printing, scope: ContainerScope, leaves: Mapping[str, LeafCode]) -> Lines:
     """The struct of the states, with a constructor if the classes of some states need arguments."""
-    members: dict[str, bool] = {}
+    members: list[tuple[Lines, str, bool]] = []
     made: Lines = []
     parameters: dict[str, None] = {}
     for child in scope.node.children:
@@ -241,13 +246,16 @@ def _states(printing: _Printing, scope: ContainerScope, leaves: Mapping[str, Lea
             wanted = printing.parameters.get(f"{scope.path}/{child.name}", ())
             given = ", ".join(map(argument, wanted))
         parameters |= dict.fromkeys(wanted)
-        members[f"  {type_} {member(child)}"] = bool(given)
+        doc = _doc(child, "  ") if isinstance(child, Leaf) else []
+        members.append((doc, f"  {type_} {member(child)}", bool(given)))
         if given:
             made.append(f"{member(child)}({given})")
     printing.parameters[scope.path] = tuple(parameters)
+    lines: Lines = []
+    for doc, text, listed in members:
+        lines += [*doc, f"{text}{{}};" if made and not listed else f"{text};"]
     if not made:
-        return ["struct States {", *(f"{text};" for text in members), "};"]
-    lines = [f"{text};" if listed else f"{text}{{}};" for text, listed in members.items()]
+        return ["struct States {", *lines, "};"]
     explicit = "explicit " if len(parameters) == 1 else ""
     head = f"  {explicit}States({', '.join(parameters)})"
     initial = ",\n        ".join(made)

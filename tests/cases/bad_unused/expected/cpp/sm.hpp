@@ -32,6 +32,7 @@ struct SAY {
 } // namespace types
 
 struct States {
+  // at2
   types::SAY SAY;
 };
 

@@ -721,12 +721,14 @@ struct States {
   ::smachac::LoadModelState LOAD_FIRST;
   ::smachac::LoadModelState LOAD_SECOND;
   ::smachac::LoadModelState LOAD_MARK;
+  // The second block goes on top of the first, one edge length (0.05 m) higher.
   types::PLAN_STACK PLAN_STACK{};
   ::smachac::MoveToJointPositionsState MOVE_TO_START;
   PICK_FIRST::States PICK_FIRST_;
   PLACE_FIRST::States PLACE_FIRST_;
   PICK_SECOND::States PICK_SECOND_;
   PLACE_SECOND::States PLACE_SECOND_;
+  // The second block must not have moved the first.
   ::smachac::CheckPlacedState CHECK_FIRST;
   ::smachac::MoveToJointPositionsState GO_HOME;
   ::smachac::GripperState LET_GO;
