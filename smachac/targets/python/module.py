@@ -225,7 +225,7 @@ def _text(
     texts = joined(module.buffers)
     built = [function.text for function in module.functions.values()]
     parts = [*texts.values(), lines, *built]
-    if template == "Program.tpl.py" and any(map(_NEEDS_NODE.search, parts)):
+    if template == "Program.tpl.py" and any(map(_needs_node, parts)):
         template = "ROSProgram.tpl.py"
     if template in ONE_FUNCTION and any(texts[name] for name in PREPENDED):
         template = ONE_FUNCTION[template]
@@ -251,7 +251,7 @@ def _text(
         "machine": indent(lines, "    "),
         "functions": "\n\n\n".join(built),
         "defined_headers": module.defined_headers,
-        "smach_ros": any("smach_ros." in part for part in parts),
+        "smach_ros": any(_uses(part, _SMACH_ROS) for part in parts),
         "introspection": context.options.get("introspection", "no") == "yes",
     }
     text = _rendered(template, variables, imports, module) + "\n"
@@ -273,7 +273,7 @@ def _rendered(
     if template in ONE_FUNCTION:
         return text
     can_be = "node" in module.blocks.names(template) and "init_node" not in text
-    is_node = can_be and _NEEDS_NODE.search(text) is not None
+    is_node = can_be and _needs_node(text)
     more = NODE_IMPORTS if is_node else []
     lacking = unbound_names([modern(text)[0], *more], ["smach", "smach_ros"])
     if not lacking and not is_node:
@@ -285,6 +285,32 @@ def _rendered(
         "defined_headers": printed,
     }
     return module.blocks.render_whole(template, again)
+
+
+def _needs_node(text: str) -> bool:
+    """Whether code needs a ROS node."""
+    return _uses(text, _NEEDS_NODE)
+
+
+def _uses(text: str, names: re.Pattern[str]) -> bool:
+    """Whether code, not a comment or a string in it, uses one of the names."""
+    if names.search(text) is None:
+        return False
+    try:
+        tree = ast.parse(modern(text)[0])
+    except (SyntaxError, ValueError, RecursionError, MemoryError):
+        return True
+    for node in ast.walk(tree):
+        match node:
+            case ast.Attribute(value=ast.Name(id=owner), attr=name):
+                used = f"{owner}.{name}"
+            case ast.Name(id=used):
+                pass
+            case _:
+                continue
+        if names.match(used):
+            return True
+    return False
 
 
 def _title(machine: Machine) -> str:
@@ -341,6 +367,8 @@ def _checked(
         text = text[:first] + mark + text[first:]
     return text
 
+
+_SMACH_ROS = re.compile(r"\bsmach_ros\.")
 
 _NEEDS_NODE = re.compile(
     r"\brospy\.(?:Publisher|Subscriber|Service|ServiceProxy|Timer|Rate|sleep|spin|on_shutdown"
