@@ -176,15 +176,18 @@ class Compiled(NamedTuple):
 
 
 def compile_script(
-    analysis: Analysis, target: Target, options: Mapping[str, str] | None = None
+    analysis: Analysis,
+    target: Target,
+    options: Mapping[str, str] | None = None,
+    levels: int = 0,
 ) -> Compiled:
-    """Emit the files of a target for an analysed script."""
+    """Emit the files of a target for an analysed script. `levels`: see BuildContext."""
     if analysis.checked is None or analysis.library is None:
         return Compiled({}, analysis.report)
     found: Report = []
-    files = build(analysis.checked, target, analysis.library, found, options)
+    files = build(analysis.checked, target, analysis.library, found, options, levels)
     if files:
-        context = BuildContext(library=analysis.library, options=options or {})
+        context = BuildContext(library=analysis.library, options=options or {}, levels=levels)
         files |= runtime_files(target.runtime(analysis.checked, context))
     return Compiled(files, merged(analysis.report, found))
 
@@ -195,9 +198,10 @@ def build(
     library: Library,
     report: Report,
     options: Mapping[str, str] | None = None,
+    levels: int = 0,
 ) -> Files:
     """The files that a target emits; none if templates or classes of the user have errors."""
-    context = BuildContext(library=library, options=options or {})
+    context = BuildContext(library=library, options=options or {}, levels=levels)
     with deep_recursion():
         found = [*target_faults(machine, library, target)]
         files = target.emit(machine, context, found)

@@ -64,11 +64,20 @@ def build_command(arguments: Namespace) -> int:
         options[name] = value
     analysis = analyse_script(arguments.script, arguments.scripts, arguments.templates)
     try:
-        files, report = compile_script(analysis, target, options)
+        levels = _levels(arguments.script, arguments.output)
+        files, report = compile_script(analysis, target, options, levels)
     except OptionError as error:
         return usage(f"--option {error}")
     print_report(without_notes(report), arguments, sys.stderr)
     return _put(files, arguments) if files else FINDINGS
+
+
+def _levels(script: Path, output: Path) -> int:
+    """The number of folders from that of the script down to the output; 0 if it is elsewhere."""
+    folder, target = script.parent.resolve(), output.resolve()
+    if str(output) == "-" or not target.is_relative_to(folder):
+        return 0
+    return len(target.relative_to(folder).parts)
 
 
 def _put(files: Files, arguments: Namespace) -> int:

@@ -31,11 +31,13 @@ class BuildContext:
     """The input of a target beside the machine.
 
     `library` finds templates and interfaces. `options` are the `--option NAME=VALUE` of the
-    command line.
+    command line. `levels` is the number of folders from that of the script down to that of the
+    output; 0 if the output is elsewhere.
     """
 
     library: Library
     options: Mapping[str, str] = field(default_factory=dict)
+    levels: int = 0
 
 
 class OptionError(ValueError):

@@ -4,11 +4,12 @@ from __future__ import annotations
 
 import ast
 import sys
-from collections.abc import Iterable
+from collections.abc import Iterable, Iterator
+from textwrap import indent
 
 from smachac.ir.nodes import Machine
 from smachac.ir.traversal import expressions, walk
-from smachac.targets.python.formatter import WIDTH
+from smachac.targets.python.formatter import WIDTH, laid_out, names
 
 ROS_MODULES = ("rospy", "roslib", "rospkg", "rostopic", "actionlib", "tf2_ros")
 """Modules that SMACHA's bases imported in every program."""
@@ -67,7 +68,7 @@ def importable() -> set[str]:
 def import_lines(texts: Iterable[str]) -> str:
     """Imports without duplicates: modules, then names of modules, then other statements."""
     modules: set[str] = set()
-    names: dict[str, set[str]] = {}
+    members: dict[str, set[str]] = {}
     others: dict[str, None] = {}
     for text in texts:
         try:
@@ -80,16 +81,53 @@ def import_lines(texts: Iterable[str]) -> str:
         for node in body:
             if isinstance(node, ast.ImportFrom):
                 module = "." * node.level + (node.module or "")
-                names.setdefault(module, set()).update(map(ast.unparse, node.names))
+                members.setdefault(module, set()).update(map(ast.unparse, node.names))
             elif isinstance(node, ast.Import):
                 modules.update(map(ast.unparse, node.names))
     lines = [f"import {name}" for name in sorted(modules)]
-    lines += [_from_import(module, sorted(names[module])) for module in sorted(names)]
+    lines += [_from_import(module, sorted(members[module])) for module in sorted(members)]
     return "\n".join([*lines, *filter(None, others)])
 
 
-def _from_import(module: str, names: list[str]) -> str:
-    stars = ["*"] if "*" in names else names
+NOT_FOUND = """\
+except ModuleNotFoundError as error:
+    modules = {modules}
+    if __name__ != "__main__" or error.name not in modules:
+        raise
+    searched = "\\n  ".join(sys.path)
+    raise SystemExit(
+        f"{{error}}; it was searched in these folders:\\n  {{searched}}\\n"
+        "Add the folder that contains it to PYTHONPATH."
+    ) from None"""
+"""The handler for modules of the user that are not found. Modules that these import are not meant,
+and a program that imports this one gets the exception."""
+
+
+def class_imports(classes: Iterable[str], levels: int) -> tuple[list[str], str]:
+    """The code that imports the user's classes of states, `module:Class`, and the imports that it
+    needs. `levels`: the modules are in the folder so many levels above that of the program."""
+    pairs = [each.partition(":")[::2] for each in classes]
+    if not pairs:
+        return [], ""
+    listed = names(sorted({name for module, _ in pairs for name in _packages(module)}))
+    modules = laid_out(listed, WIDTH - 4, len("modules = ")).replace("\n", "\n    ")
+    lines = import_lines(f"from {module} import {name}" for module, name in pairs)
+    text = f"try:\n{indent(lines, '    ')}\n{NOT_FOUND.format(modules=modules)}"
+    if not levels:
+        return ["import sys"], text
+    path = f"sys.path.insert(0, str(Path(__file__).resolve().parents[{levels}]))"
+    return ["import sys", "from pathlib import Path"], f"{path}\n{text}"
+
+
+def _packages(module: str) -> Iterator[str]:
+    """A module and the packages around it."""
+    while module:
+        yield module
+        module = module.rpartition(".")[0]
+
+
+def _from_import(module: str, imported: list[str]) -> str:
+    stars = ["*"] if "*" in imported else imported
     line = f"from {module} import {', '.join(stars)}"
     if len(line) <= WIDTH:
         return line

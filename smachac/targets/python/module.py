@@ -18,6 +18,7 @@ from smachac.targets.python.buffers import PREPENDED, ModuleParts
 from smachac.targets.python.formatter import WIDTH, docstring_lines
 from smachac.targets.python.functions import functions, one_function, stand_alone
 from smachac.targets.python.imports import (
+    class_imports,
     import_lines,
     standard_imports,
     unbound_names,
@@ -224,13 +225,14 @@ def _text(
     lines = module.blocks.render("Container.tpl.py", "body", block)
     texts = joined(module.buffers)
     built = [function.text for function in module.functions.values()]
-    parts = [*texts.values(), lines, *built]
+    needed, own = class_imports(module.classes, context.levels)
+    parts = [*texts.values(), own, lines, *built]
     if template == "Program.tpl.py" and any(map(_needs_node, parts)):
         template = "ROSProgram.tpl.py"
     if template in ONE_FUNCTION and any(texts[name] for name in PREPENDED):
         template = ONE_FUNCTION[template]
     modules = unbound_names(parts)
-    imports = [*module.buffers["imports"], *standard_imports(machine), *modules]
+    imports = [*module.buffers["imports"], *standard_imports(machine), *modules, *needed]
     if template in ("ROSProgram.tpl.py", "ROSBase.tpl.py"):
         imports += NODE_IMPORTS
     variables: dict[str, object] = {
@@ -238,7 +240,7 @@ def _text(
         **container_variables(machine.root, None, "", machine.root.name),
         **headers(inside),
         **texts,
-        "imports": import_lines(imports),
+        "imports": _separate(import_lines(imports), own),
         "definitions": [
             "\n\n\n".join(module.buffers[name])
             for name in ("defs", "class_defs", "cb_defs")
@@ -254,7 +256,7 @@ def _text(
         "smach_ros": any(_uses(part, _SMACH_ROS) for part in parts),
         "introspection": context.options.get("introspection", "no") == "yes",
     }
-    text = _rendered(template, variables, imports, module) + "\n"
+    text = _rendered(template, variables, imports, own, module) + "\n"
     if lost(states, text):
         span = module.blocks.block_span(template, "body") or machine.root.span
         raise BlockError(template_error(span, *NO_BODY, ("body",)))
@@ -264,10 +266,10 @@ def _text(
 
 
 def _rendered(
-    template: str, variables: dict[str, object], imports: list[str], module: ModuleParts
+    template: str, variables: dict[str, object], imports: list[str], own: str, module: ModuleParts
 ) -> str:
     """The whole template of the base. It is rendered a second time if its own code, which is known
-    only after the first, needs imports or a ROS node."""
+    only after the first, needs imports or a ROS node. `own` imports the classes of the user."""
     printed = module.defined_headers.copy()
     text = module.blocks.render_whole(template, variables)
     if template in ONE_FUNCTION:
@@ -280,11 +282,16 @@ def _rendered(
         return text
     again = {
         **variables,
-        "imports": import_lines([*imports, *lacking, *more]),
+        "imports": _separate(import_lines([*imports, *lacking, *more]), own),
         "is_node": is_node,
         "defined_headers": printed,
     }
     return module.blocks.render_whole(template, again)
+
+
+def _separate(*parts: str) -> str:
+    """Texts with an empty line between them."""
+    return "\n\n".join(filter(None, parts))
 
 
 def _needs_node(text: str) -> bool:

@@ -356,9 +356,8 @@ def _used(leaf: Leaf, module: ModuleParts) -> UsedType:
     type_ = module.state_types.get(leaf.type) or StateType(name=leaf.type, open=True)
     code = type_.code.get("python", f"{leaf.type}.tpl.py")
     if ":" in code:
-        path, _, class_name = code.partition(":")
-        module.buffers["imports"][f"from {path} import {class_name}"] = None
-        used = UsedType(type=type_, class_name=class_name)
+        module.classes[code] = None
+        used = UsedType(type=type_, class_name=code.partition(":")[2])
     elif module.blocks.source(code) is None:
         message = f"the state type `{leaf.type}` has no code for Python"
         help = f"add the template `{code}`, or name a class under `code` in `{leaf.type}.yml`"

@@ -1,7 +1,19 @@
 # Made by smachac 0.1.0 from main.yml (sha256 4fc28c8251492587).
 """The state machine `code_in_both`."""
 
-from arm_skills.carry import Carry
+import sys
+
+try:
+    from arm_skills.carry import Carry
+except ModuleNotFoundError as error:
+    modules = ["arm_skills", "arm_skills.carry"]
+    if __name__ != "__main__" or error.name not in modules:
+        raise
+    searched = "\n  ".join(sys.path)
+    raise SystemExit(
+        f"{error}; it was searched in these folders:\n  {searched}\n"
+        "Add the folder that contains it to PYTHONPATH."
+    ) from None
 
 try:
     import smach

@@ -3,7 +3,19 @@
 
 import operator
 import statistics
-from scales import Weigh
+import sys
+
+try:
+    from scales import Weigh
+except ModuleNotFoundError as error:
+    modules = ["scales"]
+    if __name__ != "__main__" or error.name not in modules:
+        raise
+    searched = "\n  ".join(sys.path)
+    raise SystemExit(
+        f"{error}; it was searched in these folders:\n  {searched}\n"
+        "Add the folder that contains it to PYTHONPATH."
+    ) from None
 
 try:
     import smach
