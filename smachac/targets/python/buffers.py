@@ -62,15 +62,17 @@ class ModuleParts:
     """The contributions of the states to a module, by block, and the state of its generation.
 
     `classes` are the classes of the user that it imports, `module:Class`. `plan` holds the
-    containers that functions build, and `functions` those functions, by their key. `own_templates`
-    are the files of the user's templates for containers, by type. `faults` are the findings about
-    templates, without duplicates.
+    containers that functions build, and `functions` those functions, by their key. `wrappers`
+    are the functions around containers, by path. `own_templates` are the files of the user's
+    templates for containers, by type. `faults` are the findings about templates, without
+    duplicates.
     """
 
     blocks: Blocks
     context: BuildContext
     state_types: Mapping[str, StateType]
     plan: Plan = field(default_factory=dict)
+    wrappers: Mapping[str, str] = field(default_factory=dict)
     fresh: Callable[[str, str], str] = field(default_factory=structure.variable_names)
     buffers: Buffers = field(default_factory=buffers)
     used: dict[str, UsedType] = field(default_factory=dict)

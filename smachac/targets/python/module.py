@@ -10,7 +10,7 @@ from textwrap import indent
 from smachac.diagnostics.diagnostic import Report, has_errors
 from smachac.frontend.errors.references import template_error
 from smachac.ir.nodes import Machine
-from smachac.ir.traversal import ends_preempted, walk
+from smachac.ir.traversal import walk
 from smachac.targets import BuildContext, made_by
 from smachac.targets.errors import python_2_code
 from smachac.targets.python import structure
@@ -36,6 +36,7 @@ from smachac.targets.python.states import (
     joined,
     lost,
 )
+from smachac.targets.python.stop_requests import stop_functions, wrappers
 from smachac.targets.python.template_sources import uses_own_templates
 from smachac.targets.templates.engine import BlockError, Blocks
 
@@ -65,115 +66,6 @@ CATCHING = '''def error_as_outcome(state, outcome):
 a scenario replaces `attempted`."""
 
 
-PASSING_ON = '''def withdraw(state):
-    """Take back the unanswered stop requests of a state and of the states inside."""
-    if state.preempt_requested():
-        state.recall_preempt()
-        for child in getattr(state, "get_children", dict)().values():
-            withdraw(child)
-
-
-def stoppable(container):
-    """Let a container pass on every stop request, also an early one and a second one."""
-    if not getattr(smach, "compat", True):  # the bundled runtime does so itself
-        return container
-    run, request = container.execute, container.request_preempt
-    children = container.get_children
-    concurrent = isinstance(container, smach.Concurrence)
-    container.busy = container.asked = False
-
-    def pass_on():
-        for label in container.get_active_states() or list(children()):
-            child = children().get(label)
-            again = hasattr(child, "get_children")
-            if child and (again or not child.preempt_requested()):
-                child.request_preempt()
-
-    def request_preempt():
-        if not container.busy:
-            return request()
-        container.asked = True
-        if not concurrent:
-            smach.State.request_preempt(container)
-        pass_on()
-
-    def execute(*userdata):
-        container.busy, container.asked = True, container.preempt_requested()
-        if container.asked:
-            pass_on()
-        if concurrent:  # with its own request, SMACH for ROS 1 ends as preempted
-            container.service_preempt()
-        unanswered = True
-        try:
-            outcome = run(*userdata)
-            unanswered = any(child.preempt_requested() for child in children().values())
-            return outcome
-        finally:
-            container.busy = False
-            for child in children().values():
-                withdraw(child)
-            if concurrent and container.asked and unanswered:
-                request()
-
-    if concurrent and container._child_termination_cb:
-        ends = container._child_termination_cb
-
-        def ends_others(outcomes):
-            return not container.asked and ends(outcomes)
-
-        container._child_termination_cb = ends_others
-    container.execute, container.request_preempt = execute, request_preempt
-    return container'''
-"""The functions that a module contains if it has Iterators or Concurrences: SMACH itself does not
-pass on a request to stop that comes before they run (rules P9, P10)."""
-
-SECOND_REQUEST = '''def stoppable_again(machine):
-    """Let a machine pass on a second stop request while the same container in it runs."""
-    request, children = machine.request_preempt, machine.get_children
-
-    def request_preempt():
-        again = machine.preempt_requested() and getattr(smach, "compat", True)
-        request()
-        for label in machine.get_active_states() if again else ():
-            if hasattr(children().get(label), "get_children"):
-                children()[label].request_preempt()
-
-    machine.request_preempt = request_preempt
-    return machine'''
-"""The function that a module contains if a machine has a container in it: SMACH itself does not
-pass on a second request (rule P2)."""
-
-STOPPING = '''def ends_preempted(container):
-    """Let a time limit or loop end as preempted after a request to stop."""
-    run, request = container.execute, container.request_preempt
-    recall = container.recall_preempt
-
-    def request_preempt():
-        container.stopped = True
-        request()
-
-    def recall_preempt():
-        container.stopped = False
-        recall()
-
-    def execute(*userdata):
-        container.stopped = container.stopped or container.preempt_requested()
-        try:
-            outcome = run(*userdata)
-            if container.stopped:
-                container.service_preempt()
-                outcome = "preempted"
-            return outcome
-        finally:
-            container.stopped = False
-
-    container.execute, container.stopped = execute, False
-    container.request_preempt = request_preempt
-    container.recall_preempt = recall_preempt
-    return container'''
-"""The function that a module contains if a state has a time limit, retries or a loop."""
-
-
 def module_text(machine: Machine, context: BuildContext, report: Report) -> str | None:
     """The text of the module; None if templates have errors, which are reported."""
     shown = frozenset(
@@ -190,6 +82,7 @@ def module_text(machine: Machine, context: BuildContext, report: Report) -> str 
     for plan in (functions, one_function):
         module = ModuleParts(blocks, context, machine.state_types)
         module.plan = plan(machine, partial(is_printed_by_template, module))
+        module.wrappers = wrappers(machine)
         try:
             text = _text(machine, context, module, whole=plan is one_function)
         except BlockError as error:
@@ -212,16 +105,12 @@ def _text(
     states = children(inside, module)
     if has_errors(module.faults):
         return None
-    wrappers = {structure.stoppable(node) for _, node in walk(machine.root)}
-    for wrapper, text in (("stoppable", PASSING_ON), ("stoppable_again", SECOND_REQUEST)):
-        if wrapper in wrappers:
-            module.buffers["defs"][text] = None
-    if any(ends_preempted(node) for _, node in walk(machine.root)):
-        module.buffers["defs"][STOPPING] = None
+    module.buffers["defs"] |= dict.fromkeys(stop_functions(machine, module.wrappers))
     if any(node.catches for _, node in walk(machine.root)):
         module.buffers["imports"]["import traceback"] = None
         module.buffers["defs"][CATCHING] = None
-    block = container_block(inside, None, states, structure.notes(machine.root, 1, ""))
+    notes = structure.notes(machine.root, 1, "")
+    block = container_block(inside, None, states, notes, module)
     lines = module.blocks.render("Container.tpl.py", "body", block)
     texts = joined(module.buffers)
     built = [function.text for function in module.functions.values()]

@@ -106,22 +106,28 @@ def container(node: Container, parent: EmittedContainer, path: str, module: Modu
         parameters=parent.parameters,
     )
     states = children(inside, module)
-    block = container_block(inside, parent, states, structure.notes(node, inside.depth))
+    notes = structure.notes(node, inside.depth)
+    block = container_block(inside, parent, states, notes, module)
     return module.blocks.render("Container.tpl.py", "body", block)
 
 
 def container_block(
-    inside: EmittedContainer, parent: EmittedContainer | None, states: str, notes: str
+    inside: EmittedContainer,
+    parent: EmittedContainer | None,
+    states: str,
+    notes: str,
+    module: ModuleParts,
 ) -> dict[str, object]:
     """The variables of the built-in template of a container. `states` is the code of its states,
     `notes` the comment above it. Without `parent` it is the result of a function."""
     node, variable, depth = inside.node, inside.variable, inside.depth
+    wrapper = module.wrappers.get(inside.path, "")
     return {
         "place": structure.place(node),
         "notes": notes,
         "name": node.name,
         "sm_name": variable,
-        "construct": structure.construct(node, variable, depth, _items(inside)),
+        "construct": structure.construct(node, variable, depth, _items(inside), wrapper),
         "presets": [*structure.userdata(variable, depth, _presets(inside)), *inside.lines()],
         "children": indent(states or "pass", "    "),
         "after": structure.initial(node, variable),
@@ -203,7 +209,7 @@ def _by_template(
         page = module.blocks.page(
             template,
             {
-                **container_block(inside, parent, states, ""), **variables, **joined(inner),
+                **container_block(inside, parent, states, "", module), **variables, **joined(inner),
                 **headers(inside), "body": states, "defined_headers": module.defined_headers,
             },
         )  # fmt: skip
@@ -304,7 +310,7 @@ def _function(
 ) -> str:
     """The function that builds a container."""
     states = children(inside, module)
-    block = container_block(inside, None, states, "")
+    block = container_block(inside, None, states, "", module)
     lines = module.blocks.render("Container.tpl.py", "body", block)
     head = Group(f"def {name}(", tuple(("", parameter) for parameter in parameters), "):")
     kind = structure.WORDS[structure.kind(inside.node)]

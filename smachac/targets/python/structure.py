@@ -14,7 +14,6 @@ from smachac.ir.nodes import (
     Container,
     Data,
     Key,
-    Leaf,
     Node,
     Sequence,
     StateMachine,
@@ -74,8 +73,11 @@ def variable_names() -> Callable[[str, str], str]:
     return fresh
 
 
-def construct(node: Container, variable: str, depth: int, items: Doc | None = None) -> str:
-    """The line that makes a container. `items` are those of an Iterator that are not userdata."""
+def construct(
+    node: Container, variable: str, depth: int, items: Doc | None = None, wrapper: str = ""
+) -> str:
+    """The line that makes a container. `items` are those of an Iterator that are not userdata.
+    `wrapper` is the function around the container (stop_requests.py)."""
     arguments: Arguments = [("outcomes=", names(outcome.name for outcome in node.outcomes))]
     match node:
         case Sequence():
@@ -105,19 +107,9 @@ def construct(node: Container, variable: str, depth: int, items: Doc | None = No
             arguments.append(("child_termination_cb=", "lambda outcomes: True"))
     head = f"{variable} = "
     made = call(f"smach.{kind(node)}", arguments)
-    if wrapper := stoppable(node):
+    if wrapper:
         made = call(wrapper, [("", made)])
     return head + laid_out(made, width(depth), len(head))
-
-
-def stoppable(node: Node) -> str:
-    """The function of the module that lets a container pass on the requests to stop that SMACH
-    itself does not pass on; empty where it passes on all."""
-    if isinstance(node, Concurrence | IteratorNode):
-        return "stoppable"
-    if isinstance(node, Leaf) or all(isinstance(child, Leaf) for child in node.children):
-        return ""
-    return "stoppable_again"
 
 
 def kind(node: Container) -> str:

@@ -7,21 +7,6 @@ except ImportError:  # no ROS on this machine: the same names without it
     from smachac.runtime import smach
 
 
-def stoppable_again(machine):
-    """Let a machine pass on a second stop request while the same container in it runs."""
-    request, children = machine.request_preempt, machine.get_children
-
-    def request_preempt():
-        again = machine.preempt_requested() and getattr(smach, "compat", True)
-        request()
-        for label in machine.get_active_states() if again else ():
-            if hasattr(children().get(label), "get_children"):
-                children()[label].request_preempt()
-
-    machine.request_preempt = request_preempt
-    return machine
-
-
 class ScriptedState(smach.State):
     """Ends as it is told: visit n does step n, the last step is repeated.
 
@@ -51,7 +36,7 @@ class ScriptedState(smach.State):
 def build():
     """Build the state machine `sm`."""
     # main.yml:2
-    sm = stoppable_again(smach.StateMachine(outcomes=["done"]))
+    sm = smach.StateMachine(outcomes=["done"])
     with sm:
         # main.yml:6
         smach.StateMachine.add("C0", build_c0(), transitions={"done": "done"})
@@ -60,13 +45,13 @@ def build():
 
 def build_c0():
     """Build the state machine `C0`."""
-    sm_c0 = stoppable_again(smach.StateMachine(outcomes=["done"]))
+    sm_c0 = smach.StateMachine(outcomes=["done"])
     with sm_c0:
         # main.yml:10
-        sm_c1 = stoppable_again(smach.StateMachine(outcomes=["done"]))
+        sm_c1 = smach.StateMachine(outcomes=["done"])
         with sm_c1:
             # main.yml:14
-            sm_c2 = stoppable_again(smach.StateMachine(outcomes=["done"]))
+            sm_c2 = smach.StateMachine(outcomes=["done"])
             with sm_c2:
                 # main.yml:18
                 smach.StateMachine.add("C3", build_c3(), transitions={"done": "done"})
@@ -79,13 +64,13 @@ def build_c0():
 
 def build_c3():
     """Build the state machine `C3`."""
-    sm_c3 = stoppable_again(smach.StateMachine(outcomes=["done"]))
+    sm_c3 = smach.StateMachine(outcomes=["done"])
     with sm_c3:
         # main.yml:22
-        sm_c4 = stoppable_again(smach.StateMachine(outcomes=["done"]))
+        sm_c4 = smach.StateMachine(outcomes=["done"])
         with sm_c4:
             # main.yml:26
-            sm_c5 = stoppable_again(smach.StateMachine(outcomes=["done"]))
+            sm_c5 = smach.StateMachine(outcomes=["done"])
             with sm_c5:
                 # main.yml:30
                 smach.StateMachine.add("C6", build_c6(), transitions={"done": "done"})
@@ -98,13 +83,13 @@ def build_c3():
 
 def build_c6():
     """Build the state machine `C6`."""
-    sm_c6 = stoppable_again(smach.StateMachine(outcomes=["done"]))
+    sm_c6 = smach.StateMachine(outcomes=["done"])
     with sm_c6:
         # main.yml:34
-        sm_c7 = stoppable_again(smach.StateMachine(outcomes=["done"]))
+        sm_c7 = smach.StateMachine(outcomes=["done"])
         with sm_c7:
             # main.yml:38
-            sm_c8 = stoppable_again(smach.StateMachine(outcomes=["done"]))
+            sm_c8 = smach.StateMachine(outcomes=["done"])
             with sm_c8:
                 # main.yml:42
                 smach.StateMachine.add("C9", build_c9(), transitions={"done": "done"})
@@ -117,13 +102,13 @@ def build_c6():
 
 def build_c9():
     """Build the state machine `C9`."""
-    sm_c9 = stoppable_again(smach.StateMachine(outcomes=["done"]))
+    sm_c9 = smach.StateMachine(outcomes=["done"])
     with sm_c9:
         # main.yml:46
-        sm_c10 = stoppable_again(smach.StateMachine(outcomes=["done"]))
+        sm_c10 = smach.StateMachine(outcomes=["done"])
         with sm_c10:
             # main.yml:50
-            sm_c11 = stoppable_again(smach.StateMachine(outcomes=["done"]))
+            sm_c11 = smach.StateMachine(outcomes=["done"])
             with sm_c11:
                 # main.yml:54
                 smach.StateMachine.add("C12", build_c12(), transitions={"done": "done"})
@@ -136,13 +121,13 @@ def build_c9():
 
 def build_c12():
     """Build the state machine `C12`."""
-    sm_c12 = stoppable_again(smach.StateMachine(outcomes=["done"]))
+    sm_c12 = smach.StateMachine(outcomes=["done"])
     with sm_c12:
         # main.yml:58
-        sm_c13 = stoppable_again(smach.StateMachine(outcomes=["done"]))
+        sm_c13 = smach.StateMachine(outcomes=["done"])
         with sm_c13:
             # main.yml:62
-            sm_c14 = stoppable_again(smach.StateMachine(outcomes=["done"]))
+            sm_c14 = smach.StateMachine(outcomes=["done"])
             with sm_c14:
                 # main.yml:66
                 smach.StateMachine.add("C15", build_c15(), transitions={"done": "done"})
@@ -155,13 +140,13 @@ def build_c12():
 
 def build_c15():
     """Build the state machine `C15`."""
-    sm_c15 = stoppable_again(smach.StateMachine(outcomes=["done"]))
+    sm_c15 = smach.StateMachine(outcomes=["done"])
     with sm_c15:
         # main.yml:70
-        sm_c16 = stoppable_again(smach.StateMachine(outcomes=["done"]))
+        sm_c16 = smach.StateMachine(outcomes=["done"])
         with sm_c16:
             # main.yml:74
-            sm_c17 = stoppable_again(smach.StateMachine(outcomes=["done"]))
+            sm_c17 = smach.StateMachine(outcomes=["done"])
             with sm_c17:
                 # main.yml:78
                 smach.StateMachine.add("C18", build_c18(), transitions={"done": "done"})
@@ -174,13 +159,13 @@ def build_c15():
 
 def build_c18():
     """Build the state machine `C18`."""
-    sm_c18 = stoppable_again(smach.StateMachine(outcomes=["done"]))
+    sm_c18 = smach.StateMachine(outcomes=["done"])
     with sm_c18:
         # main.yml:82
-        sm_c19 = stoppable_again(smach.StateMachine(outcomes=["done"]))
+        sm_c19 = smach.StateMachine(outcomes=["done"])
         with sm_c19:
             # main.yml:86
-            sm_c20 = stoppable_again(smach.StateMachine(outcomes=["done"]))
+            sm_c20 = smach.StateMachine(outcomes=["done"])
             with sm_c20:
                 # main.yml:90
                 smach.StateMachine.add("C21", build_c21(), transitions={"done": "done"})
@@ -193,13 +178,13 @@ def build_c18():
 
 def build_c21():
     """Build the state machine `C21`."""
-    sm_c21 = stoppable_again(smach.StateMachine(outcomes=["done"]))
+    sm_c21 = smach.StateMachine(outcomes=["done"])
     with sm_c21:
         # main.yml:94
-        sm_c22 = stoppable_again(smach.StateMachine(outcomes=["done"]))
+        sm_c22 = smach.StateMachine(outcomes=["done"])
         with sm_c22:
             # main.yml:98
-            sm_c23 = stoppable_again(smach.StateMachine(outcomes=["done"]))
+            sm_c23 = smach.StateMachine(outcomes=["done"])
             with sm_c23:
                 # main.yml:102
                 smach.StateMachine.add("C24", build_c24(), transitions={"done": "done"})
@@ -212,13 +197,13 @@ def build_c21():
 
 def build_c24():
     """Build the state machine `C24`."""
-    sm_c24 = stoppable_again(smach.StateMachine(outcomes=["done"]))
+    sm_c24 = smach.StateMachine(outcomes=["done"])
     with sm_c24:
         # main.yml:106
-        sm_c25 = stoppable_again(smach.StateMachine(outcomes=["done"]))
+        sm_c25 = smach.StateMachine(outcomes=["done"])
         with sm_c25:
             # main.yml:110
-            sm_c26 = stoppable_again(smach.StateMachine(outcomes=["done"]))
+            sm_c26 = smach.StateMachine(outcomes=["done"])
             with sm_c26:
                 # main.yml:114
                 smach.StateMachine.add("C27", build_c27(), transitions={"done": "done"})
@@ -231,10 +216,10 @@ def build_c24():
 
 def build_c27():
     """Build the state machine `C27`."""
-    sm_c27 = stoppable_again(smach.StateMachine(outcomes=["done"]))
+    sm_c27 = smach.StateMachine(outcomes=["done"])
     with sm_c27:
         # main.yml:118
-        sm_c28 = stoppable_again(smach.StateMachine(outcomes=["done"]))
+        sm_c28 = smach.StateMachine(outcomes=["done"])
         with sm_c28:
             # main.yml:122
             sm_c29 = smach.StateMachine(outcomes=["done"])

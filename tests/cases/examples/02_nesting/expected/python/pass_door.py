@@ -7,21 +7,6 @@ except ImportError:  # no ROS on this machine: the same names without it
     from smachac.runtime import smach
 
 
-def stoppable_again(machine):
-    """Let a machine pass on a second stop request while the same container in it runs."""
-    request, children = machine.request_preempt, machine.get_children
-
-    def request_preempt():
-        again = machine.preempt_requested() and getattr(smach, "compat", True)
-        request()
-        for label in machine.get_active_states() if again else ():
-            if hasattr(children().get(label), "get_children"):
-                children()[label].request_preempt()
-
-    machine.request_preempt = request_preempt
-    return machine
-
-
 class ScriptedState(smach.State):
     """Ends as it is told: visit n does step n, the last step is repeated.
 
@@ -51,7 +36,7 @@ class ScriptedState(smach.State):
 def build():
     """Build the state machine `pass_door`."""
     # main.yml:2
-    pass_door = stoppable_again(smach.StateMachine(outcomes=["succeeded", "aborted"]))
+    pass_door = smach.StateMachine(outcomes=["succeeded", "aborted"])
     with pass_door:
         # main.yml:7
         smach.StateMachine.add(
