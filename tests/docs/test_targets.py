@@ -1,4 +1,4 @@
-"""docs/targets.md shows generated C++ as it is: what stands between elisions is in the header."""
+"""docs/targets.md shows generated programs as they are: what stands between elisions is in them."""
 
 from __future__ import annotations
 
@@ -11,15 +11,16 @@ import smachac
 
 ROOT = Path(__file__).parents[2]
 PAGE = (ROOT / "docs" / "targets.md").read_text("utf-8")
-ELISION = re.compile(r"^ *// \.\.\.\n", re.MULTILINE)
+ELISION = re.compile(r"^ *(?://|#) \.\.\.\n", re.MULTILINE)
 
 
-def shown() -> list[tuple[str, str]]:
-    """The blocks of C++ behind the name of an example, each with the folder of that example."""
+def shown(language: str) -> list[tuple[str, str]]:
+    """The blocks of a language behind the name of an example in the same section, each with the
+    folder of that example."""
     found, folder = [], ""
-    pattern = r"\]\(\.\./examples/(\w+)\)|^```cpp\n(.*?)^```$"
+    pattern = rf"\]\(\.\./examples/(\w+)\)|^```{language}\n(.*?)^```$|^## "
     for match in re.finditer(pattern, PAGE, re.MULTILINE | re.DOTALL):
-        folder = match[1] or folder
+        folder = "" if match[0] == "## " else match[1] or folder
         if match[2] and folder:
             found.append((folder, match[2]))
     return found
@@ -41,14 +42,18 @@ def missing(block: str, header: str) -> str | None:
 
 
 def test_blocks_are_found() -> None:
-    folders = [folder for folder, _ in shown()]
+    assert [folder for folder, _ in shown("python")] == ["09_stacking"]
+    folders = [folder for folder, _ in shown("cpp")]
     assert folders.count("06_callbacks") == 2
     assert folders.count("08_pick_and_place") == 1
 
 
-@pytest.mark.parametrize(("folder", "block"), shown())
-def test_a_header_holds_what_is_shown_of_it(folder: str, block: str) -> None:
-    files = smachac.compile(ROOT / "examples" / folder / "main.yml", "cpp")
+@pytest.mark.parametrize(
+    ("target", "folder", "block"),
+    [(target, *each) for target in ("cpp", "python") for each in shown(target)],
+)
+def test_a_program_holds_what_is_shown_of_it(target: str, folder: str, block: str) -> None:
+    files = smachac.compile(ROOT / "examples" / folder / "main.yml", target)
     assert missing(block, next(iter(files.values()))) is None
 
 
