@@ -414,3 +414,14 @@ def test_a_base_of_the_user_without_functions_gets_all_states_in_one() -> None:
     found = program(analysis_of(files))
     assert "build_" not in found
     outline_of(found)
+
+
+def test_variables_are_named_after_their_containers_as_smacha_named_them() -> None:
+    """A template may print the name of the variable itself."""
+    body = "sm_{{ parent_name | lower }}.userdata.seen = 1\n" + BODY % "done"
+    text = CLASS % ("body", body)
+    files = {"main.yml": BOX.replace("PICK:", "TAKE:"), "pick.yml": PICK}
+    found = program(analysis_of({**files, "templates/T.tpl.py": text}))
+    assert heads(found) == ["build()", "build_pick()"]
+    assert "    sm_take.userdata.seen = 1\n" in found
+    outline_of(found)

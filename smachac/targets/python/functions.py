@@ -53,12 +53,14 @@ class Function:
     """A function that builds a container.
 
     `key` identifies it: the path of the first container that it builds. `word` is its name without
-    prefix and number. `script` is the file of the sub-script, or empty. `doc` is the documentation
-    that all its containers share. `parameters` are names by place, with paths from the container.
+    prefix and number, `variable` that of the container. `script` is the file of the sub-script, or
+    empty. `doc` is the documentation that all its containers share. `parameters` are names by
+    place, with paths from the container.
     """
 
     key: str
     word: str
+    variable: str
     script: str = ""
     doc: str = ""
     parameters: Mapping[Place, str] = field(default_factory=dict)
@@ -80,7 +82,7 @@ def one_function(machine: Machine, inlined: Inlined) -> Plan:
     """The plan of a program that is one function, as SMACHA's are: a function only for what is
     nested too deeply."""
     return {
-        path: Call(function=Function(key=path, word=node.name))
+        path: Call(function=Function(key=path, word=node.name, variable=node.name))
         for path, node in _extracted(machine, inlined, MOST_NESTED_IN_ONE, None)
     }
 
@@ -107,7 +109,7 @@ def script_of(node: Container) -> str:
 def _function(path: str, node: Container) -> Function:
     script = script_of(node)
     word = PurePath(script).stem if script else node.name
-    return Function(key=path, word=word, script=script, doc=node.doc)
+    return Function(key=path, word=word, variable=node.name, script=script, doc=node.doc)
 
 
 def _extracted(
@@ -196,8 +198,12 @@ def _calls(
         for given, value in zip(arguments, equal[0], strict=True):
             given[name] = value.data
     docs = {each.doc for _, each in occurrences}
+    function = _function(path, node)
     function = replace(
-        _function(path, node), parameters=parameters, doc=docs.pop() if len(docs) == 1 else ""
+        function,
+        variable=function.word,
+        doc=docs.pop() if len(docs) == 1 else "",
+        parameters=parameters,
     )
     return {
         path: Call(function=function, arguments=given)

@@ -288,7 +288,7 @@ def _called(node: Container, parent: EmittedContainer, path: str, module: Module
     if function.key not in module.functions:
         name = module.fresh(function.word, "build_")
         module.functions[function.key] = PrintedFunction(name=name)  # its place in the order
-        variable = module.fresh(function.word, "sm_")
+        variable = module.fresh(function.variable, "sm_")
         inside = EmittedContainer(
             node=node, variable=variable, path=path, depth=1, parameters=parameters
         )

@@ -84,8 +84,8 @@ def build():
 
 def build_sub():
     """Build the state machine of `sub.yml`."""
-    sm_sub = smach.StateMachine(outcomes=["done"])
-    with sm_sub:
+    sm_call = smach.StateMachine(outcomes=["done"])
+    with sm_call:
         # sub.yml:6
         # at2
         smach.StateMachine.add(
@@ -93,7 +93,7 @@ def build_sub():
             ScriptedState(outcomes=["done"], steps=[{"outcome": "done"}]),
             transitions={"done": "done"},
         )
-    return sm_sub
+    return sm_call
 
 
 def main():

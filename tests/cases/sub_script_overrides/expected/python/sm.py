@@ -79,19 +79,19 @@ def build_sub(tool):
 
 def build_sub_2():
     """Build the state machine of `sub.yml`."""
-    sm_sub_2 = smach.StateMachine(outcomes=["done", "aborted", "extra"])
-    sm_sub_2.userdata.a = 1
-    sm_sub_2.userdata.b = 20
-    sm_sub_2.userdata.tool = "right_gripper"
-    sm_sub_2.userdata.c = 30
-    with sm_sub_2:
+    sm_other = smach.StateMachine(outcomes=["done", "aborted", "extra"])
+    sm_other.userdata.a = 1
+    sm_other.userdata.b = 20
+    sm_other.userdata.tool = "right_gripper"
+    sm_other.userdata.c = 30
+    with sm_other:
         # sub.yml:7
         smach.StateMachine.add(
             "A",
             ScriptedState(outcomes=["done", "aborted", "extra"]),
             transitions={"extra": "done", "done": "done", "aborted": "aborted"},
         )
-    return sm_sub_2
+    return sm_other
 
 
 def main():

@@ -51,14 +51,14 @@ def build():
 
 def build_pick():
     """Build the state machine of `pick.yml`."""
-    sm_pick = smach.StateMachine(
+    sm_first = smach.StateMachine(
         outcomes=["picked", "lost"],
         input_keys=["block"],
         output_keys=["grip"],
     )
-    sm_pick.userdata.height = 0.2
-    sm_pick.userdata.tool = "right"
-    with sm_pick:
+    sm_first.userdata.height = 0.2
+    sm_first.userdata.tool = "right"
+    with sm_first:
         # pick.yml:10
         smach.StateMachine.add(
             "GRASP",
@@ -70,7 +70,7 @@ def build_pick():
             ),
             transitions={"picked": "picked", "lost": "lost"},
         )
-    return sm_pick
+    return sm_first
 
 
 def main():

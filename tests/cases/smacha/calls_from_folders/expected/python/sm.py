@@ -45,15 +45,15 @@ def build():
 
 def build_box():
     """Build the state machine of `box.yml`."""
-    sm_box = smach.StateMachine(outcomes=["done"])
-    with sm_box:
+    sm_a = smach.StateMachine(outcomes=["done"])
+    with sm_a:
         # box.yml:5
         smach.StateMachine.add(
             "IN",
             ScriptedState(outcomes=["done"]),
             transitions={"done": "done"},
         )
-    return sm_box
+    return sm_a
 
 
 def main():
