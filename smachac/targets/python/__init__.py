@@ -1,9 +1,10 @@
 """Python: one module for SMACH, with or without ROS.
 
-The containers and transitions come from the state graph (structure.py). The classes of the states
-and the rest of the module come from templates, which users can replace or extend (module.py,
-states.py). SMACHA's templates print states and containers themselves; smacha_context.py has their
-variables.
+The containers and transitions come from the state graph (structure.py); functions.py plans which
+containers are functions of the module, stop_requests.py has what SMACH lacks for requests to stop.
+The classes of the states and the rest of the module come from templates, which users can replace or
+extend (module.py, states.py). SMACHA's templates print states and containers themselves;
+smacha_context.py has their variables.
 """
 
 from __future__ import annotations
