@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import ast
 import re
+from collections.abc import Iterable
 from textwrap import indent
 
 from smachac.diagnostics.diagnostic import Report, has_errors
@@ -15,12 +16,14 @@ from smachac.targets.errors import python_2_code
 from smachac.targets.python.buffers import PREPENDED, ModuleParts
 from smachac.targets.python.formatter import docstring
 from smachac.targets.python.imports import (
+    Names,
+    expression_texts,
     import_lines,
     standard_imports,
     unbound_names,
     with_fallback,
 )
-from smachac.targets.python.python2 import modern
+from smachac.targets.python.python2 import modern, parsed
 from smachac.targets.python.smacha_context import FILTERS, TESTS, container_variables, plain
 from smachac.targets.python.states import (
     NO_BODY,
@@ -37,6 +40,10 @@ from smachac.targets.templates.engine import BlockError, Blocks
 ONE_FUNCTION = {"Program.tpl.py": "Base.tpl.py", "ROSProgram.tpl.py": "ROSBase.tpl.py"}
 """The template for a program whose states add code around its run, by the usual template: the whole
 program is one function, in which that code sees the names of the states, as in SMACHA."""
+
+MOST_BRACKETS = 80
+"""The most brackets of code that is never nested too deeply for Python, which allows 200 levels: a
+value of the script that contains the code has up to 100."""
 
 NODE_IMPORTS = [f"import {name}" for name in ("os", "rospy", "signal", "threading", "time")]
 """The imports of ROSNode.tpl.py."""
@@ -210,14 +217,16 @@ def _text(machine: Machine, context: BuildContext, module: ModuleParts) -> str |
     lines = module.blocks.render("Container.tpl.py", "body", container_block(inside, None, states))
     texts = joined(module.buffers)
     parts = [*texts.values(), lines, *module.functions]
-    if template == "Program.tpl.py" and any(map(_NEEDS_NODE.search, parts)):
+    if template == "Program.tpl.py" and any(map(_needs_node, parts)):
         template = "ROSProgram.tpl.py"
     if template in ONE_FUNCTION and any(texts[name] for name in PREPENDED):
         template = ONE_FUNCTION[template]
-    modules = unbound_names(parts)
-    imports = [*module.buffers["imports"], *standard_imports(machine), *modules]
+    expressions = expression_texts(machine)
+    module.names.bound.add(root)
+    imports = _imports(expressions, module)
     if template in ("ROSProgram.tpl.py", "ROSBase.tpl.py"):
         imports += NODE_IMPORTS
+    code, functions = indent(lines, "    "), "\n\n\n".join(module.functions)
     variables: dict[str, object] = {
         **{variable.name: plain(variable.value.data) for variable in machine.variables},
         **container_variables(machine.root, None, "", machine.root.name),
@@ -233,17 +242,49 @@ def _text(machine: Machine, context: BuildContext, module: ModuleParts) -> str |
         "title": _title(machine),
         "made_by": f"# {made_by(machine)}",
         "body": states,
-        "machine": indent(lines, "    "),
-        "functions": "\n\n\n".join(module.functions),
+        "machine": code,
+        "functions": functions,
         "defined_headers": module.defined_headers,
         "smach_ros": any("smach_ros." in part for part in parts),
         "introspection": context.options.get("introspection", "no") == "yes",
     }
     text = _rendered(template, variables, imports, module) + "\n"
-    if lost(states, text):
+    deep = any(sum(map(each.count, "([{")) > MOST_BRACKETS for each in expressions)
+    frame, left_out = _frame(text, () if deep else (code, functions))
+    if code not in left_out.values() and lost(states, text):
         span = module.blocks.block_span(template, "body") or machine.root.span
         raise BlockError(template_error(span, *NO_BODY, ("body",)))
-    return _checked(text, template, machine, module)
+    text = _checked(frame, template, machine, module)
+    for statement, part in left_out.items():
+        text = text.replace(statement, part)
+    return text
+
+
+def _imports(expressions: list[str], module: ModuleParts) -> list[str]:
+    """The imports that templates print, and those that the code of the script and of templates
+    needs."""
+    trees = [tree for tree in map(parsed, expressions) if isinstance(tree, ast.Module)]
+    for tree in trees:
+        module.names.add(tree)
+    needed = unbound_names(module.names)
+    return [*module.buffers["imports"], *standard_imports(trees), *needed]
+
+
+def _frame(text: str, parts: Iterable[str]) -> tuple[str, dict[str, str]]:
+    """The program without its parts that were made of parsed code, and these parts by the statement
+    that stands in place of each: to parse the code of a large machine again takes long.
+
+    A part stays if the template prints it in another form, or if it is not tidy.
+    """
+    left_out: dict[str, str] = {}
+    for number, part in enumerate(parts):
+        tidy = not any(untidy in f"{part}\n" for untidy in (" \n", "\t\n", "\n\n\n\n"))
+        margin = " " * (len(part) - len(part.lstrip(" ")))
+        statement = f"{margin}pass  # part {number}"
+        if part and tidy and part in text and statement not in text:
+            text = text.replace(part, statement, 1)
+            left_out[statement] = part
+    return text, left_out
 
 
 def _rendered(
@@ -256,9 +297,13 @@ def _rendered(
     if template in ONE_FUNCTION:
         return text
     can_be = "node" in module.blocks.names(template) and "init_node" not in text
-    is_node = can_be and _NEEDS_NODE.search(text) is not None
+    is_node = can_be and _needs_node(text)
     more = NODE_IMPORTS if is_node else []
-    lacking = unbound_names([modern(text)[0], *more], ["smach", "smach_ros"])
+    names = Names()
+    for tree in (modern(text).tree, *map(parsed, more)):
+        if isinstance(tree, ast.Module):
+            names.add(tree)
+    lacking = unbound_names(names, ["smach", "smach_ros"])
     if not lacking and not is_node:
         return text
     again = {
@@ -286,30 +331,27 @@ def _base_template(machine: Machine, context: BuildContext, module: ModuleParts)
     return file
 
 
-def _checked(text: str, template: str, machine: Machine, module: ModuleParts) -> str | None:
+def _checked(text: str, template: str, machine: Machine, module: ModuleParts) -> str:
     """The module, without surplus blank lines and trailing spaces. Raises BlockError if it is no
     Python."""
-    text, changes = modern(text)
+    text, changes, tree = modern(text)
     for old, new in changes:
         place = module.blocks.line_span(template, old) or machine.root.span
         module.note(python_2_code(place, old.strip(), new.strip()))
-    try:
-        tree = ast.parse(text)
-    except (SyntaxError, ValueError, RecursionError, MemoryError) as error:
+    if isinstance(tree, Exception):
         lines = text.splitlines()
-        number = min(getattr(error, "lineno", None) or 1, len(lines))
-        words = getattr(error, "msg", None) or str(error) or "it is nested too deeply"
+        number = min(getattr(tree, "lineno", None) or 1, len(lines))
+        words = getattr(tree, "msg", None) or str(tree) or "it is nested too deeply"
         line = lines[number - 1]
         place = module.blocks.line_span(template, line) or machine.root.span
         message = f"the template of the base `{machine.base}` does not print valid Python: {words}"
         help = f"correct the printed line `{line.strip()}`"
         names = (machine.base, line.strip())
-        raise BlockError(template_error(place, message, help, names)) from error
+        raise BlockError(template_error(place, message, help, names)) from tree
     text = with_fallback(text, tree)
-    tree = ast.parse(text)
     lines = _BLANKS.sub("\n\n\n", text).split("\n")
     tidy = "\n".join(line.rstrip(" \t") for line in lines)
-    if tidy != text and ast.dump(ast.parse(tidy)) == ast.dump(tree):
+    if tidy != text and ast.dump(ast.parse(tidy)) == ast.dump(ast.parse(text)):
         text = tidy
     mark = f"# {made_by(machine)}\n"
     if mark not in text:
@@ -323,5 +365,12 @@ _NEEDS_NODE = re.compile(
     r"|get_param|wait_for_\w+)\b|\bsmach_ros\.|\bTF2ListenerSingleton\b"
 )
 """Code of templates that needs a ROS node. SMACHA's first base made every program a node."""
+
+
+def _needs_node(text: str) -> bool:
+    """Whether a text has such code; most texts have none of these words."""
+    words = ("rospy.", "smach_ros.", "TF2ListenerSingleton")
+    return any(word in text for word in words) and _NEEDS_NODE.search(text) is not None
+
 
 _BLANKS = re.compile(r"\n(?:[ \t]*\n){3,}")
