@@ -33,7 +33,9 @@ def is_flat(tree: Tree) -> bool:
     """Whether a value has no look-ups and no nested collections, as most values."""
     if isinstance(tree, Map):
         return all(isinstance(entry.value, Scalar) for entry in tree.entries)
-    return isinstance(tree, Scalar)
+    if isinstance(tree, Seq):
+        return all(isinstance(item, Scalar) for item in tree.items) and look_up_word(tree) is None
+    return True
 
 
 def is_too_deep(tree: Tree) -> bool:
