@@ -101,6 +101,9 @@ def _guarded(words: Sequence[str]) -> int:
     gc.disable()  # the objects of a compiler live to its end; collection costs a third of the time
     try:
         return _run(words)
+    except MemoryError:
+        print("there is not enough memory", file=sys.stderr, flush=True)
+        return FAILED
     except Exception:
         import traceback
 

@@ -113,7 +113,7 @@ def _joined(items: tuple[Tree, ...], tree: Seq, report: Report) -> Tree | None:
         return known_wrong(tree.span)
     # A call may need quotes in YAML; quotes around a dotted word mean that it is text.
     quoted = any(isinstance(item, Scalar) and not item.plain for item in tree.items)
-    return Scalar(text, text != "" and (text.endswith(")") or not quoted), tree.span)
+    return Scalar(text, text != "" and (text.endswith(")") or not quoted), *tree.span)
 
 
 def child_scope(scope: Scope, own: Tree | None, report: Report) -> Scope:
