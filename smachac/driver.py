@@ -15,7 +15,7 @@ from smachac import checks
 from smachac.checks import check_machine
 from smachac.diagnostics.diagnostic import Code, Diagnostic, Report, has_errors, in_order
 from smachac.diagnostics.severities import apply_severities
-from smachac.diagnostics.source import Source
+from smachac.diagnostics.source import Source, Span
 from smachac.frontend.errors import references, suppressions
 from smachac.frontend.errors import script as script_errors
 from smachac.frontend.files import disk_library, read_source
@@ -110,8 +110,19 @@ def analyse(
     """Parse, resolve, lower and check a script, then apply suppressions and severities.
 
     Findings that are already in `report` belong to the result as well. `render`: the templates of
-    the user are rendered too, for their findings; a build does that in any case.
+    the user are rendered too, for their findings; a build does that in any case. If there is not
+    enough memory, that is the only finding.
     """
+    try:
+        return _analysis(source, library, report, extra, render=render)
+    except MemoryError:
+        pass  # after this clause, the frames of the exception no longer hold the script
+    return Analysis(script=source.name, report=[_out_of_memory(source)], library=library)
+
+
+def _analysis(
+    source: Source, library: Library, report: Report, extra: MachineCheck | None, *, render: bool
+) -> Analysis:
     with deep_recursion():
         script = parse_and_resolve(source, library, report)
         machine = lower(script) if script is not None else None
@@ -134,6 +145,12 @@ def analyse(
         given=given,
         unused=unused,
     )
+
+
+def _out_of_memory(source: Source) -> Diagnostic:
+    message = "there is not enough memory for this script"
+    help = "split it into several scripts, or raise `--memory-limit`"
+    return script_errors.too_big(Span(source, 0, 0), message, help, arguments=("memory",))
 
 
 def parse_and_resolve(source: Source, library: Library, report: Report) -> Script | None:
@@ -202,9 +219,13 @@ def build(
 ) -> Files:
     """The files that a target emits; none if templates or classes of the user have errors."""
     context = BuildContext(library=library, options=options or {}, levels=levels)
-    with deep_recursion():
-        found = [*target_faults(machine, library, target)]
-        files = target.emit(machine, context, found)
+    files: Files = {}
+    try:
+        with deep_recursion():
+            found = [*target_faults(machine, library, target)]
+            files = target.emit(machine, context, found)
+    except MemoryError:
+        found = [_out_of_memory(machine.root.span.source)]
     report.extend(in_order(found))
     return {} if has_errors(report) else files
 

@@ -91,17 +91,17 @@ def type_of_data(data: Data, depth: int = DEEPEST) -> Type:
         case _ if depth == 0:
             return ANY
         case tuple():
-            return _tuple(type_of_data(item, depth - 1) for item in data)
+            return _tuple((type_of_data(item, depth - 1) for item in data), len(data))
         case Struct(entries=entries):
             return _record((name, type_of_data(item, depth - 1)) for name, item in entries)
     return assert_never(data)
 
 
-def _tuple(of: Iterable[Type]) -> Type:
-    found = tuple(of)
-    if len(found) <= LONGEST_TUPLE:
-        return Type("tuple", found)
-    return Type("array", (widened(joined(found)), len(found)))
+def _tuple(of: Iterable[Type], size: int) -> Type:
+    """The type of a list of so many items; those of a long list are not kept one by one."""
+    if size <= LONGEST_TUPLE:
+        return Type("tuple", tuple(of))
+    return Type("array", (widened(joined(of)), size))
 
 
 def _record(of: Iterable[tuple[str, Type]]) -> Type:
@@ -133,7 +133,7 @@ def type_of(expr: Expr, names: Names) -> Type:
             # The test may well be whether there is anything: what is there counts.
             return joined(present(type_of(branch, names)) for branch in (then, otherwise))
         case ListDisplay(found) | TupleDisplay(found):
-            return _tuple(type_of(item, names) for item in found)
+            return _tuple((type_of(item, names) for item in found), len(found))
         case DictDisplay(entries):
             return _display(entries, names)
         case Unary(word, operand):

@@ -281,11 +281,12 @@ class _Inference:
         if mark in cell.flows:
             cell.flows[mark].append(flow)
             return
-        kind = widened(flow.type) if flow.how == "value" else flow.type
-        if len(cell.flows) >= MOST_FLOWS and kind in cell.kinds:
-            return
+        if len(cell.flows) >= MOST_FLOWS:
+            cell.kinds = cell.kinds or {_kind(each[0]) for each in cell.flows.values()}
+            if _kind(flow) in cell.kinds:
+                return
+            cell.kinds.add(_kind(flow))
         cell.flows[mark] = [flow]
-        cell.kinds.add(kind)
         if not flow.judged:
             # Nothing, written before the run, stands where something is to come.
             if cell.holds is None or cell.holds == NONE:
@@ -343,6 +344,11 @@ class _Inference:
         )
 
 
+def _kind(flow: TypeFlow) -> Type:
+    """The type of a flow, for literals as a script would write it."""
+    return widened(flow.type) if flow.how == "value" else flow.type
+
+
 def _written(leaf: Leaf) -> dict[str, list[tuple[Span, Data]]]:
     """The values that the script gives to the outputs of a leaf, by key: results of callbacks, for
     keys that nothing else writes, and data of steps."""
@@ -388,8 +394,9 @@ def _read(cells: list[Cell], groups: Groups) -> dict[Cell, set[Type]]:
     """The types that the readers of each group require; the readers of an item require a list."""
     read: dict[Cell, set[Type]] = {}
     for cell in cells:
-        wanted = (link.declared for link in cell.links if link.declared != ANY)
-        read.setdefault(groups.of(cell), set()).update(wanted)
+        wanted = [link.declared for link in cell.links if link.declared != ANY]
+        if wanted:
+            read.setdefault(groups.of(cell), set()).update(wanted)
     for cell in cells:
         for computation in cell.readers:
             if computation.items and computation.expression is None:
@@ -397,7 +404,7 @@ def _read(cells: list[Cell], groups: Groups) -> dict[Cell, set[Type]]:
                 if item == ANY:
                     item = _common(read.get(groups.of(computation.cell), ()))
                 if item != ANY:
-                    read[groups.of(cell)].add(Type("list", (item,)))
+                    read.setdefault(groups.of(cell), set()).add(Type("list", (item,)))
     return read
 
 
@@ -432,7 +439,8 @@ class Cell:
     """A cell that holds values: a key of a container (`scope`) or of a leaf, or a variable.
 
     `path` and `node` are those of the state; a variable of the base has no node. `span` is where
-    the script names it. `declared` is the declared type, or `any`.
+    the script names it. `declared` is the declared type, or `any`. `kinds` are the types of its
+    flows, from the time that there are MOST_FLOWS.
     """
 
     path: str
@@ -443,7 +451,7 @@ class Cell:
     declared: Type = ANY
     links: list[Cell] = field(default_factory=list, repr=False)
     flows: dict[tuple[object, ...], list[TypeFlow]] = field(default_factory=dict, repr=False)
-    kinds: set[Type] = field(default_factory=set, repr=False)
+    kinds: set[Type] | None = field(default=None, repr=False)
     readers: list[Computation] = field(default_factory=list, repr=False)
     holds: Type | None = None
 

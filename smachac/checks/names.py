@@ -197,7 +197,9 @@ def unknown_outcome(context: Context) -> Iterator[Finding]:
 
 def _unknown_steps(path: str, child: Node) -> Iterator[Finding]:
     unknown = unknown_outcomes(child)
-    known = _known_outcomes(child) if unknown else ""
+    if not unknown:
+        return
+    known = _known_outcomes(child)
     guess = guesser(outcome_names(child))
     for step, meant in unknown:
         yield Finding(

@@ -38,6 +38,15 @@ def colour(parser: argparse.ArgumentParser) -> None:
                         help="colours in reports (default: auto, on a terminal only)")  # fmt: skip
 
 
+def memory_limit(parser: argparse.ArgumentParser) -> None:
+    """`--memory-limit`."""
+    from smachac.commands.memory import DEFAULT
+
+    parser.add_argument("--memory-limit", type=megabytes, default=DEFAULT, metavar="MB",
+                        help=f"the most memory of this process; 0: no limit (default: {DEFAULT:,})"
+                        )  # fmt: skip
+
+
 def dry_run(parser: argparse.ArgumentParser) -> None:
     """`--check` and `--diff` of the commands that change scripts."""
     parser.add_argument("--check", action="store_true",
@@ -49,6 +58,13 @@ def dry_run(parser: argparse.ArgumentParser) -> None:
 def names(text: str) -> list[str]:
     """Names with commas between them."""
     return [name.strip() for name in text.split(",") if name.strip()]
+
+
+def megabytes(text: str) -> int:
+    """An amount of memory, or 0."""
+    if not text.isdecimal() or len(text) > 9:
+        raise argparse.ArgumentTypeError(f"must be a number of megabytes, not `{text[:20]}`")
+    return int(text)
 
 
 def count(text: str) -> int:

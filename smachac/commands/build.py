@@ -6,7 +6,7 @@ import argparse
 import sys
 from argparse import Namespace
 
-from smachac.commands.arguments import SCRIPT, as_path, colour, search_folders
+from smachac.commands.arguments import SCRIPT, as_path, colour, memory_limit, search_folders
 from smachac.commands.output import FINDINGS, OK, print_report, shown, usage, without_notes
 
 TYPE_CHECKING = False  # annotations only: `--help` imports none of this
@@ -42,11 +42,13 @@ def build_arguments(parser: argparse.ArgumentParser) -> None:
     parser.add_argument("--force", action="store_true",
                         help="overwrite files that smachac did not generate")  # fmt: skip
     search_folders(parser)
+    memory_limit(parser)
     colour(parser)
 
 
 def build_command(arguments: Namespace) -> int:
     """Generate code; the exit code."""
+    from smachac.commands.memory import limited_memory
     from smachac.driver import analyse_script, compile_script
     from smachac.targets import OptionError, load_target, target_names
 
@@ -62,10 +64,11 @@ def build_command(arguments: Namespace) -> int:
             message = f"target `{target.name}` has no option `{name}`"
             return usage(message, name, list(target.options))
         options[name] = value
-    analysis = analyse_script(arguments.script, arguments.scripts, arguments.templates)
     try:
-        levels = _levels(arguments.script, arguments.output)
-        files, report = compile_script(analysis, target, options, levels)
+        with limited_memory(arguments.memory_limit):
+            analysis = analyse_script(arguments.script, arguments.scripts, arguments.templates)
+            levels = _levels(arguments.script, arguments.output)
+            files, report = compile_script(analysis, target, options, levels)
     except OptionError as error:
         return usage(f"--option {error}")
     print_report(without_notes(report), arguments, sys.stderr)

@@ -10,7 +10,14 @@ import time
 from argparse import Namespace
 from collections import Counter
 
-from smachac.commands.arguments import FORMAT, SCRIPTS, as_path, colour, search_folders
+from smachac.commands.arguments import (
+    FORMAT,
+    SCRIPTS,
+    as_path,
+    colour,
+    memory_limit,
+    search_folders,
+)
 from smachac.commands.output import FINDINGS, OK, print_report, shown, usage, without_notes
 from smachac.commands.streams import print_failure
 
@@ -68,6 +75,7 @@ def check_arguments(parser: argparse.ArgumentParser) -> None:
                         help="also check what the simulated arm can reach")  # fmt: skip
     parser.add_argument("--watch", action="store_true",
                         help="check again when a file changes, until Ctrl-C")  # fmt: skip
+    memory_limit(parser)
     colour(parser)
 
 
@@ -75,6 +83,7 @@ def check_command(arguments: Namespace) -> int:
     """Check scripts once, or again and again; the exit code."""
     from pathlib import Path
 
+    from smachac.commands.memory import limited_memory
     from smachac.driver import CODES
 
     arguments.script = arguments.script or [Path()]
@@ -84,7 +93,8 @@ def check_command(arguments: Namespace) -> int:
     if arguments.write_baseline and arguments.baseline is None:
         return usage("--write-baseline needs --baseline FILE")
     try:
-        return _watch(arguments) if arguments.watch else _once(arguments, set())
+        with limited_memory(arguments.memory_limit):
+            return _watch(arguments) if arguments.watch else _once(arguments, set())
     except _wrong_usage() as error:
         return usage(str(error))
 

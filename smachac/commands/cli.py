@@ -81,6 +81,8 @@ def _whole_program() -> int:
         code = _guarded(sys.argv[1:])
     except SystemExit as ended:  # argparse ends so after --help and after wrong usage
         code = int(ended.code or 0)
+    if not gc.isenabled():
+        gc.freeze()  # the process ends: nothing is collected once more, which takes 0.1 s
     sys.stdout.flush()
     error = print_failure()
     if error is None:
@@ -99,6 +101,9 @@ def _guarded(words: Sequence[str]) -> int:
     gc.disable()  # the objects of a compiler live to its end; collection costs a third of the time
     try:
         return _run(words)
+    except MemoryError:
+        print("there is not enough memory", file=sys.stderr, flush=True)
+        return FAILED
     except Exception:
         import traceback
 

@@ -33,7 +33,9 @@ def is_flat(tree: Tree) -> bool:
     """Whether a value has no look-ups and no nested collections, as most values."""
     if isinstance(tree, Map):
         return all(isinstance(entry.value, Scalar) for entry in tree.entries)
-    return isinstance(tree, Scalar)
+    if isinstance(tree, Seq):
+        return all(isinstance(item, Scalar) for item in tree.items) and look_up_word(tree) is None
+    return True
 
 
 def is_too_deep(tree: Tree) -> bool:
@@ -111,7 +113,7 @@ def _joined(items: tuple[Tree, ...], tree: Seq, report: Report) -> Tree | None:
         return known_wrong(tree.span)
     # A call may need quotes in YAML; quotes around a dotted word mean that it is text.
     quoted = any(isinstance(item, Scalar) and not item.plain for item in tree.items)
-    return Scalar(text, text != "" and (text.endswith(")") or not quoted), tree.span)
+    return Scalar(text, text != "" and (text.endswith(")") or not quoted), *tree.span)
 
 
 def child_scope(scope: Scope, own: Tree | None, report: Report) -> Scope:

@@ -47,11 +47,15 @@ from smachac.frontend.state_types import find_state_type
 from smachac.frontend.type_annotations import Aliases, read_aliases, typed
 from smachac.frontend.unused import Mark, Uses
 from smachac.frontend.yaml_tree import Entry, Map, Scalar, Seq, Tree, known_wrong
-from smachac.ir.nodes import StateType
+from smachac.ir.nodes import Preset, StateType
 
 MAX_STATES = 1_000_000
 MAX_NESTED = 1_000
 """The most states of a script with its sub-scripts, and the most levels of containers."""
+
+MAX_KEYS, MAX_KEYS_BY_STATE = 20_000, 10
+"""The most userdata values of a script: a fixed part and a part for each state. One takes 3 kB of
+memory in the checks."""
 
 CALLED_HERE = "in the sub-script called here"
 
@@ -97,7 +101,9 @@ def resolve(source: Source, tree: Tree | None, library: Library, report: Report)
             help = "check or build the script that calls it"
         report.append(wrong_shape(span, message, help, arguments=("script", kind_of(tree))))
         return None
-    return _Resolver(library, report).script(source, tree)
+    resolver = _Resolver(library, report)
+    script = resolver.script(source, tree)
+    return None if resolver.has_too_many_keys() else script
 
 
 class _Resolver:
@@ -112,7 +118,8 @@ class _Resolver:
         self.types: dict[str, StateType | None] = {}
         self.sub_scripts: dict[tuple[str, str], tuple[Source, Tree | None, bool] | None] = {}
         self.templates: tuple[Sequence[str], Sequence[str]] | None = None
-        self.count = self.looked_up = 0
+        self.count = self.looked_up = self.keys = 0
+        self.most_keys: tuple[Preset, ...] = ()
         self.uses = Uses()
 
     def script(self, source: Source, tree: Map) -> Script:
@@ -135,6 +142,17 @@ class _Resolver:
             unused=self.uses.unused(self.report),
             state_types={name: type_ for name, type_ in self.types.items() if type_ is not None},
         )
+
+    def has_too_many_keys(self) -> bool:
+        """Whether the script has too much userdata, which is reported where most of it is."""
+        limit = MAX_KEYS + MAX_KEYS_BY_STATE * self.count
+        if self.keys <= limit:
+            return False
+        message = f"the script sets {self.keys:,} userdata keys; the limit is {limit:,}"
+        help = "use a list or a mapping as the value of one key"
+        span = self.most_keys[0].span
+        self.report.append(too_big(span, message, help, arguments=("keys",)))
+        return True
 
     def expand(self, entries: tuple[Entry, ...]) -> dict[str, Entry]:
         """The fields by long name; duplicates are reported (SM002)."""
@@ -178,6 +196,9 @@ class _Resolver:
         fields = read_fields(
             name, entries, owner, type_, self.report, scope=scope, inner=around.inner
         )
+        presets: tuple[Preset, ...] = fields.get("userdata", ())
+        self.keys += len(presets)
+        self.most_keys = max(self.most_keys, presets, key=len)
         sugar = fields.get("sugar", Sugar())
         if sugar.timeout is not None or sugar.retry is not None:
             self.state_type(TIMER)

@@ -93,7 +93,7 @@ def _type(tree: Tree, aliases: Aliases, report: Report) -> Tree:
         return tree
     text = _filled(tree.value, aliases)
     read_type(text, Word(tree.value, tree.span), report)
-    return Scalar(text, tree.plain, tree.span)
+    return Scalar(text, tree.plain, *tree.span)
 
 
 def _filled(text: str, aliases: Aliases) -> str:

@@ -24,6 +24,13 @@ MAX_ALIASED = 100_000
 """Limits of a script: its length, its nesting, and the nodes that its aliases add (more are allowed
 if the script has more characters)."""
 
+MAX_NODES = 2_000_000
+"""The most values, lists and mappings of a script. One takes about 150 bytes of memory; 100,000
+states have about a million."""
+
+MAX_DUPLICATES = 10_000
+"""The most duplicate keys of a script that are reported."""
+
 DEEPEST_PURE = 400
 """Limit on the open brackets of a text that only the pure parser can read: it takes time quadratic
 in them."""
@@ -39,7 +46,14 @@ class Scalar:
 
     value: bool | int | float | str | None
     plain: bool
-    span: Span = field(compare=False)
+    source: Source = field(compare=False, repr=False)
+    start: int = field(compare=False)
+    end: int = field(compare=False)
+
+    @property
+    def span(self) -> Span:
+        """The place of the value, made when it is needed: a long list has millions of values."""
+        return Span(self.source, self.start, self.end)
 
 
 @dataclass(frozen=True, slots=True)
@@ -80,7 +94,7 @@ def known_wrong(span: Span) -> Scalar:
 
     No text parses to it: an empty plain scalar is None.
     """
-    return Scalar("", True, span)
+    return Scalar("", True, *span)
 
 
 def is_known_wrong(tree: Tree) -> bool:
@@ -324,8 +338,7 @@ class _Builder:
             self._unknown_tag(event)
         value = _resolve(text) if plain and tag is None else text
         self.end = end
-        node = Scalar(value, plain, Span(self.source, start, end))
-        self._add(node, 1, event.anchor)
+        self._add(Scalar(value, plain, self.source, start, end), 1, event.anchor)
 
     def _unknown_tag(self, event: Any) -> None:
         span = Span(self.source, event.start_mark.index, event.end_mark.index)
@@ -346,7 +359,8 @@ class _Builder:
         if len(self.stack) >= MAX_DEPTH:
             message = f"the nesting is deeper than {MAX_DEPTH:,} levels"
             self._stop(start, message, "split the script into sub-scripts", "depth")
-        self.deepest = max(self.deepest, len(self.stack))
+        if len(self.stack) > self.deepest:
+            self.deepest = len(self.stack)
         self.stack.append(_Open(mapping, bool(event.flow_style), start, event.anchor))
         self.end = event.end_mark.index
 
@@ -387,6 +401,9 @@ class _Builder:
         around = self.stack[-1]
         around.items.append(node)
         around.size += size
+        if around.size > MAX_NODES:
+            message = f"the script has more than {MAX_NODES:,} values"
+            self._stop(node.span.start, message, "read large data when the program runs", "nodes")
 
     def _stop(self, at: int, message: str, help: str, limit: str) -> None:
         span = Span(self.source, at, at + 1)
@@ -410,6 +427,9 @@ class _Builder:
             known = first.setdefault((type(key.value), key.value), key)
             if known is not key:
                 self.report.append(duplicate_key(Word(str(key.value), key.span), known.span))
+                if len(self.report) > MAX_DUPLICATES:
+                    message = f"more than {MAX_DUPLICATES:,} keys are duplicates"
+                    self._stop(key.span.start, message, "use each key once", "duplicates")
             entries.append(Entry(key, value))
         for entry in merged:
             if (type(entry.key.value), entry.key.value) not in first:

@@ -12,6 +12,7 @@ import pytest
 from smachac.diagnostics.diagnostic import Report
 from smachac.diagnostics.source import Source, Word
 from smachac.driver import read_machine
+from smachac.frontend import resolve as resolve_module
 from smachac.frontend import schema
 from smachac.frontend.fields import READERS
 from smachac.frontend.files import disk_library
@@ -161,3 +162,18 @@ def test_state_types_are_looked_up_in_three_places() -> None:
         "smachac/commands/states.py",
         "smachac/frontend/resolve.py",
     ]
+
+
+def test_a_script_has_a_limit_of_userdata_values(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(resolve_module, "MAX_KEYS", 1)
+    monkeypatch.setattr(resolve_module, "MAX_KEYS_BY_STATE", 2)
+    text = (
+        "name: sm\noutcomes: [done]\nuserdata: {KEYS}\nstates:\n"
+        "  - A: {template: ScriptedState, outcomes: [done], transitions: {done: done}}\n"
+    )
+    assert not resolved(text.replace("KEYS", "a: 1, b: 1, c: 1"))[1]
+    report: Report = []
+    source = Source("main.yml", text.replace("KEYS", "a: 1, b: 1, c: 1, d: 1"))
+    assert resolve(source, parse(source, report), LIBRARY, report) is None
+    assert [(item.code, item.span.text) for item in report] == [("SM006", "a")]
+    assert "sets 4 userdata keys; the limit is 3" in report[0].finding.message

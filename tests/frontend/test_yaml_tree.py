@@ -129,6 +129,20 @@ def test_aliases_may_repeat_only_so_much() -> None:
     assert read(f"[{item}, {much}, *a] {longer}") is not None
 
 
+def test_a_script_has_a_limit_of_values_at_any_depth(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(yaml_tree, "MAX_NODES", 10)
+    assert read("[1, 2, 3, 4, 5, 6, 7, 8, 9]") is not None
+    assert read("[1, 2, 3, 4, 5, 6, 7, 8, 9, 10]", ["SM006"]) is None
+    assert read("{a: [1, 2, 3], b: [1, 2]}") is not None
+    assert read("{a: [1, 2, 3], b: [1, 2], c: [1]}", ["SM006"]) is None
+
+
+def test_of_many_duplicate_keys_only_some_are_reported(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(yaml_tree, "MAX_DUPLICATES", 3)
+    assert read("{a, a, a, a}", ["SM002"] * 3) is not None
+    assert read("{a, a, a, a, a, a}", ["SM002"] * 4 + ["SM006"]) is None
+
+
 def test_an_alias_bomb_is_defused() -> None:
     lines = ["a0: &a0 [x, x, x, x, x, x, x, x, x]"]
     lines += [f"a{n}: &a{n} [{', '.join([f'*a{n - 1}'] * 9)}]" for n in range(1, 30)]

@@ -79,3 +79,25 @@ def test_the_simulated_arm_under_its_own_description(tmp_path: Path) -> None:
         "outcomes: {succeeded: {}, aborted: {}, preempted: {}}\n"
     )
     assert smachac.compile(script, "python")
+
+
+@pytest.mark.parametrize("levels", [70, 150, 190, 198])
+def test_code_nested_too_deeply_for_a_call_is_an_error_of_the_build(
+    levels: int, tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    script = tmp_path / "main.yml"
+    value = "[" * levels + "]" * levels
+    script.write_text(
+        "name: sm\ntemplate: Base\noutcomes: [succeeded]\nstates:\n  - A:\n"
+        "      template: CallbacksState\n      output_keys: [x]\n"
+        f'      callbacks: {{x: "{value}"}}\n      transitions: {{succeeded: succeeded}}\n',
+        encoding="utf-8",
+    )
+    code = main(["build", str(script), "--target", "python", "-o", str(tmp_path / "out")])
+    found = tmp_path / "out" / "sm.py"
+    if code == 0:
+        ast.parse(found.read_text(encoding="utf-8"))
+    else:
+        assert not found.exists()
+        assert "too many nested parentheses" in capsys.readouterr().err
+    assert code == (levels == 198)

@@ -14,7 +14,8 @@ from smachac.targets import BuildContext
 from smachac.targets.errors import defined_twice, python_2_code
 from smachac.targets.python import structure
 from smachac.targets.python.functions import Plan
-from smachac.targets.python.python2 import modern
+from smachac.targets.python.imports import Names
+from smachac.targets.python.python2 import modern, parsed
 from smachac.targets.python.smacha_context import Headers
 from smachac.targets.templates.engine import BlockError, Blocks, Page
 
@@ -64,8 +65,8 @@ class ModuleParts:
     `classes` are the classes of the user that it imports, `module:Class`. `plan` holds the
     containers that functions build, and `functions` those functions, by their key. `wrappers`
     are the functions around containers, by path. `own_templates` are the files of the user's
-    templates for containers, by type. `faults` are the findings about templates, without
-    duplicates.
+    templates for containers, by type. `names` are those in the printed code. `faults` are the
+    findings about templates, without duplicates.
     """
 
     blocks: Blocks
@@ -80,6 +81,7 @@ class ModuleParts:
     defined_headers: Headers = field(default_factory=Headers)
     functions: dict[str, PrintedFunction] = field(default_factory=dict)
     own_templates: dict[str, str | None] = field(default_factory=dict)
+    names: Names = field(default_factory=Names)
     faults: Report = field(default_factory=list)
     defined: dict[str, tuple[str, Node]] = field(default_factory=dict)
 
@@ -112,11 +114,8 @@ class ModuleParts:
 
     def define(self, text: str, page: Page, block: str, node: Node) -> None:
         """Report a class or function with two different definitions: only the last one counts."""
-        try:
-            tree = ast.parse(text)
-        except (SyntaxError, ValueError, RecursionError, MemoryError):
-            return
-        for each in tree.body:
+        tree = parsed(text)
+        for each in tree.body if isinstance(tree, ast.Module) else ():
             if isinstance(each, ast.ClassDef | ast.FunctionDef):
                 new = ast.dump(each)
                 old, first = self.defined.setdefault(each.name, (new, node))
@@ -129,15 +128,18 @@ class ModuleParts:
 
     def code(self, page: Page, block: str, node: Node, *, alone: bool = False) -> str:
         """A block of Python as Python 3; `alone`: without the blocks of included templates."""
-        text, changes = modern(page.render(block, alone=alone))
+        rendered = page.render(block, alone=alone)
+        if not rendered:
+            return rendered
+        text, changes, tree = modern(rendered)
         for old, new in changes:
             span = self._place(page, block, old) or node.span
             self.note(python_2_code(span, old.strip(), new.strip()))
-        try:
-            ast.parse(text)
-        except (SyntaxError, ValueError, RecursionError, MemoryError) as error:
-            words = getattr(error, "msg", None) or str(error) or "it is nested too deeply"
-            number = getattr(error, "lineno", None) or 1
+        if isinstance(tree, ast.Module):
+            self.names.add(tree)
+        else:
+            words = getattr(tree, "msg", None) or str(tree) or "it is nested too deeply"
+            number = getattr(tree, "lineno", None) or 1
             lines = text.splitlines() or [""]
             line = lines[min(number, len(lines)) - 1]
             span = self._place(page, block, line) or node.span

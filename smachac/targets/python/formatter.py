@@ -36,9 +36,8 @@ def flat(doc: Doc) -> str:
     """The text on one line."""
     if isinstance(doc, str):
         return doc
-    return (
-        f"{doc.opening}{', '.join(prefix + flat(item) for prefix, item in doc.items)}{doc.closing}"
-    )
+    items = [prefix + (item if isinstance(item, str) else flat(item)) for prefix, item in doc.items]
+    return f"{doc.opening}{', '.join(items)}{doc.closing}"
 
 
 def laid_out(doc: Doc, width: int, before: int = 0, after: int = 0) -> str:
@@ -49,7 +48,7 @@ def laid_out(doc: Doc, width: int, before: int = 0, after: int = 0) -> str:
         return line
     lines = [doc.opening]
     for prefix, item in doc.items:
-        text = laid_out(item, width - 4, len(prefix), 1)
+        text = item if isinstance(item, str) else laid_out(item, width - 4, len(prefix), 1)
         lines.append("    " + prefix + text.replace("\n", "\n    ") + ",")
     lines.append(doc.closing)
     return "\n".join(lines)

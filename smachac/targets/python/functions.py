@@ -312,10 +312,14 @@ def _is_plain(name: str) -> bool:
 # What templates print
 
 
-def stand_alone(tree: ast.Module, functions: Collection[str], *, with_names: bool) -> bool:
-    """Whether a module has these functions, each name once. `with_names`: and none of them uses a
-    variable of another one, as the text that a template of the user prints may do."""
+def stand_alone(
+    tree: ast.Module, functions: Collection[str], apart: Collection[str], *, with_names: bool
+) -> bool:
+    """Whether a module has these functions, each name once; those `apart` are not in the tree.
+    `with_names`: and none of them uses a variable of another one, as the text that a template of
+    the user prints may do."""
     top = Counter(name for each in tree.body for name in _bound(each))
+    top.update(apart)
     if any(top[name] != 1 for name in functions):
         return False
     if not with_names:

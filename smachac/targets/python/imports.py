@@ -5,6 +5,7 @@ from __future__ import annotations
 import ast
 import sys
 from collections.abc import Iterable, Iterator
+from dataclasses import dataclass, field
 from textwrap import indent
 
 from smachac.ir.nodes import Machine
@@ -134,62 +135,65 @@ def _from_import(module: str, imported: list[str]) -> str:
     return f"from {module} import (\n" + "".join(f"    {name},\n" for name in stars) + ")"
 
 
-def unbound_names(parts: Iterable[str], also: Iterable[str] = ()) -> list[str]:
-    """Imports for names that code uses and does not bind: modules by their attributes
-    (`rospy.loginfo`), messages by their names (`Point()`); `also` are further modules. `import *`
-    binds the names in MESSAGES; from a module that is not listed there it may bind any message."""
-    used: set[str] = set()
-    named: set[str] = set()
-    bound: set[str] = set()
-    everything: set[str] = set()
-    for part in parts:
-        try:
-            tree = ast.parse(part)
-        except (SyntaxError, ValueError, RecursionError, MemoryError):
-            continue
+@dataclass(frozen=True, slots=True)
+class Names:
+    """The names in the code of a program: those with an attribute (`rospy` in `rospy.loginfo`), all
+    that are read, those that the code binds, and the modules of which it imports all names."""
+
+    used: set[str] = field(default_factory=set)
+    named: set[str] = field(default_factory=set)
+    bound: set[str] = field(default_factory=set)
+    everything: set[str] = field(default_factory=set)
+
+    def add(self, tree: ast.AST) -> None:
+        """Add the names in a piece of code."""
         for node in ast.walk(tree):
             match node:
                 case ast.Attribute(value=ast.Name(id=name)):
-                    used.add(name)
+                    self.used.add(name)
                 case ast.Name(id=name, ctx=ast.Load()):
-                    named.add(name)
+                    self.named.add(name)
                 case ast.Name(id=name, ctx=ast.Store()) | ast.arg(arg=name):
-                    bound.add(name)
+                    self.bound.add(name)
                 case ast.FunctionDef(name=name) | ast.ClassDef(name=name):
-                    bound.add(name)
+                    self.bound.add(name)
                 case ast.ImportFrom(module=str(module), names=[ast.alias(name="*")]):
-                    everything.add(module)
+                    self.everything.add(module)
                 case ast.Import(names=names) | ast.ImportFrom(names=names):
-                    bound |= {each.asname or each.name.partition(".")[0] for each in names}
+                    self.bound.update(each.asname or each.name.partition(".")[0] for each in names)
+
+
+def unbound_names(names: Names, also: Iterable[str] = ()) -> list[str]:
+    """Imports for names that code uses and does not bind: modules by their attributes
+    (`rospy.loginfo`), messages by their names (`Point()`); `also` are further modules. `import *`
+    binds the names in MESSAGES; from a module that is not listed there it may bind any message."""
+    used, named, bound = names.used, names.named, names.bound
     modules = sys.stdlib_module_names | {*ROS_MODULES, *also}
     found = [f"import {name}" for name in sorted(used - bound) if name in modules]
-    unknown = any(module not in MESSAGES for module in everything)
+    unknown = any(module not in MESSAGES for module in names.everything)
     if unknown or not any(name in used | named | bound for name in (*ROS_MODULES, "smach_ros")):
         return found
     return found + [
         f"from {_MODULE_OF[name]} import {name}"
         for name in sorted(named - bound)
-        if name in _MODULE_OF and _MODULE_OF[name] not in everything
+        if name in _MODULE_OF and _MODULE_OF[name] not in names.everything
     ]
 
 
-def standard_imports(machine: Machine) -> list[str]:
-    """Imports of the modules of the standard library that expressions use: `math.pi`."""
-    found = {
-        name
-        for _, node in walk(machine.root)
-        for expression in expressions(node)
-        for name in _modules(expression.text)
-    }
+def expression_texts(machine: Machine) -> list[str]:
+    """The code of the script, each text once."""
+    found = (each.text.strip() for _, node in walk(machine.root) for each in expressions(node))
+    return [*dict.fromkeys(found)]
+
+
+def standard_imports(trees: Iterable[ast.AST]) -> list[str]:
+    """Imports of the modules of the standard library that code of the script uses: `math.pi`."""
+    found = {name for tree in trees for name in _modules(tree)}
     return [f"import {name}" for name in sorted(found)]
 
 
-def _modules(text: str) -> set[str]:
+def _modules(tree: ast.AST) -> set[str]:
     """The standard modules at the roots of dotted names, except arguments of a lambda."""
-    try:
-        tree = ast.parse(text.strip(), mode="eval")
-    except (SyntaxError, ValueError, RecursionError, MemoryError):
-        return set()
     nodes = list(ast.walk(tree))
     arguments = {node.arg for node in nodes if isinstance(node, ast.arg)}
     roots = {

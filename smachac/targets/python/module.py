@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import ast
 import re
+from collections.abc import Iterable
 from functools import partial
 from textwrap import indent
 
@@ -18,13 +19,15 @@ from smachac.targets.python.buffers import PREPENDED, ModuleParts
 from smachac.targets.python.formatter import WIDTH, docstring_lines
 from smachac.targets.python.functions import functions, one_function, stand_alone
 from smachac.targets.python.imports import (
+    Names,
     class_imports,
+    expression_texts,
     import_lines,
     standard_imports,
     unbound_names,
     with_fallback,
 )
-from smachac.targets.python.python2 import modern
+from smachac.targets.python.python2 import modern, parsed
 from smachac.targets.python.smacha_context import FILTERS, TESTS, container_variables, plain
 from smachac.targets.python.states import (
     NO_BODY,
@@ -43,6 +46,10 @@ from smachac.targets.templates.engine import BlockError, Blocks
 ONE_FUNCTION = {"Program.tpl.py": "Base.tpl.py", "ROSProgram.tpl.py": "ROSBase.tpl.py"}
 """The template for a program whose states add code around its run, by the usual template: the whole
 program is one function, in which that code sees the names of the states, as in SMACHA."""
+
+MOST_BRACKETS = 80
+"""The most brackets of code that is never nested too deeply for Python, which allows 200 levels: a
+value of the script that contains the code has up to 100."""
 
 NODE_IMPORTS = [f"import {name}" for name in ("os", "rospy", "signal", "threading", "time")]
 """The imports of ROSNode.tpl.py."""
@@ -120,10 +127,12 @@ def _text(
         template = "ROSProgram.tpl.py"
     if template in ONE_FUNCTION and any(texts[name] for name in PREPENDED):
         template = ONE_FUNCTION[template]
-    modules = unbound_names(parts)
-    imports = [*module.buffers["imports"], *standard_imports(machine), *modules, *needed]
+    expressions = expression_texts(machine)
+    module.names.bound.add(root)
+    imports = [*_imports(expressions, module), *needed]
     if template in ("ROSProgram.tpl.py", "ROSBase.tpl.py"):
         imports += NODE_IMPORTS
+    code, function_code = indent(lines, "    "), "\n\n\n".join(built)
     variables: dict[str, object] = {
         **{variable.name: plain(variable.value.data) for variable in machine.variables},
         **container_variables(machine.root, None, "", machine.root.name),
@@ -139,19 +148,56 @@ def _text(
         "title": _title(machine),
         "made_by": f"# {made_by(machine)}",
         "body": states,
-        "machine": indent(lines, "    "),
-        "functions": "\n\n\n".join(built),
+        "machine": code,
+        "functions": function_code,
         "defined_headers": module.defined_headers,
         "smach_ros": any(_uses(part, _SMACH_ROS) for part in parts),
         "introspection": context.options.get("introspection", "no") == "yes",
     }
     text = _rendered(template, variables, imports, own, module) + "\n"
-    if lost(states, text):
+    own_code = uses_own_templates(machine, context.library) and built and not whole
+    deep = any(sum(map(each.count, "([{")) > MOST_BRACKETS for each in expressions)
+    frame, left_out = _frame(text, () if deep or own_code else (code, function_code))
+    if code not in left_out.values() and lost(states, text):
         span = module.blocks.block_span(template, "body") or machine.root.span
         raise BlockError(template_error(span, *NO_BODY, ("body",)))
     if built and not whole and texts["main_def"]:
         return None
-    return _checked(text, template, machine, module, whole=whole)
+    tidy, tree = _checked(frame, template, machine, module)
+    named = [each.name for each in module.functions.values()] if not whole else []
+    apart = named if function_code in left_out.values() else []
+    if named and not stand_alone(tree, ["build", *named], apart, with_names=bool(own_code)):
+        return None
+    for statement, part in left_out.items():
+        tidy = tidy.replace(statement, part)
+    return tidy
+
+
+def _imports(expressions: list[str], module: ModuleParts) -> list[str]:
+    """The imports that templates print, and those that the code of the script and of templates
+    needs."""
+    trees = [tree for tree in map(parsed, expressions) if isinstance(tree, ast.Module)]
+    for tree in trees:
+        module.names.add(tree)
+    needed = unbound_names(module.names)
+    return [*module.buffers["imports"], *standard_imports(trees), *needed]
+
+
+def _frame(text: str, parts: Iterable[str]) -> tuple[str, dict[str, str]]:
+    """The program without its parts that were made of parsed code, and these parts by the statement
+    that stands in place of each: to parse the code of a large machine again takes long.
+
+    A part stays if the template prints it in another form, or if it is not tidy.
+    """
+    left_out: dict[str, str] = {}
+    for number, part in enumerate(parts):
+        tidy = not any(untidy in f"{part}\n" for untidy in (" \n", "\t\n", "\n\n\n\n"))
+        margin = " " * (len(part) - len(part.lstrip(" ")))
+        statement = f"{margin}pass  # part {number}"
+        if part and tidy and part in text and statement not in text:
+            text = text.replace(part, statement, 1)
+            left_out[statement] = part
+    return text, left_out
 
 
 def _rendered(
@@ -166,7 +212,11 @@ def _rendered(
     can_be = "node" in module.blocks.names(template) and "init_node" not in text
     is_node = can_be and _needs_node(text)
     more = NODE_IMPORTS if is_node else []
-    lacking = unbound_names([modern(text)[0], *more], ["smach", "smach_ros"])
+    names = Names()
+    for tree in (modern(text).tree, *map(parsed, more)):
+        if isinstance(tree, ast.Module):
+            names.add(tree)
+    lacking = unbound_names(names, ["smach", "smach_ros"])
     if not lacking and not is_node:
         return text
     again = {
@@ -184,8 +234,9 @@ def _separate(*parts: str) -> str:
 
 
 def _needs_node(text: str) -> bool:
-    """Whether code needs a ROS node."""
-    return _uses(text, _NEEDS_NODE)
+    """Whether code needs a ROS node; most texts have none of these words."""
+    words = ("rospy.", "smach_ros.", "TF2ListenerSingleton")
+    return any(word in text for word in words) and _uses(text, _NEEDS_NODE)
 
 
 def _uses(text: str, names: re.Pattern[str]) -> bool:
@@ -226,42 +277,34 @@ def _base_template(machine: Machine, context: BuildContext, module: ModuleParts)
 
 
 def _checked(
-    text: str, template: str, machine: Machine, module: ModuleParts, *, whole: bool
-) -> str | None:
-    """The module, without surplus blank lines and trailing spaces; None as in `_text`. Raises
-    BlockError if it is no Python."""
-    text, changes = modern(text)
+    text: str, template: str, machine: Machine, module: ModuleParts
+) -> tuple[str, ast.Module]:
+    """The module, without surplus blank lines and trailing spaces, and its tree. Raises BlockError
+    if it is no Python."""
+    text, changes, tree = modern(text)
     for old, new in changes:
         place = module.blocks.line_span(template, old) or machine.root.span
         module.note(python_2_code(place, old.strip(), new.strip()))
-    try:
-        tree = ast.parse(text)
-    except (SyntaxError, ValueError, RecursionError, MemoryError) as error:
+    if isinstance(tree, Exception):
         lines = text.splitlines()
-        number = min(getattr(error, "lineno", None) or 1, len(lines))
-        words = getattr(error, "msg", None) or str(error) or "it is nested too deeply"
+        number = min(getattr(tree, "lineno", None) or 1, len(lines))
+        words = getattr(tree, "msg", None) or str(tree) or "it is nested too deeply"
         line = lines[number - 1]
         place = module.blocks.line_span(template, line) or machine.root.span
         message = f"the template of the base `{machine.base}` does not print valid Python: {words}"
         help = f"correct the printed line `{line.strip()}`"
         names = (machine.base, line.strip())
-        raise BlockError(template_error(place, message, help, names)) from error
-    if module.functions and not whole:
-        named = ["build", *(each.name for each in module.functions.values())]
-        own = uses_own_templates(machine, module.context.library)
-        if not stand_alone(tree, named, with_names=own):
-            return None
+        raise BlockError(template_error(place, message, help, names)) from tree
     text = with_fallback(text, tree)
-    tree = ast.parse(text)
     lines = _BLANKS.sub("\n\n\n", text).split("\n")
     tidy = "\n".join(line.rstrip(" \t") for line in lines)
-    if tidy != text and ast.dump(ast.parse(tidy)) == ast.dump(tree):
+    if tidy != text and ast.dump(ast.parse(tidy)) == ast.dump(ast.parse(text)):
         text = tidy
     mark = f"# {made_by(machine)}\n"
     if mark not in text:
         first = text.index("\n") + 1 if text.startswith("#!") else 0
         text = text[:first] + mark + text[first:]
-    return text
+    return text, tree
 
 
 _SMACH_ROS = re.compile(r"\bsmach_ros\.")
@@ -271,5 +314,6 @@ _NEEDS_NODE = re.compile(
     r"|get_param|wait_for_\w+)\b|\bsmach_ros\.|\bTF2ListenerSingleton\b"
 )
 """Code of templates that needs a ROS node. SMACHA's first base made every program a node."""
+
 
 _BLANKS = re.compile(r"\n(?:[ \t]*\n){3,}")

@@ -4,9 +4,19 @@ from __future__ import annotations
 
 import ast
 import re
+from typing import NamedTuple
 
 Change = tuple[str, str]
 """A line before and after its translation."""
+
+
+class Modern(NamedTuple):
+    """Text as Python 3, the changes that this took, and its tree, or why it is no Python."""
+
+    text: str
+    changes: list[Change]
+    tree: ast.Module | Exception
+
 
 _EXCEPT = re.compile(r"^(\s*except\s+(?:\([^()]*\)|[\w.]+))\s*,\s*(\w+)\s*:(.*)$")
 _PRINT = re.compile(r"^(\s*)print(?:\s+(?!\()|(?=[\"']))([^>\s].*)$")
@@ -16,8 +26,8 @@ _RAISE = re.compile(r"^(\s*raise\s+[\w.]+)\s*,\s*(.+)$")
 _UNEQUAL = re.compile(r"^([^\"'#]*?)<>(.*)$")
 
 
-def modern(text: str) -> tuple[str, list[Change]]:
-    """Text as Python 3, and its changes.
+def modern(text: str) -> Modern:
+    """Text as Python 3.
 
     Text that is Python 3 is unchanged except for `except A, e:`, which new versions of Python read
     as two exceptions.
@@ -29,8 +39,9 @@ def modern(text: str) -> tuple[str, list[Change]]:
             lines[number] = translated(line) or line
             changes.append((line, lines[number]))
     text = "\n".join(lines)
-    if _is_python(text):
-        return text, changes
+    tree = parsed(text)
+    if isinstance(tree, ast.Module):
+        return Modern(text, changes, tree)
     more: list[Change] = []
     for number, line in enumerate(lines):
         new = _line(line)
@@ -38,7 +49,10 @@ def modern(text: str) -> tuple[str, list[Change]]:
             lines[number] = new
             more.append((line, new))
     tried = "\n".join(lines)
-    return (tried, [*changes, *more]) if more and _is_python(tried) else (text, changes)
+    tried_tree = parsed(tried) if more else tree
+    if isinstance(tried_tree, ast.Module):
+        return Modern(tried, [*changes, *more], tried_tree)
+    return Modern(text, changes, tree)
 
 
 def translated(line: str) -> str | None:
@@ -65,9 +79,9 @@ def _line(line: str) -> str | None:
     return None
 
 
-def _is_python(text: str) -> bool:
+def parsed(text: str) -> ast.Module | Exception:
+    """The tree of a text, or the exception if it is no Python."""
     try:
-        ast.parse(text)
-    except (SyntaxError, ValueError, RecursionError, MemoryError):
-        return False
-    return True
+        return ast.parse(text)
+    except (SyntaxError, ValueError, RecursionError, MemoryError) as error:
+        return error

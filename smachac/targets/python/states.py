@@ -383,6 +383,7 @@ def _used(leaf: Leaf, module: ModuleParts) -> UsedType:
             }
             module.gather(module.blocks.page(code, variables), leaf)
     module.used[leaf.type] = used
+    module.names.named.add(used.class_name)
     return used
 
 
