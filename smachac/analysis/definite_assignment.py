@@ -2,9 +2,10 @@
 
 Keys are only ever added to a container's userdata (docs/semantics.md, Userdata). So a key is
 surely set at a vertex if and only if every path from the container's start writes it. Each
-container is analysed once, inner ones first, as if nothing were passed in: an input that is set at
-its entry is set everywhere in it. The summary of a container is the keys that it needs and the keys
-that it writes. Linear in the number of states; sets of keys are bits of integers.
+container is analysed once, inner ones first, as if none of its inputs were set: an input that is
+set at its entry is set everywhere in it. The summary of a container is the keys that it needs and
+the keys that it writes. The time is linear in the number of states; a set of keys is an integer
+with one bit for each key (fixpoint.py).
 """
 
 from __future__ import annotations
@@ -42,12 +43,13 @@ from smachac.ir.traversal import PREEMPTED, containers, ends_preempted, outcome_
 class UserdataScope:
     """A container with its own userdata.
 
-    `held` are the keys that are set before it starts; `inputs` and `outputs` map its own names to
-    those of the container around it; `optional` inputs may be absent. `vertices` are the reachable
-    ones, `steps` lead on from each, `reads` are the keys that each needs, and `unset` are those of
-    them that can be unset if nothing is passed in. `needed` inputs are read inside before they are
-    written; `endings` are the keys around it that each outcome sets. `inner` are the containers
-    inside, `again` those of them that a path can enter again.
+    `held`: the keys that are set before it starts. `inputs`, `outputs`: its own names of keys, to
+    those of the container around it. `optional`: the inputs that may be unset. `vertices`: the
+    reachable vertices. `steps`: the steps from each vertex. `reads`: the keys that each vertex
+    needs. `unset`: those of them that can be unset if no input is set. `needed`: the inputs that
+    are read inside before they are written. `endings`: for each outcome, the keys of the container
+    around it that are set then. `inner`: the names of the containers inside. `again`: those of
+    them that a path can enter more than once.
     """
 
     path: str
@@ -109,6 +111,7 @@ def data_flow(machine: Machine) -> DataFlow:
 def _scope(
     path: str, container: Container, inner: Mapping[str, UserdataScope], root: Container
 ) -> UserdataScope:
+    """The scope of a container; `inner` are those of the containers inside."""
     names = remapping(container)
     inputs = {key.name: names.get(key.name, key.name) for key in container.inputs}
     held = {preset.key for preset in container.userdata}
@@ -117,25 +120,26 @@ def _scope(
     optional = frozenset(k.name for k in container.inputs if k.type.name == "optional")
     outputs = {key.name: names.get(key.name, key.name) for key in container.outputs}
     reads: dict[Vertex, tuple[str, ...]] = {START: _items_read(container)}
+    # The state of an iterator uses the userdata of the iterator itself, without a remapping.
     raw = isinstance(container, nodes.Iterator)
     # Of two states of one name (SM106) the first counts, everywhere.
     children = {child.name: child for child in reversed(container.children)}
-    containing = frozenset(name for name, c in children.items() if not isinstance(c, Leaf))
+    inner_containers = frozenset(name for name, c in children.items() if not isinstance(c, Leaf))
     for child in reversed(children.values()):
         reads[child.name] = _reads(child, inner.get(f"{path}/{child.name}"), raw)
     steps = _steps(path, container, inner)
     order = flow_order(steps)
-    asked = {
+    queried = {
         vertex: [key for key in keys if key not in held] for vertex, keys in reads.items() if keys
     }
-    unset = may_be_unset(asked, steps, order)
+    unset = may_be_unset(queried, steps, order)
     needed = {
         key for keys in unset.values() for key in keys if key in inputs and key not in optional
     }
     return UserdataScope(
         path=path,
         container=container,
-        children={child.name: child for child in reversed(container.children)},
+        children=children,
         held=frozenset(held),
         inputs=inputs,
         optional=optional,
@@ -146,8 +150,8 @@ def _scope(
         unset=unset,
         needed=frozenset(needed),
         endings=_with_caught(container, _endings(outputs, held, steps, order)),
-        inner=containing,
-        again=looping(steps, order) & containing if containing else frozenset(),
+        inner=inner_containers,
+        again=looping(steps, order) & inner_containers if inner_containers else frozenset(),
     )
 
 
@@ -158,28 +162,28 @@ def _endings(
     exits = [vertex for vertex in order if isinstance(vertex, tuple) and vertex != START]
     if not outputs:
         return {vertex[1]: NOTHING for vertex in exits}
-    open_keys = [key for key in outputs if key not in held]
-    asked: dict[Vertex, list[str]] = dict.fromkeys(exits, open_keys)
-    unsure = may_be_unset(asked, steps, order, sure=True)
-    untrusted = may_be_unset(asked, steps, order)
-    possible = may_be_set(asked, steps, order)
+    unheld = [key for key in outputs if key not in held]
+    queried: dict[Vertex, list[str]] = dict.fromkeys(exits, unheld)
+    without_sure = may_be_unset(queried, steps, order, sure=True)
+    without_trusted = may_be_unset(queried, steps, order)
+    perhaps = may_be_set(queried, steps, order)
 
     def outer(missing: Iterable[str]) -> frozenset[str]:
-        """What the outputs that are not missing are called outside."""
+        """The outputs that are not missing, by their names in the container around."""
         return frozenset(outputs[key] for key in outputs.keys() - set(missing))
 
     return {
         vertex[1]: Writes(
-            outer(unsure.get(vertex, ())),
-            outer(untrusted.get(vertex, ())),
-            outer(set(open_keys).difference(possible.get(vertex, ()))),
+            outer(without_sure.get(vertex, ())),
+            outer(without_trusted.get(vertex, ())),
+            outer(set(unheld).difference(perhaps.get(vertex, ()))),
         )
         for vertex in exits
     }
 
 
 def _with_caught(container: Container, found: Mapping[str, Writes]) -> Mapping[str, Writes]:
-    """The endings of a container with that of an exception, which copies no output."""
+    """The endings of a container, and its ending by an exception, which copies no output."""
     if not container.catches:
         return found
     known = found.get(container.catches, NOTHING)
@@ -212,7 +216,8 @@ def _reads(child: Node, scope: UserdataScope | None, raw: bool) -> tuple[str, ..
 def child_writes(
     child: Node, scope: UserdataScope | None, outcome: str, *, raw: bool
 ) -> Writes | None:
-    """The keys of its container that a child has set when it ends so; None where it never does."""
+    """The keys of its container that a child has set when it ends with `outcome`; None if it never
+    ends with it."""
     if not isinstance(child, Leaf):
         return scope.endings.get(outcome) if scope else NOTHING
     writes = leaf_writes(child, outcome, raw=raw)
@@ -224,7 +229,8 @@ def child_writes(
 
 
 def _steps(path: str, container: Container, inner: Mapping[str, UserdataScope]) -> KeySteps:
-    """The steps of a container, those of a concurrence being its start, its children and ends."""
+    """The steps of a container; those of a concurrence lead from its start to each child and to
+    each of its outcomes."""
     children = {child.name: child for child in reversed(container.children)}
     raw = isinstance(container, nodes.Iterator)
     known: dict[tuple[str, str], Writes | None] = {}
@@ -238,8 +244,8 @@ def _steps(path: str, container: Container, inner: Mapping[str, UserdataScope]) 
 
     found: dict[Vertex, list[KeyStep]] = {}
     if isinstance(container, Concurrence):
-        for target, together in joined(container, writes):
-            found.setdefault(START, []).append(KeyStep(target, "", together))
+        for target, written in _concurrence_steps(container, writes):
+            found.setdefault(START, []).append(KeyStep(target, "", written))
         return {vertex: tuple(steps) for vertex, steps in found.items()}
     if isinstance(container, nodes.Iterator):
         for child in container.children[:1]:
@@ -256,7 +262,9 @@ def _steps(path: str, container: Container, inner: Mapping[str, UserdataScope]) 
             continue
         if isinstance(container, nodes.Iterator) and isinstance(edge.target, str):
             item = frozenset([container.item_key])
-            given = Writes(given[0] | item, given[1] | item, given[2] | item, given[3])
+            given = Writes(
+                given.sure | item, given.trusted | item, given.perhaps | item, given.anything
+            )
         found.setdefault(edge.source, []).append(KeyStep(edge.target, edge.outcome, given))
     return {vertex: tuple(steps) for vertex, steps in found.items()}
 
@@ -270,34 +278,36 @@ MOST_ROUNDS = 10
 """The most passes over the rules to exclude outcomes of children."""
 
 MOST_WORK = 5_000_000
-"""The most rules times keys: beyond it the writes of all rules are joined, which is sound."""
+"""The most rules times keys. Beyond it every rule gets the writes for any outcomes of the children,
+which is sound."""
 
 
-def joined(
+def _concurrence_steps(
     container: Concurrence, writes: Callable[[str, str], Writes | None]
 ) -> Iterator[tuple[Vertex, Writes]]:
-    """Where a concurrence goes from its start: into each child, and to each outcome.
+    """The steps from the start of a concurrence: to each child, and to each outcome.
 
-    With an outcome comes what all children together have written. They all run to their end, also
-    where the first to end preempts the others: `join` makes no difference.
+    The step to an outcome writes what all children together have written. All children run to their
+    ends, also if the first to end preempts the others, so `join` makes no difference.
     """
     every = {child.name: _child_endings(child, writes) for child in container.children}
     yield from ((name, NOTHING) for name in every)
     if not all(every.values()):
         return
     exits = frozenset(outcome_names(container))
-    base = _Base(every)
-    exact = len(container.rules) * len(base.perhaps) <= MOST_WORK
-    ways = [(rule.outcome, _given(every, rule)) for rule in container.rules]
-    ways.append((container.default_outcome, _otherwise(every, container.rules)))
+    together = _ChildrenTogether(every)
+    exact = len(container.rules) * len(together.perhaps) <= MOST_WORK
+    ways = [(rule.outcome, _left_by_rule(every, rule)) for rule in container.rules]
+    ways.append((container.default_outcome, _left_by_no_rule(every, container.rules)))
     if ends_preempted(container):
         ways.append((PREEMPTED, {}))
     for outcome, left in ways:
         if outcome in exits and left is not None:
-            yield exit_vertex(outcome), base.writes(left if exact else {})
+            yield exit_vertex(outcome), together.writes(left if exact else {})
 
 
 def _child_endings(child: Node, writes: Callable[[str, str], Writes | None]) -> ChildEndings:
+    """The endings of one child of a concurrence. Those of a child with unknown outcomes are one."""
     is_open = isinstance(child, Leaf) and child.open
     found = (
         (name, writes(child.name, name))
@@ -308,7 +318,7 @@ def _child_endings(child: Node, writes: Callable[[str, str], Writes | None]) -> 
 
 
 def _either(several: Iterable[Writes]) -> Writes:
-    """The join of several writes: one of them happens."""
+    """The writes of one of several steps, when it is not known which of them is taken."""
     ways = list(several)
     return Writes(
         frozenset.intersection(*(each.sure for each in ways)),
@@ -318,25 +328,31 @@ def _either(several: Iterable[Writes]) -> Writes:
     )
 
 
-class _Base:
-    """What the children write whichever outcome they have, and with fewer outcomes left."""
+class _ChildrenTogether:
+    """The writes of all children of a concurrence together, when all or fewer of their outcomes are
+    possible.
+
+    Kept for all outcomes, so that a rule costs only the children that it names.
+    """
 
     def __init__(self, every: Mapping[str, ChildEndings]) -> None:
         self._every = every
-        self._of = {name: _either(endings.values()) for name, endings in every.items()}
-        self._sure = NONE.union(*(each.sure for each in self._of.values()))
-        self._trusted = NONE.union(*(each.trusted for each in self._of.values()))
-        self.perhaps = Counter(key for each in self._of.values() for key in each.perhaps)
-        self._anything = any(each.anything for each in self._of.values())
+        self._all = {name: _either(endings.values()) for name, endings in every.items()}
+        self._sure = NONE.union(*(each.sure for each in self._all.values()))
+        self._trusted = NONE.union(*(each.trusted for each in self._all.values()))
+        self.perhaps = Counter(key for each in self._all.values() for key in each.perhaps)
+        self._anything = any(each.anything for each in self._all.values())
 
     def writes(self, left: Mapping[str, ChildEndings]) -> Writes:
-        """What is written when the children in `left` have one of those outcomes.
+        """The writes when each child in `left` has one of the outcomes there.
 
-        Fewer outcomes write more for sure, and less perhaps.
+        With fewer possible outcomes more keys are surely written, and fewer are possibly written.
         """
         fewer = {name: _either(endings.values()) for name, endings in left.items()}
         lost = Counter(
-            key for name, writes in fewer.items() for key in self._of[name].perhaps - writes.perhaps
+            key
+            for name, writes in fewer.items()
+            for key in self._all[name].perhaps - writes.perhaps
         )
         never = frozenset(key for key, times in lost.items() if times == self.perhaps[key])
         return Writes(
@@ -347,8 +363,10 @@ class _Base:
         )
 
 
-def _given(every: Mapping[str, ChildEndings], rule: OutcomeRule) -> dict[str, ChildEndings] | None:
-    """The outcomes left to children when a rule matches; None where it never does."""
+def _left_by_rule(
+    every: Mapping[str, ChildEndings], rule: OutcomeRule
+) -> dict[str, ChildEndings] | None:
+    """The outcomes that the children of a rule can have when it matches; None if it never does."""
     left: dict[str, ChildEndings] = {}
     for condition in rule.when:
         known = left.get(condition.child) or every.get(condition.child, {})
@@ -359,29 +377,30 @@ def _given(every: Mapping[str, ChildEndings], rule: OutcomeRule) -> dict[str, Ch
     return left
 
 
-def _otherwise(
+def _left_by_no_rule(
     every: Mapping[str, ChildEndings], rules: tuple[OutcomeRule, ...]
 ) -> dict[str, ChildEndings] | None:
-    """The outcomes left to children when no rule matches; None where one always does.
+    """The outcomes that children can have when no rule matches; None if a rule always matches.
 
-    A rule with one condition that is not certain, beside others that are, shows an outcome that
-    the child did not have. Rules say more together than that; what is left out here is safe.
+    If all conditions of a rule but one surely hold and the rule does not match, the child of that
+    condition has not ended with its outcome. Several rules together can exclude more outcomes; to
+    exclude fewer is sound.
     """
     left: dict[str, ChildEndings] = {}
     conditions = [{(each.child, each.outcome) for each in rule.when} for rule in rules if rule.when]
     for _ in range(MOST_ROUNDS):
         before = sum(map(len, left.values())), len(left)
         for pairs in conditions:
-            unsure = [
+            open_ = [
                 (child, outcome)
                 for child, outcome in pairs
                 if (left.get(child) or every.get(child, {})).keys() != {outcome}
             ]
-            if not unsure:
+            if not open_:
                 return None
-            child, outcome = unsure[0]
+            child, outcome = open_[0]
             known = left.get(child) or every.get(child, {})
-            if len(unsure) == 1 and outcome in known:
+            if len(open_) == 1 and outcome in known:
                 left[child] = {name: each for name, each in known.items() if name != outcome}
         if before == (sum(map(len, left.values())), len(left)):
             break

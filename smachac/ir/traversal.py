@@ -1,5 +1,5 @@
-"""Traversal of the state graph: nodes with their paths, in the order of the script; facts about one
-node."""
+"""Traversal of the state graph: nodes with their paths, and the outcomes, expressions and remapped
+keys of one node. All in the order of the script."""
 
 from __future__ import annotations
 
@@ -54,26 +54,30 @@ def own_outcomes(node: Node) -> tuple[str, ...]:
 
 
 def ends_preempted(node: Node) -> bool:
-    """Whether a node is a time limit, a retry or a loop: it ends as `preempted` after a request to
-    stop, whatever its state answers (docs/semantics.md, Preemption)."""
+    """Whether a node is the container of a `timeout`, `retry` or `for_each`.
+
+    After a request to stop, such a container ends with `preempted`, whatever the outcome of its
+    state is (docs/semantics.md, Preemption).
+    """
     return isinstance(node, Concurrence | IteratorNode) and node.sugar != ""
 
 
 def leads_to_child(transition: Transition, children: frozenset[str]) -> bool:
-    """Whether a transition leads to a sibling, not out of the container (see Transition)."""
+    """Whether a transition leads to one of `children`, not out of their container (see
+    Transition)."""
     return transition.origin != "implicit" and transition.target in children
 
 
 def expressions(node: Node) -> Iterator[Expression]:
     """The expressions in the values of one node, in the order of the script."""
-    for held in node.variables if isinstance(node, Leaf) else node.userdata:
-        yield from expressions_in(held.value.data)
+    for entry in node.variables if isinstance(node, Leaf) else node.userdata:
+        yield from expressions_in(entry.value.data)
     if isinstance(node, IteratorNode) and node.items is not None:
         yield from expressions_in(node.items.data)
 
 
 def expressions_in(data: Data) -> Iterator[Expression]:
-    """The code in a value, in the order of the script."""
+    """The expressions in a value, in the order of the script."""
     match data:
         case Expression():
             yield data
@@ -86,5 +90,5 @@ def expressions_in(data: Data) -> Iterator[Expression]:
 
 
 def remapping(node: Node) -> dict[str, str]:
-    """The remapped keys of a node: its key, and the key of the container."""
+    """The remapped keys of a node: from its own name of the key to the name in its container."""
     return {remap.key: remap.to for remap in node.remaps}
