@@ -307,7 +307,7 @@ def _machine(
         run.fail("no-target", path, f"has no state `{name}` to start with", node.span)
     while inside:
         child, previous, here = transition_tables.children[name], here, f"{path}/{name}"
-        run.preemption.before_next(path, previous, here)
+        run.preemption.before_state(path, previous, here)
         run.preemption.running[path] = [here]
         outcome = yield from run.visit(child, here, own)
         if outcome is None:
@@ -324,7 +324,7 @@ def _machine(
             run.fail("no-target", here, message, child.span)
         to = f"{path}/{name}" if inside else f"{path}:{name}"
         run.emit("transition", here, outcome=outcome, to=to)
-    run.preemption.after_last(path, here or path)
+    run.preemption.after_machine(path, here or path)
     return name
 
 
@@ -390,7 +390,7 @@ def _concurrence(
                 for other in live:
                     run.preemption.request(other)
     stopped = node.sugar and path in run.preemption.requested
-    run.preemption.after_all(path, children)
+    run.preemption.after_concurrence(path, children)
     for end in ended.values():
         if isinstance(end, RunFailure):
             raise RunError(end)

@@ -9,11 +9,11 @@ from dataclasses import dataclass, field
 
 @dataclass(slots=True)
 class Preemption:
-    """The paths of the states that have received a request to stop and have not served it.
+    """The requests to stop in one run. Every state is given by its path.
 
-    `running` holds the children of each running container that have not ended. `wake` holds
-    functions that resume waiting branches. `on_request` is called for every request that reaches a
-    state.
+    `requested`: the states that have received a request and have not served it. `running`: for each
+    running container, its children that have not ended. `wake`: for each waiting state, the
+    function that resumes it. `on_request` is called for every request that reaches a state.
     """
 
     on_request: Callable[[str], None]
@@ -33,21 +33,25 @@ class Preemption:
             pending.extend(reversed(self.running.get(here, ())))
 
     def pass_on(self, path: str, children: Iterable[str]) -> None:
-        """Pass an unserved request of a container on to those of its states that have none."""
+        """Pass an unserved request of a container on to those of `children` that have none."""
         if path in self.requested:
             for child in children:
                 if child not in self.requested:
                     self.request(child)
 
     def recall(self, path: str) -> None:
-        """Withdraw the requests of a state and of all states below it."""
+        """Recall (take back) the requests of a state and of all states below it."""
         below = path + "/"
-        self.requested -= {one for one in self.requested if one == path or one.startswith(below)}
+        self.requested -= {
+            each for each in self.requested if each == path or each.startswith(below)
+        }
 
-    def before_next(self, path: str, previous: str | None, child: str) -> None:
-        """Pass an unserved request on to the next state of a machine.
+    def before_state(self, path: str, previous: str | None, child: str) -> None:
+        """Entry of a state of a machine: an unserved request of the machine is passed on to it.
 
-        The request of the previous state is withdrawn, but not those of states below it.
+        `previous` is the state that ran before it; if that has served its request, the request of
+        the machine is served too. Otherwise the request of `previous` is recalled, but not those of
+        states below it.
         """
         if path not in self.requested:
             return
@@ -58,20 +62,20 @@ class Preemption:
             self.requested.discard(previous)
         self.request(child)
 
-    def after_last(self, path: str, last: str) -> None:
-        """End of a machine: its request counts as served if its last state has served it."""
+    def after_machine(self, path: str, last: str) -> None:
+        """End of a machine: its request counts as served if its last state has none."""
         self.running.pop(path, None)
         if last not in self.requested:
             self.requested.discard(path)
 
-    def after_all(self, path: str, children: Collection[str]) -> None:
-        """End of a concurrence: its request counts as served if every child has served it.
+    def after_concurrence(self, path: str, children: Collection[str]) -> None:
+        """End of a concurrence: its request counts as served if none of its children has one.
 
-        Unserved requests of the children are withdrawn; otherwise they would stop a later visit.
+        Unserved requests of the children are recalled: they would stop a later run of the children.
         """
         self.running.pop(path, None)
-        held = [child for child in children if child in self.requested]
-        for child in held:
+        unserved = [child for child in children if child in self.requested]
+        for child in unserved:
             self.recall(child)
-        if not held:
+        if not unserved:
             self.requested.discard(path)
