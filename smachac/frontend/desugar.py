@@ -2,7 +2,8 @@
 
 A time limit is a concurrence with a timer; retries and `for_each` are iterators. The container has
 the state's name, interface and transitions; the state is inside, under the same name. The container
-has the outcome `preempted` too: it ends so after a request to stop (docs/semantics.md, Preemption).
+also has the outcome `preempted`, with which it ends after a request to stop (docs/semantics.md,
+Preemption).
 """
 
 from __future__ import annotations
@@ -98,6 +99,9 @@ def _with_outcomes(
 
 
 def _limited(node: Node, limit: Timeout) -> Concurrence:
+    """A state with a time limit: a concurrence with a timer, in which the first to end preempts the
+    other. A rule for each outcome of the state requires that the timer was preempted; otherwise the
+    outcome is `timeout`."""
     timer = _fresh("TIMER", (node.name,))
     own = outcome_names(node)
     rules = tuple(
@@ -126,9 +130,12 @@ def _limited(node: Node, limit: Timeout) -> Concurrence:
 
 
 def _retried(node: Node, retry: Retry) -> Iterator:
+    """A state with retries: an iterator with one item for each try, which continues on the outcomes
+    of `on`. With a delay the item is the pause before the try, in seconds."""
     on = tuple(word.text for word in retry.on)
     own = outcome_names(node)
     keys = tuple(key.name for key in (*node.inputs, *node.outputs))
+    # The item must not hide a key of the state, which uses the keys of the iterator.
     item = _fresh("pause" if retry.delay else "attempt", keys)
     child = _inside(node)
     items: tuple[float, ...] = tuple(range(1, retry.most + 1))
@@ -157,9 +164,10 @@ def _after_pause(node: Node, key: str, on: tuple[str, ...]) -> StateMachine:
     reads = Key(name=key, span=node.span)
     time = Expression(text=f"lambda ud: ud.{key}", span=node.span)
     pause = _pause(name, Value(data=time, span=node.span), node, (reads,))
-    way_out = next(name for name in (PREEMPTED, *on, *own) if name in own)
-    edges = (("succeeded", node.name), (PREEMPTED, way_out))
-    leads = tuple(
+    # A stopped pause ends the try with an outcome that the state itself has.
+    end = next(name for name in (PREEMPTED, *on, *own) if name in own)
+    edges = (("succeeded", node.name), (PREEMPTED, end))
+    entry = tuple(
         Transition(outcome=outcome, target=target, span=node.span, target_span=node.span)
         for outcome, target in edges
     )
@@ -173,7 +181,7 @@ def _after_pause(node: Node, key: str, on: tuple[str, ...]) -> StateMachine:
         outcomes=node.outcomes,
         inputs=(*node.inputs, reads),
         outputs=node.outputs,
-        children=(replace(pause, transitions=leads), replace(node, transitions=exits)),
+        children=(replace(pause, transitions=entry), replace(node, transitions=exits)),
         initial=name,
         initial_span=node.span,
         span=node.span,
@@ -182,6 +190,8 @@ def _after_pause(node: Node, key: str, on: tuple[str, ...]) -> StateMachine:
 
 
 def _repeated(node: Node, loop: ForEach) -> Iterator:
+    """A state with `for_each`: an iterator over its items, which continues on the outcomes of `on`
+    (without `on`: on the first success), and ends with the first of them after the last item."""
     own = outcome_names(node)
     good = tuple(name for name in own if name in GOOD_OUTCOMES)[:1]
     on = tuple(word.text for word in loop.on) or good or own[:1]

@@ -10,7 +10,7 @@ from collections.abc import Sequence
 from dataclasses import dataclass, field, replace
 from typing import Literal
 
-from smachac.diagnostics.diagnostic import Related, Report
+from smachac.diagnostics.diagnostic import Diagnostic, Related, Report
 from smachac.diagnostics.source import Source, Span, Word
 from smachac.frontend import schema
 from smachac.frontend.errors.references import (
@@ -50,8 +50,10 @@ from smachac.frontend.yaml_tree import Entry, Map, Scalar, Seq, Tree, known_wron
 from smachac.ir.nodes import Preset, StateType
 
 MAX_STATES = 1_000_000
+"""The most states of a script with its sub-scripts."""
+
 MAX_NESTED = 1_000
-"""The most states of a script with its sub-scripts, and the most levels of containers."""
+"""The most levels of containers in containers."""
 
 MAX_KEYS, MAX_KEYS_BY_STATE = 20_000, 10
 """The most userdata values of a script: a fixed part and a part for each state. One takes 3 kB of
@@ -65,11 +67,11 @@ SUB_SCRIPT_HELP = "write one state: `- NAME: {template: ...}`"
 
 @dataclass(frozen=True, slots=True)
 class _Environment:
-    """What surrounds a state: its source, the params in scope, the calls of sub-scripts, outermost
-    first, and the number of containers.
+    """The surroundings of a state: the source of its text and the params in scope.
 
-    `inner` is the name of the state in the sub-script, if one is called; `iterated`: it is the
-    state of an Iterator.
+    `calls`: the sub-scripts that are called around it, with the spans of the calls, outermost
+    first. `depth`: the number of containers around it. `inner`: if the state calls a sub-script,
+    the name of the state in that. `iterated`: it is the state of an Iterator.
     """
 
     source: Source
@@ -81,6 +83,7 @@ class _Environment:
 
     @property
     def via(self) -> tuple[Span, ...]:
+        """The spans of the calls."""
         return tuple(span for _, span in self.calls)
 
 
@@ -107,7 +110,10 @@ def resolve(source: Source, tree: Tree | None, library: Library, report: Report)
 
 
 class _Resolver:
-    """The state of one run: the library, the report, and all that was read so far."""
+    """One run of `resolve`: the library, the report, and what was read so far.
+
+    `count` is the number of states, `looked_up` the number of nodes that look-ups have added.
+    """
 
     def __init__(self, library: Library, report: Report) -> None:
         self.library = library
@@ -123,6 +129,7 @@ class _Resolver:
         self.uses = Uses()
 
     def script(self, source: Source, tree: Map) -> Script:
+        """The script of a tree: its outermost state machine, with the robot and the types."""
         self.sources[source] = None
         self.main = source.name
         begin = self.uses.mark(self.report)
@@ -131,8 +138,9 @@ class _Resolver:
             self.aliases = read_aliases(entries["types"].value, self.report)
         start = tree.entries[0].key.span if tree.entries else tree.span
         base = self.state(Word("sm", start), entries, _Environment(source), "base", begin)
-        is_read = base.robot is not None or "robot" not in entries
-        robot = robot_of(base, source, self.library, self.report) if is_read else None
+        # A `robot` of a wrong shape was reported; the default robot must not replace it.
+        is_wrong = base.robot is None and "robot" in entries
+        robot = None if is_wrong else robot_of(base, source, self.library, self.report)
         if "types" in entries:
             self.uses.aliases(entries["types"].value, self.report)
         return Script(
@@ -178,7 +186,7 @@ class _Resolver:
         """The state with these fields. `role` is "base" for the script itself; `begin` is the mark
         of the call, if the state is that of a sub-script."""
         if "params" in own:
-            own["params"] = self.shallow(own["params"])
+            own["params"] = self.limit_depth(own["params"])
         params = own.get("params")
         begin = begin or self.uses.mark(self.report)
         for key, entry in own.items():
@@ -186,7 +194,7 @@ class _Resolver:
                 self.uses.value(key, entry.value)
         scope = child_scope(around.scope, params.value if params else None, self.report)
         entries = {
-            key: entry if key in ("params", "states") else self.filled(key, entry, scope)
+            key: entry if key in ("params", "states") else self.fill(key, entry, scope)
             for key, entry in own.items()
         }
         type_, owner = self.type_of(name, entries, role, around)
@@ -214,27 +222,23 @@ class _Resolver:
             children = self.children(entries["states"].value, owner, inside)
         self.uses.params(params, begin, self.report, around.via)
         if around.iterated and "remapping" in entries:
-            span = entries["remapping"].key.span
-            message = (
-                "the state of an Iterator cannot have a remapping: it uses the Iterator's keys"
-            )
-            help = "rename the keys, or put the state into a StateMachine and remap there"
-            arguments = ("remapping",)
-            self.report.append(wrong_shape(span, message, help, arguments=arguments))
+            self.report.append(_remapping_in_iterator(entries["remapping"].key.span))
         return State(owner=owner, type=type_, via=around.via, states=children, **fields)
 
-    def filled(self, key: str, entry: Entry, scope: Scope) -> Entry:
+    def fill(self, key: str, entry: Entry, scope: Scope) -> Entry:
+        """The field with values in place of its look-ups and aliases of types."""
         if is_flat(entry.value):
             return typed(key, entry, self.aliases, self.report)
         row = schema.VARIABLES.get(key)
         names = row is not None and row.shape in ("names", "keys")
-        entry = self.shallow(entry)
+        entry = self.limit_depth(entry)
         new = fill_in(entry.value, scope, self.report, names=names)
-        filled = entry if new is entry.value else self.shallow(self.small(entry, new))
+        filled = entry if new is entry.value else self.limit_depth(self.limit_size(entry, new))
         return typed(key, filled, self.aliases, self.report)
 
-    def small(self, entry: Entry, new: Tree) -> Entry:
-        """The entry with a new value, unless the limit of look-ups is exceeded."""
+    def limit_size(self, entry: Entry, new: Tree) -> Entry:
+        """The field with its value after the look-ups; too many added nodes are reported and
+        dropped."""
         limit = MAX_FILLED + MAX_FILLED_BY_STATE * self.count
         room = limit - self.looked_up
         own = size_up_to(entry.value, room)
@@ -247,8 +251,8 @@ class _Resolver:
         self.looked_up += max(0, grown)
         return Entry(entry.key, new)
 
-    def shallow(self, entry: Entry) -> Entry:
-        """The entry; a value that is nested too deeply is reported and replaced."""
+    def limit_depth(self, entry: Entry) -> Entry:
+        """The field; a value that is nested too deeply is reported and dropped."""
         if not is_too_deep(entry.value):
             return entry
         span = Span(entry.value.span.source, entry.value.span.start, entry.value.span.start + 1)
@@ -258,7 +262,7 @@ class _Resolver:
         return Entry(entry.key, known_wrong(span))
 
     def children(self, tree: Tree, owner: FieldOwner, around: _Environment) -> tuple[State, ...]:
-        """The states of a list. An Iterator has one, which sees the Iterator's keys as they are."""
+        """The states of a list. An Iterator has one, which uses the keys of the Iterator."""
         if not isinstance(tree, Seq):
             wrong(tree, "states", self.report)
             return ()
@@ -282,7 +286,8 @@ class _Resolver:
         return tuple(found)
 
     def item(self, tree: Tree, around: _Environment) -> State | None:
-        """The state of one item of a list: `- NAME: {...}`, or `- NAME:` with fields beside."""
+        """The state of one item of a list: `- NAME: {...}`, or `- NAME:` with its fields as further
+        keys of the item, as in SMACHA."""
         if not isinstance(tree, Map) or not tree.entries:
             wrong(tree, "state", self.report)
             return None
@@ -295,8 +300,8 @@ class _Resolver:
             return self.called(name, self.expand(rest), around)
         if nothing or not isinstance(first.value, Map):
             found = kind_of(first.value)
-            message = f"the state `{name.text}` must be a mapping of variables, not {found}"
-            message = f"the state `{name.text}` is empty" if nothing else message
+            fault = "is empty" if nothing else f"must be a mapping of variables, not {found}"
+            message = f"the state `{name.text}` {fault}"
             help = f"write `- {name.text}: {{template: ...}}`"
             arguments = ("variables", name.text, found)
             self.report.append(wrong_shape(name.span, message, help, arguments=arguments))
@@ -316,7 +321,8 @@ class _Resolver:
         return self.called(name, self.expand(first.value.entries), around)
 
     def called(self, name: Word, own: dict[str, Entry], around: _Environment) -> State:
-        """The state or, if it calls a sub-script, the state of that with the fields of the call."""
+        """The state or, if it calls a sub-script, the state of that sub-script with the fields of
+        the call."""
         begin = self.uses.mark(self.report)
         while "script" in own:
             entry = own.pop("script")
@@ -362,14 +368,13 @@ class _Resolver:
         self.sources.setdefault(source)
         if tree is None:
             if not broken:
-                found_at = bad_sub_script(
-                    Span(source, 0, 0), "the sub-script is empty", word.span, SUB_SCRIPT_HELP,
-                    arguments=("empty",),
-                )  # fmt: skip
-                self.report.append(found_at)
+                start, message = Span(source, 0, 0), "the sub-script is empty"
+                self.report.append(
+                    bad_sub_script(start, message, word.span, SUB_SCRIPT_HELP, arguments=("empty",))
+                )
             return None
-        found_state = sub_script_state(tree, word, self.report)
-        return None if found_state is None else (source, *found_state)
+        state = sub_script_state(tree, word, self.report)
+        return None if state is None else (source, *state)
 
     def known_templates(self) -> tuple[Sequence[str], Sequence[str]]:
         """The folders of templates and the names in them, for messages."""
@@ -392,11 +397,11 @@ class _Resolver:
         if entry is None and role == "base":
             word = Word("Base", name.span)
         if entry is None and role != "base":
-            held = around.inner or name
+            shown = around.inner or name
             calls = around.via if around.inner is not None else ()
             related = tuple(Related(span=each, message=CALLED_HERE) for each in calls)
-            owner = Owner(held.text, f"`{held.text}`")
-            self.report.append(missing_variable(held.span, "template", owner, related))
+            owner = Owner(shown.text, f"`{shown.text}`")
+            self.report.append(missing_variable(shown.span, "template", owner, related))
         nested: FieldOwner = "StateMachine" if "states" in entries else "state"
         if word is None or not word.text:
             return StateType(name="", open=True), role or nested
@@ -414,8 +419,15 @@ class _Resolver:
         return found, role or ("StateMachine" if is_container else nested)
 
 
+def _remapping_in_iterator(span: Span) -> Diagnostic:
+    """SM004 for a remapping of the state of an Iterator."""
+    message = "the state of an Iterator cannot have a remapping: it uses the Iterator's keys"
+    help = "rename the keys, or put the state into a StateMachine and remap there"
+    return wrong_shape(span, message, help, arguments=("remapping",))
+
+
 def _unknown(name: Word, transitions: Pairs, around: _Environment) -> State:
-    """The state for one that cannot be read: only its name and its transitions are known."""
+    """A state that cannot be read: only its name and its transitions are known."""
     type_ = StateType(name="", open=True)
     return State(name=name, owner="state", type=type_, transitions=transitions, via=around.via)
 
@@ -426,6 +438,7 @@ def sub_script_state(
     """The name and the fields of the one state of a sub-script; SM014 if it is not one state."""
 
     def refuse(at: Span, fault: str, message: str, help: str = SUB_SCRIPT_HELP) -> None:
+        """SM014; `fault` is the word for the fault among the arguments."""
         report.append(bad_sub_script(at, message, call.span, help, arguments=(fault,)))
 
     start = Span(tree.span.source, tree.span.start, tree.span.start + 1)
