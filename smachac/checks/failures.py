@@ -77,31 +77,35 @@ def masked_failure(context: Context) -> Iterator[Finding]:
 
 
 def _masked(context: Context, each: Judged) -> Iterator[Finding]:
-    """The failures that the default outcome and each rule with a success hide."""
+    """The failures that the default outcome hides, and those that each rule for a success hides."""
     read, node = each.read, each.read.node
     spaces = each.calm
     if not any(read.failures(*ends) for space, _ in spaces for ends in space.items()):
         return
     good = _good_results(read, [space for space, _ in spaces])
     if node.default_outcome in good:
-        hidden = _hidden(read, spaces, {}, read.rules.all)
+        hidden = _hidden_failures(read, spaces, {}, read.rules.all)
         help = "use an outcome of failure as default outcome, and write a rule for each success"
-        yield from _masks(context, each, node.default_outcome, node.default_span, {}, hidden, help)
+        yield from _masked_finding(
+            context, each, node.default_outcome, node.default_span, {}, hidden, help
+        )
     for number, entry in enumerate(read.written):
         if entry.outcome in good:
             given = read.rules.conditions[number]
             rivals = read.rules.larger_than(len(given) - 1) & ~(1 << number)
-            hidden = _hidden(read, spaces, given, rivals)
+            hidden = _hidden_failures(read, spaces, given, rivals)
             help = f"list every branch in the rule for `{entry.outcome}`"
-            yield from _masks(context, each, entry.outcome, entry.span, given, hidden, help)
+            yield from _masked_finding(
+                context, each, entry.outcome, entry.span, given, hidden, help
+            )
 
 
 def _good_results(read: Study, spaces: list[Space]) -> frozenset[str]:
-    """The outcomes of a concurrence that mean success."""
+    """The outcomes of a concurrence that are successes, as SM404 defines them."""
     node = read.node
     found = set(successes(outcome_names(node)))
     results: set[str] = set()
-    for space in (_good_part(read, each) for each in spaces):
+    for space in (_unfailed_outcomes(read, each) for each in spaces):
         if read.rules.find(space, {}, read.rules.all) is not None:
             results.add(node.default_outcome)
         for number, entry in enumerate(read.written):
@@ -111,15 +115,17 @@ def _good_results(read: Study, spaces: list[Space]) -> frozenset[str]:
     if len(results) == 1:
         found |= results
     leads = {step.outcome: step.target for step in node.transitions}
-    return frozenset(name for name in found if not (_bad(name) or _bad(leads.get(name, ""))))
+    return frozenset(name for name in found if not (_is_bad(name) or _is_bad(leads.get(name, ""))))
 
 
-def _bad(name: str) -> bool:
+def _is_bad(name: str) -> bool:
+    """Whether an outcome is one of failure, or `preempted`."""
     return is_failure(name) or name == PREEMPTED
 
 
-def _good_part(read: Study, space: Space) -> Space:
-    """The outcomes of success of each child; the neutral ones where it has none."""
+def _unfailed_outcomes(read: Study, space: Space) -> Space:
+    """The outcomes of each child when nothing fails: those of success; of a child without any, the
+    neutral ones, and without these `preempted`."""
     found: Space = {}
     for name, ends in space.items():
         good = tuple(end for end in ends if end.lower() in SUCCESSES | GOOD)
@@ -129,11 +135,15 @@ def _good_part(read: Study, space: Space) -> Space:
     return found
 
 
-def _hidden(
+def _hidden_failures(
     read: Study, spaces: list[tuple[Space, str]], given: Combination, avoided: int
 ) -> dict[str, Combination]:
-    """The children that may have failed and that the deciding rule does not list, each with a
-    combination of outcomes in which that rule decides."""
+    """The children that can have failed although a rule without them decides the outcome, each with
+    a combination of outcomes in which that rule decides.
+
+    `given` are the conditions of the rule, none for the default outcome; `avoided` are the rules,
+    as bits, that must not match because they would win.
+    """
     found: dict[str, Combination] = {}
     for space, first in spaces:
         for child in [first] if first else space:
@@ -141,14 +151,14 @@ def _hidden(
                 continue
             for end in read.failures(child, space[child]):
                 fixed = {**given, child: end}
-                whole = read.rules.find(space, fixed, avoided)
-                if whole is not None:
-                    found[child] = read.rules.shown(whole, fixed, avoided)
+                combination = read.rules.find(space, fixed, avoided)
+                if combination is not None:
+                    found[child] = read.rules.shown(combination, fixed, avoided)
                     break
     return found
 
 
-def _masks(
+def _masked_finding(
     context: Context,
     each: Judged,
     outcome: str,
@@ -157,6 +167,7 @@ def _masks(
     hidden: dict[str, Combination],
     help: str,
 ) -> Iterator[Finding]:
+    """SM404 for an outcome that hides failures of children; nothing if it hides none."""
     if not hidden:
         return
     node = each.read.node
@@ -180,13 +191,13 @@ def _masks(
             *other_place(failed.span, f"this state ends with `{shown[child]}`"),
             *calls(node, span),
         ),
-        path=_onwards(context, each.path, node, step) if step else (),
+        path=_exit_steps(context, each.path, node, step) if step else (),
         node=each.path,
     )
 
 
-def _onwards(context: Context, path: str, node: Node, step: Transition) -> tuple[PathStep, ...]:
-    """The steps of a witness path: a state, its outcome, and the target of its transition."""
+def _exit_steps(context: Context, path: str, node: Node, step: Transition) -> tuple[PathStep, ...]:
+    """The path in a finding: a state, its outcome, and the target of its transition."""
     beside: str | None = f"{path.removesuffix(node.name)}{step.target}"
     if step.origin == "implicit" or beside not in context.spans:
         beside = None
@@ -277,34 +288,35 @@ def _propagations(
     propagated: Mapping[_Ending, _Propagation | None],
 ) -> Iterator[_Propagation]:
     """The outcomes of a child with which the machine ends with a success."""
-    ways: list[tuple[str, str, Span]] = []
+    exits: list[tuple[str, str, Span]] = []
     match container:
         case StateMachine() | Sequence():
             steps = (step for step in child.transitions if not leads_to_child(step, names))
-            ways = [(step.outcome, step.target, step.span) for step in steps]
+            exits = [(step.outcome, step.target, step.span) for step in steps]
         case nodes.Iterator():
             ends = (end for end in outcome_names(child) if end not in container.loop_outcomes)
             final = dict(container.final_map)
-            ways = [(end, final.get(end, end), container.span) for end in ends]
+            exits = [(end, final.get(end, end), container.span) for end in ends]
         case Concurrence(sugar="timeout"):
             inner = outcome_names(child) if child.name == container.name else ()
-            ways = [(end, end, container.span) for end in inner]
-    for outcome, target, span in ways:
+            exits = [(end, end, container.span) for end in inner]
+    for outcome, target, span in exits:
         if (path, target) in propagated:
             then = propagated[path, target]
-            called_good = target.lower() in SUCCESSES | GOOD
-            masking = None if called_good or then is None else then.masking or then
+            is_named_success = target.lower() in SUCCESSES | GOOD
+            masking = None if is_named_success or then is None else then.masking or then
             yield _Propagation(f"{path}/{child.name}", child, outcome, target, masking, span, then)
 
 
 def _unhandled_failure(root: StateMachine, found: list[_Propagation]) -> Finding:
+    """SM206 for the failures that one step masks."""
     first = found[0]
     masking = first.masking or first
-    way: list[PathStep] = []
+    witness: list[PathStep] = []
     end = ""
     step: _Propagation | None = first
-    while step is not None and len(way) < 2 * MOST_STEPS:
-        way += [entered(step.node.name, step.path), ended(step.outcome)]
+    while step is not None and len(witness) < 2 * MOST_STEPS:
+        witness += [entered(step.node.name, step.path), ended(step.outcome)]
         end, step = step.target, step.then
     others = [each.node.name for each in found[1:]]
     also = f"; failures of {listed(others)} are hidden too" if others else ""
@@ -322,6 +334,6 @@ def _unhandled_failure(root: StateMachine, found: list[_Propagation]) -> Finding
             *(other_place(first.node.span, "this state fails") if masking is not first else ()),
             *calls(masking.node, masking.span),
         ),
-        path=(*way, entered(end, None)),
+        path=(*witness, entered(end, None)),
         node=masking.path,
     )
