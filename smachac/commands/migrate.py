@@ -260,7 +260,7 @@ def _syntax_fault(source: Source) -> Diagnostic | None:
 
     name = Path(source.name).name
     try:
-        Blocks({name: source}.get).parsed(name)
+        Blocks({name: source}.get).check_syntax(name)
     except BlockError as error:
         return error.diagnostic
     return None

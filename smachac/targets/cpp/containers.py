@@ -50,7 +50,7 @@ omit the range check."""
 
 NO_OUTCOME = "run.no_outcome(places, state);"
 """The statement after the switch over the outcomes: the state has ended with none of them (a number
-cast to an outcome). It never returns, so that the compiler need not keep what a next turn needs."""
+cast to an outcome). It never returns, so the compiler keeps no values for a next turn after it."""
 
 CAUGHT = "run.caught(places, state);"
 """The statement for an exception that is an outcome of the state."""
@@ -168,7 +168,7 @@ def execute(plan: ContainerPlan) -> Lines:
             body = _machine(plan, node)
         case _:
             assert_never(node)
-    # A container is run from one place only: if it is small, its caller takes it in.
+    # A container has one call only: a small one is inlined there.
     small = len(list(islice(walk(plan.node), MOST_STATES + 1))) <= MOST_STATES
     inline = "[[gnu::always_inline]] inline" if small else "inline"
     return [

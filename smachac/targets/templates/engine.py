@@ -66,7 +66,8 @@ class Blocks:
         self._environment.add_tests(tests or {})
 
     def source(self, file: str) -> Source | None:
-        """The text of a template, read once. `X.tpl` and `X.tpl.py` stand in for one another."""
+        """The text of a template, read once. If there is no `X.tpl`, `X.tpl.py` is used, and the
+        reverse."""
         if file not in self._sources:
             other = file.removesuffix(".py") if file.endswith(".tpl.py") else f"{file}.py"
             found = self._find(file)
@@ -75,19 +76,20 @@ class Blocks:
             self._sources[file] = found
         return self._sources[file]
 
-    def parsed(self, file: str) -> None:
-        """Raises BlockError where a template cannot be parsed."""
-        with self._located(file):
+    def check_syntax(self, file: str) -> None:
+        """Raises BlockError if a template cannot be parsed."""
+        with self._converting(file):
             self._environment.get_template(file)
 
     def names(self, file: str) -> frozenset[str]:
-        """The blocks that a template, those it extends and those it includes have."""
-        with self._located(file):
+        """The names of the blocks of a template, and of those that it extends or includes."""
+        with self._converting(file):
             return self._all_names(file, frozenset())
 
     def page(self, file: str, variables: Mapping[str, object]) -> Page:
-        """A template with the variables of one state. Raises BlockError."""
-        with self._located(file):
+        """A template with the variables of one state, ready to render its blocks. Raises
+        BlockError."""
+        with self._converting(file):
             self._environment.meter.begin([*variables.values()])
             return Page(self, file, variables)
 
@@ -97,7 +99,7 @@ class Blocks:
 
     def render_whole(self, file: str, variables: Mapping[str, object]) -> str:
         """A whole template, without the space around it. Raises BlockError."""
-        with self._located(file):
+        with self._converting(file):
             self._environment.meter.begin([*variables.values()])
             template = self._chain(file)[0]
             context = template.new_context(dict(variables))
@@ -106,7 +108,7 @@ class Blocks:
             return "".join(template.root_render_func(context)).strip()
 
     def block_span(self, file: str, block: str) -> Span | None:
-        """Where a block begins, in the template or in one that it extends."""
+        """The place where a block begins, in the template or in one that it extends."""
         opening = re.compile(rf"\{{%[-+]?\s*block\s+{re.escape(block)}\b")
         for template in self._chain(file):
             source = self.source(str(template.name))
@@ -116,7 +118,7 @@ class Blocks:
         return None
 
     def line_span(self, file: str, line: str) -> Span | None:
-        """Where a line of output stands in a template, or in one that it extends."""
+        """The line of a template, or of one that it extends, that is equal to a line of output."""
         for template in self._chain(file):
             source = self.source(str(template.name))
             for number, start in enumerate(source.line_starts if source else (), start=1):
@@ -144,6 +146,7 @@ class Blocks:
         return self._chains[file]
 
     def _parent(self, file: str) -> str | None:
+        """The template that a template extends, if its name is constant."""
         from jinja2 import nodes
 
         for found in self._tree(file, "extends").find_all(nodes.Extends):
@@ -152,7 +155,7 @@ class Blocks:
         return None
 
     def _tree(self, file: str, word: str) -> nodes.Template:
-        """The tree of a template that has a word in it; else an empty one."""
+        """The tree of a template; an empty one, to save time, if its text does not have a word."""
         from jinja2 import Environment, nodes
 
         source = self.source(file)
@@ -161,6 +164,7 @@ class Blocks:
         return Environment._parse(self._environment, source.text, file, file)
 
     def _all_names(self, file: str, seen: frozenset[str]) -> frozenset[str]:
+        """`names` with the exceptions of Jinja; `seen` are the templates that include this one."""
         if file in seen:
             raise RecursionError(f"`{file}` includes itself")
         if file not in self._names:
@@ -174,7 +178,7 @@ class Blocks:
         return self._names[file]
 
     def _include(self, names: Any, context: JinjaContext, may_be_missing: bool) -> str:
-        """The text of `{% include %}`: the present block of the included template."""
+        """The text of `{% include %}`: of the included template, the block that is rendered."""
         from jinja2 import TemplateNotFound
 
         files = [names] if isinstance(names, str) else [str(name) for name in names]
@@ -193,15 +197,16 @@ class Blocks:
             return ""
         return Page(self, file, context.get_all(), page.target).text(page.target)
 
-    def _located(self, file: str) -> _Located:
-        return _Located(self, file)
+    def _converting(self, file: str) -> _ErrorConverter:
+        """The `with` block in which exceptions of Jinja become a BlockError."""
+        return _ErrorConverter(self, file)
 
 
 class Page:
-    """A template with variables: its blocks, its own and those of what it includes.
+    """A template with variables: its own blocks, and those of the templates that it includes.
 
-    `target` is the block that is being rendered. The top level has been run for its imports, `set`s
-    and includes; its text is dropped.
+    `target` is the block that is being rendered. The top level of the template has been run for its
+    imports, its `set` statements and its includes; the text of the top level is not used.
     """
 
     def __init__(
@@ -234,12 +239,12 @@ class Page:
 
     def render(self, block: str, *, alone: bool = False) -> str:
         """One block, without the line ends around it. Raises BlockError."""
-        with self.blocks._located(self.file):
+        with self.blocks._converting(self.file):
             return self.text(block, alone=alone).strip("\n").rstrip()
 
     def text(self, block: str, *, alone: bool = False) -> str:
-        """The block in the templates included at the top level, then in this template; of `body`,
-        which adds the state, only one."""
+        """One block: its text in the templates included at the top level, then its text in this
+        template. A `body` adds the state to its container: the own `body` replaces the others."""
         parts = []
         if not alone and (block != "body" or block not in self.own):
             parts = [page.text(block) for page in self.inner if block in page.names]
@@ -257,6 +262,7 @@ _HAS_TOP_LEVEL = re.compile(r"\{%[-+]?\s*(?:set|import|from|do|macro|include)\b"
 
 
 def _nothing(context: JinjaContext) -> Iterator[str]:
+    """The function of an empty block."""
     return iter(())
 
 
@@ -266,7 +272,7 @@ def _text(blocks: Blocks, template: Template) -> str:
 
 
 def _included(tree: nodes.Template) -> Iterator[str]:
-    """The templates that a template includes outside of its blocks."""
+    """The names of the templates that a template includes outside of its blocks."""
     from jinja2 import nodes
 
     todo: list[nodes.Node] = [tree]
@@ -279,8 +285,9 @@ def _included(tree: nodes.Template) -> Iterator[str]:
             todo.extend(node.iter_child_nodes())
 
 
-class _Located:
-    """Converts exceptions of Jinja to a BlockError with the line of the template."""
+class _ErrorConverter:
+    """A `with` block that converts exceptions of Jinja to a BlockError with the line of the
+    template."""
 
     def __init__(self, blocks: Blocks, file: str) -> None:
         self.blocks = blocks
@@ -293,7 +300,7 @@ class _Located:
         if error is None or isinstance(error, BlockError) or not isinstance(error, Exception):
             return
         span = self._place(error, trace)
-        message, help = _words(error)
+        message, help = _message_and_help(error)
         name = getattr(error, "undefined_name", None)
         names = (message,) if name is None else ("undefined", name)
         raise BlockError(template_error(span, message, help, names)) from error
@@ -319,21 +326,21 @@ class _Located:
         return Span(source, start, start + len(source.line(line)))
 
 
-def _words(error: Exception) -> tuple[str, str | None]:
+def _message_and_help(error: Exception) -> tuple[str, str | None]:
     """Message and help for an exception; some messages of Jinja are replaced by clearer ones."""
     from jinja2 import TemplateNotFound
     from jinja2.exceptions import SecurityError
 
-    words = getattr(error, "message", None) or str(error) or type(error).__name__
-    words = words.split(". ")[0].rstrip(".")  # Jinja explains at length
+    text = getattr(error, "message", None) or str(error) or type(error).__name__
+    text = text.split(". ")[0].rstrip(".")  # without the explanations of Jinja
     if isinstance(error, RecursionError):
         return "the template extends, includes or calls itself endlessly", None
     if isinstance(error, MemoryError):
         return "the template needs too much memory", None
     if isinstance(error, TemplateNotFound):
         help = "put the template into one of the template folders"
-        return f"there is no template `{words}`", help
+        return f"there is no template `{text}`", help
     if isinstance(error, SecurityError):
         help = "use the variables of the state: a template has no access to Python itself"
-        return words, help
-    return words, None
+        return text, help
+    return text, None
