@@ -14,7 +14,7 @@ from smachac.diagnostics.source import Source, Span
 from smachac.ir import nodes
 from smachac.ir.leaf import variable_of
 from smachac.ir.nodes import Container, Leaf, Machine, Node
-from smachac.ir.traversal import leads_to_child, remapping
+from smachac.ir.traversal import expressions_in, leads_to_child, remapping
 from smachac.refactor.cst import Atom, Collection, Item
 from smachac.refactor.editor import RefusedError, ScriptEditor, add_entry, variable
 from smachac.refactor.field_order import variables_of
@@ -31,7 +31,8 @@ class Renaming:
         self.editors = editors
         self.added: set[tuple[int, str, str]] = set()
         self.scopes: list[Span] = []
-        """The spans of the first states of the containers in which the key was renamed."""
+        """The spans of the first states of the containers in which the key was renamed: by them the
+        next machine finds its containers."""
 
     def replace_word(self, span: Span) -> None:
         """Replace the old name at a span."""
@@ -130,12 +131,12 @@ def rename_state(renaming: Renaming, machine: Machine, declared: Span) -> None:
         return
     for container in containers_of(machine):
         inside = frozenset(child.name for child in container.children)
-        mine = [child for child in container.children
+        declaring = [child for child in container.children
                 if child.name == renaming.old and same_place(child.span, declared)]  # fmt: skip
-        if not mine:
+        if not declaring:
             continue
         for other in container.children:
-            if other.name == renaming.new and other not in mine:
+            if other.name == renaming.new and other not in declaring:
                 message = f"`{container.name}` already has a state `{renaming.new}`"
                 raise RefusedError(other.span, message, "choose another name")
         if any(outcome.name == renaming.new for outcome in container.outcomes):
@@ -164,15 +165,15 @@ def rename_state(renaming: Renaming, machine: Machine, declared: Span) -> None:
 def rename_outcome(renaming: Renaming, machine: Machine, declared: Span) -> None:
     """Rename the outcome that is declared at a span, and the references to it."""
 
-    def is_mine(node: Node) -> bool:
+    def has_declaration(node: Node) -> bool:
         return any(each.name == renaming.old and same_place(each.span, declared)
                    for each in node.outcomes)  # fmt: skip
 
-    if is_mine(machine.root):
+    if has_declaration(machine.root):
         _rename_in_state(renaming, machine.root)
     for container in containers_of(machine):
         for child in container.children:
-            if not is_mine(child):
+            if not has_declaration(child):
                 continue
             if any(each.name == renaming.new for each in child.outcomes):
                 message = f"`{child.name}` already has an outcome `{renaming.new}`"
@@ -366,7 +367,7 @@ def _rename_in_leaf(renaming: Renaming, leaf: Leaf) -> bool:
         return False
     places = []
     for held in leaf.variables:
-        for code in _expressions(held.value.data):
+        for code in expressions_in(held.value.data):
             found = _attributes(code, renaming.old)
             if found is None:
                 return False
@@ -382,19 +383,6 @@ def _rename_in_leaf(renaming: Renaming, leaf: Leaf) -> bool:
     for atom, editor in _step_words(bodies, leaf, "set"):
         renaming.atom(editor, atom)
     return True
-
-
-def _expressions(data: nodes.Data) -> Iterator[nodes.Expression]:
-    """The expressions in a value."""
-    match data:
-        case nodes.Expression():
-            yield data
-        case nodes.Struct(entries=entries):
-            for _, value in entries:
-                yield from _expressions(value)
-        case tuple():
-            for value in data:
-                yield from _expressions(value)
 
 
 def _attributes(code: nodes.Expression, key: str) -> list[Span] | None:
@@ -413,7 +401,7 @@ def _attributes(code: nodes.Expression, key: str) -> list[Span] | None:
     found = []
     for node in ast.walk(tree):
         match node:
-            case ast.Attribute(value=ast.Name(id=name), attr=attr) if name == owner == name:
+            case ast.Attribute(value=ast.Name(id=name), attr=attr) if name == owner:
                 if attr == key and node.end_col_offset is not None:
                     end = code.span.start + at + node.end_col_offset
                     found.append(Span(code.span.source, end - len(key), end))
