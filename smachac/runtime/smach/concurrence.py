@@ -50,10 +50,11 @@ class Concurrence(Container):
         self._states: dict[str, State] = {}
         self._remappings: dict[str, Mapping[str, str]] = {}
         self._branches: Branches | None = None
-        self._left_flagged = False
+        self._left_flagged = False  # whether a failed run left requests in the children
         self._check_policy()
 
     def _check_policy(self) -> None:
+        """Raise InvalidStateError for an undeclared outcome, or a callback that is no function."""
         if not isinstance(self._default, str) or self._default not in self._outcomes:
             raise InvalidStateError(f"default outcome '{self._default}' is not registered")
         for name in self._outcome_map:
@@ -75,7 +76,7 @@ class Concurrence(Container):
         return state
 
     def check_consistency(self) -> None:
-        """Raise InvalidTransitionError for an outcome in the map that the child lacks.
+        """Raise InvalidTransitionError for an outcome in the map that its child does not have.
 
         Raises KeyError for a label in the map that is no child.
         """
@@ -83,9 +84,11 @@ class Concurrence(Container):
         for name, rule in self._outcome_map.items():
             for label, outcome in rule.items():
                 if outcome not in self._states[label].get_registered_outcomes():
-                    faults.append(f"'{name}' asks for '{label}':'{outcome}'")
+                    faults.append(f"'{name}' requires '{label}':'{outcome}'")
         if faults:
-            raise InvalidTransitionError(f"outcomes that never come: {'; '.join(faults)}")
+            raise InvalidTransitionError(
+                f"outcomes that the children do not have: {'; '.join(faults)}"
+            )
 
     def set_initial_state(self, initial_states: Sequence[str], userdata: UserData | None) -> None:
         """Merge `userdata`; all children start in any case. KeyError for an unknown label."""
@@ -238,6 +241,7 @@ class Concurrence(Container):
             self._preempt(branches)
 
     def _preempt(self, branches: Branches) -> None:
+        """Request that the running children end; an error of one of them is logged."""
         for label in list(branches.active):
             state = self._states[label]
             try:
