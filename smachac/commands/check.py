@@ -87,14 +87,14 @@ def check_command(arguments: Namespace) -> int:
     from smachac.driver import CODES
 
     arguments.script = arguments.script or [Path()]
-    for code in (*_codes(arguments.select), *_codes(arguments.ignore)):
+    for code in (*_codes_of(arguments.select), *_codes_of(arguments.ignore)):
         if not any(known.startswith(code) for known in CODES):
             return usage(f"there is no code `{code}`", code, list(CODES))
     if arguments.write_baseline and arguments.baseline is None:
         return usage("--write-baseline needs --baseline FILE")
     try:
         with limited_memory(arguments.memory_limit):
-            return _watch(arguments) if arguments.watch else _once(arguments, set())
+            return _watch(arguments) if arguments.watch else _check_once(arguments, set())
     except _wrong_usage() as error:
         return usage(str(error))
 
@@ -108,12 +108,12 @@ def _wrong_usage() -> tuple[type[Exception], ...]:
     return NothingFoundError, GitError, BaselineError, NoSimulationError
 
 
-def _codes(words: list[str]) -> list[str]:
+def _codes_of(words: list[str]) -> list[str]:
     """The codes, or beginnings of codes, of options with commas between them."""
     return [code.strip().upper() for word in words for code in word.split(",") if code.strip()]
 
 
-def _once(arguments: Namespace, used: set[str]) -> int:
+def _check_once(arguments: Namespace, used: set[str]) -> int:
     """Check once; the exit code. The real paths of all files that were read go into `used`."""
     from smachac.batch import check_scripts
     from smachac.checks.workspace import unreachable
@@ -124,40 +124,41 @@ def _once(arguments: Namespace, used: set[str]) -> int:
     started = time.perf_counter()
     disk = Disk()
     paths = scripts_of(arguments.script, disk)
-    extra = unreachable if arguments.sim else None
-    whole = check_scripts(paths, disk, arguments.scripts, arguments.templates, extra)
+    sim_rule = unreachable if arguments.sim else None
+
+    def check(disk: Disk) -> Batch:
+        return check_scripts(paths, disk, arguments.scripts, arguments.templates, sim_rule)
+
+    whole = check(disk)
     used.update(*whole.uses.values())
     changed = changed_since(arguments.changed_since) if arguments.changed_since else None
-    found, notes = _counted(whole, changed, arguments)
+    found, notes = _select(whole, changed, arguments)
     if arguments.write_baseline:
         return _write_baseline(arguments.baseline, found.report)
     fixes = 0
     if arguments.fix or arguments.diff:
-        from smachac.refactor.autofix import Texts, apply_fixes
+        from smachac.refactor.autofix import apply_fixes
 
-        def again(texts: Texts) -> Batch:
-            disk_then = Disk(texts, refused=disk.refused)
-            return check_scripts(paths, disk_then, arguments.scripts, arguments.templates, extra)
-
-        def counted(batch: Batch) -> Report:
-            return _counted(batch, changed, arguments)[0].report
-
-        fixed = apply_fixes(whole, counted, again)
+        fixed = apply_fixes(
+            whole,
+            lambda batch: _select(batch, changed, arguments)[0].report,
+            lambda texts: check(Disk(texts, refused=disk.refused)),
+        )
         fixes = fixed.count
         if arguments.diff:
             _put_diff(fixed)
-        elif not _rewritten(fixed):
+        elif not _write_fixes(fixed):
             return FINDINGS
-        found, notes = _counted(fixed.batch, changed, arguments)
+        found, notes = _select(fixed.batch, changed, arguments)
         notes += [f"{fixes} fixed"] if fixes else []
     elif any(item.finding.edits for item in found.report):
         from smachac.refactor.autofix import fixable
 
         number = len(fixable(whole, found.report))
         notes += [f"{number} fixable with --fix"] if number else []
-    grave = {Severity.ERROR, Severity.WARNING} if arguments.strict else {Severity.ERROR}
+    severe = {Severity.ERROR, Severity.WARNING} if arguments.strict else {Severity.ERROR}
     failing = {
-        name: [item for item in each if item.severity in grave]
+        name: [item for item in each if item.severity in severe]
         for name, each in found.reports.items()
     }
     if sys.stdout.isatty():
@@ -169,16 +170,16 @@ def _once(arguments: Namespace, used: set[str]) -> int:
     return FINDINGS if any(failing.values()) or (arguments.diff and fixes) else OK
 
 
-def _counted(
+def _select(
     found: Batch, changed: set[str] | None, arguments: Namespace
 ) -> tuple[Batch, list[str]]:
-    """The findings that the arguments select, and notes on those that they do not."""
+    """The findings that the arguments select, and notes for the summary on the others."""
     from smachac.diagnostics import baseline
     from smachac.diagnostics.severities import select_findings
 
     if changed is not None:
         found = found.touched_by(changed)
-    report = select_findings(found.report, _codes(arguments.select), _codes(arguments.ignore))
+    report = select_findings(found.report, _codes_of(arguments.select), _codes_of(arguments.ignore))
     notes = []
     if arguments.baseline is not None and not arguments.write_baseline:
         report, known, gone = baseline.compare(report, _read_baseline(arguments.baseline))
@@ -188,6 +189,7 @@ def _counted(
 
 
 def _put_diff(fixed: FixResult) -> None:
+    """Print the fixes as a patch, and their number to standard error."""
     from smachac.refactor.autofix import differences
 
     sys.stdout.writelines(differences(fixed.texts, fixed.sources))
@@ -196,7 +198,7 @@ def _put_diff(fixed: FixResult) -> None:
     print(f"--fix would fix {findings} in {files}", file=sys.stderr)
 
 
-def _rewritten(fixed: FixResult) -> bool:
+def _write_fixes(fixed: FixResult) -> bool:
     """Write the fixed texts; whether that succeeded."""
     from smachac.commands.files import ChangedError, not_written, rewrite_files
     from smachac.commands.writing import PartlyWrittenError
@@ -238,6 +240,7 @@ def _put(found: Batch, failing: dict[str, Report], notes: list[str], arguments: 
 
 
 def _summary(report: Report, scripts: int, notes: list[str]) -> str:
+    """The last line of the output: the numbers of findings and scripts, and the notes."""
     from smachac.report.text import summary
 
     words = summary(report)
@@ -247,6 +250,7 @@ def _summary(report: Report, scripts: int, notes: list[str]) -> str:
 
 
 def _write_baseline(path: Path, report: Report) -> int:
+    """Write the findings to a baseline; the exit code. Only a baseline is overwritten."""
     from smachac.commands.files import write_files
     from smachac.commands.writing import PartlyWrittenError
     from smachac.diagnostics import baseline
@@ -265,6 +269,7 @@ def _write_baseline(path: Path, report: Report) -> int:
 
 
 def _read_baseline(path: Path) -> Counter[str]:
+    """The fingerprints in a baseline with their numbers. Raises BaselineError."""
     from smachac.diagnostics import baseline
     from smachac.frontend.files import read_source
 
@@ -287,7 +292,7 @@ def _watch(arguments: Namespace) -> int:
         before = stamps(_watched(arguments, known))
         used: set[str] = set()
         try:
-            _once(arguments, used)
+            _check_once(arguments, used)
         except _wrong_usage() as error:
             if not known:
                 raise
@@ -305,6 +310,7 @@ def _watch(arguments: Namespace) -> int:
 
 
 def _watched(arguments: Namespace, used: Iterable[str]) -> list[str]:
+    """The paths of the files to watch: the scripts of the arguments, and the files read so far."""
     from smachac.frontend.discovery import yaml_files
 
     named = [str(path) for path in arguments.script if not os.path.isdir(path)]  # noqa: PTH112
