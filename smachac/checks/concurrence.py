@@ -333,7 +333,7 @@ def uncovered_combination(context: Context) -> Iterator[Finding]:
             help = None
         else:
             severity, span = Severity.ERROR, node.span
-            message = f"no rule of `{node.name}` matches {shown}, and it has no default outcome"
+            message = f"no rule of `{node.name}` matches {shown}, and `default_outcome` is missing"
             help = "add a rule for it, or a `default_outcome` for all other combinations"
         yield Finding(
             span=span,

@@ -329,7 +329,7 @@ def _unhandled_failure(root: StateMachine, found: list[_Propagation]) -> Finding
             masking.outcome,
             *sorted({each.node.name for each in found}),
         ),
-        help="lead the failure to a state that recovers, or to an outcome of failure",
+        help="write a transition to a state that recovers, or to an outcome such as `failed`",
         related=(
             *(other_place(first.node.span, "this state fails") if masking is not first else ()),
             *calls(masking.node, masking.span),

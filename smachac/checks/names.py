@@ -206,11 +206,21 @@ def _unknown_steps(path: str, child: Node) -> Iterator[Finding]:
             span=step.span,
             message=f"`{child.name}` has no outcome `{step.outcome}`",
             arguments=(own_name(child, step.span), step.outcome),
-            help=did_you_mean(meant) or known,
+            help=_retried(child, step.outcome) or did_you_mean(meant) or known,
             related=calls(child, step.span),
             node=f"{path}/{child.name}",
             edits=respelt(Word(step.outcome, step.span), guess.sure(step.outcome)),
         )
+
+
+def _retried(child: Node, outcome: str) -> str | None:
+    """The help for a transition on an outcome that `retry` or `for_each` replaces."""
+    if not isinstance(child, nodes.Iterator) or outcome not in child.loop_outcomes:
+        return None
+    if child.sugar == "retry":
+        end = child.exhausted_outcome
+        return f"after the last try with `{outcome}`, `retry` ends with `{end}`: write `{end}:`"
+    return None
 
 
 def _known_outcomes(child: Node) -> str:

@@ -204,7 +204,10 @@ def _impossible(path: str, container: Container, outcome: Outcome) -> Finding:
             f"list an outcome of `{child}` in `loop_outcomes`: without one, `{container.name}` ends"
             " after the first item"
         )
-        if container.loop_outcomes:
+        if container.sugar:
+            help = f"list an outcome of `{child}` in `on` of `{container.sugar}`: only on such an"
+            help += " outcome the state runs again"
+        elif container.loop_outcomes:
             help = removed
     return Finding(
         span=outcome.span,

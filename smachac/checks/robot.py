@@ -125,7 +125,9 @@ def joint_limit(context: Context) -> Iterator[Finding]:
                 flow,
                 f"{what} of `{flow.origin.cell.key}` is {angle} rad, outside its limits"
                 f" {joint.lower:g} to {joint.upper:g}",
-                "convert the angles to radians" if abs(_as_float(angle)) > 2 * math.pi else None,
+                "convert the angles from degrees to radians"
+                if abs(_as_float(angle)) > 2 * math.pi
+                else f"write an angle from {joint.lower:g} to {joint.upper:g}, in radians",
                 (str(number) if isinstance(flow.value, tuple) else joint.name,),
                 other_place(joint.span, f"the limits of `{joint.name}`"),
             )

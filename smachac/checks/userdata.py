@@ -23,6 +23,7 @@ from smachac.diagnostics.diagnostic import Edit, Finding, Related, Severity
 from smachac.diagnostics.source import Word
 from smachac.diagnostics.spelling import Guesser, guesser, respelt
 from smachac.diagnostics.wording import listed
+from smachac.ir import nodes
 from smachac.ir.nodes import Node
 
 MOST_RELATED = 3
@@ -102,7 +103,11 @@ def _unset(missing: Missing, witness: Witness, users: list[Use], guesses: _Guess
     help = f"set `{missing.key}` on every path, or give it an initial value in `{name}`: {value}"
     if missing.cause == "nowhere":
         why = f"which nothing in {container_name(scope, reader.span)} sets"
-        help = did_you_mean(guesses.of(scope)(missing.key)) or help
+        guess = guesses.of(scope)(missing.key)
+        node = reader.node
+        # The item of an iterator is no list of items, although `item` resembles `items`.
+        is_item = isinstance(node, nodes.Iterator) and guess == node.item_key
+        help = did_you_mean(None if is_item else guess) or help
     return Finding(
         span=reader.span,
         message=f"{reader.words}, {why}",
@@ -198,6 +203,8 @@ def _unknown_remaps(path: str, node: Node) -> Iterator[Finding]:
     own = list(dict.fromkeys(key.name for key in (*node.inputs, *node.outputs)))
     for remap, meant, certain in unknown_remaps(node):
         known = f"use one of its keys: {listed(own)}" if own else "remove it: the state has no keys"
+        if remap.to in own:
+            known = f"the key of the state comes first: write `{remap.to}: {remap.key}`"
         yield Finding(
             span=remap.span,
             message=f"`{node.name}` has no userdata key `{remap.key}` to remap to `{remap.to}`",

@@ -43,7 +43,8 @@ SHAPES = {
     "name": ("a name", None),
     "names": ("a list of names", "write it as `[a, b]`"),
     "keys": ("a list of keys", "write it as `[a, b]` or `{a: float}`"),
-    "map": ("a mapping", None),
+    "items": ("a list or the name of a key", "write it as `[a, b]`, or name a key with a list"),
+    "map": ("a mapping", "write it as `{name: value}`"),
     "text": ("a text", None),
     "flag": ("`true` or `false`", None),
     "duration": ("a duration", "write it as `20s`, `500ms`, `1.5min` or `1h`"),
@@ -101,7 +102,9 @@ def as_names(tree: Tree, report: Report) -> tuple[Word, ...]:
     """A list of names, each once."""
     if not isinstance(tree, Seq):
         wrong(tree, "names", report)
-        return ()
+        # A single name stands for a list of it, so that its uses are not reported too.
+        word = name_of(tree)
+        return (word,) if word is not None and word.text else ()
     found: dict[str, Word] = {}
     for item in tree.items:
         word = as_name(item, report)

@@ -124,7 +124,7 @@ def child_scope(scope: Scope, own: Tree | None, report: Report) -> Scope:
     for entry in own.entries:
         value = fill_in(entry.value, inner, report)
         if value is not entry.value and _size_beyond(value, MAX_NODES):
-            message = f"the look-ups in this param give it more than {MAX_NODES:,} nodes"
+            message = f"the look-ups in this param give it more than {MAX_NODES:,} values"
             help = "use smaller params"
             report.append(too_big(entry.value.span, message, help, arguments=("param",)))
             value = known_wrong(entry.value.span)

@@ -244,7 +244,7 @@ class _Resolver:
         own = size_up_to(entry.value, room)
         grown = size_up_to(new, room + own) - own
         if grown > room:
-            message = f"the look-ups of this script add more than {limit:,} nodes"
+            message = f"the look-ups of this script add more than {limit:,} values"
             help = "use smaller params"
             self.report.append(too_big(entry.value.span, message, help, arguments=("look-ups",)))
             return Entry(entry.key, known_wrong(entry.value.span))

@@ -72,7 +72,7 @@ def _check_outcomes(sugar: Sugar, own: tuple[str, ...], report: Report) -> None:
                 arguments = ("outcome", word.text)
                 report.append(wrong_shape(word.span, message, help, arguments=arguments))
     if sugar.for_each and not sugar.for_each.on and not set(second) & set(GOOD_OUTCOMES):
-        message = "`on` is missing: no outcome of this state is known to continue the loop"
+        message = "`for_each` needs `on` here: no outcome of this state has the name of a success"
         help = f"add `on: [...]` with one or more of {listed(second)}" if second else NO_OUTCOMES
         report.append(wrong_shape(sugar.for_each.span, message, help, arguments=("on",)))
 
@@ -141,6 +141,10 @@ def _for_each(entry: Entry, report: Report) -> ForEach | None:
         return None
     item = as_name(parts["item"], report)
     on = as_names(parts["on"], report) if "on" in parts else ()
+    items = parts["in"]
+    if isinstance(items, Map) or (isinstance(items, Scalar) and not isinstance(items.value, str)):
+        wrong(items, "items", report)
+        return None
     if item is None:
         return None
-    return ForEach(item=item.text, items=as_value(parts["in"]), on=on, span=entry.key.span)
+    return ForEach(item=item.text, items=as_value(items), on=on, span=entry.key.span)

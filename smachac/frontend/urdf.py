@@ -116,7 +116,7 @@ class _Reader:
         return UrdfError(message, self.here(name), help)
 
     def refuse(self, *_: object) -> None:
-        message = "a document type is not allowed: it can expand to a huge text"
+        message = "it has a document type, which can expand to a huge text"
         raise self.error(message, help="remove the lines with `<!DOCTYPE` and `<!ENTITY`")
 
     def start(self, tag: str, given: dict[str, str]) -> None:

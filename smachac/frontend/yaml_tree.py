@@ -242,20 +242,71 @@ _BEYOND_UNICODE = re.compile(r"\\U(?!000|0010)[0-9A-Fa-f]{8}")
 
 
 def _syntax_error(source: Source, error: Any) -> Diagnostic:
-    """SM001 with the message and the position of a parser's exception."""
-    mark = getattr(error, "problem_mark", None) or getattr(error, "context_mark", None)
-    at = min(mark.index, len(source.text)) if mark is not None else 0
+    """SM001 with the place of a parser's exception, and a message in the words of scripts."""
     wide = _BEYOND_UNICODE.search(source.text) if isinstance(error, ValueError) else None
     if wide is not None:
         message = f"`{wide.group()}` is no character: the last one is \\U0010FFFF"
         span = Span(source, *wide.span())
         return yaml_syntax(span, message, "correct the number", arguments=("escape", wide.group()))
-    parts = [getattr(error, name, None) for name in ("problem", "context")]
-    words = ", ".join(" ".join(str(part).split()) for part in parts if part)
+    first, mark = (getattr(error, name, None) for name in ("context_mark", "problem_mark"))
+    problem, context = (_one_line(getattr(error, name, None)) for name in ("problem", "context"))
+    message, help, at_start = _reworded(source, problem, context, first, mark)
+    mark = first if at_start else mark or first
+    at = min(mark.index, len(source.text)) if mark is not None else 0
     here = source.text[at : at + 1]
-    advice = "indent with spaces: YAML allows no tabs here" if here == "\t" else None
     span = Span(source, at, at + (here not in ("", "\n")))
-    return yaml_syntax(span, words or "this is not YAML", advice, arguments=("syntax", here))
+    return yaml_syntax(span, message, help, arguments=("syntax", here))
+
+
+def _one_line(text: object) -> str:
+    return " ".join(str(text).split()) if text else ""
+
+
+_UNCLOSED = re.compile(r"expected ',' or '([]}])', but got '(.*)'")
+_NOT_A_START = re.compile(r"found character '(.*)' that cannot start any token")
+_NO_SPACE = re.compile(r"[^\s:]*:[\[{'\"]")
+
+
+def _reworded(
+    source: Source, problem: str, context: str, first: Any, mark: Any
+) -> tuple[str, str | None, bool]:
+    """Message, help, and whether the place is `first`, where the faulty part begins, instead of
+    `mark`, where the parser stopped. Rare messages of the parser are used as they are."""
+    line = source.line(mark.line + 1)[: mark.column] if mark is not None else ""
+    unclosed, unstarted = _UNCLOSED.fullmatch(problem), _NOT_A_START.fullmatch(problem)
+    if unclosed is not None and first is not None:
+        end, token = unclosed.groups()
+        kind = "list" if end == "]" else "mapping"
+        found = "the end of the text" if token == "<stream end>" else f"`{token.strip('<>')}`"
+        message = f"expected `,` or `{end}`, found {found}; the {kind} begins in line"
+        help = f"close the {kind} with `{end}`, or put text that contains `:` in quotes"
+        return f"{message} {first.line + 1}", help, False
+    if unstarted is not None:
+        if unstarted.group(1) == "\\t":
+            return "a tab is not allowed here", "indent with spaces", False
+        message = f"a value cannot begin with `{unstarted.group(1)}`"
+        return message, "put the value in quotes", False
+    if problem.startswith("mapping values are not allowed"):
+        joined = _NO_SPACE.search(line)
+        help = "write an inner mapping on lines of its own, or put text with a colon in quotes"
+        if joined is not None:
+            help = f"write a space after the colon in `{joined.group()}`"
+        return "a colon is not allowed here", help, False
+    if context == "while scanning a quoted scalar" and problem == "found unexpected end of stream":
+        return "this quote is not closed", "write the same quote at the end of the text", True
+    if context == "while scanning a simple key":
+        return "a `:` is missing after this key", "write `key: value`, with a space after `:`", True
+    if problem == "expected <block end>, but found '<block mapping start>'" and not line.strip():
+        message = "the indentation of this line is that of no mapping or list above it"
+        return message, "indent the keys of one mapping equally", False
+    if problem == "expected <block end>, but found '-'":
+        message = "a list item cannot follow the keys of a mapping"
+        return message, "indent the items of one list equally, below the key of the list", False
+    if problem.startswith("expected <block end>") and line.strip():
+        message = "there is text after the end of the value"
+        return message, "put the whole value in quotes, or remove the text", False
+    message = ", ".join(part for part in (problem, context) if part)
+    return message or "this is not YAML", None, False
 
 
 class _Open:
@@ -388,7 +439,7 @@ class _Builder:
         self.aliased += known[1]
         limit = max(MAX_ALIASED, len(self.source.text))
         if self.aliased > limit:
-            message = f"the aliases of this script add more than {limit:,} nodes"
+            message = f"the aliases of this script add more than {limit:,} values"
             self._stop(span.start, message, "use fewer aliases, or smaller ones", "aliases")
         self._add(known[0], known[1], None)
 

@@ -187,7 +187,7 @@ def stale_code(
         };
         }
     """
-    old = Related(span=number.span, message="the number of that version")
+    old = Related(span=number.span, message="the version of the class")
     return Finding(
         span=span,
         message=f"the class `{name}` was written for another version of `{state_type}.yml`",

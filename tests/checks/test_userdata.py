@@ -356,3 +356,17 @@ def test_who_uses_a_key() -> None:
     assert path_without(flow, "sm/C/R", "b") == ("W", "(bad)", "C", "R")
     assert key_status(flow, "sm/C/R", "zzz") == "never"
     assert key_status(flow, "sm/NOBODY", "a") == "unreachable"
+
+
+def test_a_remapping_the_wrong_way_round_is_explained() -> None:
+    node = reader("A", DONE, "pose", remaps={"block_pose": "pose"})
+    helps = [item.finding.help for item in report(root(node)) if item.code == "SM302"]
+    assert "the key of the state comes first: write `pose: block_pose`" in helps
+
+
+def test_the_item_of_an_iterator_is_no_guess_for_its_items() -> None:
+    inner = leaf("B", {"ok": "=ok"})
+    node = iterator("A", "ok", inner, items_key="items", item_key="item", to=DONE)
+    help = one(root(node), "SM301").finding.help
+    assert help is not None
+    assert "did you mean" not in help

@@ -8,7 +8,7 @@ from typing import Any
 import pytest
 
 import smachac
-from smachac.diagnostics.diagnostic import Report
+from smachac.diagnostics.diagnostic import Finding, Report
 from smachac.diagnostics.source import Source
 from smachac.frontend.sugar import duration
 from smachac.frontend.yaml_tree import parse
@@ -203,3 +203,29 @@ def test_a_variable_of_the_state_type_comes_first(tmp_path: Path) -> None:
     for child in smachac.load(tmp_path / "main.yml").root.children:
         assert type(child).__name__ == "Leaf"
         assert [variable.name for variable in getattr(child, "variables", ())] == ["timeout"]
+
+
+def faults(sugar: str, transitions: str, folder: Path) -> dict[str, Finding]:
+    """The errors in a script with sugar, by code."""
+    path = folder / "main.yml"
+    text = SCRIPT.replace("SUGAR", f"{sugar}, transitions: {transitions}")
+    path.write_text(text, encoding="utf-8")
+    return {each.code: each.finding for each in smachac.check(path)}
+
+
+def test_a_transition_on_an_outcome_that_retry_replaces_is_explained(tmp_path: Path) -> None:
+    sugar = "retry: {on: [aborted], max: 3}"
+    found = faults(sugar, "{succeeded: succeeded, aborted: aborted}", tmp_path)
+    help = "after the last try with `aborted`, `retry` ends with `exhausted`: write `exhausted:`"
+    assert found["SM102"].help == help
+
+
+@pytest.mark.parametrize("items", ["3", "true", "{a: 1}", "null"])
+def test_a_loop_over_no_list_is_a_wrong_shape(items: str, tmp_path: Path) -> None:
+    found = faults(f"for_each: {{item: one, in: {items}}}", "{succeeded: succeeded}", tmp_path)
+    assert found["SM004"].message.startswith("expected a list or the name of a key, found ")
+
+
+def test_retries_without_outcomes_never_exhaust(tmp_path: Path) -> None:
+    found = faults("retry: {on: [], max: 3}", "{succeeded: succeeded}", tmp_path)
+    assert "`on` of `retry`" in (found["SM203"].help or "")

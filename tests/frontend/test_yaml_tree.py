@@ -96,6 +96,37 @@ def test_aliases_and_merges() -> None:
 
 
 @pytest.mark.parametrize(
+    ("text", "place", "words", "help"),
+    [
+        ("a: [1\nb: 2\n", (2, 2), "`]`, found `:`; the list begins in line 1", "with `]`"),
+        ("a: {b: 1", (1, 9), "the end of the text; the mapping begins in line 1", "with `}`"),
+        ("a: {f: lambda ud: 1}", (1, 17), "`}`, found `:`", "in quotes"),
+        ("a: 'left\nb: 2\n", (1, 4), "quote is not closed", "the same quote"),
+        ("- A: b: c\n", (1, 7), "a colon is not allowed here", "on lines of its own"),
+        ("- A:{b: c, d: e}\n", (1, 13), "a colon is not allowed here", "a space after"),
+        ("a:\n    b: 1\n   c: 2\n", (3, 4), "the indentation of this line", "equally"),
+        ("a: 1\n- b\n", (2, 1), "a list item cannot follow", "items of one list"),
+        ("a: 'x' y\n", (1, 8), "text after the end of the value", "in quotes"),
+        ("a: 1\nb\nc: 2\n", (2, 1), "a `:` is missing", "`key: value`"),
+        ("a: %d\n", (1, 4), "a value cannot begin with `%`", "in quotes"),
+        ("a:\n\tb: 1\n", (2, 1), "a tab is not allowed here", "spaces"),
+        ('a: "\\d"\n', (1, 6), "unknown escape character", "check the brackets"),
+    ],
+    ids=lambda value: repr(value)[:20],
+)
+def test_syntax_errors_name_the_fault_and_its_place(
+    text: str, place: tuple[int, int], words: str, help: str
+) -> None:
+    report: Report = []
+    assert parse(Source("x.yml", text), report) is None
+    (item,) = report
+    before = text[: item.span.start].split("\n")
+    assert (len(before), len(before[-1]) + 1) == place
+    assert words in item.finding.message
+    assert help in (item.finding.help or "")
+
+
+@pytest.mark.parametrize(
     ("text", "codes"),
     [
         ("a: [1", ["SM001"]),

@@ -214,13 +214,14 @@ def unresolved_look_up(word: Word, scope: Iterable[str]) -> Finding:
               transitions: {done: done}
     """
     names = sorted(scope)
-    params = f"use one of the params in scope: {listed(names)}"
-    params = params if names else f"add `params: {{{word.text}: ...}}` to the state or around it"
+    help = f"add `params: {{{word.text}: ...}}` to the state, or to a container around it"
+    if names:
+        help = did_you_mean(word.text, names) or f"use one of the params in scope: {listed(names)}"
     return Finding(
         span=word.span,
         message=f"the param `{word.text}` is not in scope here",
         arguments=(word.text,),
-        help=did_you_mean(word.text, names) or params,
+        help=help,
     )
 
 

@@ -287,7 +287,7 @@ def bad_type(place: Word, known: Iterable[str], unknown: str = "") -> Finding:
         span=place.span,
         message=f"`{place.text}` is not a valid type",
         arguments=(place.text,),
-        help=help or "write it like float, float<rad>[7], list[Pose] or one_of[open, close]",
+        help=help or "write it like `float`, `float<rad>[7]`, `list[Pose]`, `one_of[open, close]`",
     )
 
 

@@ -47,9 +47,9 @@ def unused_allowance(code: Word, edits: tuple[Edit, ...] = ()) -> Finding:
     """  # noqa: E501 (the comment stands behind its line)
     return Finding(
         span=code.span,
-        message=f"{code.text} is allowed here but is not found here",
+        message=f"{code.text} is allowed here, but does not occur here",
         arguments=(code.text,),
-        help="remove it, or move it to the line on which the finding occurs",
+        help="remove the comment, or move it to the line on which the finding occurs",
         edits=edits,
     )
 

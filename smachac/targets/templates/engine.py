@@ -261,6 +261,9 @@ class Page:
 _HAS_TOP_LEVEL = re.compile(r"\{%[-+]?\s*(?:set|import|from|do|macro|include)\b")
 
 
+_UNCLOSED = re.compile(r"^Unexpected end of template\..* needs to be closed is '(\w+)'")
+
+
 def _nothing(context: JinjaContext) -> Iterator[str]:
     """The function of an empty block."""
     return iter(())
@@ -332,6 +335,11 @@ def _message_and_help(error: Exception) -> tuple[str, str | None]:
     from jinja2.exceptions import SecurityError
 
     text = getattr(error, "message", None) or str(error) or type(error).__name__
+    unclosed = _UNCLOSED.search(text)
+    if unclosed is not None:
+        tag = unclosed.group(1)
+        help = f"write `{{% end{tag} %}}` where the `{tag}` ends"
+        return f"the template ends before this `{tag}` does", help
     text = text.split(". ")[0].rstrip(".")  # without the explanations of Jinja
     if isinstance(error, RecursionError):
         return "the template extends, includes or calls itself endlessly", None
