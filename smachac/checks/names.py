@@ -239,9 +239,10 @@ def _unknown_loops(path: str, container: nodes.Iterator) -> Iterator[Finding]:
             yield Finding(
                 span=container.span,
                 message=f"`loop_outcomes` of `{container.name}` lists `{name}`, which is not an"
-                " outcome of its child",
+                f" outcome of `{container.children[0].name}`",
                 arguments=(container.name, name),
-                help=f"use outcomes of the child: {listed(known)}",
+                help=did_you_mean(guesser(sorted(known))(name))
+                or f"use one of {listed(sorted(known))}",
                 related=calls(container, container.span),
                 node=path,
             )

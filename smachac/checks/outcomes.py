@@ -104,13 +104,13 @@ def _undeclared_endings(path: str, container: nodes.Iterator) -> Iterator[Findin
         if result in declared:
             continue
         when = f"when `{child}` ends with `{outcome}`" if child else "after the last item"
-        others = f", or `{outcome}` to its `loop_outcomes`" if child else ""
+        others = f", write `loop_outcomes: [{outcome}]` to continue on it" if child else ""
         yield Finding(
             span=container.span,
             message=f"`{container.name}` ends with `{result}` {when}, but has no such outcome",
             arguments=(container.name, result, child, outcome),
-            help=f"add `{result}` to the outcomes of `{container.name}`{others}, or rename"
-            f" `{outcome}` in its `final_outcome_map`",
+            help=f"add `{result}` to the outcomes of `{container.name}`{others}, or map it with"
+            f" `final_outcome_map: {{{outcome}: ...}}`",
             related=calls(container, container.span),
             node=path,
         )

@@ -251,7 +251,7 @@ def no_initial(context: Context) -> Iterator[Finding]:
                 span=container.span,
                 message=f"`{container.name}` has no states",
                 arguments=(container.name,),
-                help="add a state",
+                help="add a state: `- NAME: {template: ...}`",
                 related=calls(container, container.span),
                 node=path,
             )

@@ -84,7 +84,7 @@ def test_an_iterator_loops_only_on_outcomes_of_its_child() -> None:
                     to={"ok": "done", "exhausted": "done"})  # fmt: skip
     item = one(machine("sm", "done", node), "SM102")
     assert item.finding.message == (
-        "`loop_outcomes` of `IT` lists `baad`, which is not an outcome of its child"
+        "`loop_outcomes` of `IT` lists `baad`, which is not an outcome of `C`"
     )
 
 
