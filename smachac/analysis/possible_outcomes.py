@@ -27,8 +27,8 @@ OutcomesByPath = dict[str, tuple[str, ...]]
 
 
 class Endings(NamedTuple):
-    """The outcomes of states by path: those that are possible at all, and those that are possible
-    without a preempt request."""
+    """The outcomes of states by path. `ever`: those that are possible at all. `calm`: those that
+    are possible without a preempt request."""
 
     ever: OutcomesByPath
     calm: OutcomesByPath
@@ -37,8 +37,8 @@ class Endings(NamedTuple):
 def endings(states: Sequence[tuple[str, Node]]) -> Endings:
     """The possible endings of all states inside concurrences, in the order of declaration.
 
-    A declared outcome that nothing brings about is none of them. Where a fault hides what a state
-    does, it may end with any of its outcomes.
+    A declared outcome with which nothing ends is none of them. If a fault makes the endings of a
+    state unknown, all its outcomes are possible.
     """
     found = Endings({}, {})
     inside: list[tuple[str, Node]] = []
@@ -168,8 +168,9 @@ def results(node: Concurrence, read: Study | None, spaces: Sequence[Space]) -> s
 class Judged(NamedTuple):
     """A concurrence whose rules can be judged, at its path.
 
-    `whole` is how its branches may end, also after a request to stop; `calm` how they may while
-    nobody asks it to, as far as outcomes are known, and for `join: any` which branch ends first.
+    `whole`: the outcomes that its branches can have, also after a request to stop. `calm`: those
+    without a request to stop, as far as outcomes are known; with `join: any`, one space for each
+    branch that can end first, with its name.
     """
 
     path: str

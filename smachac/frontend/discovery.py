@@ -130,7 +130,7 @@ def changed_since(revision: str) -> set[str]:
     commit = f"{revision}^{{commit}}"
     commit = _git("rev-parse", "--verify", "--quiet", "--end-of-options", commit).strip()
     if not commit:
-        raise GitError(f"git knows no revision `{revision}`")
+        raise GitError(f"git has no revision `{revision}`")
     top = Path(_git("rev-parse", "--show-toplevel").rstrip("\n"))
     base = _git("merge-base", commit, "HEAD").strip() or commit
     names = _git("-C", str(top), "diff", "--name-only", "--no-renames", "-z", base, "--")

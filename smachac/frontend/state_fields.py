@@ -50,7 +50,7 @@ def read_fields(
 ) -> dict[str, Any]:
     """The fields of a state, as arguments of State.
 
-    `scope` are the params that it sees; `inner` is its name in the sub-script, if it is called.
+    `scope` are the params in its scope; `inner` is its name in the sub-script, if it is called.
     """
     read, rejected = _known_fields(entries, owner, type_, report)
     if owner != "base" or read.get("name") is None or is_known_wrong(entries["name"].value):
@@ -183,7 +183,7 @@ def _check_unquoted(entries: Entries, owner: FieldOwner, type_: StateType, repor
 
 
 def _written(name: Word, entries: Entries, scope: Scope) -> Iterator[Variable]:
-    """All fields of a state and the params that it sees, as SMACHA's templates need them."""
+    """All fields of a state and the params in its scope, as SMACHA's templates need them."""
     for key, entry in entries.items():
         if key not in ("template", "states", "params"):
             yield Variable(name=key, value=as_written(entry.value), span=entry.key.span)

@@ -52,7 +52,7 @@ def list_text(known: Sequence[Known]) -> str:
             f"  {on_one_line(each.type.name):<{width}}  {_first(each.type.doc)}".rstrip()
             for each in some
         ]
-    return "\n".join([*lines, "", "smachac states NAME tells more of one."]) + "\n"
+    return "\n".join([*lines, "", "smachac states NAME describes one of them."]) + "\n"
 
 
 def _grouped(known: Sequence[Known]) -> Iterable[tuple[str, list[Known]]]:

@@ -229,7 +229,7 @@ def test_git_has_its_own_mind(
     assert "not a git repository" in capsys.readouterr().err
     git("init", "-q")
     assert main(["check", "main.yml", "--changed-since=--output=x"]) == 2
-    assert "git knows no revision `--output=x`" in capsys.readouterr().err
+    assert "git has no revision `--output=x`" in capsys.readouterr().err
     monkeypatch.setenv("PATH", str(folder))
     assert main(["check", "main.yml", "--changed-since", "HEAD"]) == 2
     assert "git does not run" in capsys.readouterr().err

@@ -203,7 +203,7 @@ def _names(fields: Sequence[_Field] | None, keys: Iterable[Key]) -> Words | None
 def _other_fields(
     part: str, fields: Sequence[_Field] | None, keys: Iterable[Key]
 ) -> Iterator[Word]:
-    """Fields of another type than the interface says, or in another order."""
+    """Fields of another type than in the interface, or in another order."""
     if not fields:
         return
     wanted = {identifier(key.name): key for key in keys}
