@@ -11,6 +11,7 @@ from smachac.frontend import schema
 from smachac.frontend.errors.references import template_error
 from smachac.ir.leaf import variable_of
 from smachac.ir.nodes import Container, Iterator, Leaf, Node, StateType, Variable
+from smachac.ir.script_paths import name_in_script
 from smachac.ir.traversal import own_outcomes
 from smachac.targets.python import structure
 from smachac.targets.python.add_call import NotAddedError, adapted
@@ -102,6 +103,12 @@ def container_block(
     }
 
 
+def _called(child: Container, around: Container) -> str:
+    """The name after which the variable of a container is called; in sugar, with that of its
+    state."""
+    return f"{name_in_script(child)}_{child.name}" if child.sugar and around.sugar else child.name
+
+
 def children(inside: EmittedContainer, module: ModuleParts) -> str:
     """The code that adds the states of a container."""
     states = []
@@ -111,7 +118,7 @@ def children(inside: EmittedContainer, module: ModuleParts) -> str:
             if isinstance(child, Leaf):
                 states.append(_leaf(child, inside, below, module))
             else:
-                variable = module.fresh(child.name, False)
+                variable = module.fresh(_called(child, inside.node), False)
                 depth = inside.depth + 1
                 states.append(container(child, inside, variable, depth, below, module))
         except BlockError as error:
