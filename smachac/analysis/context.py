@@ -21,7 +21,7 @@ from smachac.analysis.type_inference import Clash, Types, infer
 from smachac.analysis.type_lattice import MisfitKind
 from smachac.analysis.unset_reads import Cause, Missing, missing_keys
 from smachac.diagnostics.source import Span
-from smachac.ir import nodes, traversal
+from smachac.ir import nodes, script_paths, traversal
 from smachac.ir.nodes import Container, Machine, Node, StateMachine
 
 
@@ -59,6 +59,16 @@ class Context:
     def spans(self) -> dict[str, Span]:
         """The span of each state by path; of two states with one path, that of the first."""
         return {path: node.span for path, node in reversed(self.states)}
+
+    @cached_property
+    def script_paths(self) -> dict[str, str]:
+        """The paths of the script by full path; only those that differ."""
+        return script_paths.script_paths(self.machine.root)
+
+    @cached_property
+    def plain_paths(self) -> dict[str, str]:
+        """The paths of the script without roles, by full path; only those that differ."""
+        return script_paths.plain_paths(self.machine.root)
 
     @cached_property
     def types(self) -> Types:
@@ -142,4 +152,4 @@ class Context:
     @cached_property
     def failures(self) -> tuple[Failure, ...]:
         """Every failure that can begin, with where it leads."""
-        return tuple(failures(self.states, self.routes))
+        return tuple(failures(self.states, self.routes, self.plain_paths))

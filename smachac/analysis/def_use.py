@@ -13,6 +13,7 @@ from smachac.diagnostics.source import Span
 from smachac.ir import nodes
 from smachac.ir.graph import START, Vertex
 from smachac.ir.nodes import Concurrence, Key, Leaf, Node
+from smachac.ir.script_paths import Step, steps_in_script
 from smachac.ir.traversal import outcome_names, remapping
 
 KeyState = Literal["unset", "reported", "set"]
@@ -184,20 +185,24 @@ def _status(states: set[KeyState]) -> Status:
     return "always" if states == {"set"} else "sometimes"
 
 
-def path_without(flow: DataFlow, path: str, key: str) -> tuple[str, ...]:
+def path_without(
+    flow: DataFlow, path: str, key: str, plain: Mapping[str, str] = {}
+) -> tuple[str, ...]:
     """A shortest path to a state on which a key of its container is unset; empty if there is none.
 
-    Names of states as they are entered, in brackets the outcomes between them.
+    Names of states in the script as they are entered, in brackets the outcomes between them.
+    `plain` are the plain paths.
     """
     searches = _searches(flow, path, key)
-    whole: list[str] = []
+    whole: list[Step] = []
     targets = [*(where for where, _ in searches[1:]), path]
     for (where, found), target in zip(searches, targets, strict=True) if searches else ():
         end = Reached(place_in(where, target), "unset")
         if end not in found:
             return ()
-        whole += [step.label for step in way_to(where, found, end)]
-    return tuple(whole)
+        way = way_to(where, found, end)
+        whole += [Step(step.node, step.label, step.is_outcome) for step in way]
+    return tuple(label for _, label in steps_in_script(plain, whole))
 
 
 def way_to(path: str, found: Search, end: Reached) -> list[PathStep]:

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterable, Iterator, Mapping
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from typing import Literal
 
 from smachac.analysis.successors import Arrival, Routes
@@ -12,6 +12,7 @@ from smachac.ir import nodes
 from smachac.ir.graph import Event, is_unread
 from smachac.ir.nodes import Concurrence, Leaf, Node
 from smachac.ir.outcome_names import PREEMPTED, is_failure, successes
+from smachac.ir.script_paths import Step, steps_in_script
 from smachac.ir.traversal import outcome_names
 
 Answer = Literal["caught", "repeated", "ignored", "not caught", "lost"]
@@ -25,7 +26,8 @@ class Failure:
     """A state ends with an outcome of failure, and one way on from there.
 
     `path` is the state, `way` the states and outcomes that the failure passes, as in a witness
-    path. `next` is the path of the state that is entered then, empty where there is none. `ends`
+    path. `next` is the path of the state that is entered then, empty where there is none; both are
+    paths of the script. `ends`
     are the outcomes that the machine can end with from there on, while nobody asks it to stop;
     `good`, those that mean success.
     """
@@ -54,8 +56,11 @@ def starts_failure(node: Node, outcome: str) -> bool:
     return False
 
 
-def failures(states: Iterable[tuple[str, Node]], routes: Routes) -> Iterator[Failure]:
+def failures(
+    states: Iterable[tuple[str, Node]], routes: Routes, plain: Mapping[str, str]
+) -> Iterator[Failure]:
     """Every failure that can begin, in the order of the script; one for each way that it takes.
+    `plain` are the plain paths.
 
     A failure begins where a leaf ends with an outcome of failure (`is_failure`), tries are used
     up, or a time limit is over. Linear in the states, but for the depth of containers.
@@ -66,11 +71,18 @@ def failures(states: Iterable[tuple[str, Node]], routes: Routes) -> Iterator[Fai
             continue
         for name in outcome_names(node):
             if starts_failure(node, name) and (path, name) in routes.before:
-                yield from _failures(routes, ends, path, node, name)
+                for each in _failures(routes, ends, path, node, name, plain):
+                    next = plain.get(each.next, each.next)
+                    yield replace(each, path=plain.get(path, path), next=next)
 
 
 def _failures(
-    routes: Routes, ends: Mapping[Event, frozenset[str]], path: str, node: Node, name: str
+    routes: Routes,
+    ends: Mapping[Event, frozenset[str]],
+    path: str,
+    node: Node,
+    name: str,
+    plain: Mapping[str, str],
 ) -> Iterator[Failure]:
     root = routes.root
     order = outcome_names(root)
@@ -88,14 +100,14 @@ def _failures(
             path=path,
             outcome=name,
             answer=_answer(arrival, path, alike),
-            way=_way(path, name, arrival),
+            way=_way(path, name, arrival, plain),
             next=arrival.target,
             ends=tuple(final),
             good=tuple(end for end in final if end in good),
             span=span,
         )
     if not arrivals:
-        way = (path.rpartition("/")[2], f"({name})")
+        way = (plain.get(path, path).rpartition("/")[2], f"({name})")
         yield Failure(path=path, outcome=name, answer="lost", way=way, span=span)
 
 
@@ -120,13 +132,16 @@ def _after_success(routes: Routes, path: str, node: Node) -> set[tuple[str, str]
     return {(arrival.target, _final(arrival)) for arrival in arrivals}
 
 
-def _way(path: str, outcome: str, arrival: Arrival) -> tuple[str, ...]:
+def _way(path: str, outcome: str, arrival: Arrival, plain: Mapping[str, str]) -> tuple[str, ...]:
     """The states that a failure passes, in brackets how they end; last where it leads, which may
     be an outcome of the machine."""
-    way = [path.rpartition("/")[2], f"({outcome})"]
-    for inner, name in arrival.through if arrival.target else arrival.through[:-1]:
-        way += [inner.rpartition("/")[2], f"({name})"]
-    return (*way, arrival.target.rpartition("/")[2] or _final(arrival))
+    ends = [(path, outcome), *(arrival.through if arrival.target else arrival.through[:-1])]
+    way: list[Step] = []
+    for inner, name in ends:
+        way += [Step(inner, inner.rpartition("/")[2]), Step(None, f"({name})", True)]
+    target = arrival.target
+    way.append(Step(target, target.rpartition("/")[2]) if target else Step(None, _final(arrival)))
+    return tuple(label for _, label in steps_in_script(plain, way))
 
 
 def _possible_ends(routes: Routes) -> dict[Event, frozenset[str]]:

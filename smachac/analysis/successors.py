@@ -10,6 +10,7 @@ from smachac.analysis.outcome_rules import Study, UndecidedError, calm_spaces, s
 from smachac.analysis.possible_outcomes import Endings
 from smachac.ir.graph import START, Edge, Event, edges, exit_vertex, machine_graph
 from smachac.ir.nodes import Concurrence, Container, Node
+from smachac.ir.script_paths import Step, steps_in_script
 from smachac.ir.traversal import outcome_names
 
 
@@ -106,18 +107,21 @@ def _results(read: Study, ends: Endings, child: str, outcome: str) -> Iterable[s
     return found or [*(rule.outcome for rule in read.written), read.node.default_outcome]
 
 
-def path_to(before: Mapping[Event, Event | None], last: Event) -> tuple[str, ...]:
-    """A shortest path to an event: the states that are entered, and in brackets the outcomes
-    between them. Where containers end together with a leaf, the outcome is that of the leaf."""
+def path_to(
+    before: Mapping[Event, Event | None], last: Event, plain: Mapping[str, str] = {}
+) -> tuple[str, ...]:
+    """A shortest path to an event: the states that are entered, by their names in the script, and
+    in brackets the outcomes between them. Where containers end together with a leaf, the outcome is
+    that of the leaf. `plain` are the plain paths."""
     events: list[Event] = []
     here: Event | None = last
     while here is not None:
         events.append(here)
         here = before[here]
-    found: list[str] = []
+    found: list[Step] = []
     for path, outcome in events[-2::-1]:
         if not outcome:
-            found.append(path.rpartition("/")[2])
-        elif found and not found[-1].startswith("("):
-            found.append(f"({outcome})")
-    return tuple(found)
+            found.append(Step(path, path.rpartition("/")[2]))
+        elif found and not found[-1].is_outcome:
+            found.append(Step(None, f"({outcome})", True))
+    return tuple(label for _, label in steps_in_script(plain, found))

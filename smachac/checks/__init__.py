@@ -2,7 +2,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Iterator, Mapping
+from dataclasses import replace
 
 from smachac.analysis.context import Context
 from smachac.checks import (
@@ -24,8 +25,9 @@ from smachac.checks import (
     workspace,
 )
 from smachac.checks.rule import Rule
-from smachac.diagnostics.diagnostic import Diagnostic, Report, diagnostic
+from smachac.diagnostics.diagnostic import Diagnostic, Finding, Report, diagnostic
 from smachac.ir.nodes import Machine
+from smachac.ir.script_paths import Step, steps_in_script
 
 RULES: tuple[Rule, ...] = (
     expressions.bad_expression,
@@ -90,6 +92,20 @@ def check_machine(machine: Machine, rules: tuple[Rule, ...] = RULES) -> Report:
 def _diagnostics(context: Context, rules: tuple[Rule, ...]) -> Iterator[Diagnostic]:
     for rule in rules:
         for finding in rule.function(context):
-            spans = context.spans if finding.path else {}
-            steps = tuple(spans.get(step.node or "") for step in finding.path)
-            yield diagnostic(rule.code, finding, steps)
+            plain = context.plain_paths
+            steps = [Step(step.node, step.label, step.is_outcome) for step in finding.path]
+            shown = steps_in_script(plain, steps)
+            spans = context.spans if shown else {}
+            places = tuple(spans.get(finding.path[at].node or "") for at, _ in shown)
+            if plain:
+                finding = _in_script(plain, finding, shown)
+            yield diagnostic(rule.code, finding, places)
+
+
+def _in_script(plain: Mapping[str, str], finding: Finding, shown: list[tuple[int, str]]) -> Finding:
+    """A finding with the paths of the script. `shown`: the steps of its witness path."""
+    path = []
+    for at, label in shown:
+        step = finding.path[at]
+        path.append(replace(step, label=label, node=plain.get(step.node or "", step.node)))
+    return replace(finding, node=plain.get(finding.node or "", finding.node), path=tuple(path))

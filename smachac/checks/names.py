@@ -79,7 +79,7 @@ def unknown_target(context: Context) -> Iterator[Finding]:
     lost = [fault for path, container in context.linear for fault in _lost(path, container)]
     paths: dict[str, str] = {}
     for path, node in context.states if lost else ():
-        paths.setdefault(node.name, path)
+        paths.setdefault(node.name, context.plain_paths.get(path, path))
     for fault in lost:
         yield _nowhere(fault, paths.get(fault.step.target))
     for path, container in context.containers:

@@ -23,7 +23,8 @@ from smachac.ir import nodes
 from smachac.ir.graph import edges, reachable, stopped_endings
 from smachac.ir.nodes import Concurrence, Container, Node, Outcome, Sequence, StateMachine
 from smachac.ir.outcome_names import PREEMPTED
-from smachac.ir.traversal import outcome_names
+from smachac.ir.script_paths import name_in_script
+from smachac.ir.traversal import ends_preempted, outcome_names
 
 
 @rule("SM201", "unreachable-state", Severity.ERROR)
@@ -127,8 +128,9 @@ def impossible_outcome(context: Context) -> Iterator[Finding]:
     """
     for path, container in context.containers:
         possible = _possible_outcomes(container)
+        known = {container.catches, PREEMPTED if ends_preempted(container) else ""}
         for outcome in container.outcomes:
-            if possible is not None and outcome.name not in (*possible, container.catches):
+            if possible is not None and outcome.name not in possible | known:
                 yield _impossible(path, container, outcome)
 
 
@@ -186,7 +188,8 @@ def _iterator_outcomes(container: nodes.Iterator) -> frozenset[str] | None:
 
 
 def _impossible(path: str, container: Container, outcome: Outcome) -> Finding:
-    removed = f"remove it from the outcomes of `{container.name}`"
+    name = name_in_script(container)
+    removed = f"remove it from the outcomes of `{name}`"
     help = f"add a transition to `{outcome.name}`, or {removed}"
     severity = None
     if isinstance(container, Concurrence):
@@ -195,13 +198,13 @@ def _impossible(path: str, container: Container, outcome: Outcome) -> Finding:
             # docs/semantics.md, Preemption.
             help = (
                 "keep it if the machine runs in SMACH for Noetic: there a preempt request ends"
-                f" `{container.name}` with it"
+                f" `{name}` with it"
             )
             severity = Severity.INFO
     if isinstance(container, nodes.Iterator):
-        child = container.children[0].name
+        child = name_in_script(container.children[0])
         help = (
-            f"list an outcome of `{child}` in `loop_outcomes`: without one, `{container.name}` ends"
+            f"list an outcome of `{child}` in `loop_outcomes`: without one, `{name}` ends"
             " after the first item"
         )
         if container.sugar:
@@ -211,7 +214,7 @@ def _impossible(path: str, container: Container, outcome: Outcome) -> Finding:
             help = removed
     return Finding(
         span=outcome.span,
-        message=f"`{container.name}` can never end with its outcome `{outcome.name}`",
+        message=f"`{name}` can never end with its outcome `{outcome.name}`",
         arguments=(own_name(container, outcome.span), outcome.name),
         help=help,
         related=calls(container, outcome.span),

@@ -19,6 +19,7 @@ from smachac.ir.graph import stopped_endings
 from smachac.ir.leaf import variable_of
 from smachac.ir.nodes import Concurrence, Leaf, StateType, VariableType
 from smachac.ir.outcome_names import PREEMPTED
+from smachac.ir.script_paths import name_in_script
 from smachac.ir.traversal import outcome_names
 
 TIMEOUTS = frozenset(["timeout", "timed_out"])
@@ -109,9 +110,9 @@ def no_timeout(context: Context) -> Iterator[Finding]:
 def _unlimited(leaf: Leaf, outer: Concurrence | None) -> str:
     answers = PREEMPTED in outcome_names(leaf)
     if outer is not None and outer.sugar == "timeout":
-        limited = f"the time limit of `{outer.name}` cannot stop `{leaf.name}`"
+        limited = f"the time limit of `{name_in_script(outer)}` cannot stop `{leaf.name}`"
         return f"{limited}, which has no outcome `preempted`"
-    waits = f"block `{outer.name}`" if outer is not None else "wait"
+    waits = f"block `{name_in_script(outer)}`" if outer is not None else "wait"
     if answers:
         return f"`{leaf.name}` can {waits} forever: it has no time limit, and nothing preempts it"
     return f"`{leaf.name}` can {waits} forever: it has no time limit and no outcome `preempted`"
@@ -209,25 +210,26 @@ def _lasting(
     ever, calm = found
     ends = any(calm[f"{path}/{child.name}"] for child in container.children)
     for child in container.children if ends else ():
-        here = f"{path}/{child.name}"
+        here, name = f"{path}/{child.name}", name_in_script(child)
+        around = name_in_script(container)
         if container.join == "all" and ever[here] and not calm[here]:
-            why = f"ends only after a preempt request, and nothing in `{container.name}` sends one"
+            why = f"ends only after a preempt request, and nothing in `{around}` sends one"
             help = (
                 "write `join: any`, so that the first branch to end stops the others, or make"
-                f" `{child.name}` end"
+                f" `{name}` end"
             )
         elif container.join == "any" and not ever[here] and here in endless:
-            why = f"runs forever, also after a preempt request, so `{container.name}` cannot end"
+            why = f"runs forever, also after a preempt request, so `{around}` cannot end"
             help = (
-                f"add the outcome `preempted` to a state in `{child.name}`, with a transition to an"
-                f" outcome of `{child.name}`"
+                f"add the outcome `preempted` to a state in `{name}`, with a transition to an"
+                f" outcome of `{name}`"
             )
         else:
             continue
         yield Finding(
             span=child.span,
-            message=f"`{child.name}` {why}",
-            arguments=(child.name,),
+            message=f"`{name}` {why}",
+            arguments=(name,),
             help=help,
             related=calls(child, child.span),
             node=here,
@@ -245,7 +247,7 @@ def _starting_again(context: Context) -> Iterator[Finding]:
             continue
         around, name = branches[branch], branch.rpartition("/")[2]
         if around.sugar == "timeout":
-            what = f"the time limit of `{around.name}` cannot stop it"
+            what = f"the time limit of `{name_in_script(around)}` cannot stop it"
         else:
             what = f"`{name}` does not stop when another branch of `{around.name}` ends"
         yield Finding(

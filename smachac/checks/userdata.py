@@ -25,6 +25,7 @@ from smachac.diagnostics.spelling import Guesser, guesser, respelt
 from smachac.diagnostics.wording import listed
 from smachac.ir import nodes
 from smachac.ir.nodes import Node
+from smachac.ir.script_paths import name_in_script
 
 MOST_RELATED = 3
 """Limit on the related places of one kind in a finding."""
@@ -284,12 +285,12 @@ def undeclared_container_key(context: Context) -> Iterator[Finding]:
         scope, key = missing.scope, missing.key
         reader = reader_at(scope, missing.vertices[0], key)
         holder = flow.scopes[missing.other].container
-        between = _between(scope.path, missing.other)
+        between = _between(flow, scope.path, missing.other)
         others = tuple(reader_at(scope, vertex, key) for vertex in missing.vertices[1:])
         yield Finding(
             span=reader.span,
-            message=f"{reader.words}, which is a key of `{holder.name}` but not an input of"
-            f" {listed(between)}",
+            message=f"{reader.words}, which is a key of `{name_in_script(holder)}` but not an input"
+            f" of {listed(between)}",
             arguments=(reader.key,),
             help=f"add `{key}` to the `input_keys` of {listed(between)}",
             related=(
@@ -318,9 +319,12 @@ def _taken_in(flow: DataFlow, path: str, holder: str, key: str) -> tuple[Edit, .
     return tuple(edits)
 
 
-def _between(path: str, holder: str) -> list[str]:
-    """The names of the containers between the holder of a key and its reader, outermost first."""
-    return path[len(holder) + 1 :].split("/")
+def _between(flow: DataFlow, path: str, holder: str) -> list[str]:
+    """The names in the script of the containers between the holder of a key and its reader,
+    outermost first."""
+    names = path[len(holder) + 1 :].split("/")
+    paths = ["/".join([holder, *names[: at + 1]]) for at in range(len(names))]
+    return list(dict.fromkeys(name_in_script(flow.scopes[each].container) for each in paths))
 
 
 @rule("SM307", "lost-output", Severity.WARNING)

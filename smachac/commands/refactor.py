@@ -11,6 +11,7 @@ import os
 import sys
 from argparse import Namespace
 from collections import Counter
+from contextlib import suppress
 
 from smachac.commands.arguments import SCRIPT, as_path, colour, dry_run, search_folders
 from smachac.commands.output import FINDINGS, print_report, usage
@@ -390,6 +391,8 @@ def contain_command(arguments: Namespace) -> int:
 
     from smachac.diagnostics.spelling import is_plain
     from smachac.ir.nodes import Leaf, StateMachine
+    from smachac.ir.script_paths import plain_paths
+    from smachac.ir.traversal import walk
     from smachac.refactor.contain import contain, equal_after_contain, plan_container, preset_keys
     from smachac.refactor.editor import RefusedError
     from smachac.refactor.locate import different_container_error, find_state
@@ -404,16 +407,17 @@ def contain_command(arguments: Namespace) -> int:
         above = path.rpartition("/")[0]
         if not above:
             raise RefusedError(before.root.span, "this is the whole script")
-        _, parent = find_state(before, above)
+        parent = dict(walk(before.root))[above]
         assert not isinstance(parent, Leaf)
         if isinstance(parent, StateMachine):
             facts = partial(_facts, before.state_types, script.library())
             parent = with_inferred_interfaces(parent, facts)
         known = {child.name: child for child in parent.children}
-        names = [each.rpartition("/")[2] for each in arguments.states]
+        names = [_name_in(before, above, each, known) for each in arguments.states]
         for name in names:
             if name not in known:
-                raise different_container_error(before, above, name, known)
+                around = plain_paths(before.root).get(above, above)
+                raise different_container_error(before, around, name, known)
         inside = [child for child in parent.children if child.name in names]
         presets = preset_keys(script.editor(inside[0].span.source), inside)
         made = plan_container(parent, inside, presets, arguments.name, arguments.type)
@@ -423,6 +427,20 @@ def contain_command(arguments: Namespace) -> int:
         return script.put()
 
     return perform(arguments, "contain", change)
+
+
+def _name_in(machine: Machine, above: str, word: str, known: Mapping[str, Node]) -> str:
+    """The name of a state of the container at a full path, given by its name or a path."""
+    from smachac.refactor.locate import NotFoundError, find_state
+
+    name = word.rpartition("/")[2]
+    if name in known:
+        return name
+    with suppress(NotFoundError):
+        path, _ = find_state(machine, word)
+        around, _, found = path.rpartition("/")
+        return found if around == above else name
+    return name
 
 
 def _facts(types: Mapping[str, StateType], library: Library, leaf: Leaf) -> TemplateFacts:

@@ -8,6 +8,7 @@ import os
 import sys
 from argparse import Namespace
 from contextlib import ExitStack, contextmanager, suppress
+from functools import partial
 
 from smachac.commands.arguments import SCRIPT, as_path, colour, count, names, search_folders
 from smachac.commands.interrupts import end_at_once
@@ -22,7 +23,7 @@ from smachac.commands.output import (
 
 TYPE_CHECKING = False  # annotations only: `--help` imports none of this
 if TYPE_CHECKING:
-    from collections.abc import Callable, Iterator
+    from collections.abc import Callable, Iterator, Mapping
     from pathlib import Path
     from typing import Any
 
@@ -33,6 +34,7 @@ if TYPE_CHECKING:
     from smachac.interpreter.result import InterpreterResult
     from smachac.interpreter.scenario import Scenario, ScenarioProblem
     from smachac.ir.nodes import Machine
+    from smachac.runtime.tracing.progress import Sugar
 
     Event = dict[str, Any]
 
@@ -138,7 +140,8 @@ def _run_program(arguments: Namespace, analysis: Analysis) -> int:
     if (arguments.gui or arguments.record) and not simulated:
         return usage(NO_ARM)
     ((name, text),) = files.items()
-    return _observed(arguments, lambda observe: perform(name, text, machine, arguments, observe))
+    go = partial(perform, name, text, machine, arguments)
+    return _observed(arguments, machine, go)
 
 
 def _run_scenario(arguments: Namespace, analysis: Analysis) -> int:
@@ -157,13 +160,15 @@ def _run_scenario(arguments: Namespace, analysis: Analysis) -> int:
         print(text)
         return OK if agree else FINDINGS
     seed, schedule = arguments.seed, arguments.schedule
-    return _observed(arguments, lambda observe: play(machine, scenario, seed, schedule, observe))
+    return _observed(arguments, machine, partial(play, machine, scenario, seed, schedule))
 
 
-def _observed(arguments: Namespace, go: Callable[[Callable[[Event], None]], str]) -> int:
+def _observed(
+    arguments: Namespace, machine: Machine, go: Callable[[Callable[[Event], None]], str]
+) -> int:
     """Run a machine with trace and progress, and print its outcome; the exit code."""
     try:
-        with watching(arguments, wants_colour(arguments, sys.stdout)) as (observe, errors):
+        with watching(arguments, machine) as (observe, errors):
             try:
                 outcome = go(observe)
             except FailedError as error:
@@ -204,19 +209,48 @@ def play(
     from smachac.interpreter.interpreter import run
     from smachac.interpreter.scenario import scenario_behaviour
     from smachac.interpreter.scheduler import ScheduleError
+    from smachac.ir.script_paths import script_paths
+    from smachac.runtime.tracing.writer import shown_path
 
     behaviour = scenario_behaviour(scenario, machine, builtin_behaviour(seed))
+    paths = script_paths(machine.root)
     try:
-        result = run(machine, behaviour, observe, seed=seed, schedule=schedule)
+        result = run(machine, behaviour, _shown(observe, paths), seed=seed, schedule=schedule)
     except ScheduleError as error:
         raise FailedError(f"--schedule: {error}") from None
     if result.error is not None:
-        span = result.error.span
-        raise FailedError(
-            f"{result.error}\n  --> {span}" if span.source.text else str(result.error)
-        )
+        failure = result.error
+        words = f"{shown_path(failure.path, paths)}: {failure.message}"
+        span = failure.span
+        raise FailedError(f"{words}\n  --> {span}" if span.source.text else words)
     assert result.outcome is not None
     return result.outcome
+
+
+def _shown(observe: Callable[[Event], None], paths: Mapping[str, str]) -> Callable[[Event], None]:
+    """An observer of events with full paths."""
+    from smachac.runtime.tracing.writer import with_shown_paths
+
+    return lambda event: observe(with_shown_paths(event, paths))
+
+
+def sugar_of(machine: Machine) -> Sugar:
+    """The containers made of sugar, for the progress of a run."""
+    from smachac.ir.script_paths import added_states, sugared_containers
+    from smachac.runtime.tracing.progress import Repeated, Sugar
+
+    found = sugared_containers(machine.root)
+    repeated = {"retry": "attempt", "for_each": "item"}
+    return Sugar(
+        states={path: each.state for path, each in found.items()},
+        repeated={
+            path: Repeated(each.child, repeated[each.role], each.limit)
+            for path, each in found.items()
+            if each.role in repeated
+        },
+        limits={path: each.limit for path, each in found.items() if each.role == "timeout"},
+        added=added_states(machine.root),
+    )
 
 
 def play_orders(machine: Machine, scenario: Scenario, seed: int, most: int) -> tuple[str, bool]:
@@ -230,13 +264,18 @@ def play_orders(machine: Machine, scenario: Scenario, seed: int, most: int) -> t
     from smachac.interpreter.explore import explore
     from smachac.interpreter.scenario import scenario_behaviour
     from smachac.interpreter.userdata import trace_value
+    from smachac.ir.script_paths import script_paths
+    from smachac.runtime.tracing.writer import shown_path
 
+    paths = script_paths(machine.root)
     ends: dict[str, list[InterpreterResult]] = {}
     orders = explore(
         machine, lambda: scenario_behaviour(scenario, machine, builtin_behaviour(seed))
     )
     for result in islice(orders, most):
-        end = f"error: {result.error}" if result.error else f"outcome: {result.outcome}"
+        end = f"outcome: {result.outcome}"
+        if result.error:
+            end = f"error: {shown_path(result.error.path, paths)}: {result.error.message}"
         held = (f"{key}={trace_value(result.userdata[key])!r}" for key in sorted(result.userdata))
         ends.setdefault(" ".join([end, *held]), []).append(result)
     tried = sum(map(len, ends.values()))
@@ -265,7 +304,7 @@ def perform(
     name: str, text: str, machine: Machine, arguments: Namespace, observe: Callable[[Event], None]
 ) -> str:
     """Run the generated module; the outcome. Raises FailedError."""
-    from smachac.targets.python.runner import execute
+    from smachac.targets.python.runner import execute, failure_text
 
     gc.enable()  # from here on the user's program runs
     folder = arguments.script.parent.resolve()  # the program may change the working folder
@@ -285,40 +324,17 @@ def perform(
             on_interrupt=end_at_once,  # a container would wait for branches that may never return
         ).outcome
     except Exception as error:
-        raise FailedError(_failure(error, name, folder)) from error
+        raise FailedError(failure_text(error)) from error
     if outcome is None:
         raise FailedError("the machine ended without an outcome")
     return outcome
 
 
-def _failure(error: BaseException, name: str, folder: Path) -> str:
-    """The first exception, with its places in the generated program and in code of the user."""
-    import traceback
-    from pathlib import Path
-
-    from smachac.runtime.messages import message_of
-
-    first = error
-    while (cause := first.__cause__ or first.__context__) is not None:
-        first = cause
-    own = [
-        frame
-        for frame in traceback.extract_tb(first.__traceback__)
-        if frame.filename == name or Path(frame.filename).is_relative_to(folder)
-    ]
-    words = message_of(first).strip().splitlines() or [""]
-    lines = [f"{type(first).__name__}: {words[0]}" if words[0] else type(first).__name__]
-    lines += [f"  in {frame.filename}:{frame.lineno}, {frame.name}: {frame.line}" for frame in own]
-    return "\n".join(lines)
-
-
 @contextmanager
 def watching(
-    arguments: Namespace, colour: bool
+    arguments: Namespace, machine: Machine
 ) -> Iterator[tuple[Callable[[Event], None], list[Event]]]:
     """An observer that writes the trace and shows progress, and the error events it received."""
-    from functools import partial
-
     from smachac.runtime.tracing.progress import Progress
     from smachac.runtime.tracing.writer import TraceWriter
 
@@ -336,7 +352,8 @@ def watching(
                 return
             sinks.append(writer)
         if not arguments.quiet:
-            sinks.append(Progress(sys.stdout, colour=colour))
+            colour = wants_colour(arguments, sys.stdout)
+            sinks.append(Progress(sys.stdout, sugar_of(machine), colour=colour))
 
         def observe(event: Event) -> None:
             if event["event"] == "error":

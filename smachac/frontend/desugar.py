@@ -1,9 +1,9 @@
 """Desugaring: time limits, retries and loops become containers, as a SMACH user would write them.
 
 A time limit is a concurrence with a timer; retries and `for_each` are iterators. The container has
-the state's name, interface and transitions; the state is inside, under the same name. The container
-also has the outcome `preempted`, with which it ends after a request to stop (docs/semantics.md,
-Preemption).
+the state's name, interface and transitions; the state is inside, under the same name. A container
+inside another one has the name of its role (`INNER_NAMES`). The container also has the outcome
+`preempted`, with which it ends after a request to stop (docs/semantics.md, Preemption).
 """
 
 from __future__ import annotations
@@ -54,9 +54,17 @@ def desugared(node: Node, sugar: Sugar) -> Node:
     return node
 
 
+INNER_NAMES = {"timeout": "TIMED", "retry": "TRIES"}
+"""The names of containers made of sugar inside another one, by field."""
+
+
 def _inside(node: Node) -> Node:
-    """The state as a child of the container: without the transitions, which the container has."""
-    return replace(node, transitions=(), remaps=(), doc="")
+    """The state as a child of the container: without the transitions, which the container has. A
+    container made of sugar gets the name of its role."""
+    name = node.name
+    if not isinstance(node, Leaf) and node.sugar:
+        name = _fresh(INNER_NAMES[node.sugar], (name,))
+    return replace(node, name=name, transitions=(), remaps=(), doc="")
 
 
 def _around(node: Node) -> dict[str, Any]:
@@ -140,7 +148,7 @@ def _retried(node: Node, retry: Retry) -> Iterator:
     child = _inside(node)
     items: tuple[float, ...] = tuple(range(1, retry.most + 1))
     if retry.delay and own:
-        child = _after_pause(child, item, on)
+        child = _after_pause(child, node.name, item, on)
         items = (0.0, *(retry.delay,) * (retry.most - 1))
     kept = tuple(outcome for outcome in node.outcomes if outcome.name not in on)
     return Iterator(
@@ -157,8 +165,8 @@ def _retried(node: Node, retry: Retry) -> Iterator:
     )
 
 
-def _after_pause(node: Node, key: str, on: tuple[str, ...]) -> StateMachine:
-    """A state after a pause, whose seconds are the userdata `key`."""
+def _after_pause(node: Node, state: str, key: str, on: tuple[str, ...]) -> StateMachine:
+    """A try of the state `state`: its node after a pause, whose seconds are the userdata `key`."""
     own = outcome_names(node)
     name = _fresh("PAUSE", (node.name,))
     reads = Key(name=key, span=node.span)
@@ -175,7 +183,7 @@ def _after_pause(node: Node, key: str, on: tuple[str, ...]) -> StateMachine:
         Transition(outcome=name, target=name, origin="implicit", span=node.span) for name in own
     )
     return StateMachine(
-        name=_fresh("TRY", (node.name,)),
+        name=_fresh("TRY", (node.name, state)),
         type="StateMachine",
         sugar="retry",
         outcomes=node.outcomes,

@@ -4,9 +4,8 @@ code."""
 from __future__ import annotations
 
 import copy
-from collections.abc import Iterable, Mapping
+from collections.abc import Mapping
 from dataclasses import dataclass
-from itertools import groupby
 from typing import NamedTuple
 
 from smachac.diagnostics.diagnostic import did_you_mean
@@ -15,6 +14,7 @@ from smachac.interpreter.result import Behaviour
 from smachac.interpreter.userdata import BehaviourError, Userdata
 from smachac.ir.leaf import default_outcome
 from smachac.ir.nodes import Iterator, Leaf, Machine, Node
+from smachac.ir.script_paths import walk_script
 from smachac.ir.traversal import PREEMPTED, outcome_names, walk
 
 
@@ -46,8 +46,8 @@ STEP_FIELDS = ("outcome", "set", "wait", "error", "stop")
 class Scenario:
     """The steps of leaves by path. Visit n performs step n; the last step repeats.
 
-    A path may be shortened to its end (`GRASP`, `PICK/GRASP`) if only one leaf has that end. The
-    path of a state with `retry`, `timeout` or `for_each` is the one that the script shows.
+    A path is that of the script (docs/language.md, Paths) or the full one, and may be shortened to
+    its end (`GRASP`, `PICK/GRASP`) if only one leaf has that end.
     """
 
     steps: Mapping[str, tuple[Step, ...]]
@@ -170,22 +170,25 @@ def read_scenario(data: object, machine: Machine) -> tuple[Scenario, list[Scenar
             problems.append(ScenarioProblem(_not_found(name, machine, leaves), name))
             continue
         if path in steps:
-            message = f"`{path}` is given twice, the second time as `{name}`"
+            shown = leaves[path].paths[0]
+            message = f"`{shown}` is given twice, the second time as `{name}`"
             problems.append(ScenarioProblem(message, name))
         entries = given if isinstance(given, list) else [given]
         if not entries:
             problems.append(ScenarioProblem(f"`{name}` has no steps", name))
-        reader = _StepReader(leaves[path], path, name, problems)
+        reader = _StepReader(leaves[path], name, problems)
         steps[path] = tuple(reader.step(entry, at) for at, entry in enumerate(entries, 1))
     return Scenario(steps=steps), problems
 
 
 @dataclass(frozen=True, slots=True)
 class _LeafEntry:
-    """A leaf, and whether it may write any key."""
+    """A leaf, whether it may write any key, and its paths: in the script, without the roles of
+    sugar, in the graph."""
 
     leaf: Leaf
     unrestricted: bool
+    paths: tuple[str, str, str]
 
 
 @dataclass(frozen=True, slots=True)
@@ -193,7 +196,6 @@ class _StepReader:
     """Converts the steps of one leaf, `name` in the scenario, and collects the problems."""
 
     place: _LeafEntry
-    path: str
     name: str
     problems: list[ScenarioProblem]
 
@@ -239,34 +241,36 @@ class _StepReader:
 
     def problem(self, number: int, message: str, help_: str | None = None) -> None:
         end = f"; {help_}" if help_ else ""
-        text = f"{self.path}, step {number}: {message}{end}"
+        text = f"{self.place.paths[0]}, step {number}: {message}{end}"
         self.problems.append(ScenarioProblem(text, self.name, number))
 
 
 def _leaves(machine: Machine) -> dict[str, _LeafEntry]:
     nodes: dict[str, Node] = dict(walk(machine.root))
     return {
-        path: _LeafEntry(node, node.open or isinstance(nodes[path.rpartition("/")[0]], Iterator))
-        for path, node in nodes.items()
-        if isinstance(node, Leaf)
+        each.full: _LeafEntry(
+            each.node,
+            each.node.open or isinstance(nodes[each.full.rpartition("/")[0]], Iterator),
+            (each.shown, each.plain, each.full),
+        )
+        for each in walk_script(machine.root)
+        if isinstance(each.node, Leaf)
     }
 
 
-def _matches(name: str, paths: Iterable[str]) -> list[str]:
-    """The paths that a name is the end of; if there are none, the paths whose written form it is
-    the end of."""
-    known = list(paths)
-    exact = [path for path in known if f"/{path}".endswith(f"/{name}")]
-    return exact or [path for path in known if f"/{_written(path)}".endswith(f"/{name}")]
+def _matches(name: str, leaves: Mapping[str, _LeafEntry]) -> list[str]:
+    """The full paths of the leaves that a name means: those whose path in the script it is or ends;
+    if there are none, those of which it is the end of the path without roles, or the full path."""
+    for form in range(3):
+        paths = {path: each.paths[form] for path, each in leaves.items()}
+        found = [path for path, shown in paths.items() if shown == name]
+        found = found or [path for path, shown in paths.items() if shown.endswith(f"/{name}")]
+        if found:
+            return found
+    return []
 
 
-def _written(path: str) -> str:
-    """A path without the containers that `retry`, `timeout` and `for_each` put around a state: they
-    have the name of the state (`sm/DRIVE/DRIVE` is written `sm/DRIVE`)."""
-    return "/".join(name for name, _ in groupby(path.split("/")))
-
-
-def _found(name: str, leaves: Mapping[str, object]) -> str | None:
+def _found(name: str, leaves: Mapping[str, _LeafEntry]) -> str | None:
     """The full path of the leaf with a name; None if there is none, or several."""
     if name in leaves:
         return name
@@ -274,13 +278,15 @@ def _found(name: str, leaves: Mapping[str, object]) -> str | None:
     return matches[0] if len(matches) == 1 else None
 
 
-def _not_found(name: str, machine: Machine, leaves: Mapping[str, object]) -> str:
+def _not_found(name: str, machine: Machine, leaves: Mapping[str, _LeafEntry]) -> str:
     """The message for a name that is no leaf, or several."""
-    matches = _matches(name, leaves)
+    matches = [leaves[path].paths[0] for path in _matches(name, leaves)]
     if matches:
         return f"`{name}` may be any of {', '.join(f'`{path}`' for path in matches)}"
-    if _matches(name, (path for path, _ in walk(machine.root))):
+    paths = (path for each in walk_script(machine.root) for path in (each.shown, each.full))
+    if any(f"/{path}".endswith(f"/{name}") for path in paths):
         return f"`{name}` is a container: it ends as its states make it end"
-    names = [*leaves, *(path.rpartition("/")[2] for path in leaves)]
+    shown = [each.paths[0] for each in leaves.values()]
+    names = [*shown, *(path.rpartition("/")[2] for path in shown)]
     help_ = did_you_mean(name, names)
     return f"there is no state `{name}`" + (f"; {help_}" if help_ else "")

@@ -45,7 +45,8 @@ class ContainPlan:
     the target of each, its input and output keys.
 
     `ends` gives the outcome of the container for each outcome of a state that leads out. `rules`
-    are the rules of a concurrence by outcome, except for `default`.
+    are the rules of a concurrence by outcome, except for `default`. `on_error` is where exceptions
+    of its states lead, if the `on_error` of `parent` catches them.
     """
 
     name: str
@@ -59,6 +60,7 @@ class ContainPlan:
     outputs: Sequence[str]
     rules: Mapping[str, Mapping[str, str]]
     default: str = ""
+    on_error: str = ""
 
 
 def preset_keys(editor: ScriptEditor, inside: Sequence[Node]) -> set[str]:
@@ -114,7 +116,25 @@ def plan_container(
         outputs=outputs,
         rules=rules,
         default=default,
+        on_error=_on_error(inside, ends) if kind != "Concurrence" else "",
     )
+
+
+def _by_on_error(child: Node, step: Transition) -> bool:
+    """Whether a transition comes from the `on_error` of the container."""
+    return step.outcome == child.catches and step.span == step.target_span
+
+
+def _on_error(inside: Sequence[Node], ends: Mapping[tuple[str, str], str]) -> str:
+    """The `on_error` of a state machine around some states of a machine that has one: the outcome
+    or the state that exceptions lead to."""
+    steps = [(child, step) for child in inside for step in child.transitions]
+    found = (
+        ends.get((child.name, step.outcome), step.target)
+        for child, step in steps
+        if _by_on_error(child, step)
+    )
+    return next(found, "")
 
 
 def _entry(parent: StateMachine, inside: Sequence[Node]) -> str:
@@ -335,6 +355,8 @@ def _retarget_transitions(
     for step in child.transitions:
         target = plan.ends.get((child.name, step.outcome), step.target)
         here = own.get(step.outcome)
+        if _by_on_error(child, step):
+            continue
         if here is None:
             by_name = target == step.outcome and not leads_to_child(step, names)
             if not (by_name and step.origin == "implicit"):
@@ -382,6 +404,7 @@ def _written(plan: ContainPlan, items: list[Item]) -> Item:
     )
     if plan.kind != "Concurrence" and plan.entry != plan.inside[0].name:
         rows.append(("initial", new_atom(plan.entry)))
+    rows += [("on_error", new_atom(plan.on_error))] if plan.on_error else []
     lead = items[0].leading
     blank = bool(lead) and not lead[0]
     for item in items[:1]:

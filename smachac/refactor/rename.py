@@ -14,6 +14,7 @@ from smachac.diagnostics.source import Source, Span
 from smachac.ir import nodes
 from smachac.ir.leaf import variable_of
 from smachac.ir.nodes import Container, Leaf, Machine, Node
+from smachac.ir.script_paths import sugared_child
 from smachac.ir.traversal import expressions_in, leads_to_child, remapping
 from smachac.refactor.cst import Atom, Collection, Item
 from smachac.refactor.editor import RefusedError, ScriptEditor, add_entry, variable
@@ -348,13 +349,43 @@ def _rename_in_scope(renaming: Renaming, scope: Container, scopes: dict[int, Con
             if remap.to == renaming.old:
                 editor = renaming.editors(remap.span.source)
                 renaming.atom(editor, editor.value_of(remap.span))
+        inner = _state_inside(child)
+        if _names_items(child, renaming.old):
+            _rename_items(renaming, child)
+            if renaming.old not in _names(inner):
+                continue
         if id(child) in scopes or renaming.old in remapping(child):
             continue
         if renaming.old not in _names(child):
             continue
-        if isinstance(child, Leaf) and _rename_in_leaf(renaming, child):
+        if isinstance(inner, Leaf) and _rename_in_leaf(renaming, inner):
             continue
         renaming.add(child, "remapping", renaming.old, renaming.new)
+
+
+def _state_inside(node: Node) -> Node:
+    """The state inside the containers of its sugar."""
+    while not isinstance(node, Leaf) and (inside := sugared_child(node)) is not None:
+        node = inside
+    return node
+
+
+def _names_items(node: Node, key: str) -> bool:
+    """Whether a state has `for_each: {in: key}`."""
+    if not isinstance(node, nodes.Iterator) or node.sugar != "for_each" or not node.items_key:
+        return False
+    return remapping(node).get(node.items_key, node.items_key) == key
+
+
+def _rename_items(renaming: Renaming, node: Node) -> None:
+    """Rename the key in `for_each: {in: key}`."""
+    for editor, body in renaming.bodies(node):
+        item = variable(body, "for_each")
+        if item is None or not isinstance(item.value, Collection):
+            continue
+        for each in item.value.items:
+            if each.key is not None and each.key.text == "in" and isinstance(each.value, Atom):
+                renaming.atom(editor, each.value)
 
 
 def _rename_in_leaf(renaming: Renaming, leaf: Leaf) -> bool:

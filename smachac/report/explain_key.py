@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterable, Iterator
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from typing import Any
 
 from smachac.analysis.context import Context
@@ -92,29 +92,35 @@ def _part(context: Context, path: str, key: str) -> KeyPart:
     container = scope.container
     outer = around(flow, path)
     beyond = (scope.inputs.get(key), scope.outputs.get(key))
-    inside = next(((outer, name) for name in beyond if outer and name), None)
+    shown = context.script_paths.get(outer or "", outer)
+    inside = next(((shown, name) for name in beyond if shown and name), None)
     preset = next((each for each in container.userdata if each.key == key), None)
     found = list(uses(flow, path, key))
     read = [use for use in found if use.kind in ("reads", "copies in") and use.path != path]
     followed = frozenset(use.path for use in read[:MOST_READERS])
+    paths = context.script_paths
     return KeyPart(
-        container=path,
+        container=paths.get(path, path),
         key=key,
         type=context.types.keys.get((path, key), ANY),
         value=print_data(preset.value.data) if preset else "",
         given=outer is None and key in scope.inputs,
         inside=inside,
-        uses=tuple(_use_status(flow, use, key, followed) for use in found),
+        uses=tuple(_use_status(context, use, key, followed) for use in found),
         span=container.span,
     )
 
 
-def _use_status(flow: DataFlow, use: Use, key: str, followed: frozenset[str]) -> UseStatus:
+def _use_status(context: Context, use: Use, key: str, followed: frozenset[str]) -> UseStatus:
+    """A use of a key, with the path of its state in the script."""
+    flow, shown = context.flow, replace(use, path=context.script_paths.get(use.path, use.path))
     if use.path not in followed or use.kind not in ("reads", "copies in"):
-        return UseStatus(use=use)
+        return UseStatus(use=shown)
     status = key_status(flow, use.path, key)
-    without = path_without(flow, use.path, key) if status in ("sometimes", "never") else ()
-    return UseStatus(use=use, status=status, without=without)
+    without: tuple[str, ...] = ()
+    if status in ("sometimes", "never"):
+        without = path_without(flow, use.path, key, context.plain_paths)
+    return UseStatus(use=shown, status=status, without=without)
 
 
 def key_text(part: KeyPart) -> tuple[str, list[Paragraph]]:

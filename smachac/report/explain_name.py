@@ -35,31 +35,45 @@ def explain_name(context: Context, report: Report, name: str, form: str) -> str:
     """
     flow = context.flow
     paths = [path for path, _ in context.states]
-    states = list(dict.fromkeys(path for path in paths if _ends(path, name)))
-    exact = [path for path in states if path == name]
-    keys = _keys(flow, name)
+    states = _states(context, name)
+    shown = context.script_paths
+    exact = [path for path in states if shown.get(path, path) == name]
+    keys = _keys(context, name)
     if not states and not keys:
-        raise UnclearError(_unknown(flow, paths, name))
+        raise UnclearError(_unknown(flow, [shown.get(path, path) for path in paths], name))
     if len(states) > 1 and not exact:
         raise UnclearError(_several_states(context, name, states, keys))
     if not states and len(keys) > 1 and all(key != name.rpartition("/")[2] for _, key in keys):
-        raise UnclearError(_several_keys(name, keys))
+        raise UnclearError(_several_keys(context, name, keys))
     found = [explain_state(context, path, report) for path in exact or states]
     explanations = list(explain_keys(context, keys))
     return _json(found, explanations) if form == "json" else _text(found, explanations)
+
+
+def _states(context: Context, name: str) -> list[str]:
+    """The full paths of the states of a name: the end of a path in the script, of one without roles
+    (`LOOK/TIMER`), or of a full path."""
+    states = dict(context.states)
+    for paths in (context.script_paths, context.plain_paths, {}):
+        found = [path for path in states if _ends(paths.get(path, path), name)]
+        if found:
+            return found
+    return []
 
 
 def _ends(path: str, name: str) -> bool:
     return path == name or path.endswith(f"/{name}")
 
 
-def _keys(flow: DataFlow, name: str) -> list[tuple[str, str]]:
+def _keys(context: Context, name: str) -> list[tuple[str, str]]:
     """The keys of a name: those of containers, else those of states."""
-    names = key_names(flow)
+    names, paths = key_names(context.flow), context.script_paths
     pairs = names.get(name, [])
     where, _, key = name.rpartition("/")
     if not pairs and where:
-        pairs = [pair for pair in names.get(key, []) if _ends(pair[0], where)]
+        found = names.get(key, [])
+        pairs = [pair for pair in found if _ends(paths.get(pair[0], pair[0]), where)]
+        pairs = pairs or [pair for pair in found if _ends(pair[0], where)]
         name = key
     return [pair for pair in pairs if pair[1] == name] or pairs
 
@@ -75,15 +89,21 @@ def _unknown(flow: DataFlow, paths: Iterable[str], name: str) -> str:
 def _several_states(
     context: Context, name: str, states: list[str], keys: list[tuple[str, str]]
 ) -> str:
+    shown = context.script_paths
     lines = [f"there are {len(states)} states `{name}`; give the path of one of them:"]
-    named = [f"  {path} ({context.spans[path]})" for path in states]
-    named += [f"  {path}/{key} (a key)" for path, key in keys]
+    named = [f"  {shown.get(path, path)} ({context.spans[path]})" for path in states]
+    named += [f"  {path} (a key)" for path in _key_paths(context, keys)]
     return "\n".join([*lines, *_few(named)])
 
 
-def _several_keys(name: str, keys: list[tuple[str, str]]) -> str:
+def _several_keys(context: Context, name: str, keys: list[tuple[str, str]]) -> str:
     lines = [f"states use the name `{name}` for {len(keys)} keys; give the path of one of them:"]
-    return "\n".join([*lines, *_few([f"  {path}/{key}" for path, key in keys])])
+    return "\n".join([*lines, *_few([f"  {path}" for path in _key_paths(context, keys)])])
+
+
+def _key_paths(context: Context, keys: list[tuple[str, str]]) -> list[str]:
+    paths = context.script_paths
+    return [f"{paths.get(path, path)}/{key}" for path, key in keys]
 
 
 def _few(lines: list[str]) -> list[str]:

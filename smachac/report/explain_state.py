@@ -13,6 +13,7 @@ from smachac.diagnostics.diagnostic import Report
 from smachac.diagnostics.wording import MOST_LISTED
 from smachac.ir.nodes import Key, Leaf, Node, Transition
 from smachac.ir.printer import print_data
+from smachac.ir.script_paths import Sugared, in_words, role, sugared_containers
 from smachac.ir.traversal import outcome_names, remapping
 from smachac.ir.types import ANY, Type
 from smachac.report.outline import STATUS, Paragraph, article, at, place, way
@@ -42,12 +43,15 @@ class Exit:
 class StateExplanation:
     """The state of the state at a path.
 
-    `entered` are the preceding states with their outcomes; an empty name is the start of the
-    container. `way` is a shortest path to the state, empty if there is none.
+    `plain` is the path without roles, `sugar` the containers made around it. `entered` are the
+    preceding states with their outcomes; an empty name is the start of the container. `way` is a
+    shortest path to the state, empty if there is none.
     """
 
     path: str
+    plain: str
     node: Node
+    sugar: tuple[Sugared, ...]
     reads: tuple[StateKey, ...]
     writes: tuple[StateKey, ...]
     claims: tuple[str, ...]
@@ -61,13 +65,9 @@ class StateExplanation:
 def explain_state(context: Context, path: str, report: Report) -> StateExplanation:
     """The explanation of the state at a path, which must exist."""
     routes, types = context.routes, context.types
-    node = routes.nodes[path]
+    node, plain = routes.nodes[path], context.plain_paths.get(path, path)
+    sugar = [each for each in sugared_containers(routes.root).values() if each.state == plain]
     names = remapping(node)
-    entered = {
-        (before[0].rpartition("/")[2] if before[1] else "", before[1]): None
-        for before in routes.before
-        if (path, "") in routes.after(before)
-    }
 
     def read(key: Key) -> StateKey:
         outer = names.get(key.name, key.name)
@@ -81,30 +81,70 @@ def explain_state(context: Context, path: str, report: Report) -> StateExplanati
 
     found = [*outcome_names(node), *(step.outcome for step in node.transitions)]
     return StateExplanation(
-        path=path,
+        path=context.script_paths.get(path, path),
+        plain=plain,
         node=node,
+        sugar=tuple(sugar) if not role(node) else (),
         reads=tuple(map(read, node.inputs)),
         writes=tuple(map(written, node.outputs)),
         claims=tuple(sorted(context.claims[path])),
-        entered=tuple(entered),
-        way=path_to(routes.before, (path, "")) if (path, "") in routes.before else (),
+        entered=tuple(_entries(context, plain)),
+        way=_way(context, path),
         reachable=(path, "") in routes.before,
         exits=tuple(
             Exit(
                 outcome=name,
-                arrivals=tuple(routes.arrivals(path, name)),
+                arrivals=tuple(
+                    _in_script(context, path, name, each) for each in routes.arrivals(path, name)
+                ),
                 steps=tuple(step for step in node.transitions if step.outcome == name),
             )
             for name in dict.fromkeys(found)
         ),
-        report=[item for item in report if item.finding.node == path],
+        report=[item for item in report if item.finding.node == plain],
     )
+
+
+def _way(context: Context, path: str) -> tuple[str, ...]:
+    before, entry = context.routes.before, (path, "")
+    return path_to(before, entry, context.plain_paths) if entry in before else ()
+
+
+def _entries(context: Context, plain: str) -> dict[tuple[str, str], None]:
+    """The states, with outcomes, after which the state at a plain path is entered, or a container
+    of its sugar from outside it."""
+    routes, paths = context.routes, context.plain_paths
+    mine = {path for path in routes.nodes if paths.get(path, path) == plain}
+    found: dict[tuple[str, str], None] = {}
+    for path, outcome in routes.before:
+        here = paths.get(path, path)
+        inside = here.startswith(f"{plain}/") or (path in mine and not outcome)
+        if inside or not any(to in mine for to, end in routes.after((path, outcome)) if not end):
+            continue
+        found[here.rpartition("/")[2] if outcome else "", outcome] = None
+    return found
+
+
+def _in_script(context: Context, path: str, outcome: str, arrival: Arrival) -> Arrival:
+    """Where an outcome of the state at a path leads, with plain paths. The containers of its sugar
+    that end with the same outcome are left out."""
+    paths = context.plain_paths
+    through = [(paths.get(path, path), outcome)]
+    for inner, end in arrival.through:
+        shown = (paths.get(inner, inner), end)
+        through += [shown] if shown != through[-1] else []
+    return Arrival(tuple(through[1:]), paths.get(arrival.target, arrival.target))
 
 
 def state_text(state: StateExplanation) -> tuple[str, list[Paragraph]]:
     """A headline and its paragraphs."""
     node = state.node
     lines = [f"{article(kind(node))}{place(node.span)}"]
+    lines += [
+        f"with `{each.role}`: {in_words(each.role, each.limit)}"
+        for each in state.sugar
+        if each.role != "try"
+    ]
     lines += [f"from the sub-script called at {call}" for call in node.via]
     if node.doc:
         lines.append(" ".join(node.doc.split()))
@@ -169,7 +209,7 @@ def _written(node: Node, state_key: StateKey) -> str:
 
 
 def _entered(state: StateExplanation) -> Iterator[str]:
-    container = state.path.rpartition("/")[0].rpartition("/")[2]
+    container = state.plain.rpartition("/")[0].rpartition("/")[2]
     if not state.reachable:
         yield "never: no path from the start leads to this state"
         return

@@ -13,7 +13,9 @@ from collections.abc import Mapping, Sequence
 from contextlib import ExitStack
 
 from smachac.ir.nodes import Machine
-from smachac.verify.coverage import reasons
+from smachac.ir.script_paths import script_paths
+from smachac.runtime.tracing.writer import shown_path, with_shown_paths
+from smachac.verify.coverage import CoverageItem, reasons
 from smachac.verify.generate import PathGenerator
 from smachac.verify.paths import Path
 from smachac.verify.result import Disagreement, Verdict
@@ -44,6 +46,7 @@ def verify(
     ]
     items, missing = runner.coverage.items, runner.coverage.missing()
     why = reasons(machine, missing, runner.planner)
+    shown = script_paths(machine.root)
     return Verdict(
         script=script,
         targets=tuple(players),
@@ -51,10 +54,15 @@ def verify(
         paths=Counter(path.kind for path in paths),
         taken=len(items) - len(missing),
         total=len(items),
-        missing=[(item, items[item], why[item]) for item in missing],
+        missing=[(_in_script(item, shown), items[item], why[item]) for item in missing],
         left_out=generator.left_out,
         disagreements=[each for each in found if each is not None],
     )
+
+
+def _in_script(item: CoverageItem, shown: Mapping[str, str]) -> CoverageItem:
+    """An item with paths of the script."""
+    return item._replace(path=shown_path(item.path, shown), target=shown_path(item.target, shown))
 
 
 def _first_difference(
@@ -65,6 +73,7 @@ def _first_difference(
     cases: Sequence[TestCase],
 ) -> Disagreement | None:
     """The first path on which a target differs from the interpreter."""
+    shown = script_paths(machine.root)
     with ExitStack() as stack:
         played = player(cases)
         stack.callback(getattr(played, "close", lambda: None))  # ends its processes
@@ -75,10 +84,10 @@ def _first_difference(
                 return Disagreement(
                     target=target,
                     path=number,
-                    expected=difference.first,
-                    found=difference.second,
+                    expected=[with_shown_paths(event, shown) for event in difference.first],
+                    found=[with_shown_paths(event, shown) for event in difference.second],
                     at=difference.at,
-                    rows={path: row for path, row in case.rows.items() if row},
+                    rows={shown.get(path, path): row for path, row in case.rows.items() if row},
                     live=path.live,
                 )
     return None

@@ -13,6 +13,8 @@ from smachac.driver import build
 from smachac.frontend.files import disk_library
 from smachac.frontend.loader import Library
 from smachac.ir.nodes import Checked, Machine
+from smachac.ir.script_paths import script_paths
+from smachac.runtime.tracing.writer import with_shown_paths
 from smachac.targets.cpp import TARGET
 from tests.cpp.compilers import Compiler
 from tests.support.typed_machines import with_state_types
@@ -38,7 +40,7 @@ struct Asking : smachac::TraceWriter {
       : TraceWriter(stdout), path_(path), left_(visit), stop_(stop) {}
   void on(const smachac::Event &event) override {
     TraceWriter::on(event);
-    if (std::strcmp(event.event, "enter") == 0 && std::strcmp(event.place.path, path_) == 0 &&
+    if (std::strcmp(event.event, "enter") == 0 && std::strcmp(event.place.full(), path_) == 0 &&
         --left_ == 0) {
       stop_.request();
     }
@@ -109,4 +111,12 @@ def traces(
     for events, unobserved, (_, _, asked) in zip(found, parts[1::2], headers, strict=True):
         ended = [event["outcome"] for event in events if event["event"] == "finish"]
         assert asked != NOBODY or unobserved[-1] == [*ended, ""][0], unobserved
-    return found
+    return [
+        in_full(machine, events) for (machine, _, _), events in zip(headers, found, strict=True)
+    ]
+
+
+def in_full(machine: Machine, events: Sequence[Event]) -> list[Event]:
+    """Events with the full paths of their states, as the interpreter has them."""
+    full = {shown: path for path, shown in script_paths(machine.root).items()}
+    return [with_shown_paths(event, full) for event in events]

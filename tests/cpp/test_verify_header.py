@@ -95,7 +95,7 @@ def test_a_difference_names_the_line_in_the_file(
     marked = next(row for row in capsys.readouterr().out.splitlines() if row.startswith(" ->"))
     lines = Path(header).read_text("utf-8").splitlines()
     number = max(n for n, line in enumerate(lines, 1) if "case State::USE:" in line)
-    assert marked.endswith(f"transition sm/USE done -> sm:aborted  sm.hpp:{number}")
+    assert marked.endswith(f"transition sm/USE (timeout) done -> sm:aborted  sm.hpp:{number}")
 
 
 @HERE

@@ -72,7 +72,7 @@ def played(
 def test_outcomes(tmp_path: Path, sugar: str, steps: list[str], outcome: str, visits: int) -> None:
     result, exits = played(tmp_path, sugar, SCRIPT, {"WORK": steps})
     assert result.outcome == outcome
-    path = "sm/WORK/WORK/WORK" if "for_each" in sugar and "retry" in sugar else "sm/WORK/WORK"
+    path = "sm/WORK/TRIES/WORK" if "for_each" in sugar and "retry" in sugar else "sm/WORK/WORK"
     path = "sm/WORK/TRY/WORK" if "delay" in sugar else path
     assert sum(line.split()[0] == path for line in exits) == visits
 

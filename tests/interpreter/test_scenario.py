@@ -17,8 +17,7 @@ from smachac.interpreter.scenario import (
     read_scenario,
     scenario_behaviour,
 )
-from smachac.ir.nodes import Leaf, Machine
-from smachac.ir.traversal import walk
+from smachac.ir.nodes import Machine
 from tests.support.ir_machines import concurrence, iterator, leaf, machine, ran, short
 
 
@@ -238,12 +237,37 @@ states:
 """
 
 
-@pytest.mark.parametrize("path", ["DRIVE", "LEG/DRIVE", "sm/LEG/DRIVE"])
-def test_a_state_with_sugar_has_the_path_that_the_script_shows(path: str) -> None:
+DRIVE = "sm/LEG/DRIVE/TIMED/DRIVE"
+TIMER = "sm/LEG/DRIVE/TIMED/TIMER"
+
+
+@pytest.mark.parametrize(
+    ("path", "leaf"),
+    [
+        *((name, DRIVE) for name in ("DRIVE", "LEG/DRIVE", "sm/LEG/DRIVE", "TIMED/DRIVE", DRIVE)),
+        *((name, TIMER) for name in ("TIMER", "DRIVE (timeout)/TIMER", "DRIVE/TIMER", TIMER)),
+    ],
+)
+def test_a_state_with_sugar_has_the_path_that_the_script_shows(path: str, leaf: str) -> None:
     loaded = smachac.load(SUGAR, name="main.yml")
-    leaves = [each for each, node in walk(loaded.root) if isinstance(node, Leaf)]
-    (inner,) = [each for each in leaves if each.endswith("DRIVE/DRIVE")]
-    scenario, found = read_scenario({"states": {path: "there"}}, loaded)
+    outcome = "there" if leaf == DRIVE else "succeeded"
+    scenario, found = read_scenario({"states": {path: outcome}}, loaded)
     assert not found
-    assert list(scenario.steps) == [inner]
+    assert list(scenario.steps) == [leaf]
     assert read_scenario({"states": {"LEG/DRIV": "there"}}, loaded)[1]
+
+
+@pytest.mark.parametrize(
+    ("states", "message"),
+    [
+        ({"DRIVE": "there", "sm/LEG/DRIVE/TIMED/DRIVE": "there"}, "`sm/LEG/DRIVE` is given twice"),
+        ({"DRIVE": "lost"}, "sm/LEG/DRIVE, step 1: `lost` is not one"),
+        ({"DRIVE (retry)": "there"}, "`DRIVE (retry)` is a container"),
+        ({"sm/LEG/DRIVES": "there"}, "did you mean `sm/LEG/DRIVE`?"),
+    ],
+)
+def test_problems_of_a_scenario_show_the_path_of_the_script(
+    states: dict[str, str], message: str
+) -> None:
+    _, found = read_scenario({"states": states}, smachac.load(SUGAR, name="main.yml"))
+    assert any(message in each.message for each in found), found

@@ -149,7 +149,11 @@ def raising(ud: Any) -> str:
             "error sm/M/A ended with `y`, which is not one of its outcomes",
         ),
         (nested(leaf("A", {"x": "x"})), lambda ud: None, "error sm/M/A ended without an outcome"),
-        (nested(leaf("A", {"x": "x"}, ins="k")), lambda ud: ud.k, "error sm/M/A KeyError"),
+        (
+            nested(leaf("A", {"x": "x"}, ins="k")),
+            lambda ud: ud.k,
+            "error sm/M/A KeyError: userdata key 'k' is absent; present: []",
+        ),
         (
             nested(concurrence("C", "x", leaf("A", outcomes="x"), default="x", to={"x": "x"})),
             raising,

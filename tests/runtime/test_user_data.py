@@ -72,7 +72,7 @@ def test_absent_keys_raise_key_error_and_are_logged(monkeypatch: pytest.MonkeyPa
     for read in reads:
         with pytest.raises(KeyError) as caught:
             read()
-        assert caught.value.args == ()
+        assert str(caught.value) == "userdata key 'k' is absent; present: []"
     assert len(errors) == 4
     assert all("'k'" in error for error in errors)
 

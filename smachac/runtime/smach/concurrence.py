@@ -6,7 +6,6 @@ import traceback
 from collections.abc import Callable, Iterable, Mapping, Sequence
 from typing import Any, TypeVar
 
-from smachac.runtime.messages import message_of
 from smachac.runtime.smach import settings
 from smachac.runtime.smach.container import Container, needs_request, open_container, withdraw
 from smachac.runtime.smach.exceptions import (
@@ -14,6 +13,7 @@ from smachac.runtime.smach.exceptions import (
     InvalidTransitionError,
     InvalidUserCodeError,
 )
+from smachac.runtime.smach.failures import callback_error, child_error
 from smachac.runtime.smach.log import quiet
 from smachac.runtime.smach.state import State
 from smachac.runtime.smach.threads import Branches
@@ -177,10 +177,10 @@ class Concurrence(Container):
             return
         self._left_flagged = True
         label, error = branches.failure
-        if not (isinstance(error, Exception) or settings.compat):
+        failed = child_error(InvalidStateError, label, self._states[label], error)
+        if failed is error:
             raise error
-        message = message_of(error) or type(error).__name__
-        raise InvalidStateError(f"branch '{label}' failed: {message}") from error
+        raise failed from failed.__cause__
 
     def _run_child(self, branches: Branches, label: str) -> None:
         """Run one child; the function of its thread."""
@@ -188,7 +188,8 @@ class Concurrence(Container):
         self.call_transition_cbs()
         outcome = state.execute(self._view(state, self._remappings[label]))
         if outcome is None and not settings.is_shutdown():
-            raise InvalidStateError(f"state '{label}' ended without an outcome")
+            words = f"state '{label}' ended without an outcome"
+            raise InvalidStateError(words, blames=words)
         with branches.ending:
             branches.outcomes[label] = outcome
             del branches.active[label]
@@ -204,9 +205,7 @@ class Concurrence(Container):
         try:
             return bool(self._child_termination_cb(branches.outcomes))
         except Exception as error:
-            raise InvalidUserCodeError(
-                f"child_termination_cb failed:\n{traceback.format_exc()}"
-            ) from error
+            raise callback_error(InvalidUserCodeError, "child_termination_cb", error) from error
 
     def _outcome(self, outcomes: dict[str, str | None]) -> str | None:
         """The outcome for these outcomes of the children. Raises KeyError for an unknown label."""
@@ -218,9 +217,7 @@ class Concurrence(Container):
             try:
                 chosen = self._outcome_cb(dict(outcomes))
             except Exception as error:
-                raise InvalidUserCodeError(
-                    f"outcome_cb failed:\n{traceback.format_exc()}"
-                ) from error
+                raise callback_error(InvalidUserCodeError, "outcome_cb", error) from error
             if chosen and isinstance(chosen, str):
                 result = chosen
         if settings.loginfo is not quiet:

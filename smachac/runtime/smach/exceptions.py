@@ -6,11 +6,18 @@ from smachac.runtime.smach import settings
 
 
 class SmachError(Exception):
-    """The common base. As in SMACH, creating one writes its message to the error logger."""
+    """The common base. As in SMACH, creating one writes its message to the error logger, unless it
+    is `logged` already.
 
-    def __init__(self, message: str) -> None:
+    Attributes:
+        blames: the state that failed first, and how, as a sentence; empty if not known.
+    """
+
+    def __init__(self, message: str, logged: bool = False, blames: str = "") -> None:
         super().__init__(message)
-        settings.logerr(f"{type(self).__name__}: {message}")
+        self.blames = blames
+        if not logged:
+            settings.logerr(f"{type(self).__name__}: {message}")
 
 
 class InvalidTransitionError(SmachError):

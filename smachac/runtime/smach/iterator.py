@@ -9,6 +9,7 @@ from typing import Any
 from smachac.runtime.smach import settings
 from smachac.runtime.smach.container import Container, needs_request, open_container, withdraw
 from smachac.runtime.smach.exceptions import InvalidUserCodeError
+from smachac.runtime.smach.failures import child_error
 from smachac.runtime.smach.log import quiet
 from smachac.runtime.smach.state import State
 from smachac.runtime.smach.user_data import UserData
@@ -174,15 +175,11 @@ class Iterator(Container):
     def _run_child(self, state: Any) -> str | None:
         try:
             outcome: str | None = state.execute(self.userdata)
-        except InvalidUserCodeError:
-            raise
         except BaseException as error:
-            if not (isinstance(error, Exception) or settings.compat):
+            failed = child_error(InvalidUserCodeError, self._label, state, error)
+            if failed is error:
                 raise
-            raise InvalidUserCodeError(
-                f"state '{self._label}' of type {type(state).__name__} failed:\n"
-                f"{traceback.format_exc()}"
-            ) from error
+            raise failed from failed.__cause__
         return outcome
 
     def _loops(self, outcome: str | None) -> bool:

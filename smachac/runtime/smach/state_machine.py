@@ -13,6 +13,7 @@ from smachac.runtime.smach.exceptions import (
     InvalidTransitionError,
     InvalidUserCodeError,
 )
+from smachac.runtime.smach.failures import child_error, without_runtime
 from smachac.runtime.smach.log import quiet
 from smachac.runtime.smach.state import State
 from smachac.runtime.smach.transitions import Transitions
@@ -227,6 +228,9 @@ class StateMachine(Container):
         self._claim()
         try:
             return self._run(parent_ud)
+        except InvalidUserCodeError as error:
+            own = without_runtime(error.__traceback__)
+            raise error.with_traceback(own)  # noqa: B904 (the same error)
         finally:
             self._active = None
             self._running.release()
@@ -259,15 +263,11 @@ class StateMachine(Container):
                     self.userdata[key] = value
             try:
                 outcome = state.execute(step.view)
-            except InvalidUserCodeError:
-                raise
             except BaseException as error:
-                if not (isinstance(error, Exception) or settings.compat):
+                failed = child_error(InvalidUserCodeError, step.label, state, error)
+                if failed is error:
                     raise
-                raise InvalidUserCodeError(
-                    f"state '{step.label}' of type {type(state).__name__} failed:\n"
-                    f"{traceback.format_exc()}"
-                ) from error
+                raise failed from failed.__cause__
             self._active = None
             try:
                 following = step.next[outcome]

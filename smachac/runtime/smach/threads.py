@@ -3,10 +3,10 @@
 from __future__ import annotations
 
 import threading
-import traceback
 from collections.abc import Callable, Iterable
 
 from smachac.runtime.smach import settings
+from smachac.runtime.smach.failures import one_line
 
 _POLL_INTERVAL = 0.1
 """Seconds between two calls of the shutdown check while children run."""
@@ -75,7 +75,7 @@ class Branches:
                 self._changed.notify_all()
 
     def _fail(self, label: str, error: BaseException) -> None:
-        settings.logerr(f"branch '{label}' failed:\n{traceback.format_exc()}")
+        settings.logerr(f"branch '{label}' failed: {one_line(error)}")
         with self._changed:
             if self.failure is None:
                 self.failure = (label, error)

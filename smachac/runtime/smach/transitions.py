@@ -92,9 +92,8 @@ class Transitions:
         """
         registered = self.states[label].get_registered_outcomes()
         if outcome not in registered:
-            raise InvalidTransitionError(
-                f"state '{label}' returned '{outcome}'; its outcomes: {registered}"
-            )
+            words = f"state '{label}' returned '{outcome}'; its outcomes: {registered}"
+            raise InvalidTransitionError(words, blames=words)
         targets = self.targets[label]
         if outcome not in targets:
             raise InvalidTransitionError(

@@ -12,6 +12,7 @@ from typing import Any, ClassVar, TypeAlias
 
 from smachac.runtime.smach import settings
 from smachac.runtime.smach.exceptions import InvalidUserCodeError
+from smachac.runtime.smach.failures import near
 
 View: TypeAlias = tuple[
     Collection[str], Collection[str], Mapping[str, str], MutableMapping[str, Any]
@@ -201,11 +202,12 @@ class Remapper:
     def _refusal(self, key: str) -> Exception:
         inputs, _, remapping, data = self._view
         if key in inputs:
-            return _absent(remapping.get(key, key), data)
+            return _absent(remapping.get(key, key), data, key)
         if isinstance(key, str) and key.startswith("_"):
             return AttributeError(key)
         return InvalidUserCodeError(
-            f"userdata key '{key}' is read, but is no input key; input keys: {list(inputs)}"
+            f"userdata key '{key}' is read, but is no input key;{near(str(key), list(inputs))}"
+            f" input keys: {list(inputs)}"
         )
 
     def _drop(self, key: str) -> None:
@@ -272,7 +274,24 @@ def write_keys(target: Any, keys: Collection[str], data: Mapping[str, Any]) -> l
     return missing
 
 
-def _absent(key: object, data: Collection[str]) -> KeyError:
-    present = list(data) if isinstance(data, dict) else "another kind of store"
-    settings.logerr(f"userdata key '{key}' is absent; present: {present}")
-    return KeyError()
+class _AbsentKeyError(KeyError):
+    """A KeyError whose text is its message, without the quotes of a key."""
+
+    def __str__(self) -> str:
+        return str(self.args[0])
+
+
+_AbsentKeyError.__name__ = _AbsentKeyError.__qualname__ = KeyError.__name__
+_AbsentKeyError.__module__ = KeyError.__module__
+
+
+def _absent(key: object, data: Collection[str], own: object = None) -> KeyError:
+    """The error for a key that a store lacks; `own` is its name for the state that reads it."""
+    called = f"'{key}'" if own in (None, key) else f"'{own}' ('{key}' of the container)"
+    present = list(data) if isinstance(data, dict) else None
+    hint = near(str(key), list(map(str, present))) if present is not None else ""
+    words = f"userdata key {called} is absent;{hint} present: {present}"
+    if present is None:
+        words = f"userdata key {called} is absent in a store of another kind"
+    settings.logerr(words)
+    return _AbsentKeyError(words)

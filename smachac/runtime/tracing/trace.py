@@ -70,15 +70,17 @@ def attach(
     sources: Mapping[str, str] = {},
     *,
     clock: Callable[[], float] = time.monotonic,
+    paths: Mapping[str, str] = {},
 ) -> None:
     """Trace a built machine: `observe` is called with every event from now on.
 
     `name` is the path of the machine itself, `sources` the places of states in the script by path,
-    `clock` returns seconds. `observe` is called by the threads of the machine, one call at a time.
+    `clock` returns seconds. `paths` are paths to show in place of those of states that SMACH's
+    labels make. `observe` is called by the threads of the machine, one call at a time.
     If a call raises, the error is printed to stderr, the machine continues, and no more calls are
     made. A `TraceWriter` is not called: it writes lines that are prepared at their first use.
     """
-    recorder = Recorder(observe, sources, clock)
+    recorder = Recorder(observe, sources, clock, paths)
     instrumented: dict[int, InstrumentedState] = {}
     for parent, label, state in _walk(machine, name):
         known = instrumented.get(id(state))

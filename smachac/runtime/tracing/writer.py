@@ -111,11 +111,13 @@ class Recorder:
         observe: Observer | TraceWriter,
         sources: Mapping[str, str],
         clock: Callable[[], float],
+        paths: Mapping[str, str] = {},
     ) -> None:
         self._sink: Sink | None = (
             observe if isinstance(observe, TraceWriter) else ObserverSink(observe)
         )
         self._sources = sources
+        self._paths = paths
         self._clock = clock
         self._began = clock()
         self._seq = 1
@@ -136,7 +138,8 @@ class Recorder:
 
     def _with_frame(self, event: Event) -> Event:
         place = self._sources.get(event["path"])
-        return {"seq": 0, **event, "t": 0.0, **({"src": place} if place else {})}
+        shown = with_shown_paths(event, self._paths)
+        return {"seq": 0, **shown, "t": 0.0, **({"src": place} if place else {})}
 
     def record(self, prepared: Any, value: object = NO_VALUE) -> None:
         """Record prepared events, which happen now; `value` is that of a write."""
@@ -160,6 +163,28 @@ class Recorder:
     def emit(self, event: str, path: str, **more: object) -> None:
         """Record an event that occurs too rarely to be prepared once."""
         self.record(self.prepare({"event": event, "path": path, **more}))
+
+
+def with_shown_paths(event: Mapping[str, Any], paths: Mapping[str, str]) -> Event:
+    """An event with other paths, `paths` by the path of a state; the same event if it has none."""
+    if not paths:
+        return dict(event)
+    shown = {**event, "path": paths.get(event["path"], event["path"])}
+    if "to" in event:
+        shown["to"] = shown_path(event["to"], paths)
+    return shown
+
+
+def shown_path(path: str, paths: Mapping[str, str]) -> str:
+    """The path that takes the place of a path or of `path:outcome`, the end of a container."""
+    if not paths or path in paths:
+        return paths.get(path, path)
+    at = path.find(":")
+    while at >= 0:
+        if path[:at] in paths:
+            return paths[path[:at]] + path[at:]
+        at = path.find(":", at + 1)
+    return path
 
 
 def _line(event: Event) -> bytes:

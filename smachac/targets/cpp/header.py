@@ -143,7 +143,7 @@ def _container(printing: _Printing, scope: ContainerScope) -> Lines:
         _userdata(plan, scope),
         _types(leaves),
         _states(printing, scope, leaves),
-        _places(scope),
+        _places(plan, scope),
     ]
     names = frozenset(child.name for child in node.children)
     container = ContainerPlan(
@@ -262,7 +262,7 @@ def _states(printing: _Printing, scope: ContainerScope, leaves: Mapping[str, Lea
     return ["struct States {", head, f"      : {initial} {{}}", "", *lines, "};"]
 
 
-def _places(scope: ContainerScope) -> Lines:
+def _places(plan: Plan, scope: ContainerScope) -> Lines:
     children = scope.node.children
     return [
         "enum class State : std::size_t {",
@@ -270,12 +270,19 @@ def _places(scope: ContainerScope) -> Lines:
         "};",
         "",
         "inline constexpr smachac::Place places[] = {",
-        *(
-            f"    {{{cpp_literal(f'{scope.path}/{child.name}')}, {cpp_literal(place(child))}}},"
-            for child in children
-        ),
+        *(f"    {_place(plan, scope.path, child)}," for child in children),
         "};",
     ]
+
+
+def _place(plan: Plan, around: str, child: Node) -> str:
+    """The place of a child of the container at a path: its path in the script, file and line; also
+    its full path and the container's path in the script, where one of them differs."""
+    path = f"{around}/{child.name}"
+    texts = [plan.paths.get(path, path), place(child)]
+    if path in plan.paths or around in plan.paths:
+        texts += [path, plan.paths.get(around, around)]
+    return f"{{{', '.join(map(cpp_literal, texts))}}}"
 
 
 def _root(machine: Machine) -> Lines:

@@ -10,6 +10,7 @@ from smachac.analysis.type_inference import infer
 from smachac.diagnostics.diagnostic import Report
 from smachac.diagnostics.source import NOWHERE, Span
 from smachac.ir.nodes import Concurrence, Container, Iterator, Leaf, Machine, Node
+from smachac.ir.script_paths import script_paths
 from smachac.ir.traversal import containers, outcome_names, remapping
 from smachac.ir.types import ANY, Type
 from smachac.targets import comment
@@ -53,10 +54,12 @@ class ContainerScope:
 
 @dataclass(slots=True, kw_only=True)
 class Plan:
-    """A machine with its scopes by path, parents before children; `report` holds the refusals."""
+    """A machine with its scopes by path, parents before children; `report` holds the refusals.
+    `paths` are the paths of the script by full path, where they differ: events have them."""
 
     machine: Machine
     scopes: Mapping[str, ContainerScope]
+    paths: Mapping[str, str]
     report: Report = field(default_factory=list)
 
     def refuse(self, span: Span, error: UnportableError, *names: str) -> None:
@@ -72,7 +75,7 @@ def plan(machine: Machine) -> Plan:
     for (path, key), type_ in sorted(types.items(), key=lambda item: item[0]):
         keys.setdefault(path, {})[key] = plain(type_)
     scopes: dict[str, ContainerScope] = {}
-    found = Plan(machine=machine, scopes=scopes)
+    found = Plan(machine=machine, scopes=scopes, paths=script_paths(machine.root))
     for path, node in containers(machine.root):
         around = scopes.get(path.rpartition("/")[0])
         scope = ContainerScope(

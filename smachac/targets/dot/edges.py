@@ -8,6 +8,7 @@ from typing import NamedTuple
 from smachac.ir import graph, nodes
 from smachac.ir.graph import START
 from smachac.ir.nodes import Concurrence, Container, Data, Expression
+from smachac.ir.script_paths import role_in_words
 from smachac.ir.traversal import leads_to_child, outcome_names
 from smachac.targets.dot.style import (
     FAINT,
@@ -70,6 +71,9 @@ def entry_mark(container: Container, id: str, *, sideways: bool) -> str:
     if isinstance(container, Concurrence):
         return _bar(id, INK, "all at once", "1.2", sideways=sideways)
     if isinstance(container, nodes.Iterator):
+        if container.sugar == "retry":
+            label = font(html(role_in_words(container)), colour=INK, size=11)
+            return f'"{id}"{attributes({"color": LOOP_BORDER}, label)}'
         head = font(f"for each <B>{html(container.item_key)}</B>", colour=INK, size=11)
         label = spaced([head, font(html(items(container)), colour=FAINT, size=9)])
         return f'"{id}"{attributes({"color": LOOP_BORDER}, label)}'

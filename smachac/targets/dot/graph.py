@@ -2,11 +2,12 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Iterator, Mapping
 from typing import NamedTuple
 
 from smachac.ir import nodes
 from smachac.ir.nodes import Concurrence, Container, Leaf, Machine, Node
+from smachac.ir.script_paths import name_in_script, role_in_words, script_paths
 from smachac.ir.traversal import outcome_names
 from smachac.targets.dot.edges import Piece, Spot, edges, entry_mark, joins, merged
 from smachac.targets.dot.style import (
@@ -32,14 +33,22 @@ from smachac.targets.dot.style import (
 
 
 class Position(NamedTuple):
-    """The position of a state: its path, its node name in DOT and its depth."""
+    """The position of a state: its full path, its node name in DOT and its depth; `paths` are those
+    of the script by full path, where they differ."""
 
     path: str
     id: str
     level: int
+    paths: Mapping[str, str]
 
     def below(self, name: str) -> Position:
-        return Position(f"{self.path}/{name}", f"{self.id}/{identifier(name)}", self.level + 1)
+        path, id = f"{self.path}/{name}", f"{self.id}/{identifier(name)}"
+        return Position(path, id, self.level + 1, self.paths)
+
+    @property
+    def shown(self) -> str:
+        """The path in the script."""
+        return self.paths.get(self.path, self.path)
 
     @property
     def start(self) -> str:
@@ -57,7 +66,7 @@ def picture(machine: Machine, *, depth: int | None, rankdir: str) -> Iterator[st
     for line in _settings(machine, rankdir):
         yield f"  {line}"
     todo: list[str | tuple[Position, Container]] = ["}"]
-    todo.append((Position(root.name, identifier(root.name), 1), root))
+    todo.append((Position(root.name, identifier(root.name), 1, script_paths(root)), root))
     while todo:
         item = todo.pop()
         if isinstance(item, str):
@@ -111,21 +120,24 @@ def _frame(container: Container, place: Position) -> Iterator[str]:
             kind = f"|| {kind}" + (", first to end" if container.join == "any" else "")
         case nodes.Iterator():
             fill, border = LOOP_FILL, LOOP_BORDER
-    title = f"<B>{html(container.name)}</B>  {font(kind, colour=FAINT, size=9)}"
+    kind = html(role_in_words(container)) if container.sugar else kind
+    name = name_in_script(container)
+    title = f"<B>{html(name)}</B>  {font(kind, colour=FAINT, size=9)}"
     look = {"labeljust": "c", "labelloc": "t", "style": style}
     colours = {"fillcolor": fill, "color": border, "fontsize": "11"}
     yield f'subgraph "cluster_{place.id}" {{'
-    tip = {"tooltip": container.doc or place.path}
+    tip = {"tooltip": container.doc or place.shown}
     yield f"  graph{attributes(look | colours | tip, title)}"
 
 
 def _box(node: Node, place: Position) -> str:
     """A leaf, or a container that is drawn closed."""
-    rows = [f"<B>{html(node.name)}</B>"]
-    kind = html(node.type) if isinstance(node, Leaf) else f"{html(node.type)} <B>+</B>"
+    rows = [f"<B>{html(name_in_script(node))}</B>"]
+    kind = html(role_in_words(node) or node.type)
+    kind = kind if isinstance(node, Leaf) else f"{kind} <B>+</B>"
     if node.type:
         rows.append(font(kind, colour=FAINT, size=9))
-    tip = {"tooltip": node.doc or place.path}
+    tip = {"tooltip": node.doc or place.shown}
     return f'"{place.id}"{attributes(tip, spaced(rows))}'
 
 

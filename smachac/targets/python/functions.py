@@ -24,6 +24,7 @@ from smachac.ir.nodes import (
     Struct,
 )
 from smachac.ir.nodes import Iterator as IteratorNode
+from smachac.ir.script_paths import name_in_script
 from smachac.ir.traversal import containers, expressions, walk
 
 MOST_STATES = 8
@@ -82,8 +83,11 @@ def one_function(machine: Machine, inlined: Inlined) -> Plan:
     """The plan of a program that is one function, as SMACHA's are: a function only for what is
     nested too deeply."""
     return {
-        path: Call(function=Function(key=path, word=node.name, variable=node.name))
-        for path, node in _extracted(machine, inlined, MOST_NESTED_IN_ONE, None)
+        path: Call(function=Function(key=path, word=name, variable=name))
+        for path, name in (
+            (path, variable_name(node))
+            for path, node in _extracted(machine, inlined, MOST_NESTED_IN_ONE, None)
+        )
     }
 
 
@@ -107,9 +111,16 @@ def script_of(node: Container) -> str:
 
 
 def _function(path: str, node: Container) -> Function:
-    script = script_of(node)
-    word = PurePath(script).stem if script else node.name
-    return Function(key=path, word=word, variable=node.name, script=script, doc=node.doc)
+    script, name = script_of(node), variable_name(node)
+    word = PurePath(script).stem if script else name
+    return Function(key=path, word=word, variable=name, script=script, doc=node.doc)
+
+
+def variable_name(node: Container) -> str:
+    """The name of the variable of a container, without prefix: that of the container. In the sugar
+    of a state it begins with the name of the state."""
+    state = name_in_script(node)
+    return node.name if state == node.name else f"{state}_{node.name}"
 
 
 def _extracted(

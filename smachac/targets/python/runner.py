@@ -7,6 +7,7 @@ import random
 import signal
 import sys
 import threading
+import traceback
 from collections.abc import Callable, Iterator, Sequence
 from contextlib import contextmanager
 from dataclasses import dataclass
@@ -15,7 +16,9 @@ from types import FrameType, ModuleType
 from typing import Any
 
 from smachac.ir.nodes import Machine
+from smachac.ir.script_paths import script_paths
 from smachac.ir.traversal import walk
+from smachac.runtime.smach.failures import one_line
 
 Event = dict[str, Any]
 
@@ -58,9 +61,9 @@ def execute(
     """Run the module `text`; the result has no events, which `observe` receives.
 
     `folder` is where the program may import modules of the user from: that of the script.
-    `observe` gets every event of the trace. Ctrl-C requests the machine to preempt and calls
-    `on_preempt`; a second one calls the signal handler `on_interrupt`. Exceptions of the program
-    are not caught.
+    `observe` gets every event of the trace, with paths of the script. Ctrl-C requests the machine
+    to preempt and calls `on_preempt`; a second one calls the signal handler `on_interrupt`.
+    Exceptions of the program are not caught.
     """
     from smachac.runtime.tracing import trace
 
@@ -74,7 +77,8 @@ def execute(
 
         def watch(root: Any) -> None:
             if observe is not None:
-                trace.attach(root, machine.root.name, observe, places(machine))
+                name, shown = machine.root.name, script_paths(machine.root)
+                trace.attach(root, name, observe, places(machine), paths=shown)
             built.append(root)
 
         with (
@@ -197,6 +201,34 @@ def quiet(smach: Any, log: Callable[..., None]) -> Iterator[None]:
         yield
     finally:
         smach.set_loggers(*before)
+
+
+SMACH_ERRORS = frozenset(
+    ["SmachError", "InvalidTransitionError", "InvalidStateError", "InvalidUserCodeError"]
+)
+"""The exceptions of containers; that of a state is their cause."""
+
+HIDDEN = str(Path(__file__).parents[2] / "_").removesuffix("_")
+"""The folder of the frames that are not shown: this package."""
+
+
+def failure_text(error: BaseException) -> str:
+    """The exception that user code raised first, and the lines of user code that raised it, the
+    innermost last. Frames of smachac are not shown."""
+    while type(error).__name__ in SMACH_ERRORS:
+        cause = error.__cause__ or error.__context__
+        if cause is None:
+            break
+        error = cause
+    frames = traceback.extract_tb(error.__traceback__)
+    ours = [at for at, each in enumerate(frames, 1) if each.filename.startswith(HIDDEN)]
+    after = frames[max(ours, default=0) :] or frames
+    own = [each for each in after if not each.filename.startswith((HIDDEN, "<frozen"))]
+    lines = [one_line(error)]
+    lines += [f"  in {each.filename}:{each.lineno}, {each.name}: {each.line}" for each in own]
+    if error.__cause__ is not None:
+        lines.append(f"  caused by {one_line(error.__cause__)}")
+    return "\n".join(lines)
 
 
 def main_function(machine: Machine) -> str:

@@ -34,7 +34,7 @@ from smachac.targets.python.formatter import (
     literal,
     names,
 )
-from smachac.targets.python.functions import ITEMS, Function, Place
+from smachac.targets.python.functions import ITEMS, Function, Place, variable_name
 from smachac.targets.python.smacha_context import adding, container_variables, state_variables
 from smachac.targets.templates.engine import BlockError, Page
 
@@ -100,7 +100,7 @@ def container(node: Container, parent: EmittedContainer, path: str, module: Modu
         return _called(node, parent, path, module)
     inside = EmittedContainer(
         node=node,
-        variable=module.fresh(node.name, "sm_"),
+        variable=module.fresh(variable_name(node), "sm_"),
         path=path,
         depth=parent.depth + 1,
         parameters=parent.parameters,

@@ -20,6 +20,7 @@ from smachac.diagnostics.source import Source
 from smachac.ir.nodes import Leaf, Machine, Node
 from smachac.ir.traversal import outcome_names, own_outcomes, walk
 from smachac.ir.types import Type
+from smachac.runtime.tracing.writer import with_shown_paths
 from smachac.targets.cpp.builtin_states import built_in, enumeration
 from smachac.targets.cpp.identifiers import identifier
 from smachac.targets.cpp.plan import ContainerScope, Plan, member, place, plan, scope_name
@@ -61,13 +62,14 @@ def file_player(
             raise unplayable(source, header.faults)
         compiler = first_compiler()
         lines = {path: f"{Path(source.name).name}:{n}" for path, n in header.lines.items()}
+        full = {shown: path for path, shown in planned.paths.items()}
         with tempfile.TemporaryDirectory() as folder:
             header.write_stand_ins(Path(folder))
             found = [each for home in folders for each in (home, home / "include")]
             flags = [f"-I{each}" for each in (folder, *dict.fromkeys(map(Path.resolve, found)))]
             try:
                 for events in traces(header.program(), header.script(), compiler, *flags):
-                    yield [_with_line(event, lines) for event in events]
+                    yield [_with_line(with_shown_paths(event, full), lines) for event in events]
             except CompilationError as error:
                 raise unplayable(source, [_does_not_compile(source, error)]) from error
 
@@ -276,7 +278,7 @@ class _Header:
         for path, each in self._stand_ins.items():
             yield f"    {{{cpp_literal(path)}, {each.leaf.number}}},"
         yield "  };"
-        yield "  const auto found = numbers.find(current.path);"
+        yield "  const auto found = numbers.find(current.full());"
         yield "  return found == numbers.end() ? 0 : found->second;"
         yield "}"
 

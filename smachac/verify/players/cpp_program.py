@@ -105,7 +105,8 @@ class Program:
         scopes = {
             path: replace(self._plan.scopes[path], node=node) for path, node in containers(root)
         }
-        planned = Plan(machine=machine, scopes=scopes, report=list(self._plan.report))
+        report = list(self._plan.report)
+        planned = Plan(machine=machine, scopes=scopes, paths={}, report=report)
         lines = header_of(planned).text.splitlines()
         text = "\n".join(line for line in lines if not line.startswith("#"))
         return text, in_order(planned.report)

@@ -12,7 +12,7 @@ from typing import Any
 
 from smachac.ir.nodes import Machine
 from smachac.runtime.tracing import trace
-from smachac.targets.python.runner import hidden, loaded, places, quiet
+from smachac.targets.python.runner import failure_text, hidden, loaded, places, quiet
 from smachac.verify.test_case import Event, Player, TestCase, UnplayableError, record_read
 
 
@@ -44,7 +44,7 @@ def _unplayable_errors() -> Iterator[None]:
         with redirect_stdout(sys.stderr):
             yield
     except Exception as error:
-        words = f"the Python program cannot be loaded: {type(error).__name__}: {error}"
+        words = f"the Python program cannot be loaded: {failure_text(error)}"
         raise UnplayableError(words) from error
 
 

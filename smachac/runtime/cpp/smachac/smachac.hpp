@@ -194,10 +194,16 @@ template <class Keys, class... Types, class Fields> constexpr bool in_order(Fiel
   return in_order<Keys, Types...>(fields, std::index_sequence_for<Types...>());
 }
 
-/// A state in the script: its path, `sm/PICK/OPEN`, and where it stands, `main.yml:12`.
+/// A state in the script: its path, `sm/PICK/OPEN`, and where it stands, `main.yml:12`. Where a
+/// time limit, retry or loop is around it, also its path in the machine, and the path in the script
+/// of the container around it (docs/language.md, Paths).
 struct Place {
   const char *path;
   const char *src;
+  const char *in_machine = nullptr;
+  const char *around = nullptr;
+
+  [[nodiscard]] const char *full() const { return in_machine != nullptr ? in_machine : path; }
 };
 
 /// One thing that happened. What an event does not have is null.
@@ -449,7 +455,7 @@ class Round {
 public:
   Round(Stop &stop, const Place &item, std::size_t items)
       : stop_(stop), item_(item), before_(stop.requests()), left_(items) {
-    stop_.remind(item_.path);
+    stop_.remind(item_.full());
     early_ = stop_.requested();
   }
   /// An item is done: whether a request ends the iterator.
@@ -459,7 +465,7 @@ public:
       return false;
     }
     stop_.service();
-    stop_.forget(item_.path);
+    stop_.forget(item_.full());
     return true;
   }
   /// Whether that was the last item.
@@ -596,14 +602,14 @@ struct Run {
   template <class State, class Outcome>
   Outcome end_asked(const Place *places, State state, const char *, Outcome outcome) {
     if (stop.requested()) {
-      stop.keep(places[static_cast<std::size_t>(state)].path);
+      stop.keep(places[static_cast<std::size_t>(state)].full());
     }
     return outcome;
   }
   /// The requests, for a state that is about to run.
   template <class State> Stop &stop_for(const Place *places, State state) {
     if (stop.keeps_) {
-      stop.remind(places[static_cast<std::size_t>(state)].path);
+      stop.remind(places[static_cast<std::size_t>(state)].full());
     }
     return stop;
   }
@@ -637,7 +643,7 @@ struct Run {
 private:
   // Out of the way, so that machines are small enough to become one with those around them.
   [[noreturn, gnu::cold, gnu::noinline]] static void give_up(Stop &stop, const Place &place) {
-    stop.keep(place.path);
+    stop.keep(place.full());
     detail::throw_on(place, detail::message_of_current());
   }
 };
@@ -734,12 +740,12 @@ private:
     bool asked = false;
     {
       const std::lock_guard<std::mutex> hold(stop.lock_);
-      stop.settle(place.path);
+      stop.settle(place.full());
       stop.ask_again([&](const char *each) {
-        return Stop::within(place.path, each) && std::strcmp(place.path, each) != 0;
+        return Stop::within(place.full(), each) && std::strcmp(place.full(), each) != 0;
       });
       stop.running_.push_back(place);
-      asked = stop.requested() && stop.asker_ != place.path;
+      asked = stop.requested() && stop.asker_ != place.full();
     }
     if (asked) {
       observer_.tell({"preempt", place});
@@ -762,7 +768,9 @@ private:
     observer_.tell({"transition", place, outcome, to});
   }
   void ended(const Place &place, const char *outcome, const char *with) {
-    std::string to(place.path, std::strrchr(place.path, '/'));
+    std::string to = place.around != nullptr
+                         ? std::string(place.around)
+                         : std::string(place.path, std::strrchr(place.path, '/'));
     to += std::string(":") + with;
     moved(place, outcome, to.c_str());
   }
@@ -773,7 +781,7 @@ private:
     tell_error(place, detail::message_of_current());
   }
   [[noreturn]] void failed_at(const Place &place) {
-    stop.keep(place.path);
+    stop.keep(place.full());
     pop();
     const std::string message = detail::message_of_current();
     tell_error(place, message);
@@ -799,7 +807,7 @@ private:
 template <class Run, std::size_t N> class Branches {
 public:
   Branches(Run &around, const Place *places) : around_(around), places_(places) {
-    around_.stop.remind(places_[0].path);
+    around_.stop.remind(places_[0].full());
     const std::lock_guard<std::mutex> hold(around_.stop.lock_);
     for (std::size_t i = 0; i < N; ++i) {
       stops_[i].next_ = i + 1 < N ? &stops_[i + 1] : nullptr;
@@ -921,7 +929,7 @@ private:
     around_.stop.branches_ = nullptr;
     bool open = false;
     for (std::size_t i = 0; i < N; ++i) {
-      stops_[i].settle(places_[i].path);
+      stops_[i].settle(places_[i].full());
       open = open || stops_[i].requested();
       if (!stops_[i].requested()) {
         move_kept(i, stops_[i], around_.stop);
@@ -934,7 +942,7 @@ private:
   /// What states of a branch keep, when it starts and when it has ended.
   void move_kept(std::size_t i, Stop &from, Stop &to) {
     from.take([&](const char *path) {
-      const bool found = Stop::within(path, places_[i].path);
+      const bool found = Stop::within(path, places_[i].full());
       if (found) {
         to.put(path);
       }

@@ -267,7 +267,7 @@ enum class State : std::size_t {
 };
 
 inline constexpr smachac::Place places[] = {
-    {"fetch/CARRY/CARRY", "main.yml:28"},
+    {"fetch/CARRY", "main.yml:28", "fetch/CARRY/CARRY", "fetch/CARRY (retry)"},
 };
 
 template <class Run>
@@ -467,7 +467,7 @@ inline constexpr smachac::Place places[] = {
     {"fetch/FIND", "main.yml:7"},
     {"fetch/PICK", "main.yml:11"},
     {"fetch/OWN", "main.yml:24"},
-    {"fetch/CARRY", "main.yml:28"},
+    {"fetch/CARRY (retry)", "main.yml:28", "fetch/CARRY", "fetch"},
     {"fetch/BOTH", "main.yml:35"},
     {"fetch/EACH", "main.yml:50"},
     {"fetch/LET_GO", "main.yml:65"},

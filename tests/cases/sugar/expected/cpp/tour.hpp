@@ -3,7 +3,7 @@
 
 #include "smachac/smachac.hpp"
 
-namespace tour::EACH::EACH { // main.yml:41
+namespace tour::EACH::TRIES { // main.yml:41
 
 enum class Outcome : std::uint8_t {
   found,
@@ -60,7 +60,7 @@ enum class State : std::size_t {
 };
 
 inline constexpr smachac::Place places[] = {
-    {"tour/EACH/EACH/EACH", "main.yml:41"},
+    {"tour/EACH", "main.yml:41", "tour/EACH/TRIES/EACH", "tour/EACH (retry)"},
 };
 
 template <class Run>
@@ -103,7 +103,7 @@ template <class Run>
   return Outcome::exhausted;
 }
 
-} // namespace tour::EACH::EACH
+} // namespace tour::EACH::TRIES
 
 namespace tour::EACH { // main.yml:41
 
@@ -120,19 +120,19 @@ constexpr const char *name(Outcome outcome) {
 
 struct Userdata {
   smachac::Key<std::string> unused;
-  EACH::Userdata EACH_;
+  TRIES::Userdata TRIES_;
 };
 
 struct States {
-  EACH::States EACH_;
+  TRIES::States TRIES_;
 };
 
 enum class State : std::size_t {
-  EACH,
+  TRIES,
 };
 
 inline constexpr smachac::Place places[] = {
-    {"tour/EACH/EACH", "main.yml:41"},
+    {"tour/EACH (retry)", "main.yml:41", "tour/EACH/TRIES", "tour/EACH (for_each)"},
 };
 
 template <class Run>
@@ -142,23 +142,23 @@ template <class Run>
   if (items.empty()) {
     return round.over() ? Outcome::preempted : Outcome::exhausted;
   }
-  const auto state = State::EACH;
+  const auto state = State::TRIES;
   for (const auto &item : items) {
     ud.unused.hold(item);
     // main.yml:41
     SMACHAC_TRY {
       run.enter(places, state);
-      const auto outcome = EACH::execute(states.EACH_, ud.EACH_, run);
+      const auto outcome = TRIES::execute(states.TRIES_, ud.TRIES_, run);
       const bool over = round.over();
       switch (outcome) {
-      case EACH::Outcome::found:
+      case TRIES::Outcome::found:
         if (over) {
           return run.end(places, state, "found", Outcome::preempted);
         }
         return run.end(places, state, "found", Outcome::found);
-      case EACH::Outcome::preempted:
+      case TRIES::Outcome::preempted:
         return run.end(places, state, "preempted", Outcome::preempted);
-      case EACH::Outcome::exhausted:
+      case TRIES::Outcome::exhausted:
         if (over) {
           return run.end(places, state, "exhausted", Outcome::preempted);
         }
@@ -222,7 +222,7 @@ enum class State : std::size_t {
 };
 
 inline constexpr smachac::Place places[] = {
-    {"tour/WITHOUT/WITHOUT", "main.yml:36"},
+    {"tour/WITHOUT", "main.yml:36", "tour/WITHOUT/WITHOUT", "tour/WITHOUT (for_each)"},
 };
 
 template <class Run>
@@ -271,7 +271,7 @@ enum class State : std::size_t {
 };
 
 inline constexpr smachac::Place places[] = {
-    {"tour/TRIES/TRIES/HOPE", "main.yml:32"},
+    {"tour/TRIES/HOPE", "main.yml:32", "tour/TRIES/TRIES/HOPE", "tour/TRIES"},
 };
 
 template <class Run>
@@ -325,7 +325,7 @@ enum class State : std::size_t {
 };
 
 inline constexpr smachac::Place places[] = {
-    {"tour/TRIES/TRIES", "main.yml:27"},
+    {"tour/TRIES", "main.yml:27", "tour/TRIES/TRIES", "tour/TRIES (retry)"},
 };
 
 template <class Run>
@@ -431,8 +431,8 @@ enum class State : std::size_t {
 };
 
 inline constexpr smachac::Place places[] = {
-    {"tour/HASTE/HASTE", "main.yml:21"},
-    {"tour/HASTE/TIMER", "main.yml:21"},
+    {"tour/HASTE", "main.yml:21", "tour/HASTE/HASTE", "tour/HASTE (timeout)"},
+    {"tour/HASTE (timeout)/TIMER", "main.yml:21", "tour/HASTE/TIMER", "tour/HASTE (timeout)"},
 };
 
 template <class Run>
@@ -536,7 +536,7 @@ enum class State : std::size_t {
 };
 
 inline constexpr smachac::Place places[] = {
-    {"tour/VISIT/VISIT", "main.yml:13"},
+    {"tour/VISIT", "main.yml:13", "tour/VISIT/VISIT", "tour/VISIT (for_each)"},
 };
 
 template <class Run>
@@ -574,7 +574,7 @@ template <class Run>
 
 } // namespace tour::VISIT
 
-namespace tour::LOOK::TRY::LOOK { // main.yml:6
+namespace tour::LOOK::TRY::TIMED { // main.yml:6
 
 enum class Outcome : std::uint8_t {
   succeeded,
@@ -646,8 +646,8 @@ enum class State : std::size_t {
 };
 
 inline constexpr smachac::Place places[] = {
-    {"tour/LOOK/TRY/LOOK/LOOK", "main.yml:6"},
-    {"tour/LOOK/TRY/LOOK/TIMER", "main.yml:6"},
+    {"tour/LOOK", "main.yml:6", "tour/LOOK/TRY/TIMED/LOOK", "tour/LOOK (timeout)"},
+    {"tour/LOOK (timeout)/TIMER", "main.yml:6", "tour/LOOK/TRY/TIMED/TIMER", "tour/LOOK (timeout)"},
 };
 
 template <class Run>
@@ -712,7 +712,7 @@ template <class Run>
   return Outcome::timeout;
 }
 
-} // namespace tour::LOOK::TRY::LOOK
+} // namespace tour::LOOK::TRY::TIMED
 
 namespace tour::LOOK::TRY { // main.yml:6
 
@@ -730,7 +730,7 @@ constexpr const char *name(Outcome outcome) {
 
 struct Userdata {
   smachac::Key<double> pause;
-  LOOK::Userdata LOOK_;
+  TIMED::Userdata TIMED_;
 };
 
 namespace types {
@@ -755,17 +755,17 @@ struct PAUSE {
 
 struct States {
   types::PAUSE PAUSE;
-  LOOK::States LOOK_;
+  TIMED::States TIMED_;
 };
 
 enum class State : std::size_t {
   PAUSE,
-  LOOK,
+  TIMED,
 };
 
 inline constexpr smachac::Place places[] = {
-    {"tour/LOOK/TRY/PAUSE", "main.yml:6"},
-    {"tour/LOOK/TRY/LOOK", "main.yml:6"},
+    {"tour/LOOK (try)/PAUSE", "main.yml:6", "tour/LOOK/TRY/PAUSE", "tour/LOOK (try)"},
+    {"tour/LOOK (timeout)", "main.yml:6", "tour/LOOK/TRY/TIMED", "tour/LOOK (try)"},
 };
 
 template <class Run>
@@ -778,21 +778,21 @@ template <class Run>
       case State::PAUSE: // main.yml:6
         switch (states.PAUSE.execute(ud, run.stop_for(places, state))) {
         case types::PAUSE::Outcome::succeeded:
-          run.go(places, state, "succeeded", State::LOOK);
+          run.go(places, state, "succeeded", State::TIMED);
           continue;
         case types::PAUSE::Outcome::preempted:
           return run.end_asked(places, state, "preempted", Outcome::preempted);
         }
         break;
-      case State::LOOK: // main.yml:6
-        switch (LOOK::execute(states.LOOK_, ud.LOOK_, run)) {
-        case LOOK::Outcome::succeeded:
+      case State::TIMED: // main.yml:6
+        switch (TIMED::execute(states.TIMED_, ud.TIMED_, run)) {
+        case TIMED::Outcome::succeeded:
           return run.end_asked(places, state, "succeeded", Outcome::succeeded);
-        case LOOK::Outcome::aborted:
+        case TIMED::Outcome::aborted:
           return run.end_asked(places, state, "aborted", Outcome::aborted);
-        case LOOK::Outcome::preempted:
+        case TIMED::Outcome::preempted:
           return run.end_asked(places, state, "preempted", Outcome::preempted);
-        case LOOK::Outcome::timeout:
+        case TIMED::Outcome::timeout:
           return run.end_asked(places, state, "timeout", Outcome::timeout);
         }
         break;
@@ -834,7 +834,7 @@ enum class State : std::size_t {
 };
 
 inline constexpr smachac::Place places[] = {
-    {"tour/LOOK/TRY", "main.yml:6"},
+    {"tour/LOOK (try)", "main.yml:6", "tour/LOOK/TRY", "tour/LOOK (retry)"},
 };
 
 template <class Run>
@@ -950,12 +950,12 @@ enum class State : std::size_t {
 };
 
 inline constexpr smachac::Place places[] = {
-    {"tour/LOOK", "main.yml:6"},
-    {"tour/VISIT", "main.yml:13"},
-    {"tour/HASTE", "main.yml:21"},
-    {"tour/TRIES", "main.yml:27"},
-    {"tour/WITHOUT", "main.yml:36"},
-    {"tour/EACH", "main.yml:41"},
+    {"tour/LOOK (retry)", "main.yml:6", "tour/LOOK", "tour"},
+    {"tour/VISIT (for_each)", "main.yml:13", "tour/VISIT", "tour"},
+    {"tour/HASTE (timeout)", "main.yml:21", "tour/HASTE", "tour"},
+    {"tour/TRIES (retry)", "main.yml:27", "tour/TRIES", "tour"},
+    {"tour/WITHOUT (for_each)", "main.yml:36", "tour/WITHOUT", "tour"},
+    {"tour/EACH (for_each)", "main.yml:41", "tour/EACH", "tour"},
     {"tour/SHOW", "main.yml:48"},
 };
 

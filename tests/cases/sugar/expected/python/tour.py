@@ -366,7 +366,7 @@ def build():
         )
         with sm_each:
             # main.yml:41
-            sm_each_2 = stoppable(
+            sm_each_tries = stoppable(
                 smach.Iterator(
                     outcomes=["found", "preempted", "exhausted"],
                     it=[1, 2],
@@ -376,7 +376,7 @@ def build():
                     output_keys=[],
                 ),
             )
-            with sm_each_2:
+            with sm_each_tries:
                 # main.yml:41
                 smach.Iterator.set_contained_state(
                     "EACH",
@@ -393,8 +393,8 @@ def build():
                 )
 
             smach.Iterator.set_contained_state(
-                "EACH",
-                ends_preempted(sm_each_2),
+                "TRIES",
+                ends_preempted(sm_each_tries),
                 loop_outcomes=["exhausted"],
                 final_outcome_map={
                     "exhausted_2": "exhausted",
@@ -436,22 +436,22 @@ def build_look():
     )
     with sm_look:
         # main.yml:6
-        sm_try = stoppable_again(
+        sm_look_try = stoppable_again(
             smach.StateMachine(
                 outcomes=["succeeded", "aborted", "preempted", "timeout"],
                 input_keys=["pause"],
             ),
         )
-        with sm_try:
+        with sm_look_try:
             # main.yml:6
             smach.StateMachine.add(
                 "PAUSE",
                 SleepState(time=lambda ud: ud.pause, input_keys=["pause"]),
-                transitions={"succeeded": "LOOK", "preempted": "preempted"},
+                transitions={"succeeded": "TIMED", "preempted": "preempted"},
             )
 
             # main.yml:6
-            sm_look_2 = stoppable(
+            sm_look_timed = stoppable(
                 smach.Concurrence(
                     outcomes=["succeeded", "aborted", "preempted", "timeout"],
                     default_outcome="timeout",
@@ -463,7 +463,7 @@ def build_look():
                     child_termination_cb=lambda outcomes: True,
                 ),
             )
-            with sm_look_2:
+            with sm_look_timed:
                 # main.yml:6
                 smach.Concurrence.add(
                     "LOOK",
@@ -477,8 +477,8 @@ def build_look():
                 smach.Concurrence.add("TIMER", SleepState(time=20.0))
 
             smach.StateMachine.add(
-                "LOOK",
-                ends_preempted(sm_look_2),
+                "TIMED",
+                ends_preempted(sm_look_timed),
                 transitions={
                     "succeeded": "succeeded",
                     "aborted": "aborted",
@@ -489,7 +489,7 @@ def build_look():
 
         smach.Iterator.set_contained_state(
             "TRY",
-            sm_try,
+            sm_look_try,
             loop_outcomes=["aborted", "timeout"],
             final_outcome_map={"aborted": "preempted", "timeout": "preempted"},
         )

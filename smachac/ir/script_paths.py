@@ -1,0 +1,190 @@
+"""Paths of states as the script shows them, and what the containers made of sugar are for.
+
+`timeout`, `retry` and `for_each` put containers around a state (frontend/desugar.py). The state has
+the path that the script shows, `sm/DRIVE`, whatever its depth in the graph. A container around it
+has that path and its role, `sm/DRIVE (retry)`; a state that was added to it is below that path:
+`sm/DRIVE (timeout)/TIMER`. Paths of the graph are called full paths.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Mapping, Sequence
+from typing import NamedTuple
+
+from smachac.ir import nodes
+from smachac.ir.nodes import Concurrence, Container, Leaf, Node, StateMachine
+from smachac.ir.traversal import containers
+
+
+def role(node: Node) -> str:
+    """The role of a container that was made of sugar; empty for all other nodes. `try` is one try
+    of a retry with a delay."""
+    if isinstance(node, Leaf) or not node.sugar:
+        return ""
+    return "try" if isinstance(node, StateMachine) else node.sugar
+
+
+def sugared_child(container: Container) -> Node | None:
+    """The state for which a container was made of sugar, or the next container around it. None for
+    a container of the script."""
+    if not container.sugar or not container.children:
+        return None
+    return container.children[-1 if isinstance(container, StateMachine) else 0]
+
+
+class ScriptPath(NamedTuple):
+    """A node with its full path, its path in the script (`shown`), and that without roles
+    (`plain`), which containers made of sugar share with their state. `added`: a timer or pause of
+    sugar."""
+
+    full: str
+    shown: str
+    plain: str
+    node: Node
+    added: bool
+
+
+def walk_script(root: Node) -> Iterator[ScriptPath]:
+    """All nodes with their paths, parents before children."""
+    stack = [ScriptPath(root.name, root.name, root.name, root, False)]
+    while stack:
+        here = stack.pop()
+        yield here
+        if isinstance(here.node, Leaf):
+            continue
+        inside = sugared_child(here.node)
+        for child in reversed(here.node.children):
+            added = inside is not None and child is not inside
+            if child is inside:
+                shown = plain = here.plain
+            else:
+                shown, plain = f"{here.shown}/{child.name}", f"{here.plain}/{child.name}"
+            shown = f"{plain} ({what})" if (what := role(child)) else shown
+            stack.append(ScriptPath(f"{here.full}/{child.name}", shown, plain, child, added))
+
+
+def script_paths(root: Node) -> dict[str, str]:
+    """The paths in the script by full path; only those that differ."""
+    if not _has_sugar(root):
+        return {}
+    return {each.full: each.shown for each in walk_script(root) if each.shown != each.full}
+
+
+def plain_paths(root: Node) -> dict[str, str]:
+    """The paths in the script without roles, by full path; only those that differ."""
+    if not _has_sugar(root):
+        return {}
+    return {each.full: each.plain for each in walk_script(root) if each.plain != each.full}
+
+
+def _has_sugar(root: Node) -> bool:
+    return any(node.sugar for _, node in containers(root))
+
+
+class Sugared(NamedTuple):
+    """A container made of sugar as messages describe it: the path of its state in the script, its
+    role, its limit in words (`3` tries, `20 s`, `5` items; empty if it is not known), and the path
+    in the script of its child."""
+
+    state: str
+    role: str
+    limit: str
+    child: str
+
+
+def sugared_containers(root: Node) -> dict[str, Sugared]:
+    """The containers made of sugar by their paths in the script."""
+    found: dict[str, Sugared] = {}
+    for each in walk_script(root) if _has_sugar(root) else ():
+        child = None if isinstance(each.node, Leaf) else sugared_child(each.node)
+        if child is not None:
+            below = f"{each.plain} ({role(child)})" if role(child) else each.plain
+            found[each.shown] = Sugared(each.plain, role(each.node), _limit(each.node), below)
+    return found
+
+
+def added_states(root: Node) -> frozenset[str]:
+    """The paths in the script of the timers and pauses that sugar adds."""
+    if not _has_sugar(root):
+        return frozenset()
+    return frozenset(each.shown for each in walk_script(root) if each.added)
+
+
+def in_words(role: str, limit: str) -> str:
+    """The role of a container made of sugar with its limit, in words."""
+    match role:
+        case "retry":
+            return f"at most {limit} {'try' if limit == '1' else 'tries'}"
+        case "timeout":
+            return f"time limit of {limit}"
+        case "for_each":
+            return f"loop over {limit or 'the'} item{'s' * (limit != '1')}"
+    return "one try"
+
+
+def role_in_words(node: Node) -> str:
+    """The role of a container made of sugar, in words; empty for all other nodes."""
+    what = role(node)
+    return in_words(what, _limit(node)) if what else ""
+
+
+def _limit(node: Node) -> str:
+    match node:
+        case nodes.Iterator(items=nodes.Value(data=tuple() as items)):
+            return str(len(items))
+        case Concurrence(children=(_, Leaf(variables=(nodes.Variable(value=seconds),)))):
+            return f"{seconds.data:g} s" if isinstance(seconds.data, float) else ""
+    return ""
+
+
+def name_in_script(node: Node) -> str:
+    """The name of a node in the script: for a container made of sugar, that of its state."""
+    while not isinstance(node, Leaf) and (inside := sugared_child(node)) is not None:
+        node = inside
+    return node.name
+
+
+class Step(NamedTuple):
+    """A step of a path through a machine: the state at a full path is entered or runs, or the state
+    before ends with an outcome. `path` is None for an outcome and for the end of a machine."""
+
+    path: str | None
+    label: str
+    is_outcome: bool = False
+
+
+def steps_in_script(plain: Mapping[str, str], steps: Sequence[Step]) -> list[tuple[int, str]]:
+    """The steps of a path as the script shows them: their numbers and labels. `plain` are the plain
+    paths.
+
+    A state and the containers of its sugar are one step, where they are entered together or end
+    with the same outcome.
+    """
+    if not plain:
+        return [(at, step.label) for at, step in enumerate(steps)]
+    kept: list[int] = []
+    skipped = False
+    last = ""  # the full path of the state of the last step
+    for at, step in enumerate(steps):
+        if step.is_outcome or step.path is None:
+            if not (skipped and step.is_outcome):
+                kept.append(at)
+            skipped = False
+            continue
+        same = plain.get(step.path, step.path) == plain.get(last, last)
+        if same and not steps[kept[-1]].is_outcome:
+            kept.pop()
+        skipped = (
+            same
+            and last.startswith(f"{step.path}/")
+            and steps[kept[-1] : kept[-1] + 1] == steps[at + 1 : at + 2]
+        )
+        if not skipped:
+            kept.append(at)
+            last = step.path
+    return [(at, _label(plain, steps[at])) for at in kept]
+
+
+def _label(plain: Mapping[str, str], step: Step) -> str:
+    path = plain.get(step.path) if step.path is not None else None
+    return step.label if path is None else path.rpartition("/")[2]
