@@ -92,6 +92,9 @@ cpp_parts() {
   compgen -c clang-format >/dev/null || echo clang-format
   command -v cmake >/dev/null || echo cmake
   [[ -d /usr/share/ament_cmake ]] || echo ament-cmake
+  # A compiler over Newlib without its libraries: 53 MB to download, 480 MB installed.
+  command -v arm-none-eabi-g++ >/dev/null ||
+    printf '%s\n' gcc-arm-none-eabi libstdc++-arm-none-eabi-dev libnewlib-dev
 }
 
 # PyPI has PyBullet ready-made for these alone.

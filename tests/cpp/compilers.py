@@ -22,6 +22,11 @@ WARNINGS = (
 )
 SANITIZED = ("-fsanitize=address,undefined", "-fno-sanitize-recover=all")
 THREADED = ("-fsanitize=thread",)
+STRICT = (
+    *("-Weffc++", "-Wsign-conversion", "-Wuseless-cast", "-Wnull-dereference", "-Wold-style-cast"),
+    *("-Wdouble-promotion", "-Wno-unknown-warning-option", "-O2"),
+)
+"""Warnings that generated headers and those of the runtime do not give either."""
 BARE = ("-fno-exceptions", "-fno-rtti")
 
 

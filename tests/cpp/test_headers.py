@@ -94,7 +94,7 @@ def test_a_key_named_stop_is_no_request_to_stop() -> None:
     report, header = made({"main.yml": NAMED_STOP})
     assert report == []
     assert "Outcome execute(Userdata &ud) {" in header
-    assert "if (ud.stop.get())" in header
+    assert "if (ud.stop.unchecked())" in header
     assert "stop_for" not in header
 
 

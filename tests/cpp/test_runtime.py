@@ -7,7 +7,7 @@ from pathlib import Path
 import pytest
 
 from smachac.version import __version__
-from tests.cpp.compilers import BARE, COMPILERS, SANITIZED, THREADED, Compiler, last_with
+from tests.cpp.compilers import BARE, COMPILERS, SANITIZED, STRICT, THREADED, Compiler, last_with
 
 LATE_REQUESTS = """
 #include <memory>
@@ -116,6 +116,22 @@ def test_an_observer_that_wants_no_writes_gets_none(tmp_path: Path) -> None:
     assert last_with("-O0").run(WRITES, tmp_path, "-pthread") == "1 1\n0 1\n"
 
 
+EDITS = """
+#include "smachac/smachac.hpp"
+int main() {
+  smachac::Key<std::vector<std::string>> names;
+  names.edit().push_back("door");
+  names.edit().push_back("window");
+  std::printf("%d %s\\n", static_cast<int>(names.get().size()), names.unchecked()[1].c_str());
+  std::printf("%d %d\\n", static_cast<int>(names.fresh()), static_cast<int>(names.fresh()));
+}
+"""
+
+
+def test_a_value_that_is_changed_in_place_is_set_and_written(tmp_path: Path) -> None:
+    assert last_with("-O0").run(EDITS, tmp_path, "-pthread") == "2 window\n1 0\n"
+
+
 FAULTS = """
 #include "smachac/smachac.hpp"
 template <class Action> void attempt(Action action) {
@@ -177,10 +193,6 @@ def test_the_names_of_the_runtime_have_its_version(tmp_path: Path) -> None:
     assert last_with("-O0").compile(text, tmp_path, "-c", "-pthread").exists()
 
 
-STRICT = (
-    *("-Weffc++", "-Wsign-conversion", "-Wuseless-cast", "-Wnull-dereference"),
-    *("-Wdouble-promotion", "-Wno-unknown-warning-option", "-O2"),
-)
 HEADERS = """
 #include "smachac/arm.hpp"
 #include "smachac/program.hpp"

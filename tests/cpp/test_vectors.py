@@ -32,7 +32,13 @@ REFUSED = {
 }
 """What C++ cannot say, and what it says of it."""
 
-DEVIATIONS = {"h066-reference-sharing": "containers copy values at their borders"}
+DEVIATIONS = {
+    "h066-reference-sharing": "containers copy values at their borders",
+    **dict.fromkeys(
+        ("A20-026", "A20-043", "A20-122", "A20-342", "A20-385"),
+        "after a failure that ends the run, shared keys hold what was written last",
+    ),
+}
 """Where C++ does something else, and why."""
 
 DECLARED = {
@@ -90,13 +96,25 @@ def told(case: Json, ran: Ran) -> Json:
     return result if "parent" not in case else {**result, "parent": ran.userdata[""]}
 
 
+def without_shared(run: Json, part: Part) -> Json:
+    """One run of the interpreter without the keys that containers share in C++: they have no value
+    of their own there. What states read and write is compared for all keys."""
+
+    def own(path: str, held: Json) -> Json:
+        return {key: value for key, value in held.items() if key not in part.shared[path]}
+
+    scopes = {path: own(path, held) for path, held in run["scopes"].items()}
+    return {**run, "userdata": own("", run["userdata"]), "scopes": scopes}
+
+
 def agree(names: Iterable[str], compiler: Compiler, folder: Path, *flags: str) -> None:
     """Compare compiled machines with the interpreter, which does what was recorded."""
     names = list(names)
     runs = replay([made(name) for name in names], compiler, folder, *flags)
     for name in names:
         case = recorded.CASES[name]
-        ours, theirs = recorded.replay(case), [told(case, ran) for ran in runs[name]]
+        ours = [without_shared(run, made(name)) for run in recorded.replay(case)]
+        theirs = [told(case, ran) for ran in runs[name]]
         if name in DEVIATIONS:
             assert theirs != ours, f"{name} does not deviate any more"
         else:

@@ -79,7 +79,7 @@ def mistaken(text: str) -> str:
 
 
 def crossed(text: str) -> str:
-    return text.replace("(ud.width)", "(ud.goal)")
+    return text.replace("ud.goal, ud.width}", "ud.goal, ud.goal}")
 
 
 def deaf(text: str) -> str:

@@ -46,8 +46,8 @@ def without_stop(text: str) -> str:
 
 
 def forgetful(text: str) -> str:
-    """The key `width` does not reach the time limit."""
-    return text.replace("ud.USE_.size.take(ud.width);", "")
+    """The key `width` does not leave the concurrence."""
+    return text.replace("ud.width.take(ud.BOTH_.width);", "")
 
 
 def swapped_outcomes(text: str) -> str:
@@ -112,7 +112,10 @@ def test_classes_are_replaced_by_stand_ins(
     given = ["verify", main_yml, "--header", str(header), "--paths", "30"]
     capsys.readouterr()
     assert main(given) == 0
-    crossed = text.replace("{ud.shelf.get(), ud.table.get(),", "{ud.table.get(), ud.shelf.get(),")
+    crossed = text.replace(
+        "{ud.shelf.unchecked(), ud.table.unchecked(),",
+        "{ud.table.unchecked(), ud.shelf.unchecked(),",
+    )
     assert crossed != text
     header.write_text(crossed, "utf-8")
     assert main(given) == 1
@@ -155,7 +158,7 @@ def with_a_derived_class(text: str) -> str:
 
 
 def misspelt(text: str) -> str:
-    return text.replace("ud.BOTH_.goal.take", "ud.BOTH_.goals.take")
+    return text.replace("{ud.BOTH_, ud.goal}", "{ud.BOTH_, ud.goals}")
 
 
 FAULTS = [

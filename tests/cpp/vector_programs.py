@@ -10,6 +10,7 @@ import json
 import re
 import subprocess
 from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Set as AbstractSet
 from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import Any
@@ -43,9 +44,11 @@ BUILT_IN = disk_library(Path("main.yml"), [])
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Part:
-    """A case as C++: the classes of its leaves, its header, and what runs it."""
+    """A case as C++: the classes of its leaves, its header, and what runs it. `shared` are the keys
+    that containers share with those around them, by the path of the recording."""
 
     case: Json
+    shared: Mapping[str, AbstractSet[str]]
     name: str
     classes: str
     header: str
@@ -88,7 +91,8 @@ def _part(case: Json, name: str, typed: bool) -> Part | list[str]:
         type_ = typed_machine.state_types[leaf.type]
         classes.append(_class(type_, f"{name}/root{path}"))
     asked = str(bool(case.get("preempt_before"))).lower()
-    told = "\n".join(_told(machine, scopes))
+    planned = plan(typed_machine).scopes
+    told = "\n".join(_told(machine, planned))
     call = (
         f'  vectors::play<{name}::States, {name}::Userdata>("{name}", {case.get("runs", 1)}, '
         f"{asked}, {name}::run, [](auto &host, const auto &ud) {{\n{told}\n  }});"
@@ -97,7 +101,19 @@ def _part(case: Json, name: str, typed: bool) -> Part | list[str]:
     header = "\n".join(line for line in text.splitlines() if not line.startswith("#"))
     # Somebody always listens here: to compile the other case as well takes a third longer.
     header = re.sub(r"  if \(observer == nullptr\) \{\n.*?\n  \}\n", "", header, flags=re.DOTALL)
-    return Part(case=case, name=name, classes="\n".join(classes), header=header, call=call)
+    shared = {
+        path.removeprefix(f"{name}/root"): scope.shared
+        for path, scope in planned.items()
+        if path != name
+    }
+    return Part(
+        case=case,
+        shared=shared,
+        name=name,
+        classes="\n".join(classes),
+        header=header,
+        call=call,
+    )
 
 
 def declared(case: Json) -> Any:
@@ -267,13 +283,16 @@ def _class(type_: Any, path: str) -> str:
 
 
 def _told(machine: Machine, scopes: Mapping[str, Any]) -> Iterator[str]:
-    """Statements that print the userdata of every container."""
+    """Statements that print the keys of every container that it does not share with the one around
+    it."""
     members = {machine.root.name: "ud"}
     for path, scope in scopes.items():
         for child in scope.node.children:
             members[f"{path}/{child.name}"] = f"{members[path]}.{member(child)}"
         yield f"    {{ std::string line = {cpp_literal(f'userdata {path} {{')};"
         for key in scope.keys:
+            if key in scope.shared:
+                continue
             held = f"{members[path]}.{identifier(key)}"
             yield f"      vectors::tell(line, {cpp_literal(key)}, {held});"
         yield '      host.say(line + "}"); static_cast<void>(ud); }'

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Iterable, Mapping
 from dataclasses import dataclass, replace
 from typing import Protocol
 
@@ -82,10 +82,10 @@ class _Statements:
         inner = (f"  {line}" for line in self.lines)
         return replace(self, lines=(head, *inner, *((end,) if end else ())))
 
-    def parameters(self) -> Mapping[str, str]:
+    def parameters(self, scope: ContainerScope) -> Mapping[str, str]:
         """The parameters of `execute`, with the argument for each."""
         return {
-            **({"Userdata &ud": "ud"} if self.uses_userdata else {}),
+            **({f"{scope.userdata_type}ud": "ud"} if self.uses_userdata else {}),
             **({"Run &run": "run"} if self.uses_run else {}),
             **({"smachac::Stop &stop": STOP} if self.uses_stop else {}),
         }
@@ -106,24 +106,27 @@ def built_in(leaf: Leaf, scope: ContainerScope, refuse: Refuse) -> LeafCode | No
     if make is None:
         return None
     statements, member = make(_BuiltInLeaf(leaf=leaf, scope=scope, refuse=refuse))
-    arguments = ", ".join(statements.parameters().values())
+    parameters = statements.parameters(scope)
+    arguments = ", ".join(parameters.values())
     return LeafCode(
         type=f"types::{identifier(leaf.name)}",
         call=f"states.{identifier(leaf.name)}.execute({arguments})",
-        definition=_definition(leaf, statements, member),
+        definition=_definition(leaf, statements, parameters, member),
         uses_userdata=statements.uses_userdata,
         uses_stop=statements.uses_stop,
     )
 
 
-def _definition(leaf: Leaf, statements: _Statements, member: str) -> tuple[str, ...]:
+def _definition(
+    leaf: Leaf, statements: _Statements, parameters: Iterable[str], member: str
+) -> tuple[str, ...]:
     return (
         *((f"/// {place(leaf)}",) if place(leaf) else ()),
         f"struct {identifier(leaf.name)} {{",
         *(f"  {line}" for line in enumeration(own_outcomes(leaf))),
         "",
         *(("  template <class Run>",) if statements.uses_run else ()),
-        f"  Outcome execute({', '.join(statements.parameters())}) {{",
+        f"  Outcome execute({', '.join(parameters)}) {{",
         *(f"    {line}" for line in statements.lines),
         "  }",
         *(("", f"  {member}") if member else ()),
@@ -170,7 +173,7 @@ class _BuiltInLeaf:
         """The statement that writes a key; `make` gives the value for the type of the key."""
         outer = self.bound(key)
         value = make(self.scope.key(outer))
-        line = f"run.write({cpp_literal(key)}, ud.{identifier(outer)}, {value});"
+        line = f"run.write({cpp_literal(key)}, {self.scope.object(outer)}, {value});"
         return _Statements(lines=(line,), uses_userdata=True, uses_run=True)
 
     def function(self, code: Expression, wanted: Type | None = None) -> Printed:

@@ -52,6 +52,9 @@ NO_OUTCOME = "run.no_outcome(places, state);"
 """The statement after the switch over the outcomes: the state has ended with none of them (a number
 cast to an outcome). It never returns, so the compiler keeps no values for a next turn after it."""
 
+ENTER = "run.enter(places, state);"
+"""The first statement of a state."""
+
 CAUGHT = "run.caught(places, state);"
 """The statement for an exception that is an outcome of the state."""
 
@@ -127,17 +130,19 @@ class ChildCall:
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class OutcomeCode:
-    """The statements for one outcome of a state. `loops`: the container goes on with its next turn.
-    `ends`: the container ends."""
+    """The statements for one outcome of a state. `jump` is the statement after them that goes on
+    with the next state or item; `label` is the label to which it jumps. `ends`: the container ends.
+    """
 
     statements: Lines
-    loops: bool = False
+    jump: str = ""
+    label: str = ""
     ends: bool = False
 
     @property
-    def in_loop(self) -> Lines:
-        """The statements within the loop of the container."""
-        return [*self.statements, "continue;"] if self.loops else self.statements
+    def with_jump(self) -> Lines:
+        """All statements."""
+        return [*self.statements, self.jump] if self.jump else self.statements
 
 
 def results(node: Node) -> tuple[str, ...]:
@@ -168,16 +173,21 @@ def execute(plan: ContainerPlan) -> Lines:
             body = _machine(plan, node)
         case _:
             assert_never(node)
-    # A container has one call only: a small one is inlined there.
-    small = len(list(islice(walk(plan.node), MOST_STATES + 1))) <= MOST_STATES
-    inline = "[[gnu::always_inline]] inline" if small else "inline"
+    # A container has one call only. It is inlined there unless that function becomes too large.
+    caller = plan.scopes.get(plan.scope.path.rpartition("/")[0], plan.scope)
+    inline = "[[gnu::always_inline]] inline" if _is_small(caller.node) else "inline"
     return [
         "template <class Run>",
-        f"{inline} Outcome execute(States &{body.states}, Userdata &{body.userdata},"
-        f" Run &{body.run}) {{",
+        f"{inline} Outcome execute(States &{body.states},"
+        f" {plan.scope.userdata_type}{body.userdata}, Run &{body.run}) {{",
         *indented(body.statements),
         "}",
     ]
+
+
+def _is_small(node: Node) -> bool:
+    """Whether one function can contain all states in a container."""
+    return len(list(islice(walk(node), MOST_STATES + 1))) <= MOST_STATES
 
 
 def indented(lines: Lines) -> Lines:
@@ -192,18 +202,25 @@ def _call(plan: ContainerPlan, child: Node) -> ChildCall:
         return ChildCall(
             statements=[], outcome=leaf.call, declares=False, uses_userdata=leaf.uses_userdata
         )
-    own = f"ud.{member(child)}"
+    own = plan.scope.userdata_of(child)
     inner = plan.scopes[f"{plan.scope.path}/{child.name}"]
     names = plan.scope.names(child)
     before, after = [], []
     for key in child.inputs:
-        outer = names.get(key.name, key.name)
-        before.append(_copy(f"{own}.", key.name, plan.scope, "ud.", outer))
+        if key.name not in inner.shared:
+            outer = names.get(key.name, key.name)
+            target = f"{own}.{identifier(key.name)}"
+            before.append(_copy(target, plan.scope.object(outer), outer in plan.scope.sure))
     for key in child.outputs:
-        outer = names.get(key.name, key.name)
-        held = outer in plan.scope.sure
-        after.append(_copy("ud.", outer, inner, f"{own}.", key.name, held=held))
-    call = f"{identifier(child.name)}::execute(states.{member(child)}, {own}, run)"
+        if key.name not in inner.shared:
+            outer = names.get(key.name, key.name)
+            held, source = outer in plan.scope.sure, f"{own}.{identifier(key.name)}"
+            after.append(_copy(plan.scope.object(outer), source, key.name in inner.sure, held=held))
+    userdata = own
+    if inner.shared:
+        outers = (plan.scope.object(names.get(key, key)) for key in inner.view)
+        userdata = f"{{{', '.join([own, *outers])}}}"
+    call = f"{identifier(child.name)}::execute(states.{member(child)}, {userdata}, run)"
     found = ChildCall(statements=before, outcome=call, declares=False, uses_userdata=True)
     if not after:
         return found
@@ -220,44 +237,36 @@ def _with_variable(call: ChildCall) -> ChildCall:
     return replace(call, statements=statements, outcome="outcome", declares=True)
 
 
-def _copy(
-    to: str, key: str, source: ContainerScope, owner: str, name: str, *, held: bool = False
-) -> str:
-    """The statement that copies a key into or out of a container. `held`: the destination surely
-    holds a value."""
-    target, given = f"{to}{identifier(key)}", f"{owner}{identifier(name)}"
-    if name in source.sure:
-        return f"{target}.{'replace' if held else 'hold'}({given}.get());"
-    return f"{target}.take({given});"
+def _copy(target: str, source: str, sure: bool, *, held: bool = False) -> str:
+    """The statement that copies a key into or out of a container. `sure`: the source surely holds
+    a value; `held`: the target does."""
+    if sure:
+        return f"{target}.{'replace' if held else 'hold'}({source}.unchecked());"
+    return f"{target}.take({source});"
 
 
-def _case(child: Node, call: ChildCall, outcomes: Lines, result: str = "") -> Lines:
+def _case(
+    child: Node, call: ChildCall, outcomes: Lines, *, result: str = "", labelled: bool = False
+) -> Lines:
     """The case of a state: the state runs, then the switch over its outcomes.
 
-    `result` is a variable that keeps the outcome.
+    `result` is a variable that keeps the outcome. `labelled`: other states jump to this one.
     """
-    before, outcome = call.statements, call.outcome
+    before, outcome = [ENTER, *call.statements], call.outcome
     if result:
         before = [*before, f"{result} = {outcome};"]
         outcome = f"*{result}" if child.catches else result
-    head = f"case State::{identifier(child.name)}:"
+    name = identifier(child.name)
     where = f" // {place(child)}" if place(child) else ""
+    begin, end = (" {", ["}"]) if call.declares else ("", [])
+    heads = [f"case State::{name}:{begin}{where}", *([f"{name}:"] if labelled else [])]
     body = [*before, f"switch ({outcome}) {{", *outcomes, "}", "break;"]
-    if call.declares:
-        return [f"{head} {{{where}", *indented(body), "}"]
-    return [f"{head}{where}", *indented(body)]
+    return [*heads, *indented(body), *end]
 
 
 def _switch(cases: Lines) -> Lines:
-    """The switch over the states: one turn of a container."""
-    return [
-        "run.enter(places, state);",
-        "switch (state) {",
-        *cases,
-        *NEVER,
-        "}",
-        NO_OUTCOME,
-    ]
+    """The switch over the states."""
+    return ["switch (state) {", *cases, *NEVER, "}", NO_OUTCOME]
 
 
 def _guarded(lines: Lines, caught: Lines) -> Lines:
@@ -285,7 +294,7 @@ def _machine(plan: ContainerPlan, node: StateMachine | Sequence) -> FunctionBody
         lines = [start, "Outcome ended{};", *_dispatch(len(node.children))]
         return FunctionBody(statements=lines, states="states", userdata="ud", run="run")
     part = _part(plan, node.children, "")
-    steps = _guarded(["for (;;) {", *indented(_switch(part.cases)), "}"], part.caught)
+    steps = _guarded(_switch(part.cases), part.caught)
     if part.caught:
         steps = ["for (;;) {", *indented(steps), "}"]
     return FunctionBody(
@@ -309,33 +318,37 @@ class _Part:
     ends: bool
 
 
-def _part(plan: ContainerPlan, children: Iterable[Node], ended: str) -> _Part:
+def _part(plan: ContainerPlan, children: tuple[Node, ...], ended: str) -> _Part:
     """The code of some states of a machine. `ended` is the variable for the outcome of the machine,
     in a function that returns whether the machine has ended."""
     cases: Lines = []
     caught: Lines = []
     calls: list[ChildCall] = []
-    ends = False
+    here = frozenset(child.name for child in children)
+    codes = {
+        (child.name, name): _outcome(plan, child, name, ended, here)
+        for child in children
+        for name in all_results(child)
+    }
+    labels = {codes[child.name, name].label for child in children for name in results(child)}
     for child in children:
         lines: Lines = []
         for name in results(child):
-            code = _outcome(plan, child, name, ended)
-            ends = ends or code.ends
             lines.append(f"case {plan.child_outcome(child, name)}:")
-            lines += indented(code.in_loop)
+            lines += indented(codes[child.name, name].with_jump)
         calls.append(_call(plan, child))
-        cases += _case(child, calls[-1], lines)
+        labelled = identifier(child.name) in labels
+        cases += _case(child, calls[-1], lines, labelled=labelled)
         if child.catches:
-            code = _outcome(plan, child, child.catches, ended)
-            ends = ends or code.ends
-            after = ["break;"] if code.loops else []
+            code = codes[child.name, child.catches]
+            after = ["break;"] if code.jump else []
             caught += [f"case State::{identifier(child.name)}:", f"  {CAUGHT}"]
             caught += indented([*code.statements, *after])
     return _Part(
         cases=cases,
         caught=_caught_switch(caught),
         uses_userdata=any(call.uses_userdata for call in calls),
-        ends=ends,
+        ends=any(code.ends for code in codes.values()),
     )
 
 
@@ -353,15 +366,14 @@ def parts(plan: ContainerPlan) -> Lines:
         part = _part(plan, node.children[start : start + MOST_STATES], "ended")
         userdata, ended = "ud" if part.uses_userdata else "", "ended" if part.ends else ""
         here = f"while (static_cast<std::size_t>(state) / {MOST_STATES} == {number}) {{"
-        steps = _guarded([here, *indented(_switch(part.cases)), "}"], part.caught)
+        steps = _guarded(_switch(part.cases), part.caught)
         head = f"bool part_{number}("
         lines += [
             *([""] if lines else []),
             "template <class Run>",
-            f"{head}States &states, Userdata &{userdata}, Run &run, State &state,",
+            f"{head}States &states, {plan.scope.userdata_type}{userdata}, Run &run, State &state,",
             f"{' ' * len(head)}Outcome &{ended}) {{",
-            *indented([here, *indented(steps), "}"] if part.caught else steps),
-            "  return false;",
+            *indented([here, *indented(steps), "}", "return false;"] if part.caught else steps),
             "}",
         ]
     return lines
@@ -377,15 +389,21 @@ def _dispatch(count: int) -> Lines:
     return ["for (;;) {", f"  {head}", *indented(cases), "  default:", "    break;", "  }", "}"]
 
 
-def _outcome(plan: ContainerPlan, child: Node, name: str, ended: str) -> OutcomeCode:
-    """The transition of a state of a machine for an outcome; `ended` as in `_part`."""
+def _outcome(
+    plan: ContainerPlan, child: Node, name: str, ended: str, here: AbstractSet[str]
+) -> OutcomeCode:
+    """The transition of a state of a machine for an outcome; `ended` as in `_part`. `here` are the
+    states of the same function."""
     text = cpp_literal(name)
     edge = next((edge for edge in child.transitions if edge.outcome == name), None)
     if edge is None:
         return OutcomeCode(statements=[f"run.undeclared(places, state, {text});"])
     if leads_to_child(edge, plan.names):
-        go = f"run.go(places, state, {text}, State::{identifier(edge.target)});"
-        return OutcomeCode(statements=[go], loops=True)
+        target = identifier(edge.target)
+        go = [f"run.go(places, state, {text}, State::{target});"]
+        if edge.target not in here:
+            return OutcomeCode(statements=go, jump="return false;")
+        return OutcomeCode(statements=go, jump=f"goto {target};", label=target)
     end = "end_asked" if plan.receives_stop(child) else "end"
     value = f"run.{end}(places, state, {text}, {plan.own_outcome(edge.target)});"
     if ended:
@@ -411,7 +429,7 @@ def _concurrence(plan: ContainerPlan, node: Concurrence) -> FunctionBody:
             lines.append(f"case {plan.child_outcome(child, name)}:")
             lines += [f"  run.exit(places, state, {cpp_literal(name)});", "  return;"]
         calls.append(_call(plan, child))
-        cases += _case(child, calls[-1], lines, f"ended.{identifier(child.name)}")
+        cases += _case(child, calls[-1], lines, result=f"ended.{identifier(child.name)}")
         if child.catches:
             caught += [
                 f"case State::{identifier(child.name)}:",
@@ -493,7 +511,7 @@ def _iterator(plan: ContainerPlan, node: Iterator) -> FunctionBody:
     cases: Lines = []
     for name in results(child):
         cases.append(f"case {plan.child_outcome(child, name)}:")
-        cases += indented(_item_outcome(plan, node, name).in_loop)
+        cases += indented(_item_outcome(plan, node, name).with_jump)
     caught: Lines = []
     if child.catches:
         code = _item_outcome(plan, node, child.catches)
@@ -518,7 +536,7 @@ def _iterator(plan: ContainerPlan, node: Iterator) -> FunctionBody:
         *items,
         *begin,
         "for (const auto &item : items) {",
-        f"  ud.{identifier(node.item_key)}.hold(item);",
+        f"  {plan.scope.object(node.item_key)}.hold(item);",
         *([f"  // {place(child)}"] if place(child) else []),
         *indented(_guarded(steps, caught)),
         "}",
@@ -553,7 +571,7 @@ def _item_outcome(plan: ContainerPlan, node: Iterator, name: str) -> OutcomeCode
         *("if (round.last()) {", f"  {end(done)}", "}"),
         f"run.again(places, state, {text});",
     ]
-    return OutcomeCode(statements=lines, loops=True)
+    return OutcomeCode(statements=lines, jump="continue;")
 
 
 def _items(plan: ContainerPlan, node: Iterator) -> Lines | None:
@@ -563,7 +581,8 @@ def _items(plan: ContainerPlan, node: Iterator) -> Lines | None:
         type_ = plan.scope.key(node.items_key)
         if type_.name not in ("list", "array"):
             raise UnportableError(f"the items key `{node.items_key}` is `{type_}`, not a list")
-        need = f"smachac::need(ud.{identifier(node.items_key)}, {cpp_literal(node.items_key)})"
+        key = plan.scope.object(node.items_key)
+        need = f"smachac::need({key}, {cpp_literal(node.items_key)})"
         return [f"const auto items = {need};"]
     if node.items is None or node.items.data == ():
         return None

@@ -17,7 +17,7 @@ from smachac.targets import COMMENT_WIDTH, comment_lines, made_by
 from smachac.targets.cpp.builtin_states import LeafCode, built_in, enumeration
 from smachac.targets.cpp.containers import ContainerPlan, Lines, execute, parts, results
 from smachac.targets.cpp.identifiers import identifier
-from smachac.targets.cpp.plan import ContainerScope, Plan, member, place, scope_name
+from smachac.targets.cpp.plan import OWN, ContainerScope, Plan, member, place, scope_name
 from smachac.targets.cpp.types import UnportableError, cpp_literal, cpp_type, cpp_value
 from smachac.targets.cpp.user_classes import (
     ClassCode,
@@ -141,6 +141,7 @@ def _container(printing: _Printing, scope: ContainerScope) -> Lines:
         enumeration(results(node)),
         _names(results(node)),
         _userdata(plan, scope),
+        _view(scope),
         _types(leaves),
         _states(printing, scope, leaves),
         _places(plan, scope),
@@ -208,6 +209,8 @@ def _userdata(plan: Plan, scope: ContainerScope) -> Lines:
     presets = {preset.key: preset for preset in scope.node.userdata}
     lines = []
     for key, type_ in scope.keys.items():
+        if key in scope.shared:
+            continue
         value = ""
         if key in presets:
             try:
@@ -222,6 +225,19 @@ def _userdata(plan: Plan, scope: ContainerScope) -> Lines:
         if not isinstance(child, Leaf):
             lines.append(f"  {identifier(child.name)}::Userdata {member(child)};")
     return ["struct Userdata {", *lines, "};"] if lines else ["struct Userdata {};"]
+
+
+def _view(scope: ContainerScope) -> Lines:
+    """The struct of the container's own userdata and of the keys that it shares."""
+    if not scope.shared:
+        return []
+    outputs = {key.name for key in scope.node.outputs}
+    fields = [
+        f"  {'' if key in outputs else 'const '}smachac::Key<{cpp_type(scope.keys[key])}>"
+        f" &{identifier(key)};"
+        for key in scope.view
+    ]
+    return ["struct UserdataView {", f"  Userdata &{OWN};", *fields, "};"]
 
 
 def _types(leaves: Mapping[str, LeafCode]) -> Lines:

@@ -40,7 +40,9 @@ SYSTEM = frozenset(_SYSTEM.split())
 """Functions and variables of C and POSIX in the global namespace, as far as machines may have the
 names."""
 
-_OURS = "Userdata States Outcome State In Out Run execute run name places types main std smachac"
+_OURS = """
+    Userdata UserdataView States Outcome State In Out Run execute run name places types main std
+    smachac"""
 OURS = frozenset(_OURS.split())
 """The header's own names in the namespaces that hold names of the script."""
 

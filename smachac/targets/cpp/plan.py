@@ -2,14 +2,16 @@
 
 from __future__ import annotations
 
+from collections import Counter
 from collections.abc import Mapping
-from dataclasses import dataclass, field
+from collections.abc import Set as AbstractSet
+from dataclasses import dataclass, field, replace
 from pathlib import PurePath
 
 from smachac.analysis.type_inference import infer
 from smachac.diagnostics.diagnostic import Report
 from smachac.diagnostics.source import NOWHERE, Span
-from smachac.ir.nodes import Concurrence, Container, Iterator, Leaf, Machine, Node
+from smachac.ir.nodes import Concurrence, Container, Iterator, Leaf, Machine, Node, StateType
 from smachac.ir.script_paths import script_paths
 from smachac.ir.traversal import containers, outcome_names, remapping
 from smachac.ir.types import ANY, Type
@@ -19,19 +21,24 @@ from smachac.targets.cpp.identifiers import clashes, identifier, outermost
 from smachac.targets.cpp.types import UnportableError, cpp_literal, cpp_type, plain
 from smachac.targets.errors import unsupported_by_target
 
+OWN = "own_"
+"""The field of a `UserdataView` with the userdata of the container itself; no key has this name."""
+
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class ContainerScope:
     """A container and its userdata.
 
     `keys` are the types of its keys by name. `sure` are the keys that hold a value whenever one of
-    its states starts.
+    its states starts. `shared` are the keys that have no object of their own: they are those of the
+    container around.
     """
 
     path: str
     node: Container
     keys: Mapping[str, Type]
     sure: frozenset[str]
+    shared: frozenset[str] = frozenset()
 
     def key(self, name: str) -> Type:
         """The type of a key. Raises UnportableError where the container cannot have it."""
@@ -41,10 +48,32 @@ class ContainerScope:
 
     def read(self, name: str, called: str) -> Spelling:
         """How C++ reads a key that an expression calls `called`."""
-        spelt = f"ud.{identifier(name)}"
+        spelt = self.object(name)
         if name in self.sure:
-            return Spelling(text=f"{spelt}.get()", type=self.key(name))
+            return Spelling(text=f"{spelt}.unchecked()", type=self.key(name))
         return Spelling(text=f"smachac::need({spelt}, {cpp_literal(called)})", type=self.key(name))
+
+    def object(self, name: str) -> str:
+        """The object of a key, in the functions of the container and of its states."""
+        return f"ud.{'' if name in self.shared else self._own}{identifier(name)}"
+
+    @property
+    def view(self) -> tuple[str, ...]:
+        """The shared keys, in the order of the view's fields."""
+        return tuple(key for key in self.keys if key in self.shared)
+
+    def userdata_of(self, child: Node) -> str:
+        """The userdata of a container in this one."""
+        return f"ud.{self._own}{member(child)}"
+
+    @property
+    def _own(self) -> str:
+        return f"{OWN}." if self.shared else ""
+
+    @property
+    def userdata_type(self) -> str:
+        """The type of `ud` in the functions of the container and of its states."""
+        return "const UserdataView &" if self.shared else "Userdata &"
 
     def names(self, child: Node) -> dict[str, str]:
         """The keys of the container by those of a child, where they differ. The child of an
@@ -76,11 +105,16 @@ def plan(machine: Machine) -> Plan:
         keys.setdefault(path, {})[key] = plain(type_)
     scopes: dict[str, ContainerScope] = {}
     found = Plan(machine=machine, scopes=scopes, paths=script_paths(machine.root))
+    catching: set[str] = set()
     for path, node in containers(machine.root):
         around = scopes.get(path.rpartition("/")[0])
+        if node.catches or path.rpartition("/")[0] in catching:
+            catching.add(path)
         scope = ContainerScope(
             path=path, node=node, keys=keys.get(path, {}), sure=_sure(node, around)
         )
+        written = _written(node, machine.state_types)
+        scope = replace(scope, shared=_shared(scope, around, written, path in catching))
         scopes[path] = scope
         _check(found, scope, around)
     return found
@@ -94,6 +128,52 @@ def _sure(node: Container, around: ContainerScope | None) -> frozenset[str]:
         names = around.names(node)
         held |= {key.name for key in node.inputs if names.get(key.name, key.name) in around.sure}
     return frozenset(held)
+
+
+def _shared(
+    scope: ContainerScope, around: ContainerScope | None, written: AbstractSet[str], caught: bool
+) -> frozenset[str]:
+    """The keys of a container for which it can use the objects of the container around, with the
+    same result as copies. `written` are the keys that something in it may write. `caught`: the
+    script goes on after an exception of the container.
+
+    A key that is only an input must not be written inside. One that is an output too has the same
+    value outside whenever the container starts or ends, and nobody outside uses it meanwhile; but
+    after an exception the value outside would be another one. No other key of the container may be
+    the same key outside.
+    """
+    node = scope.node
+    if around is None:
+        return frozenset()
+    names = around.names(node)
+    inputs, outputs = ({key.name for key in keys} for keys in (node.inputs, node.outputs))
+    outer = Counter(names.get(key, key) for key in inputs | outputs)
+    kept = {preset.key for preset in node.userdata}
+
+    def is_shared(key: str) -> bool:
+        bound = names.get(key, key)
+        if outer[bound] > 1 or key in kept:
+            return False
+        if (key not in scope.keys) or scope.keys[key] != around.keys.get(bound):
+            return False
+        return key not in written or (key in outputs and not caught)
+
+    return frozenset(filter(is_shared, inputs))
+
+
+def _written(node: Container, types: Mapping[str, StateType]) -> frozenset[str]:
+    """The keys of a container that something in it may write."""
+    if isinstance(node, Iterator) and any(isinstance(child, Leaf) for child in node.children):
+        # The state of an iterator may write all keys.
+        return frozenset(key.name for key in (*node.inputs, *node.outputs)) | {node.item_key}
+    found = {node.item_key} if isinstance(node, Iterator) else set()
+    for child in node.children:
+        names = {} if isinstance(node, Iterator) else remapping(child)
+        outputs = child.outputs
+        if isinstance(child, Leaf) and child.type in types:
+            outputs += types[child.type].output_keys
+        found |= {names.get(key.name, key.name) for key in outputs}
+    return frozenset(found)
 
 
 def _check(plan: Plan, scope: ContainerScope, around: ContainerScope | None) -> None:

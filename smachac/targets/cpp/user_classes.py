@@ -127,7 +127,7 @@ def _input(scope: ContainerScope, key: Key, outer: str) -> str:
         )
     spelt = scope.read(outer, key.name).text
     if wanted.name == "optional" and outer not in scope.sure:
-        return f"smachac::maybe<{cpp_type(wanted)}>(ud.{identifier(outer)})"
+        return f"smachac::maybe<{cpp_type(wanted)}>({scope.object(outer)})"
     return spelt if given == wanted else f"smachac::convert<{cpp_type(wanted)}>({spelt})"
 
 
@@ -137,7 +137,7 @@ def _output(scope: ContainerScope, key: Key, outer: str) -> str:
         raise UnportableError(
             f"the output `{key.name}` is `{given}`, but the key `{outer}` is `{wanted}`"
         )
-    return f"ud.{identifier(outer)}"
+    return scope.object(outer)
 
 
 def _variables(type_: StateType, leaf: Leaf) -> list[str]:

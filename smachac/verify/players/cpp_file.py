@@ -99,12 +99,12 @@ def _does_not_compile(source: Source, error: CompilationError) -> FileFault:
 @dataclass(frozen=True, slots=True, kw_only=True)
 class _StandIn:
     """A leaf that performs test cases in the program of a header. `code` is its class; None for
-    states whose code is in the header. `userdata` is the expression for the userdata of its
-    container. `uses_stop`: its code has a parameter for requests to stop."""
+    states whose code is in the header. `keys` are the expressions for the keys of its container, by
+    name. `uses_stop`: its code has a parameter for requests to stop."""
 
     leaf: CppLeaf
     code: ClassCode | None
-    userdata: str
+    keys: Mapping[str, str]
     uses_stop: bool
 
     @property
@@ -134,10 +134,10 @@ class _Header:
                 leaf = CppLeaf(number=number, path=path, leaf=node, scope=scope)
                 type_ = self._machine.state_types.get(node.type)
                 code = class_code(type_) if type_ is not None else None
-                userdata = _userdata(scope.path, planned.scopes)
+                keys = {key: self._key(scope, key) for key in scope.keys}
                 uses_stop = code is None and _uses_stop(node, scope)
                 self._stand_ins[path] = _StandIn(
-                    leaf=leaf, code=code, userdata=userdata, uses_stop=uses_stop
+                    leaf=leaf, code=code, keys=keys, uses_stop=uses_stop
                 )
         for case in cases:
             for path, row in case.rows.items():
@@ -145,6 +145,15 @@ class _Header:
                     self._stand_ins[path].leaf.case_of(step)
         self.lines = dict(self._lines())
         self.faults = list(self._faults())
+
+    def _key(self, scope: ContainerScope, key: str) -> str:
+        """The expression for a key of a container, which may be that of a container around it. In
+        headers without views, as older versions printed them, each container has its own keys."""
+        while key in scope.shared and f"{scope_name(scope.path)}::UserdataView" in self._found:
+            around = self._scopes[scope.path.rpartition("/")[0]]
+            key = around.names(scope.node).get(key, key)
+            scope = around
+        return f"{_userdata(scope.path, self._scopes)}.{identifier(key)}"
 
     def _lines(self) -> Iterator[tuple[str, int]]:
         """The line of every state in the header, by path; those that are missing are left out."""
@@ -464,8 +473,7 @@ def _write(each: _StandIn, types: Mapping[str, Type], key: str, value: object) -
 def _outer_key(each: _StandIn, key: str) -> str:
     """The key of the container that a key of a leaf is remapped to."""
     leaf = each.leaf
-    outer = leaf.scope.names(leaf.leaf).get(key, key)
-    return f"{each.userdata}.{identifier(outer)}"
+    return each.keys[leaf.scope.names(leaf.leaf).get(key, key)]
 
 
 def _userdata(path: str, scopes: Mapping[str, ContainerScope]) -> str:

@@ -41,6 +41,13 @@
 #define SMACHAC_CATCH if constexpr (false)
 #endif
 
+// Whether the standard library has threads: that of GCC has none over a bare Newlib.
+#if defined(__GLIBCXX__) && !defined(_GLIBCXX_HAS_GTHREADS)
+#define SMACHAC_THREADS 0
+#else
+#define SMACHAC_THREADS 1
+#endif
+
 namespace smachac {
 inline namespace v0_1_0 {
 
@@ -49,6 +56,32 @@ inline namespace v0_1_0 {
 inline constexpr bool has_exceptions = true;
 #else
 inline constexpr bool has_exceptions = false;
+#endif
+
+#if SMACHAC_THREADS
+using Mutex = std::mutex;
+using RecursiveMutex = std::recursive_mutex;
+using Condition = std::condition_variable;
+#else
+/// A lock in a program that has one thread.
+struct Mutex {
+  void lock() {}
+  void unlock() {}
+};
+using RecursiveMutex = Mutex;
+
+/// A condition in a program that has one thread: nobody can change it while this thread waits.
+struct Condition {
+  void notify_all() {}
+  template <class Test> void wait(std::unique_lock<Mutex> &, Test) {}
+  template <class Test>
+  bool wait_for(std::unique_lock<Mutex> &, std::chrono::duration<double> most, Test test) {
+    const auto begin = std::chrono::steady_clock::now();
+    while (!test() && std::chrono::steady_clock::now() - begin < most) {
+    }
+    return test();
+  }
+};
 #endif
 
 /// Fails because a key was read that holds nothing.
@@ -72,6 +105,14 @@ public:
     if (state_ == unset) {
       unset_key();
     }
+    return value_;
+  }
+  /// The value of a key that surely holds one, without a check.
+  [[nodiscard]] const T &unchecked() const { return value_; }
+  /// The value, to be changed in place; the key counts as written. A key that holds nothing starts
+  /// with the default value of its type.
+  [[nodiscard]] T &edit() {
+    state_ = written;
     return value_;
   }
   [[nodiscard]] bool set() const { return state_ != unset; }
@@ -232,12 +273,12 @@ public:
   [[nodiscard]] virtual bool wants_writes() const { return true; }
 
   void tell(const Event &event) {
-    const std::lock_guard<std::recursive_mutex> hold(lock_);
+    const std::lock_guard<RecursiveMutex> hold(lock_);
     on(event);
   }
 
 private:
-  std::recursive_mutex lock_{};
+  RecursiveMutex lock_{};
 };
 
 /// Writes each event as a line of JSON, at once: what has happened is in the file.
@@ -302,7 +343,7 @@ public:
   void request() {
     std::vector<std::pair<Observer *, Place>> told;
     {
-      const std::lock_guard<std::mutex> hold(lock_);
+      const std::lock_guard<Mutex> hold(lock_);
       ask(told);
       if (told.empty()) {
         return;
@@ -327,7 +368,7 @@ public:
       fail("waits for `nan` seconds");
     }
     const std::chrono::duration<double> most(std::min(seconds, longest));
-    std::unique_lock<std::mutex> hold(lock_);
+    std::unique_lock<Mutex> hold(lock_);
     return wake_.wait_for(hold, most, [this] { return asked_.load(); });
   }
 
@@ -343,7 +384,7 @@ private:
   struct EndOfCalls {
     Stop &stop;
     ~EndOfCalls() {
-      const std::lock_guard<std::mutex> hold(stop.lock_);
+      const std::lock_guard<Mutex> hold(stop.lock_);
       --stop.calls_;
       stop.uncalled_.notify_all();
     }
@@ -362,7 +403,7 @@ private:
       told.emplace_back(observer_, place);
     }
     for (Stop *branch = branches_; branch != nullptr; branch = branch->next_) {
-      const std::lock_guard<std::mutex> hold(branch->lock_);
+      const std::lock_guard<Mutex> hold(branch->lock_);
       branch->ask(told);
     }
   }
@@ -373,13 +414,13 @@ private:
   }
   /// A state starts: it is asked again where it, or a container around it, keeps a request.
   [[gnu::cold, gnu::noinline]] void remind(const char *path) noexcept {
-    const std::lock_guard<std::mutex> hold(lock_);
+    const std::lock_guard<Mutex> hold(lock_);
     settle(path);
     ask_again([path](const char *each) { return within(path, each); });
   }
   /// A machine ends: its last state keeps a request that waits for an answer.
   [[gnu::cold, gnu::noinline]] void keep(const char *path) noexcept {
-    const std::lock_guard<std::mutex> hold(lock_);
+    const std::lock_guard<Mutex> hold(lock_);
     settle(path);
     if (asked_.load() && (asker_ == nullptr || !within(asker_, path))) {
       put(path);
@@ -387,7 +428,7 @@ private:
   }
   /// An iterator ends because of a request: states in it keep none.
   void forget(const char *path) {
-    const std::lock_guard<std::mutex> hold(lock_);
+    const std::lock_guard<Mutex> hold(lock_);
     take([path](const char *each) { return within(each, path); });
   }
 
@@ -430,8 +471,8 @@ private:
 
   std::atomic<bool> asked_{false};
   std::atomic<std::uint64_t> requests_{0};
-  std::mutex lock_{};
-  std::condition_variable wake_{};
+  Mutex lock_{};
+  Condition wake_{};
   // Whether a look at those that keep a request is worth it; only the thread of control does.
   bool keeps_ = false;
   // Under the lock: the paths of the states that keep a request, and of the one whose own request
@@ -446,7 +487,7 @@ private:
   std::vector<Place> running_{};
   // Under the lock: the requests that call observers now. A watched run waits for their end.
   unsigned calls_ = 0;
-  std::condition_variable uncalled_{};
+  Condition uncalled_{};
 };
 
 /// The items of an iterator that are left, and requests to stop: it ends after the item that runs
@@ -654,13 +695,13 @@ public:
   Stop &stop;
 
   WatchedRun(Observer &observer, Stop &own) : stop(own), observer_(observer) {
-    const std::lock_guard<std::mutex> hold(stop.lock_);
+    const std::lock_guard<Mutex> hold(stop.lock_);
     stop.observer_ = &observer_;
   }
   WatchedRun(const WatchedRun &) = delete;
   WatchedRun &operator=(const WatchedRun &) = delete;
   ~WatchedRun() {
-    std::unique_lock<std::mutex> hold(stop.lock_);
+    std::unique_lock<Mutex> hold(stop.lock_);
     stop.observer_ = nullptr;
     stop.running_.clear();
     stop.uncalled_.wait(hold, [this] { return stop.calls_ == 0; });
@@ -739,7 +780,7 @@ private:
   void push(const Place &place) {
     bool asked = false;
     {
-      const std::lock_guard<std::mutex> hold(stop.lock_);
+      const std::lock_guard<Mutex> hold(stop.lock_);
       stop.settle(place.full());
       stop.ask_again([&](const char *each) {
         return Stop::within(place.full(), each) && std::strcmp(place.full(), each) != 0;
@@ -752,7 +793,7 @@ private:
     }
   }
   void pop() {
-    const std::lock_guard<std::mutex> hold(stop.lock_);
+    const std::lock_guard<Mutex> hold(stop.lock_);
     stop.running_.pop_back();
   }
   void entered(const Place &place) {
@@ -768,9 +809,9 @@ private:
     observer_.tell({"transition", place, outcome, to});
   }
   void ended(const Place &place, const char *outcome, const char *with) {
-    std::string to = place.around != nullptr
-                         ? std::string(place.around)
-                         : std::string(place.path, std::strrchr(place.path, '/'));
+    const std::string_view path = place.path;
+    std::string to(place.around != nullptr ? std::string_view(place.around)
+                                           : path.substr(0, path.rfind('/')));
     to += std::string(":") + with;
     moved(place, outcome, to.c_str());
   }
@@ -803,12 +844,27 @@ private:
   Observer &observer_;
 };
 
+#if SMACHAC_THREADS
+using Thread = std::thread;
+#else
+/// What stands for a thread where there is none: no concurrence compiles.
+struct Thread {
+  Thread() = default;
+  template <class Function> explicit Thread(Function) {
+    static_assert(!std::is_same_v<Function, Function>,
+                  "a concurrence needs the threads of the standard library");
+  }
+  bool joinable() const { return false; }
+  void join() {}
+};
+#endif
+
 /// The branches of a concurrence: a thread and a Stop for each of `N`.
 template <class Run, std::size_t N> class Branches {
 public:
   Branches(Run &around, const Place *places) : around_(around), places_(places) {
     around_.stop.remind(places_[0].full());
-    const std::lock_guard<std::mutex> hold(around_.stop.lock_);
+    const std::lock_guard<Mutex> hold(around_.stop.lock_);
     for (std::size_t i = 0; i < N; ++i) {
       stops_[i].next_ = i + 1 < N ? &stops_[i + 1] : nullptr;
       stops_[i].asked_.store(around_.stop.requested());
@@ -829,7 +885,7 @@ public:
       Threads threads;
       SMACHAC_TRY {
         for (std::size_t i = 0; i + 1 < N; ++i) {
-          threads.all[i] = std::thread([this, i, any, &branch] { one(i, any, branch); });
+          threads.all[i] = Thread([this, i, any, &branch] { one(i, any, branch); });
         }
         one(N - 1, any, branch);
       }
@@ -853,9 +909,9 @@ public:
 
 private:
   struct Threads {
-    std::array<std::thread, N - 1> all{};
+    std::array<Thread, N - 1> all{};
     ~Threads() {
-      for (std::thread &each : all) {
+      for (Thread &each : all) {
         if (each.joinable()) {
           each.join();
         }
@@ -868,7 +924,7 @@ private:
   public:
 #if defined(__cpp_exceptions)
     void keep() {
-      const std::lock_guard<std::mutex> hold(lock_);
+      const std::lock_guard<Mutex> hold(lock_);
       if (!first_) {
         first_ = std::current_exception();
       }
@@ -880,7 +936,7 @@ private:
     }
 
   private:
-    std::mutex lock_{};
+    Mutex lock_{};
     std::exception_ptr first_{};
 #else
     void keep() {}
@@ -904,7 +960,7 @@ private:
       failure_.keep();
     }
     {
-      const std::lock_guard<std::mutex> hold(stops_[i].lock_);
+      const std::lock_guard<Mutex> hold(stops_[i].lock_);
       stops_[i].ended_ = true;
     }
     if (ask && !asked_.exchange(true) && !asked_from_outside()) {
@@ -921,7 +977,7 @@ private:
   /// A request to the concurrence is served unless a branch has left one open. What states of such
   /// a branch keep is gone.
   void leave() {
-    const std::lock_guard<std::mutex> hold(around_.stop.lock_);
+    const std::lock_guard<Mutex> hold(around_.stop.lock_);
     if (around_.stop.branches_ == nullptr) {
       return;
     }

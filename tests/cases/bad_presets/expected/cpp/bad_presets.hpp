@@ -29,9 +29,9 @@ struct NEAR {
   };
 
   Outcome execute(Userdata &ud) {
-    smachac::print("height", ud.height.get());
-    smachac::print("limit", ud.limit.get());
-    smachac::print("speed", ud.speed.get());
+    smachac::print("height", ud.height.unchecked());
+    smachac::print("limit", ud.limit.unchecked());
+    smachac::print("speed", ud.speed.unchecked());
     return Outcome::succeeded;
   }
 };
@@ -43,9 +43,9 @@ struct FAR {
   };
 
   Outcome execute(Userdata &ud) {
-    smachac::print("height", ud.height.get());
-    smachac::print("limit", ud.limit.get());
-    smachac::print("speed", ud.speed.get());
+    smachac::print("height", ud.height.unchecked());
+    smachac::print("limit", ud.limit.unchecked());
+    smachac::print("speed", ud.speed.unchecked());
     return Outcome::succeeded;
   }
 };
@@ -57,7 +57,7 @@ struct LAST {
   };
 
   Outcome execute(Userdata &ud) {
-    smachac::print("height", ud.height.get());
+    smachac::print("height", ud.height.unchecked());
     return Outcome::succeeded;
   }
 };
@@ -86,34 +86,36 @@ template <class Run>
 [[gnu::always_inline]] inline Outcome execute(States &states, Userdata &ud, Run &run) {
   State state = State::NEAR;
   SMACHAC_TRY {
-    for (;;) {
+    switch (state) {
+    case State::NEAR: // main.yml:8
       run.enter(places, state);
-      switch (state) {
-      case State::NEAR: // main.yml:8
-        switch (states.NEAR.execute(ud)) {
-        case types::NEAR::Outcome::succeeded:
-          run.go(places, state, "succeeded", State::FAR);
-          continue;
-        }
-        break;
-      case State::FAR: // main.yml:14
-        switch (states.FAR.execute(ud)) {
-        case types::FAR::Outcome::succeeded:
-          run.go(places, state, "succeeded", State::LAST);
-          continue;
-        }
-        break;
-      case State::LAST: // main.yml:20
-        switch (states.LAST.execute(ud)) {
-        case types::LAST::Outcome::succeeded:
-          return run.end(places, state, "succeeded", Outcome::done);
-        }
-        break;
-      default:
-        smachac::never();
+      switch (states.NEAR.execute(ud)) {
+      case types::NEAR::Outcome::succeeded:
+        run.go(places, state, "succeeded", State::FAR);
+        goto FAR;
       }
-      run.no_outcome(places, state);
+      break;
+    case State::FAR: // main.yml:14
+    FAR:
+      run.enter(places, state);
+      switch (states.FAR.execute(ud)) {
+      case types::FAR::Outcome::succeeded:
+        run.go(places, state, "succeeded", State::LAST);
+        goto LAST;
+      }
+      break;
+    case State::LAST: // main.yml:20
+    LAST:
+      run.enter(places, state);
+      switch (states.LAST.execute(ud)) {
+      case types::LAST::Outcome::succeeded:
+        return run.end(places, state, "succeeded", Outcome::done);
+      }
+      break;
+    default:
+      smachac::never();
     }
+    run.no_outcome(places, state);
   }
   SMACHAC_CATCH { run.failed(places, state); }
 }

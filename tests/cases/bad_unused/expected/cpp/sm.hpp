@@ -48,20 +48,18 @@ template <class Run>
 [[gnu::always_inline]] inline Outcome execute(States &states, Userdata &, Run &run) {
   State state = State::SAY;
   SMACHAC_TRY {
-    for (;;) {
+    switch (state) {
+    case State::SAY: // sub.yml:6
       run.enter(places, state);
-      switch (state) {
-      case State::SAY: // sub.yml:6
-        switch (states.SAY.execute()) {
-        case types::SAY::Outcome::done:
-          return run.end(places, state, "done", Outcome::done);
-        }
-        break;
-      default:
-        smachac::never();
+      switch (states.SAY.execute()) {
+      case types::SAY::Outcome::done:
+        return run.end(places, state, "done", Outcome::done);
       }
-      run.no_outcome(places, state);
+      break;
+    default:
+      smachac::never();
     }
+    run.no_outcome(places, state);
   }
   SMACHAC_CATCH { run.failed(places, state); }
 }
@@ -97,7 +95,7 @@ struct JUDGE {
   };
 
   Outcome execute(Userdata &ud) {
-    if (smachac::py::item(ud.both.get(), 0) > 1.0 && ud.way.get() != "") {
+    if (smachac::py::item(ud.both.unchecked(), 0) > 1.0 && ud.way.unchecked() != "") {
       return Outcome::large;
     }
     return Outcome::small;
@@ -125,31 +123,31 @@ template <class Run>
 [[gnu::always_inline]] inline Outcome execute(States &states, Userdata &ud, Run &run) {
   State state = State::CALL;
   SMACHAC_TRY {
-    for (;;) {
+    switch (state) {
+    case State::CALL: // main.yml:10
       run.enter(places, state);
-      switch (state) {
-      case State::CALL: // main.yml:10
-        switch (CALL::execute(states.CALL_, ud.CALL_, run)) {
-        case CALL::Outcome::done:
-          run.go(places, state, "done", State::JUDGE);
-          continue;
-        }
-        break;
-      case State::JUDGE: // main.yml:14
-        switch (states.JUDGE.execute(ud)) {
-        case types::JUDGE::Outcome::large:
-          return run.end(places, state, "large", Outcome::done);
-        case types::JUDGE::Outcome::small:
-          return run.end(places, state, "small", Outcome::failed);
-        case types::JUDGE::Outcome::tiny:
-          return run.end(places, state, "tiny", Outcome::failed);
-        }
-        break;
-      default:
-        smachac::never();
+      switch (CALL::execute(states.CALL_, ud.CALL_, run)) {
+      case CALL::Outcome::done:
+        run.go(places, state, "done", State::JUDGE);
+        goto JUDGE;
       }
-      run.no_outcome(places, state);
+      break;
+    case State::JUDGE: // main.yml:14
+    JUDGE:
+      run.enter(places, state);
+      switch (states.JUDGE.execute(ud)) {
+      case types::JUDGE::Outcome::large:
+        return run.end(places, state, "large", Outcome::done);
+      case types::JUDGE::Outcome::small:
+        return run.end(places, state, "small", Outcome::failed);
+      case types::JUDGE::Outcome::tiny:
+        return run.end(places, state, "tiny", Outcome::failed);
+      }
+      break;
+    default:
+      smachac::never();
     }
+    run.no_outcome(places, state);
   }
   SMACHAC_CATCH { run.failed(places, state); }
 }

@@ -77,36 +77,38 @@ template <class Run>
 [[gnu::always_inline]] inline Outcome execute(States &states, Userdata &, Run &run) {
   State state = State::FOO;
   SMACHAC_TRY {
-    for (;;) {
+    switch (state) {
+    case State::FOO: // main.yml:6
       run.enter(places, state);
-      switch (state) {
-      case State::FOO: // main.yml:6
-        switch (states.FOO.execute()) {
-        case types::FOO::Outcome::done:
-          run.go(places, state, "done", State::BAR);
-          continue;
-        }
-        break;
-      case State::BAR: // main.yml:11
-        switch (states.BAR.execute()) {
-        case types::BAR::Outcome::done:
-          run.go(places, state, "done", State::BAZ);
-          continue;
-        }
-        break;
-      case State::BAZ: // main.yml:16
-        switch (states.BAZ.execute()) {
-        case types::BAZ::Outcome::done:
-          return run.end(places, state, "done", Outcome::succeeded);
-        case types::BAZ::Outcome::failed:
-          return run.end(places, state, "failed", Outcome::aborted);
-        }
-        break;
-      default:
-        smachac::never();
+      switch (states.FOO.execute()) {
+      case types::FOO::Outcome::done:
+        run.go(places, state, "done", State::BAR);
+        goto BAR;
       }
-      run.no_outcome(places, state);
+      break;
+    case State::BAR: // main.yml:11
+    BAR:
+      run.enter(places, state);
+      switch (states.BAR.execute()) {
+      case types::BAR::Outcome::done:
+        run.go(places, state, "done", State::BAZ);
+        goto BAZ;
+      }
+      break;
+    case State::BAZ: // main.yml:16
+    BAZ:
+      run.enter(places, state);
+      switch (states.BAZ.execute()) {
+      case types::BAZ::Outcome::done:
+        return run.end(places, state, "done", Outcome::succeeded);
+      case types::BAZ::Outcome::failed:
+        return run.end(places, state, "failed", Outcome::aborted);
+      }
+      break;
+    default:
+      smachac::never();
     }
+    run.no_outcome(places, state);
   }
   SMACHAC_CATCH { run.failed(places, state); }
 }

@@ -68,24 +68,22 @@ template <class Run>
 [[gnu::always_inline]] inline Outcome execute(States &states, Userdata &ud, Run &run) {
   State state = State::CARRY;
   SMACHAC_TRY {
-    for (;;) {
+    switch (state) {
+    case State::CARRY: // main.yml:10
       run.enter(places, state);
-      switch (state) {
-      case State::CARRY: // main.yml:10
-        switch (run.wrote(states.CARRY.execute({ud.shelf.get(), ud.table.get(), smachac::maybe<std::optional<bool>>(ud.gently)}, {run.out(ud.metres), run.out(ud.seconds)}, run.stop_for(places, state)), smachac::Output{"metres", ud.metres}, smachac::Output{"seconds", ud.seconds})) {
-        case ::arm::Carry::Outcome::done:
-          return run.end_asked(places, state, "done", Outcome::done);
-        case ::arm::Carry::Outcome::not_found:
-          return run.end_asked(places, state, "not-found", Outcome::lost);
-        case ::arm::Carry::Outcome::preempted:
-          return run.end_asked(places, state, "preempted", Outcome::lost);
-        }
-        break;
-      default:
-        smachac::never();
+      switch (run.wrote(states.CARRY.execute({ud.shelf.unchecked(), ud.table.unchecked(), smachac::maybe<std::optional<bool>>(ud.gently)}, {run.out(ud.metres), run.out(ud.seconds)}, run.stop_for(places, state)), smachac::Output{"metres", ud.metres}, smachac::Output{"seconds", ud.seconds})) {
+      case ::arm::Carry::Outcome::done:
+        return run.end_asked(places, state, "done", Outcome::done);
+      case ::arm::Carry::Outcome::not_found:
+        return run.end_asked(places, state, "not-found", Outcome::lost);
+      case ::arm::Carry::Outcome::preempted:
+        return run.end_asked(places, state, "preempted", Outcome::lost);
       }
-      run.no_outcome(places, state);
+      break;
+    default:
+      smachac::never();
     }
+    run.no_outcome(places, state);
   }
   SMACHAC_CATCH { run.failed(places, state); }
 }

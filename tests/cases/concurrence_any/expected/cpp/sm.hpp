@@ -73,9 +73,9 @@ template <class Run>
   branches.run(true, [&](std::size_t branch, Run &run) {
     const auto state = static_cast<State>(branch);
     SMACHAC_TRY {
-      run.enter(places, state);
       switch (state) {
       case State::WORK: // main.yml:14
+        run.enter(places, state);
         ended.WORK = states.WORK.execute();
         switch (ended.WORK) {
         case types::WORK::Outcome::done:
@@ -84,6 +84,7 @@ template <class Run>
         }
         break;
       case State::WATCH: // main.yml:15
+        run.enter(places, state);
         ended.WATCH = states.WATCH.execute(run.stop_for(places, state));
         switch (ended.WATCH) {
         case types::WATCH::Outcome::succeeded:
@@ -141,22 +142,20 @@ template <class Run>
 [[gnu::always_inline]] inline Outcome execute(States &states, Userdata &ud, Run &run) {
   State state = State::RACE;
   SMACHAC_TRY {
-    for (;;) {
+    switch (state) {
+    case State::RACE: // main.yml:6
       run.enter(places, state);
-      switch (state) {
-      case State::RACE: // main.yml:6
-        switch (RACE::execute(states.RACE_, ud.RACE_, run)) {
-        case RACE::Outcome::succeeded:
-          return run.end_asked(places, state, "succeeded", Outcome::succeeded);
-        case RACE::Outcome::aborted:
-          return run.end_asked(places, state, "aborted", Outcome::aborted);
-        }
-        break;
-      default:
-        smachac::never();
+      switch (RACE::execute(states.RACE_, ud.RACE_, run)) {
+      case RACE::Outcome::succeeded:
+        return run.end_asked(places, state, "succeeded", Outcome::succeeded);
+      case RACE::Outcome::aborted:
+        return run.end_asked(places, state, "aborted", Outcome::aborted);
       }
-      run.no_outcome(places, state);
+      break;
+    default:
+      smachac::never();
     }
+    run.no_outcome(places, state);
   }
   SMACHAC_CATCH { run.failed(places, state); }
 }

@@ -71,9 +71,9 @@ template <class Run>
   branches.run(false, [&](std::size_t branch, Run &run) {
     const auto state = static_cast<State>(branch);
     SMACHAC_TRY {
-      run.enter(places, state);
       switch (state) {
       case State::A: // main.yml:36
+        run.enter(places, state);
         ended.A = states.A.execute();
         switch (ended.A) {
         case types::A::Outcome::done:
@@ -85,6 +85,7 @@ template <class Run>
         }
         break;
       case State::B: // main.yml:37
+        run.enter(places, state);
         ended.B = states.B.execute();
         switch (ended.B) {
         case types::B::Outcome::done:
@@ -271,38 +272,40 @@ template <class Run>
 [[gnu::always_inline]] inline Outcome execute(States &states, Userdata &, Run &run) {
   State state = State::ONE;
   SMACHAC_TRY {
-    for (;;) {
+    switch (state) {
+    case State::ONE: // main.yml:13
       run.enter(places, state);
-      switch (state) {
-      case State::ONE: // main.yml:13
-        switch (states.ONE.execute()) {
-        case types::ONE::Outcome::succeeded:
-          run.go(places, state, "succeeded", State::TWO);
-          continue;
-        }
-        break;
-      case State::TWO: // main.yml:14
-        switch (states.TWO.execute()) {
-        case types::TWO::Outcome::succeeded:
-          run.go(places, state, "succeeded", State::THREE);
-          continue;
-        case types::TWO::Outcome::failed:
-          return run.end(places, state, "failed", Outcome::aborted);
-        }
-        break;
-      case State::THREE: // main.yml:15
-        switch (states.THREE.execute()) {
-        case types::THREE::Outcome::succeeded:
-          return run.end(places, state, "succeeded", Outcome::succeeded);
-        case types::THREE::Outcome::aborted:
-          return run.end(places, state, "aborted", Outcome::aborted);
-        }
-        break;
-      default:
-        smachac::never();
+      switch (states.ONE.execute()) {
+      case types::ONE::Outcome::succeeded:
+        run.go(places, state, "succeeded", State::TWO);
+        goto TWO;
       }
-      run.no_outcome(places, state);
+      break;
+    case State::TWO: // main.yml:14
+    TWO:
+      run.enter(places, state);
+      switch (states.TWO.execute()) {
+      case types::TWO::Outcome::succeeded:
+        run.go(places, state, "succeeded", State::THREE);
+        goto THREE;
+      case types::TWO::Outcome::failed:
+        return run.end(places, state, "failed", Outcome::aborted);
+      }
+      break;
+    case State::THREE: // main.yml:15
+    THREE:
+      run.enter(places, state);
+      switch (states.THREE.execute()) {
+      case types::THREE::Outcome::succeeded:
+        return run.end(places, state, "succeeded", Outcome::succeeded);
+      case types::THREE::Outcome::aborted:
+        return run.end(places, state, "aborted", Outcome::aborted);
+      }
+      break;
+    default:
+      smachac::never();
     }
+    run.no_outcome(places, state);
   }
   SMACHAC_CATCH { run.failed(places, state); }
 }
@@ -349,45 +352,47 @@ template <class Run>
 [[gnu::always_inline]] inline Outcome execute(States &states, Userdata &ud, Run &run) {
   State state = State::ROUND;
   SMACHAC_TRY {
-    for (;;) {
+    switch (state) {
+    case State::LINE: // main.yml:7
+    LINE:
       run.enter(places, state);
-      switch (state) {
-      case State::LINE: // main.yml:7
-        switch (LINE::execute(states.LINE_, ud.LINE_, run)) {
-        case LINE::Outcome::succeeded:
-          return run.end(places, state, "succeeded", Outcome::succeeded);
-        case LINE::Outcome::aborted:
-          return run.end(places, state, "aborted", Outcome::aborted);
-        }
-        break;
-      case State::ROUND: // main.yml:16
-        switch (ROUND::execute(states.ROUND_, ud.ROUND_, run)) {
-        case ROUND::Outcome::finished:
-          run.go(places, state, "finished", State::BOTH);
-          continue;
-        case ROUND::Outcome::aborted:
-          return run.end_asked(places, state, "aborted", Outcome::aborted);
-        case ROUND::Outcome::go:
-          run.undeclared(places, state, "go");
-        }
-        break;
-      case State::BOTH: // main.yml:27
-        switch (BOTH::execute(states.BOTH_, ud.BOTH_, run)) {
-        case BOTH::Outcome::both:
-          run.go(places, state, "both", State::LINE);
-          continue;
-        case BOTH::Outcome::one:
-          run.go(places, state, "one", State::LINE);
-          continue;
-        case BOTH::Outcome::none:
-          return run.end(places, state, "none", Outcome::aborted);
-        }
-        break;
-      default:
-        smachac::never();
+      switch (LINE::execute(states.LINE_, ud.LINE_, run)) {
+      case LINE::Outcome::succeeded:
+        return run.end(places, state, "succeeded", Outcome::succeeded);
+      case LINE::Outcome::aborted:
+        return run.end(places, state, "aborted", Outcome::aborted);
       }
-      run.no_outcome(places, state);
+      break;
+    case State::ROUND: // main.yml:16
+      run.enter(places, state);
+      switch (ROUND::execute(states.ROUND_, ud.ROUND_, run)) {
+      case ROUND::Outcome::finished:
+        run.go(places, state, "finished", State::BOTH);
+        goto BOTH;
+      case ROUND::Outcome::aborted:
+        return run.end_asked(places, state, "aborted", Outcome::aborted);
+      case ROUND::Outcome::go:
+        run.undeclared(places, state, "go");
+      }
+      break;
+    case State::BOTH: // main.yml:27
+    BOTH:
+      run.enter(places, state);
+      switch (BOTH::execute(states.BOTH_, ud.BOTH_, run)) {
+      case BOTH::Outcome::both:
+        run.go(places, state, "both", State::LINE);
+        goto LINE;
+      case BOTH::Outcome::one:
+        run.go(places, state, "one", State::LINE);
+        goto LINE;
+      case BOTH::Outcome::none:
+        return run.end(places, state, "none", Outcome::aborted);
+      }
+      break;
+    default:
+      smachac::never();
     }
+    run.no_outcome(places, state);
   }
   SMACHAC_CATCH { run.failed(places, state); }
 }

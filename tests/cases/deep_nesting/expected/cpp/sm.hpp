@@ -47,20 +47,18 @@ template <class Run>
 [[gnu::always_inline]] inline Outcome execute(States &states, Userdata &, Run &run) {
   State state = State::LEAF;
   SMACHAC_TRY {
-    for (;;) {
+    switch (state) {
+    case State::LEAF: // main.yml:126
       run.enter(places, state);
-      switch (state) {
-      case State::LEAF: // main.yml:126
-        switch (states.LEAF.execute()) {
-        case types::LEAF::Outcome::done:
-          return run.end(places, state, "done", Outcome::done);
-        }
-        break;
-      default:
-        smachac::never();
+      switch (states.LEAF.execute()) {
+      case types::LEAF::Outcome::done:
+        return run.end(places, state, "done", Outcome::done);
       }
-      run.no_outcome(places, state);
+      break;
+    default:
+      smachac::never();
     }
+    run.no_outcome(places, state);
   }
   SMACHAC_CATCH { run.failed(places, state); }
 }
@@ -98,20 +96,18 @@ template <class Run>
 [[gnu::always_inline]] inline Outcome execute(States &states, Userdata &ud, Run &run) {
   State state = State::C29;
   SMACHAC_TRY {
-    for (;;) {
+    switch (state) {
+    case State::C29: // main.yml:122
       run.enter(places, state);
-      switch (state) {
-      case State::C29: // main.yml:122
-        switch (C29::execute(states.C29_, ud.C29_, run)) {
-        case C29::Outcome::done:
-          return run.end(places, state, "done", Outcome::done);
-        }
-        break;
-      default:
-        smachac::never();
+      switch (C29::execute(states.C29_, ud.C29_, run)) {
+      case C29::Outcome::done:
+        return run.end(places, state, "done", Outcome::done);
       }
-      run.no_outcome(places, state);
+      break;
+    default:
+      smachac::never();
     }
+    run.no_outcome(places, state);
   }
   SMACHAC_CATCH { run.failed(places, state); }
 }
@@ -149,20 +145,18 @@ template <class Run>
 [[gnu::always_inline]] inline Outcome execute(States &states, Userdata &ud, Run &run) {
   State state = State::C28;
   SMACHAC_TRY {
-    for (;;) {
+    switch (state) {
+    case State::C28: // main.yml:118
       run.enter(places, state);
-      switch (state) {
-      case State::C28: // main.yml:118
-        switch (C28::execute(states.C28_, ud.C28_, run)) {
-        case C28::Outcome::done:
-          return run.end(places, state, "done", Outcome::done);
-        }
-        break;
-      default:
-        smachac::never();
+      switch (C28::execute(states.C28_, ud.C28_, run)) {
+      case C28::Outcome::done:
+        return run.end(places, state, "done", Outcome::done);
       }
-      run.no_outcome(places, state);
+      break;
+    default:
+      smachac::never();
     }
+    run.no_outcome(places, state);
   }
   SMACHAC_CATCH { run.failed(places, state); }
 }
@@ -200,20 +194,18 @@ template <class Run>
 [[gnu::always_inline]] inline Outcome execute(States &states, Userdata &ud, Run &run) {
   State state = State::C27;
   SMACHAC_TRY {
-    for (;;) {
+    switch (state) {
+    case State::C27: // main.yml:114
       run.enter(places, state);
-      switch (state) {
-      case State::C27: // main.yml:114
-        switch (C27::execute(states.C27_, ud.C27_, run)) {
-        case C27::Outcome::done:
-          return run.end(places, state, "done", Outcome::done);
-        }
-        break;
-      default:
-        smachac::never();
+      switch (C27::execute(states.C27_, ud.C27_, run)) {
+      case C27::Outcome::done:
+        return run.end(places, state, "done", Outcome::done);
       }
-      run.no_outcome(places, state);
+      break;
+    default:
+      smachac::never();
     }
+    run.no_outcome(places, state);
   }
   SMACHAC_CATCH { run.failed(places, state); }
 }
@@ -251,20 +243,18 @@ template <class Run>
 [[gnu::always_inline]] inline Outcome execute(States &states, Userdata &ud, Run &run) {
   State state = State::C26;
   SMACHAC_TRY {
-    for (;;) {
+    switch (state) {
+    case State::C26: // main.yml:110
       run.enter(places, state);
-      switch (state) {
-      case State::C26: // main.yml:110
-        switch (C26::execute(states.C26_, ud.C26_, run)) {
-        case C26::Outcome::done:
-          return run.end(places, state, "done", Outcome::done);
-        }
-        break;
-      default:
-        smachac::never();
+      switch (C26::execute(states.C26_, ud.C26_, run)) {
+      case C26::Outcome::done:
+        return run.end(places, state, "done", Outcome::done);
       }
-      run.no_outcome(places, state);
+      break;
+    default:
+      smachac::never();
     }
+    run.no_outcome(places, state);
   }
   SMACHAC_CATCH { run.failed(places, state); }
 }
@@ -302,20 +292,18 @@ template <class Run>
 [[gnu::always_inline]] inline Outcome execute(States &states, Userdata &ud, Run &run) {
   State state = State::C25;
   SMACHAC_TRY {
-    for (;;) {
+    switch (state) {
+    case State::C25: // main.yml:106
       run.enter(places, state);
-      switch (state) {
-      case State::C25: // main.yml:106
-        switch (C25::execute(states.C25_, ud.C25_, run)) {
-        case C25::Outcome::done:
-          return run.end(places, state, "done", Outcome::done);
-        }
-        break;
-      default:
-        smachac::never();
+      switch (C25::execute(states.C25_, ud.C25_, run)) {
+      case C25::Outcome::done:
+        return run.end(places, state, "done", Outcome::done);
       }
-      run.no_outcome(places, state);
+      break;
+    default:
+      smachac::never();
     }
+    run.no_outcome(places, state);
   }
   SMACHAC_CATCH { run.failed(places, state); }
 }
@@ -353,20 +341,18 @@ template <class Run>
 [[gnu::always_inline]] inline Outcome execute(States &states, Userdata &ud, Run &run) {
   State state = State::C24;
   SMACHAC_TRY {
-    for (;;) {
+    switch (state) {
+    case State::C24: // main.yml:102
       run.enter(places, state);
-      switch (state) {
-      case State::C24: // main.yml:102
-        switch (C24::execute(states.C24_, ud.C24_, run)) {
-        case C24::Outcome::done:
-          return run.end(places, state, "done", Outcome::done);
-        }
-        break;
-      default:
-        smachac::never();
+      switch (C24::execute(states.C24_, ud.C24_, run)) {
+      case C24::Outcome::done:
+        return run.end(places, state, "done", Outcome::done);
       }
-      run.no_outcome(places, state);
+      break;
+    default:
+      smachac::never();
     }
+    run.no_outcome(places, state);
   }
   SMACHAC_CATCH { run.failed(places, state); }
 }
@@ -404,20 +390,18 @@ template <class Run>
 [[gnu::always_inline]] inline Outcome execute(States &states, Userdata &ud, Run &run) {
   State state = State::C23;
   SMACHAC_TRY {
-    for (;;) {
+    switch (state) {
+    case State::C23: // main.yml:98
       run.enter(places, state);
-      switch (state) {
-      case State::C23: // main.yml:98
-        switch (C23::execute(states.C23_, ud.C23_, run)) {
-        case C23::Outcome::done:
-          return run.end(places, state, "done", Outcome::done);
-        }
-        break;
-      default:
-        smachac::never();
+      switch (C23::execute(states.C23_, ud.C23_, run)) {
+      case C23::Outcome::done:
+        return run.end(places, state, "done", Outcome::done);
       }
-      run.no_outcome(places, state);
+      break;
+    default:
+      smachac::never();
     }
+    run.no_outcome(places, state);
   }
   SMACHAC_CATCH { run.failed(places, state); }
 }
@@ -455,20 +439,18 @@ template <class Run>
 [[gnu::always_inline]] inline Outcome execute(States &states, Userdata &ud, Run &run) {
   State state = State::C22;
   SMACHAC_TRY {
-    for (;;) {
+    switch (state) {
+    case State::C22: // main.yml:94
       run.enter(places, state);
-      switch (state) {
-      case State::C22: // main.yml:94
-        switch (C22::execute(states.C22_, ud.C22_, run)) {
-        case C22::Outcome::done:
-          return run.end(places, state, "done", Outcome::done);
-        }
-        break;
-      default:
-        smachac::never();
+      switch (C22::execute(states.C22_, ud.C22_, run)) {
+      case C22::Outcome::done:
+        return run.end(places, state, "done", Outcome::done);
       }
-      run.no_outcome(places, state);
+      break;
+    default:
+      smachac::never();
     }
+    run.no_outcome(places, state);
   }
   SMACHAC_CATCH { run.failed(places, state); }
 }
@@ -506,20 +488,18 @@ template <class Run>
 [[gnu::always_inline]] inline Outcome execute(States &states, Userdata &ud, Run &run) {
   State state = State::C21;
   SMACHAC_TRY {
-    for (;;) {
+    switch (state) {
+    case State::C21: // main.yml:90
       run.enter(places, state);
-      switch (state) {
-      case State::C21: // main.yml:90
-        switch (C21::execute(states.C21_, ud.C21_, run)) {
-        case C21::Outcome::done:
-          return run.end(places, state, "done", Outcome::done);
-        }
-        break;
-      default:
-        smachac::never();
+      switch (C21::execute(states.C21_, ud.C21_, run)) {
+      case C21::Outcome::done:
+        return run.end(places, state, "done", Outcome::done);
       }
-      run.no_outcome(places, state);
+      break;
+    default:
+      smachac::never();
     }
+    run.no_outcome(places, state);
   }
   SMACHAC_CATCH { run.failed(places, state); }
 }
@@ -557,20 +537,18 @@ template <class Run>
 [[gnu::always_inline]] inline Outcome execute(States &states, Userdata &ud, Run &run) {
   State state = State::C20;
   SMACHAC_TRY {
-    for (;;) {
+    switch (state) {
+    case State::C20: // main.yml:86
       run.enter(places, state);
-      switch (state) {
-      case State::C20: // main.yml:86
-        switch (C20::execute(states.C20_, ud.C20_, run)) {
-        case C20::Outcome::done:
-          return run.end(places, state, "done", Outcome::done);
-        }
-        break;
-      default:
-        smachac::never();
+      switch (C20::execute(states.C20_, ud.C20_, run)) {
+      case C20::Outcome::done:
+        return run.end(places, state, "done", Outcome::done);
       }
-      run.no_outcome(places, state);
+      break;
+    default:
+      smachac::never();
     }
+    run.no_outcome(places, state);
   }
   SMACHAC_CATCH { run.failed(places, state); }
 }
@@ -608,20 +586,18 @@ template <class Run>
 [[gnu::always_inline]] inline Outcome execute(States &states, Userdata &ud, Run &run) {
   State state = State::C19;
   SMACHAC_TRY {
-    for (;;) {
+    switch (state) {
+    case State::C19: // main.yml:82
       run.enter(places, state);
-      switch (state) {
-      case State::C19: // main.yml:82
-        switch (C19::execute(states.C19_, ud.C19_, run)) {
-        case C19::Outcome::done:
-          return run.end(places, state, "done", Outcome::done);
-        }
-        break;
-      default:
-        smachac::never();
+      switch (C19::execute(states.C19_, ud.C19_, run)) {
+      case C19::Outcome::done:
+        return run.end(places, state, "done", Outcome::done);
       }
-      run.no_outcome(places, state);
+      break;
+    default:
+      smachac::never();
     }
+    run.no_outcome(places, state);
   }
   SMACHAC_CATCH { run.failed(places, state); }
 }
@@ -659,20 +635,18 @@ template <class Run>
 [[gnu::always_inline]] inline Outcome execute(States &states, Userdata &ud, Run &run) {
   State state = State::C18;
   SMACHAC_TRY {
-    for (;;) {
+    switch (state) {
+    case State::C18: // main.yml:78
       run.enter(places, state);
-      switch (state) {
-      case State::C18: // main.yml:78
-        switch (C18::execute(states.C18_, ud.C18_, run)) {
-        case C18::Outcome::done:
-          return run.end(places, state, "done", Outcome::done);
-        }
-        break;
-      default:
-        smachac::never();
+      switch (C18::execute(states.C18_, ud.C18_, run)) {
+      case C18::Outcome::done:
+        return run.end(places, state, "done", Outcome::done);
       }
-      run.no_outcome(places, state);
+      break;
+    default:
+      smachac::never();
     }
+    run.no_outcome(places, state);
   }
   SMACHAC_CATCH { run.failed(places, state); }
 }
@@ -710,20 +684,18 @@ template <class Run>
 [[gnu::always_inline]] inline Outcome execute(States &states, Userdata &ud, Run &run) {
   State state = State::C17;
   SMACHAC_TRY {
-    for (;;) {
+    switch (state) {
+    case State::C17: // main.yml:74
       run.enter(places, state);
-      switch (state) {
-      case State::C17: // main.yml:74
-        switch (C17::execute(states.C17_, ud.C17_, run)) {
-        case C17::Outcome::done:
-          return run.end(places, state, "done", Outcome::done);
-        }
-        break;
-      default:
-        smachac::never();
+      switch (C17::execute(states.C17_, ud.C17_, run)) {
+      case C17::Outcome::done:
+        return run.end(places, state, "done", Outcome::done);
       }
-      run.no_outcome(places, state);
+      break;
+    default:
+      smachac::never();
     }
+    run.no_outcome(places, state);
   }
   SMACHAC_CATCH { run.failed(places, state); }
 }
@@ -761,20 +733,18 @@ template <class Run>
 [[gnu::always_inline]] inline Outcome execute(States &states, Userdata &ud, Run &run) {
   State state = State::C16;
   SMACHAC_TRY {
-    for (;;) {
+    switch (state) {
+    case State::C16: // main.yml:70
       run.enter(places, state);
-      switch (state) {
-      case State::C16: // main.yml:70
-        switch (C16::execute(states.C16_, ud.C16_, run)) {
-        case C16::Outcome::done:
-          return run.end(places, state, "done", Outcome::done);
-        }
-        break;
-      default:
-        smachac::never();
+      switch (C16::execute(states.C16_, ud.C16_, run)) {
+      case C16::Outcome::done:
+        return run.end(places, state, "done", Outcome::done);
       }
-      run.no_outcome(places, state);
+      break;
+    default:
+      smachac::never();
     }
+    run.no_outcome(places, state);
   }
   SMACHAC_CATCH { run.failed(places, state); }
 }
@@ -812,20 +782,18 @@ template <class Run>
 [[gnu::always_inline]] inline Outcome execute(States &states, Userdata &ud, Run &run) {
   State state = State::C15;
   SMACHAC_TRY {
-    for (;;) {
+    switch (state) {
+    case State::C15: // main.yml:66
       run.enter(places, state);
-      switch (state) {
-      case State::C15: // main.yml:66
-        switch (C15::execute(states.C15_, ud.C15_, run)) {
-        case C15::Outcome::done:
-          return run.end(places, state, "done", Outcome::done);
-        }
-        break;
-      default:
-        smachac::never();
+      switch (C15::execute(states.C15_, ud.C15_, run)) {
+      case C15::Outcome::done:
+        return run.end(places, state, "done", Outcome::done);
       }
-      run.no_outcome(places, state);
+      break;
+    default:
+      smachac::never();
     }
+    run.no_outcome(places, state);
   }
   SMACHAC_CATCH { run.failed(places, state); }
 }
@@ -863,20 +831,18 @@ template <class Run>
 [[gnu::always_inline]] inline Outcome execute(States &states, Userdata &ud, Run &run) {
   State state = State::C14;
   SMACHAC_TRY {
-    for (;;) {
+    switch (state) {
+    case State::C14: // main.yml:62
       run.enter(places, state);
-      switch (state) {
-      case State::C14: // main.yml:62
-        switch (C14::execute(states.C14_, ud.C14_, run)) {
-        case C14::Outcome::done:
-          return run.end(places, state, "done", Outcome::done);
-        }
-        break;
-      default:
-        smachac::never();
+      switch (C14::execute(states.C14_, ud.C14_, run)) {
+      case C14::Outcome::done:
+        return run.end(places, state, "done", Outcome::done);
       }
-      run.no_outcome(places, state);
+      break;
+    default:
+      smachac::never();
     }
+    run.no_outcome(places, state);
   }
   SMACHAC_CATCH { run.failed(places, state); }
 }
@@ -914,20 +880,18 @@ template <class Run>
 [[gnu::always_inline]] inline Outcome execute(States &states, Userdata &ud, Run &run) {
   State state = State::C13;
   SMACHAC_TRY {
-    for (;;) {
+    switch (state) {
+    case State::C13: // main.yml:58
       run.enter(places, state);
-      switch (state) {
-      case State::C13: // main.yml:58
-        switch (C13::execute(states.C13_, ud.C13_, run)) {
-        case C13::Outcome::done:
-          return run.end(places, state, "done", Outcome::done);
-        }
-        break;
-      default:
-        smachac::never();
+      switch (C13::execute(states.C13_, ud.C13_, run)) {
+      case C13::Outcome::done:
+        return run.end(places, state, "done", Outcome::done);
       }
-      run.no_outcome(places, state);
+      break;
+    default:
+      smachac::never();
     }
+    run.no_outcome(places, state);
   }
   SMACHAC_CATCH { run.failed(places, state); }
 }
@@ -965,20 +929,18 @@ template <class Run>
 [[gnu::always_inline]] inline Outcome execute(States &states, Userdata &ud, Run &run) {
   State state = State::C12;
   SMACHAC_TRY {
-    for (;;) {
+    switch (state) {
+    case State::C12: // main.yml:54
       run.enter(places, state);
-      switch (state) {
-      case State::C12: // main.yml:54
-        switch (C12::execute(states.C12_, ud.C12_, run)) {
-        case C12::Outcome::done:
-          return run.end(places, state, "done", Outcome::done);
-        }
-        break;
-      default:
-        smachac::never();
+      switch (C12::execute(states.C12_, ud.C12_, run)) {
+      case C12::Outcome::done:
+        return run.end(places, state, "done", Outcome::done);
       }
-      run.no_outcome(places, state);
+      break;
+    default:
+      smachac::never();
     }
+    run.no_outcome(places, state);
   }
   SMACHAC_CATCH { run.failed(places, state); }
 }
@@ -1016,20 +978,18 @@ template <class Run>
 [[gnu::always_inline]] inline Outcome execute(States &states, Userdata &ud, Run &run) {
   State state = State::C11;
   SMACHAC_TRY {
-    for (;;) {
+    switch (state) {
+    case State::C11: // main.yml:50
       run.enter(places, state);
-      switch (state) {
-      case State::C11: // main.yml:50
-        switch (C11::execute(states.C11_, ud.C11_, run)) {
-        case C11::Outcome::done:
-          return run.end(places, state, "done", Outcome::done);
-        }
-        break;
-      default:
-        smachac::never();
+      switch (C11::execute(states.C11_, ud.C11_, run)) {
+      case C11::Outcome::done:
+        return run.end(places, state, "done", Outcome::done);
       }
-      run.no_outcome(places, state);
+      break;
+    default:
+      smachac::never();
     }
+    run.no_outcome(places, state);
   }
   SMACHAC_CATCH { run.failed(places, state); }
 }
@@ -1067,20 +1027,18 @@ template <class Run>
 [[gnu::always_inline]] inline Outcome execute(States &states, Userdata &ud, Run &run) {
   State state = State::C10;
   SMACHAC_TRY {
-    for (;;) {
+    switch (state) {
+    case State::C10: // main.yml:46
       run.enter(places, state);
-      switch (state) {
-      case State::C10: // main.yml:46
-        switch (C10::execute(states.C10_, ud.C10_, run)) {
-        case C10::Outcome::done:
-          return run.end(places, state, "done", Outcome::done);
-        }
-        break;
-      default:
-        smachac::never();
+      switch (C10::execute(states.C10_, ud.C10_, run)) {
+      case C10::Outcome::done:
+        return run.end(places, state, "done", Outcome::done);
       }
-      run.no_outcome(places, state);
+      break;
+    default:
+      smachac::never();
     }
+    run.no_outcome(places, state);
   }
   SMACHAC_CATCH { run.failed(places, state); }
 }
@@ -1118,20 +1076,18 @@ template <class Run>
 [[gnu::always_inline]] inline Outcome execute(States &states, Userdata &ud, Run &run) {
   State state = State::C9;
   SMACHAC_TRY {
-    for (;;) {
+    switch (state) {
+    case State::C9: // main.yml:42
       run.enter(places, state);
-      switch (state) {
-      case State::C9: // main.yml:42
-        switch (C9::execute(states.C9_, ud.C9_, run)) {
-        case C9::Outcome::done:
-          return run.end(places, state, "done", Outcome::done);
-        }
-        break;
-      default:
-        smachac::never();
+      switch (C9::execute(states.C9_, ud.C9_, run)) {
+      case C9::Outcome::done:
+        return run.end(places, state, "done", Outcome::done);
       }
-      run.no_outcome(places, state);
+      break;
+    default:
+      smachac::never();
     }
+    run.no_outcome(places, state);
   }
   SMACHAC_CATCH { run.failed(places, state); }
 }
@@ -1169,20 +1125,18 @@ template <class Run>
 [[gnu::always_inline]] inline Outcome execute(States &states, Userdata &ud, Run &run) {
   State state = State::C8;
   SMACHAC_TRY {
-    for (;;) {
+    switch (state) {
+    case State::C8: // main.yml:38
       run.enter(places, state);
-      switch (state) {
-      case State::C8: // main.yml:38
-        switch (C8::execute(states.C8_, ud.C8_, run)) {
-        case C8::Outcome::done:
-          return run.end(places, state, "done", Outcome::done);
-        }
-        break;
-      default:
-        smachac::never();
+      switch (C8::execute(states.C8_, ud.C8_, run)) {
+      case C8::Outcome::done:
+        return run.end(places, state, "done", Outcome::done);
       }
-      run.no_outcome(places, state);
+      break;
+    default:
+      smachac::never();
     }
+    run.no_outcome(places, state);
   }
   SMACHAC_CATCH { run.failed(places, state); }
 }
@@ -1220,20 +1174,18 @@ template <class Run>
 [[gnu::always_inline]] inline Outcome execute(States &states, Userdata &ud, Run &run) {
   State state = State::C7;
   SMACHAC_TRY {
-    for (;;) {
+    switch (state) {
+    case State::C7: // main.yml:34
       run.enter(places, state);
-      switch (state) {
-      case State::C7: // main.yml:34
-        switch (C7::execute(states.C7_, ud.C7_, run)) {
-        case C7::Outcome::done:
-          return run.end(places, state, "done", Outcome::done);
-        }
-        break;
-      default:
-        smachac::never();
+      switch (C7::execute(states.C7_, ud.C7_, run)) {
+      case C7::Outcome::done:
+        return run.end(places, state, "done", Outcome::done);
       }
-      run.no_outcome(places, state);
+      break;
+    default:
+      smachac::never();
     }
+    run.no_outcome(places, state);
   }
   SMACHAC_CATCH { run.failed(places, state); }
 }
@@ -1271,20 +1223,18 @@ template <class Run>
 [[gnu::always_inline]] inline Outcome execute(States &states, Userdata &ud, Run &run) {
   State state = State::C6;
   SMACHAC_TRY {
-    for (;;) {
+    switch (state) {
+    case State::C6: // main.yml:30
       run.enter(places, state);
-      switch (state) {
-      case State::C6: // main.yml:30
-        switch (C6::execute(states.C6_, ud.C6_, run)) {
-        case C6::Outcome::done:
-          return run.end(places, state, "done", Outcome::done);
-        }
-        break;
-      default:
-        smachac::never();
+      switch (C6::execute(states.C6_, ud.C6_, run)) {
+      case C6::Outcome::done:
+        return run.end(places, state, "done", Outcome::done);
       }
-      run.no_outcome(places, state);
+      break;
+    default:
+      smachac::never();
     }
+    run.no_outcome(places, state);
   }
   SMACHAC_CATCH { run.failed(places, state); }
 }
@@ -1322,20 +1272,18 @@ template <class Run>
 [[gnu::always_inline]] inline Outcome execute(States &states, Userdata &ud, Run &run) {
   State state = State::C5;
   SMACHAC_TRY {
-    for (;;) {
+    switch (state) {
+    case State::C5: // main.yml:26
       run.enter(places, state);
-      switch (state) {
-      case State::C5: // main.yml:26
-        switch (C5::execute(states.C5_, ud.C5_, run)) {
-        case C5::Outcome::done:
-          return run.end(places, state, "done", Outcome::done);
-        }
-        break;
-      default:
-        smachac::never();
+      switch (C5::execute(states.C5_, ud.C5_, run)) {
+      case C5::Outcome::done:
+        return run.end(places, state, "done", Outcome::done);
       }
-      run.no_outcome(places, state);
+      break;
+    default:
+      smachac::never();
     }
+    run.no_outcome(places, state);
   }
   SMACHAC_CATCH { run.failed(places, state); }
 }
@@ -1373,20 +1321,18 @@ template <class Run>
 [[gnu::always_inline]] inline Outcome execute(States &states, Userdata &ud, Run &run) {
   State state = State::C4;
   SMACHAC_TRY {
-    for (;;) {
+    switch (state) {
+    case State::C4: // main.yml:22
       run.enter(places, state);
-      switch (state) {
-      case State::C4: // main.yml:22
-        switch (C4::execute(states.C4_, ud.C4_, run)) {
-        case C4::Outcome::done:
-          return run.end(places, state, "done", Outcome::done);
-        }
-        break;
-      default:
-        smachac::never();
+      switch (C4::execute(states.C4_, ud.C4_, run)) {
+      case C4::Outcome::done:
+        return run.end(places, state, "done", Outcome::done);
       }
-      run.no_outcome(places, state);
+      break;
+    default:
+      smachac::never();
     }
+    run.no_outcome(places, state);
   }
   SMACHAC_CATCH { run.failed(places, state); }
 }
@@ -1424,20 +1370,18 @@ template <class Run>
 [[gnu::always_inline]] inline Outcome execute(States &states, Userdata &ud, Run &run) {
   State state = State::C3;
   SMACHAC_TRY {
-    for (;;) {
+    switch (state) {
+    case State::C3: // main.yml:18
       run.enter(places, state);
-      switch (state) {
-      case State::C3: // main.yml:18
-        switch (C3::execute(states.C3_, ud.C3_, run)) {
-        case C3::Outcome::done:
-          return run.end(places, state, "done", Outcome::done);
-        }
-        break;
-      default:
-        smachac::never();
+      switch (C3::execute(states.C3_, ud.C3_, run)) {
+      case C3::Outcome::done:
+        return run.end(places, state, "done", Outcome::done);
       }
-      run.no_outcome(places, state);
+      break;
+    default:
+      smachac::never();
     }
+    run.no_outcome(places, state);
   }
   SMACHAC_CATCH { run.failed(places, state); }
 }
@@ -1475,20 +1419,18 @@ template <class Run>
 [[gnu::always_inline]] inline Outcome execute(States &states, Userdata &ud, Run &run) {
   State state = State::C2;
   SMACHAC_TRY {
-    for (;;) {
+    switch (state) {
+    case State::C2: // main.yml:14
       run.enter(places, state);
-      switch (state) {
-      case State::C2: // main.yml:14
-        switch (C2::execute(states.C2_, ud.C2_, run)) {
-        case C2::Outcome::done:
-          return run.end(places, state, "done", Outcome::done);
-        }
-        break;
-      default:
-        smachac::never();
+      switch (C2::execute(states.C2_, ud.C2_, run)) {
+      case C2::Outcome::done:
+        return run.end(places, state, "done", Outcome::done);
       }
-      run.no_outcome(places, state);
+      break;
+    default:
+      smachac::never();
     }
+    run.no_outcome(places, state);
   }
   SMACHAC_CATCH { run.failed(places, state); }
 }
@@ -1526,20 +1468,18 @@ template <class Run>
 [[gnu::always_inline]] inline Outcome execute(States &states, Userdata &ud, Run &run) {
   State state = State::C1;
   SMACHAC_TRY {
-    for (;;) {
+    switch (state) {
+    case State::C1: // main.yml:10
       run.enter(places, state);
-      switch (state) {
-      case State::C1: // main.yml:10
-        switch (C1::execute(states.C1_, ud.C1_, run)) {
-        case C1::Outcome::done:
-          return run.end(places, state, "done", Outcome::done);
-        }
-        break;
-      default:
-        smachac::never();
+      switch (C1::execute(states.C1_, ud.C1_, run)) {
+      case C1::Outcome::done:
+        return run.end(places, state, "done", Outcome::done);
       }
-      run.no_outcome(places, state);
+      break;
+    default:
+      smachac::never();
     }
+    run.no_outcome(places, state);
   }
   SMACHAC_CATCH { run.failed(places, state); }
 }
@@ -1577,20 +1517,18 @@ template <class Run>
 [[gnu::always_inline]] inline Outcome execute(States &states, Userdata &ud, Run &run) {
   State state = State::C0;
   SMACHAC_TRY {
-    for (;;) {
+    switch (state) {
+    case State::C0: // main.yml:6
       run.enter(places, state);
-      switch (state) {
-      case State::C0: // main.yml:6
-        switch (C0::execute(states.C0_, ud.C0_, run)) {
-        case C0::Outcome::done:
-          return run.end(places, state, "done", Outcome::done);
-        }
-        break;
-      default:
-        smachac::never();
+      switch (C0::execute(states.C0_, ud.C0_, run)) {
+      case C0::Outcome::done:
+        return run.end(places, state, "done", Outcome::done);
       }
-      run.no_outcome(places, state);
+      break;
+    default:
+      smachac::never();
     }
+    run.no_outcome(places, state);
   }
   SMACHAC_CATCH { run.failed(places, state); }
 }

@@ -39,7 +39,11 @@ constexpr const char *name(Outcome outcome) {
 struct Userdata {
   smachac::Key<std::vector<double>> goal;
   smachac::Key<std::optional<smachac::Pose>> offset;
-  smachac::Key<smachac::Pose> pose;
+};
+
+struct UserdataView {
+  Userdata &own_;
+  const smachac::Key<smachac::Pose> &pose;
 };
 
 struct States {
@@ -62,36 +66,36 @@ inline constexpr smachac::Place places[] = {
 };
 
 template <class Run>
-[[gnu::always_inline]] inline Outcome execute(States &states, Userdata &ud, Run &run) {
+[[gnu::always_inline]] inline Outcome execute(States &states, const UserdataView &ud, Run &run) {
   State state = State::PLAN;
   SMACHAC_TRY {
-    for (;;) {
+    switch (state) {
+    case State::PLAN: // main.yml:28
       run.enter(places, state);
-      switch (state) {
-      case State::PLAN: // main.yml:28
-        switch (run.wrote(states.PLAN.execute({ud.pose.get(), smachac::maybe<std::optional<smachac::Pose>>(ud.offset)}, {run.out(ud.goal)}), smachac::Output{"joints", ud.goal})) {
-        case ::smachac::PoseToJointPositionsState::Outcome::succeeded:
-          run.go(places, state, "succeeded", State::MOVE);
-          continue;
-        case ::smachac::PoseToJointPositionsState::Outcome::aborted:
-          return run.end(places, state, "aborted", Outcome::failed);
-        }
-        break;
-      case State::MOVE: // main.yml:32
-        switch (states.MOVE.execute({smachac::need(ud.goal, "positions")}, run.stop_for(places, state))) {
-        case ::smachac::MoveToJointPositionsState::Outcome::succeeded:
-          return run.end_asked(places, state, "succeeded", Outcome::reached);
-        case ::smachac::MoveToJointPositionsState::Outcome::aborted:
-          return run.end_asked(places, state, "aborted", Outcome::failed);
-        case ::smachac::MoveToJointPositionsState::Outcome::preempted:
-          return run.end_asked(places, state, "preempted", Outcome::failed);
-        }
-        break;
-      default:
-        smachac::never();
+      switch (run.wrote(states.PLAN.execute({ud.pose.unchecked(), smachac::maybe<std::optional<smachac::Pose>>(ud.own_.offset)}, {run.out(ud.own_.goal)}), smachac::Output{"joints", ud.own_.goal})) {
+      case ::smachac::PoseToJointPositionsState::Outcome::succeeded:
+        run.go(places, state, "succeeded", State::MOVE);
+        goto MOVE;
+      case ::smachac::PoseToJointPositionsState::Outcome::aborted:
+        return run.end(places, state, "aborted", Outcome::failed);
       }
-      run.no_outcome(places, state);
+      break;
+    case State::MOVE: // main.yml:32
+    MOVE:
+      run.enter(places, state);
+      switch (states.MOVE.execute({smachac::need(ud.own_.goal, "positions")}, run.stop_for(places, state))) {
+      case ::smachac::MoveToJointPositionsState::Outcome::succeeded:
+        return run.end_asked(places, state, "succeeded", Outcome::reached);
+      case ::smachac::MoveToJointPositionsState::Outcome::aborted:
+        return run.end_asked(places, state, "aborted", Outcome::failed);
+      case ::smachac::MoveToJointPositionsState::Outcome::preempted:
+        return run.end_asked(places, state, "preempted", Outcome::failed);
+      }
+      break;
+    default:
+      smachac::never();
     }
+    run.no_outcome(places, state);
   }
   SMACHAC_CATCH { run.failed(places, state); }
 }
@@ -113,8 +117,12 @@ constexpr const char *name(Outcome outcome) {
 
 struct Userdata {
   smachac::Key<smachac::Pose> pose;
-  smachac::Key<std::array<smachac::Pose, 2>> poses;
   GO::Userdata GO_;
+};
+
+struct UserdataView {
+  Userdata &own_;
+  const smachac::Key<std::array<smachac::Pose, 2>> &poses;
 };
 
 struct States {
@@ -133,7 +141,7 @@ inline constexpr smachac::Place places[] = {
 };
 
 template <class Run>
-[[gnu::always_inline]] inline Outcome execute(States &states, Userdata &ud, Run &run) {
+[[gnu::always_inline]] inline Outcome execute(States &states, const UserdataView &ud, Run &run) {
   const auto items = smachac::need(ud.poses, "poses");
   if (items.empty()) {
     return Outcome::done;
@@ -141,12 +149,11 @@ template <class Run>
   const auto state = State::GO;
   smachac::Round round(run.stop, places[0], items.size());
   for (const auto &item : items) {
-    ud.pose.hold(item);
+    ud.own_.pose.hold(item);
     // main.yml:23
     SMACHAC_TRY {
       run.enter(places, state);
-      ud.GO_.pose.hold(ud.pose.get());
-      const auto outcome = GO::execute(states.GO_, ud.GO_, run);
+      const auto outcome = GO::execute(states.GO_, {ud.own_.GO_, ud.own_.pose}, run);
       const bool over = round.over();
       switch (outcome) {
       case GO::Outcome::reached:
@@ -207,12 +214,12 @@ struct COUNT {
 
   template <class Run>
   Outcome execute(Userdata &ud, Run &run) {
-    run.write("best", ud.best, std::optional<double>(smachac::py::max_of(std::array<double, 2>{{smachac::py::divide(ud.tries.get(), 2), 1.0}})));
-    run.write("choice", ud.choice, ud.tries.get() > 2 ? std::string("open") : std::string("close"));
-    run.write("deeper", ud.deeper, ud.depth.get() + 0.1);
-    run.write("first", ud.first, smachac::py::item(ud.poses.get(), 0));
-    run.write("near", ud.near, smachac::Point{ud.depth.get(), 0.0, 1.5});
-    run.write("tries", ud.tries, smachac::py::add(ud.tries.get(), 1));
+    run.write("best", ud.best, std::optional<double>(smachac::py::max_of(std::array<double, 2>{{smachac::py::divide(ud.tries.unchecked(), 2), 1.0}})));
+    run.write("choice", ud.choice, ud.tries.unchecked() > 2 ? std::string("open") : std::string("close"));
+    run.write("deeper", ud.deeper, ud.depth.unchecked() + 0.1);
+    run.write("first", ud.first, smachac::py::item(ud.poses.unchecked(), 0));
+    run.write("near", ud.near, smachac::Point{ud.depth.unchecked(), 0.0, 1.5});
+    run.write("tries", ud.tries, smachac::py::add(ud.tries.unchecked(), 1));
     return Outcome::succeeded;
   }
 };
@@ -275,57 +282,62 @@ template <class Run>
 [[gnu::always_inline]] inline Outcome execute(States &states, Userdata &ud, Run &run) {
   State state = State::EACH;
   SMACHAC_TRY {
-    for (;;) {
+    switch (state) {
+    case State::EACH: // main.yml:14
       run.enter(places, state);
-      switch (state) {
-      case State::EACH: // main.yml:14
-        ud.EACH_.poses.hold(ud.poses.get());
-        switch (EACH::execute(states.EACH_, ud.EACH_, run)) {
-        case EACH::Outcome::done:
-          run.go(places, state, "done", State::COUNT);
-          continue;
-        case EACH::Outcome::failed:
-          return run.end_asked(places, state, "failed", Outcome::failed);
-        case EACH::Outcome::reached:
-          run.undeclared(places, state, "reached");
-        }
-        break;
-      case State::COUNT: // main.yml:37
-        switch (states.COUNT.execute(ud, run)) {
-        case types::COUNT::Outcome::succeeded:
-          run.go(places, state, "succeeded", State::USE);
-          continue;
-        }
-        break;
-      case State::USE: // main.yml:49
-        switch (states.USE.execute(ud, run)) {
-        case types::USE::Outcome::done:
-          run.go(places, state, "done", State::AGAIN);
-          continue;
-        }
-        break;
-      case State::AGAIN: // main.yml:65
-        switch (states.AGAIN.execute()) {
-        case types::AGAIN::Outcome::done:
-          run.go(places, state, "done", State::HOME);
-          continue;
-        }
-        break;
-      case State::HOME: // main.yml:70
-        switch (states.HOME.execute({smachac::convert<std::vector<double>>(ud.home.get())}, run.stop_for(places, state))) {
-        case ::smachac::MoveToJointPositionsState::Outcome::succeeded:
-          return run.end_asked(places, state, "succeeded", Outcome::done);
-        case ::smachac::MoveToJointPositionsState::Outcome::aborted:
-          return run.end_asked(places, state, "aborted", Outcome::failed);
-        case ::smachac::MoveToJointPositionsState::Outcome::preempted:
-          return run.end_asked(places, state, "preempted", Outcome::failed);
-        }
-        break;
-      default:
-        smachac::never();
+      switch (EACH::execute(states.EACH_, {ud.EACH_, ud.poses}, run)) {
+      case EACH::Outcome::done:
+        run.go(places, state, "done", State::COUNT);
+        goto COUNT;
+      case EACH::Outcome::failed:
+        return run.end_asked(places, state, "failed", Outcome::failed);
+      case EACH::Outcome::reached:
+        run.undeclared(places, state, "reached");
       }
-      run.no_outcome(places, state);
+      break;
+    case State::COUNT: // main.yml:37
+    COUNT:
+      run.enter(places, state);
+      switch (states.COUNT.execute(ud, run)) {
+      case types::COUNT::Outcome::succeeded:
+        run.go(places, state, "succeeded", State::USE);
+        goto USE;
+      }
+      break;
+    case State::USE: // main.yml:49
+    USE:
+      run.enter(places, state);
+      switch (states.USE.execute(ud, run)) {
+      case types::USE::Outcome::done:
+        run.go(places, state, "done", State::AGAIN);
+        goto AGAIN;
+      }
+      break;
+    case State::AGAIN: // main.yml:65
+    AGAIN:
+      run.enter(places, state);
+      switch (states.AGAIN.execute()) {
+      case types::AGAIN::Outcome::done:
+        run.go(places, state, "done", State::HOME);
+        goto HOME;
+      }
+      break;
+    case State::HOME: // main.yml:70
+    HOME:
+      run.enter(places, state);
+      switch (states.HOME.execute({smachac::convert<std::vector<double>>(ud.home.unchecked())}, run.stop_for(places, state))) {
+      case ::smachac::MoveToJointPositionsState::Outcome::succeeded:
+        return run.end_asked(places, state, "succeeded", Outcome::done);
+      case ::smachac::MoveToJointPositionsState::Outcome::aborted:
+        return run.end_asked(places, state, "aborted", Outcome::failed);
+      case ::smachac::MoveToJointPositionsState::Outcome::preempted:
+        return run.end_asked(places, state, "preempted", Outcome::failed);
+      }
+      break;
+    default:
+      smachac::never();
     }
+    run.no_outcome(places, state);
   }
   SMACHAC_CATCH { run.failed(places, state); }
 }

@@ -34,7 +34,7 @@ struct HALVE {
 
   template <class Run>
   Outcome execute(Userdata &ud, Run &run) {
-    run.write("half", ud.half, smachac::py::divide(ud.part.get(), smachac::py::subtract(ud.part.get(), 1)));
+    run.write("half", ud.half, smachac::py::divide(ud.part.unchecked(), smachac::py::subtract(ud.part.unchecked(), 1)));
     return Outcome::succeeded;
   }
 };
@@ -110,8 +110,11 @@ constexpr const char *name(Outcome outcome) {
   return names[static_cast<std::size_t>(outcome)];
 }
 
-struct Userdata {
-  smachac::Key<std::int64_t> n;
+struct Userdata {};
+
+struct UserdataView {
+  Userdata &own_;
+  const smachac::Key<std::int64_t> &n;
 };
 
 namespace types {
@@ -123,8 +126,8 @@ struct LEFT {
     small,
   };
 
-  Outcome execute(Userdata &ud) {
-    if (smachac::py::divide(1, ud.n.get()) > 2.0) {
+  Outcome execute(const UserdataView &ud) {
+    if (smachac::py::divide(1, ud.n.unchecked()) > 2.0) {
       return Outcome::big;
     }
     return Outcome::small;
@@ -165,7 +168,7 @@ inline constexpr smachac::Place places[] = {
 };
 
 template <class Run>
-[[gnu::always_inline]] inline Outcome execute(States &states, Userdata &ud, Run &around) {
+[[gnu::always_inline]] inline Outcome execute(States &states, const UserdataView &ud, Run &around) {
   struct {
     std::optional<types::LEFT::Outcome> LEFT;
     types::RIGHT::Outcome RIGHT;
@@ -174,9 +177,9 @@ template <class Run>
   branches.run(false, [&](std::size_t branch, Run &run) {
     const auto state = static_cast<State>(branch);
     SMACHAC_TRY {
-      run.enter(places, state);
       switch (state) {
       case State::LEFT: // main.yml:43
+        run.enter(places, state);
         ended.LEFT = states.LEFT.execute(ud);
         switch (*ended.LEFT) {
         case types::LEFT::Outcome::big:
@@ -188,6 +191,7 @@ template <class Run>
         }
         break;
       case State::RIGHT: // main.yml:49
+        run.enter(places, state);
         ended.RIGHT = states.RIGHT.execute(run.stop_for(places, state));
         switch (ended.RIGHT) {
         case types::RIGHT::Outcome::succeeded:
@@ -251,7 +255,7 @@ struct CARRY {
 
   template <class Run>
   Outcome execute(Userdata &ud, Run &run) {
-    run.write("width", ud.width, smachac::py::divide(1, ud.n.get()));
+    run.write("width", ud.width, smachac::py::divide(1, ud.n.unchecked()));
     return Outcome::succeeded;
   }
 };
@@ -323,8 +327,12 @@ constexpr const char *name(Outcome outcome) {
 }
 
 struct Userdata {
-  smachac::Key<std::int64_t> n;
   smachac::Key<double> width;
+};
+
+struct UserdataView {
+  Userdata &own_;
+  const smachac::Key<std::int64_t> &n;
 };
 
 namespace types {
@@ -336,8 +344,8 @@ struct DIVIDE {
   };
 
   template <class Run>
-  Outcome execute(Userdata &ud, Run &run) {
-    run.write("width", ud.width, smachac::py::divide(1, ud.n.get()));
+  Outcome execute(const UserdataView &ud, Run &run) {
+    run.write("width", ud.own_.width, smachac::py::divide(1, ud.n.unchecked()));
     return Outcome::succeeded;
   }
 };
@@ -357,23 +365,21 @@ inline constexpr smachac::Place places[] = {
 };
 
 template <class Run>
-[[gnu::always_inline]] inline Outcome execute(States &states, Userdata &ud, Run &run) {
+[[gnu::always_inline]] inline Outcome execute(States &states, const UserdataView &ud, Run &run) {
   State state = State::DIVIDE;
   SMACHAC_TRY {
-    for (;;) {
+    switch (state) {
+    case State::DIVIDE: // main.yml:18
       run.enter(places, state);
-      switch (state) {
-      case State::DIVIDE: // main.yml:18
-        switch (states.DIVIDE.execute(ud, run)) {
-        case types::DIVIDE::Outcome::succeeded:
-          return run.end(places, state, "succeeded", Outcome::succeeded);
-        }
-        break;
-      default:
-        smachac::never();
+      switch (states.DIVIDE.execute(ud, run)) {
+      case types::DIVIDE::Outcome::succeeded:
+        return run.end(places, state, "succeeded", Outcome::succeeded);
       }
-      run.no_outcome(places, state);
+      break;
+    default:
+      smachac::never();
     }
+    run.no_outcome(places, state);
   }
   SMACHAC_CATCH { run.failed(places, state); }
 }
@@ -478,86 +484,94 @@ template <class Run>
   State state = State::FIND;
   for (;;) {
     SMACHAC_TRY {
-      for (;;) {
+      switch (state) {
+      case State::FIND: // main.yml:7
         run.enter(places, state);
-        switch (state) {
-        case State::FIND: // main.yml:7
-          switch (states.FIND.execute()) {
-          case types::FIND::Outcome::found:
-            run.go(places, state, "found", State::PICK);
-            continue;
-          case types::FIND::Outcome::nothing:
-            return run.end(places, state, "nothing", Outcome::aborted);
-          }
-          break;
-        case State::PICK: { // main.yml:11
-          ud.PICK_.n.hold(ud.n.get());
-          const auto outcome = PICK::execute(states.PICK_, ud.PICK_, run);
-          ud.width.take(ud.PICK_.width);
-          switch (outcome) {
-          case PICK::Outcome::succeeded:
-            run.go(places, state, "succeeded", State::OWN);
-            continue;
-          }
-          break;
+        switch (states.FIND.execute()) {
+        case types::FIND::Outcome::found:
+          run.go(places, state, "found", State::PICK);
+          goto PICK;
+        case types::FIND::Outcome::nothing:
+          return run.end(places, state, "nothing", Outcome::aborted);
         }
-        case State::OWN: // main.yml:24
-          switch (states.OWN.execute()) {
-          case types::OWN::Outcome::succeeded:
-            run.go(places, state, "succeeded", State::CARRY);
-            continue;
-          case types::OWN::Outcome::error:
-            return run.end(places, state, "error", Outcome::aborted);
-          }
-          break;
-        case State::CARRY: { // main.yml:28
-          ud.CARRY_.n.hold(ud.n.get());
-          const auto outcome = CARRY::execute(states.CARRY_, ud.CARRY_, run);
-          ud.width.take(ud.CARRY_.width);
-          switch (outcome) {
-          case CARRY::Outcome::succeeded:
-            run.go(places, state, "succeeded", State::BOTH);
-            continue;
-          case CARRY::Outcome::exhausted:
-            run.go(places, state, "exhausted", State::BOTH);
-            continue;
-          case CARRY::Outcome::preempted:
-            return run.end_asked(places, state, "preempted", Outcome::aborted);
-          }
-          break;
+        break;
+      case State::PICK: { // main.yml:11
+      PICK:
+        run.enter(places, state);
+        const auto outcome = PICK::execute(states.PICK_, {ud.PICK_, ud.n}, run);
+        ud.width.take(ud.PICK_.width);
+        switch (outcome) {
+        case PICK::Outcome::succeeded:
+          run.go(places, state, "succeeded", State::OWN);
+          goto OWN;
         }
-        case State::BOTH: // main.yml:35
-          ud.BOTH_.n.hold(ud.n.get());
-          switch (BOTH::execute(states.BOTH_, ud.BOTH_, run)) {
-          case BOTH::Outcome::succeeded:
-            run.go(places, state, "succeeded", State::EACH);
-            continue;
-          case BOTH::Outcome::failed:
-            return run.end_asked(places, state, "failed", Outcome::aborted);
-          }
-          break;
-        case State::EACH: // main.yml:50
-          ud.EACH_.parts.hold(ud.parts.get());
-          switch (EACH::execute(states.EACH_, ud.EACH_, run)) {
-          case EACH::Outcome::succeeded:
-            return run.end_asked(places, state, "succeeded", Outcome::succeeded);
-          case EACH::Outcome::error:
-            run.go(places, state, "error", State::LET_GO);
-            continue;
-          }
-          break;
-        case State::LET_GO: // main.yml:65
-          switch (states.LET_GO.execute(ud, run)) {
-          case types::LET_GO::Outcome::succeeded:
-            run.go(places, state, "succeeded", State::OWN);
-            continue;
-          }
-          break;
-        default:
-          smachac::never();
-        }
-        run.no_outcome(places, state);
+        break;
       }
+      case State::OWN: // main.yml:24
+      OWN:
+        run.enter(places, state);
+        switch (states.OWN.execute()) {
+        case types::OWN::Outcome::succeeded:
+          run.go(places, state, "succeeded", State::CARRY);
+          goto CARRY;
+        case types::OWN::Outcome::error:
+          return run.end(places, state, "error", Outcome::aborted);
+        }
+        break;
+      case State::CARRY: { // main.yml:28
+      CARRY:
+        run.enter(places, state);
+        ud.CARRY_.n.hold(ud.n.unchecked());
+        const auto outcome = CARRY::execute(states.CARRY_, ud.CARRY_, run);
+        ud.width.take(ud.CARRY_.width);
+        switch (outcome) {
+        case CARRY::Outcome::succeeded:
+          run.go(places, state, "succeeded", State::BOTH);
+          goto BOTH;
+        case CARRY::Outcome::exhausted:
+          run.go(places, state, "exhausted", State::BOTH);
+          goto BOTH;
+        case CARRY::Outcome::preempted:
+          return run.end_asked(places, state, "preempted", Outcome::aborted);
+        }
+        break;
+      }
+      case State::BOTH: // main.yml:35
+      BOTH:
+        run.enter(places, state);
+        switch (BOTH::execute(states.BOTH_, {ud.BOTH_, ud.n}, run)) {
+        case BOTH::Outcome::succeeded:
+          run.go(places, state, "succeeded", State::EACH);
+          goto EACH;
+        case BOTH::Outcome::failed:
+          return run.end_asked(places, state, "failed", Outcome::aborted);
+        }
+        break;
+      case State::EACH: // main.yml:50
+      EACH:
+        run.enter(places, state);
+        ud.EACH_.parts.hold(ud.parts.unchecked());
+        switch (EACH::execute(states.EACH_, ud.EACH_, run)) {
+        case EACH::Outcome::succeeded:
+          return run.end_asked(places, state, "succeeded", Outcome::succeeded);
+        case EACH::Outcome::error:
+          run.go(places, state, "error", State::LET_GO);
+          goto LET_GO;
+        }
+        break;
+      case State::LET_GO: // main.yml:65
+      LET_GO:
+        run.enter(places, state);
+        switch (states.LET_GO.execute(ud, run)) {
+        case types::LET_GO::Outcome::succeeded:
+          run.go(places, state, "succeeded", State::OWN);
+          goto OWN;
+        }
+        break;
+      default:
+        smachac::never();
+      }
+      run.no_outcome(places, state);
     }
     SMACHAC_CATCH {
       switch (state) {

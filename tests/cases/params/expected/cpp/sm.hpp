@@ -50,20 +50,18 @@ template <class Run>
 [[gnu::always_inline]] inline Outcome execute(States &states, Userdata &, Run &run) {
   State state = State::INNER;
   SMACHAC_TRY {
-    for (;;) {
+    switch (state) {
+    case State::INNER: // main.yml:18
       run.enter(places, state);
-      switch (state) {
-      case State::INNER: // main.yml:18
-        switch (states.INNER.execute()) {
-        case types::INNER::Outcome::done:
-          return run.end(places, state, "done", Outcome::fine);
-        }
-        break;
-      default:
-        smachac::never();
+      switch (states.INNER.execute()) {
+      case types::INNER::Outcome::done:
+        return run.end(places, state, "done", Outcome::fine);
       }
-      run.no_outcome(places, state);
+      break;
+    default:
+      smachac::never();
     }
+    run.no_outcome(places, state);
   }
   SMACHAC_CATCH { run.failed(places, state); }
 }
@@ -105,20 +103,18 @@ template <class Run>
 [[gnu::always_inline]] inline Outcome execute(States &states, Userdata &ud, Run &run) {
   State state = State::OUTER;
   SMACHAC_TRY {
-    for (;;) {
+    switch (state) {
+    case State::OUTER: // main.yml:12
       run.enter(places, state);
-      switch (state) {
-      case State::OUTER: // main.yml:12
-        switch (OUTER::execute(states.OUTER_, ud.OUTER_, run)) {
-        case OUTER::Outcome::fine:
-          return run.end(places, state, "fine", Outcome::succeeded);
-        }
-        break;
-      default:
-        smachac::never();
+      switch (OUTER::execute(states.OUTER_, ud.OUTER_, run)) {
+      case OUTER::Outcome::fine:
+        return run.end(places, state, "fine", Outcome::succeeded);
       }
-      run.no_outcome(places, state);
+      break;
+    default:
+      smachac::never();
     }
+    run.no_outcome(places, state);
   }
   SMACHAC_CATCH { run.failed(places, state); }
 }

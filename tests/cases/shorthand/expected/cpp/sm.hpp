@@ -54,22 +54,20 @@ template <class Run>
 [[gnu::always_inline]] inline Outcome execute(States &states, Userdata &ud, Run &run) {
   State state = State::T;
   SMACHAC_TRY {
-    for (;;) {
+    switch (state) {
+    case State::T: // main.yml:9
       run.enter(places, state);
-      switch (state) {
-      case State::T: // main.yml:9
-        switch (states.T.execute(ud, run)) {
-        case types::T::Outcome::done:
-          return run.end(places, state, "done", Outcome::succeeded);
-        case types::T::Outcome::s:
-          return run.end(places, state, "s", Outcome::o);
-        }
-        break;
-      default:
-        smachac::never();
+      switch (states.T.execute(ud, run)) {
+      case types::T::Outcome::done:
+        return run.end(places, state, "done", Outcome::succeeded);
+      case types::T::Outcome::s:
+        return run.end(places, state, "s", Outcome::o);
       }
-      run.no_outcome(places, state);
+      break;
+    default:
+      smachac::never();
     }
+    run.no_outcome(places, state);
   }
   SMACHAC_CATCH { run.failed(places, state); }
 }

@@ -54,24 +54,22 @@ template <class Run>
 [[gnu::always_inline]] inline Outcome execute(States &states, Userdata &, Run &run) {
   State state = State::A;
   SMACHAC_TRY {
-    for (;;) {
+    switch (state) {
+    case State::A: // sub.yml:7
       run.enter(places, state);
-      switch (state) {
-      case State::A: // sub.yml:7
-        switch (states.A.execute()) {
-        case types::A::Outcome::done:
-          return run.end(places, state, "done", Outcome::done);
-        case types::A::Outcome::aborted:
-          return run.end(places, state, "aborted", Outcome::aborted);
-        case types::A::Outcome::extra:
-          return run.end(places, state, "extra", Outcome::done);
-        }
-        break;
-      default:
-        smachac::never();
+      switch (states.A.execute()) {
+      case types::A::Outcome::done:
+        return run.end(places, state, "done", Outcome::done);
+      case types::A::Outcome::aborted:
+        return run.end(places, state, "aborted", Outcome::aborted);
+      case types::A::Outcome::extra:
+        return run.end(places, state, "extra", Outcome::done);
       }
-      run.no_outcome(places, state);
+      break;
+    default:
+      smachac::never();
     }
+    run.no_outcome(places, state);
   }
   SMACHAC_CATCH { run.failed(places, state); }
 }
@@ -131,24 +129,22 @@ template <class Run>
 [[gnu::always_inline]] inline Outcome execute(States &states, Userdata &, Run &run) {
   State state = State::A;
   SMACHAC_TRY {
-    for (;;) {
+    switch (state) {
+    case State::A: // sub.yml:7
       run.enter(places, state);
-      switch (state) {
-      case State::A: // sub.yml:7
-        switch (states.A.execute()) {
-        case types::A::Outcome::done:
-          return run.end(places, state, "done", Outcome::done);
-        case types::A::Outcome::aborted:
-          return run.end(places, state, "aborted", Outcome::aborted);
-        case types::A::Outcome::extra:
-          return run.end(places, state, "extra", Outcome::done);
-        }
-        break;
-      default:
-        smachac::never();
+      switch (states.A.execute()) {
+      case types::A::Outcome::done:
+        return run.end(places, state, "done", Outcome::done);
+      case types::A::Outcome::aborted:
+        return run.end(places, state, "aborted", Outcome::aborted);
+      case types::A::Outcome::extra:
+        return run.end(places, state, "extra", Outcome::done);
       }
-      run.no_outcome(places, state);
+      break;
+    default:
+      smachac::never();
     }
+    run.no_outcome(places, state);
   }
   SMACHAC_CATCH { run.failed(places, state); }
 }
@@ -206,24 +202,22 @@ template <class Run>
 [[gnu::always_inline]] inline Outcome execute(States &states, Userdata &, Run &run) {
   State state = State::A;
   SMACHAC_TRY {
-    for (;;) {
+    switch (state) {
+    case State::A: // sub.yml:7
       run.enter(places, state);
-      switch (state) {
-      case State::A: // sub.yml:7
-        switch (states.A.execute()) {
-        case types::A::Outcome::done:
-          return run.end(places, state, "done", Outcome::done);
-        case types::A::Outcome::aborted:
-          return run.end(places, state, "aborted", Outcome::aborted);
-        case types::A::Outcome::extra:
-          return run.end(places, state, "extra", Outcome::done);
-        }
-        break;
-      default:
-        smachac::never();
+      switch (states.A.execute()) {
+      case types::A::Outcome::done:
+        return run.end(places, state, "done", Outcome::done);
+      case types::A::Outcome::aborted:
+        return run.end(places, state, "aborted", Outcome::aborted);
+      case types::A::Outcome::extra:
+        return run.end(places, state, "extra", Outcome::done);
       }
-      run.no_outcome(places, state);
+      break;
+    default:
+      smachac::never();
     }
+    run.no_outcome(places, state);
   }
   SMACHAC_CATCH { run.failed(places, state); }
 }
@@ -270,42 +264,44 @@ template <class Run>
 [[gnu::always_inline]] inline Outcome execute(States &states, Userdata &ud, Run &run) {
   State state = State::PLAIN;
   SMACHAC_TRY {
-    for (;;) {
+    switch (state) {
+    case State::PLAIN: // main.yml:7
       run.enter(places, state);
-      switch (state) {
-      case State::PLAIN: // main.yml:7
-        switch (PLAIN::execute(states.PLAIN_, ud.PLAIN_, run)) {
-        case PLAIN::Outcome::done:
-          run.go(places, state, "done", State::OTHER);
-          continue;
-        case PLAIN::Outcome::aborted:
-          return run.end(places, state, "aborted", Outcome::aborted);
-        }
-        break;
-      case State::OTHER: // main.yml:10
-        switch (OTHER::execute(states.OTHER_, ud.OTHER_, run)) {
-        case OTHER::Outcome::done:
-          run.go(places, state, "done", State::THROUGH);
-          continue;
-        case OTHER::Outcome::aborted:
-          return run.end(places, state, "aborted", Outcome::aborted);
-        case OTHER::Outcome::extra:
-          return run.end(places, state, "extra", Outcome::aborted);
-        }
-        break;
-      case State::THROUGH: // main.yml:16
-        switch (THROUGH::execute(states.THROUGH_, ud.THROUGH_, run)) {
-        case THROUGH::Outcome::done:
-          return run.end(places, state, "done", Outcome::succeeded);
-        case THROUGH::Outcome::aborted:
-          return run.end(places, state, "aborted", Outcome::aborted);
-        }
-        break;
-      default:
-        smachac::never();
+      switch (PLAIN::execute(states.PLAIN_, ud.PLAIN_, run)) {
+      case PLAIN::Outcome::done:
+        run.go(places, state, "done", State::OTHER);
+        goto OTHER;
+      case PLAIN::Outcome::aborted:
+        return run.end(places, state, "aborted", Outcome::aborted);
       }
-      run.no_outcome(places, state);
+      break;
+    case State::OTHER: // main.yml:10
+    OTHER:
+      run.enter(places, state);
+      switch (OTHER::execute(states.OTHER_, ud.OTHER_, run)) {
+      case OTHER::Outcome::done:
+        run.go(places, state, "done", State::THROUGH);
+        goto THROUGH;
+      case OTHER::Outcome::aborted:
+        return run.end(places, state, "aborted", Outcome::aborted);
+      case OTHER::Outcome::extra:
+        return run.end(places, state, "extra", Outcome::aborted);
+      }
+      break;
+    case State::THROUGH: // main.yml:16
+    THROUGH:
+      run.enter(places, state);
+      switch (THROUGH::execute(states.THROUGH_, ud.THROUGH_, run)) {
+      case THROUGH::Outcome::done:
+        return run.end(places, state, "done", Outcome::succeeded);
+      case THROUGH::Outcome::aborted:
+        return run.end(places, state, "aborted", Outcome::aborted);
+      }
+      break;
+    default:
+      smachac::never();
     }
+    run.no_outcome(places, state);
   }
   SMACHAC_CATCH { run.failed(places, state); }
 }

@@ -278,20 +278,18 @@ template <class Run>
 [[gnu::always_inline]] inline Outcome execute(States &states, Userdata &, Run &run) {
   State state = State::HOPE;
   SMACHAC_TRY {
-    for (;;) {
+    switch (state) {
+    case State::HOPE: // main.yml:32
       run.enter(places, state);
-      switch (state) {
-      case State::HOPE: // main.yml:32
-        switch (states.HOPE.execute()) {
-        case types::HOPE::Outcome::again:
-          return run.end(places, state, "again", Outcome::again);
-        }
-        break;
-      default:
-        smachac::never();
+      switch (states.HOPE.execute()) {
+      case types::HOPE::Outcome::again:
+        return run.end(places, state, "again", Outcome::again);
       }
-      run.no_outcome(places, state);
+      break;
+    default:
+      smachac::never();
     }
+    run.no_outcome(places, state);
   }
   SMACHAC_CATCH { run.failed(places, state); }
 }
@@ -445,9 +443,9 @@ template <class Run>
   branches.run(true, [&](std::size_t branch, Run &run) {
     const auto state = static_cast<State>(branch);
     SMACHAC_TRY {
-      run.enter(places, state);
       switch (state) {
       case State::HASTE: // main.yml:21
+        run.enter(places, state);
         ended.HASTE = states.HASTE.execute(run.stop_for(places, state));
         switch (ended.HASTE) {
         case types::HASTE::Outcome::succeeded:
@@ -459,6 +457,7 @@ template <class Run>
         }
         break;
       case State::TIMER: // main.yml:21
+        run.enter(places, state);
         ended.TIMER = states.TIMER.execute(run.stop_for(places, state));
         switch (ended.TIMER) {
         case types::TIMER::Outcome::succeeded:
@@ -506,8 +505,12 @@ constexpr const char *name(Outcome outcome) {
 
 struct Userdata {
   smachac::Key<std::int64_t> goal;
-  smachac::Key<std::int64_t> total;
   smachac::Key<std::array<std::int64_t, 3>> waypoints;
+};
+
+struct UserdataView {
+  Userdata &own_;
+  smachac::Key<std::int64_t> &total;
 };
 
 namespace types {
@@ -519,8 +522,8 @@ struct VISIT {
   };
 
   template <class Run>
-  Outcome execute(Userdata &ud, Run &run) {
-    run.write("total", ud.total, smachac::py::add(ud.total.get(), ud.goal.get()));
+  Outcome execute(const UserdataView &ud, Run &run) {
+    run.write("total", ud.total, smachac::py::add(ud.total.unchecked(), ud.own_.goal.unchecked()));
     return Outcome::succeeded;
   }
 };
@@ -540,15 +543,15 @@ inline constexpr smachac::Place places[] = {
 };
 
 template <class Run>
-[[gnu::always_inline]] inline Outcome execute(States &states, Userdata &ud, Run &run) {
-  const auto items = smachac::need(ud.waypoints, "waypoints");
+[[gnu::always_inline]] inline Outcome execute(States &states, const UserdataView &ud, Run &run) {
+  const auto items = smachac::need(ud.own_.waypoints, "waypoints");
   smachac::Round round(run.stop, places[0], items.size());
   if (items.empty()) {
     return round.over() ? Outcome::preempted : Outcome::succeeded;
   }
   const auto state = State::VISIT;
   for (const auto &item : items) {
-    ud.goal.hold(item);
+    ud.own_.goal.hold(item);
     // main.yml:13
     SMACHAC_TRY {
       run.enter(places, state);
@@ -660,9 +663,9 @@ template <class Run>
   branches.run(true, [&](std::size_t branch, Run &run) {
     const auto state = static_cast<State>(branch);
     SMACHAC_TRY {
-      run.enter(places, state);
       switch (state) {
       case State::LOOK: // main.yml:6
+        run.enter(places, state);
         ended.LOOK = states.LOOK.execute(run.stop_for(places, state));
         switch (ended.LOOK) {
         case types::LOOK::Outcome::succeeded:
@@ -677,6 +680,7 @@ template <class Run>
         }
         break;
       case State::TIMER: // main.yml:6
+        run.enter(places, state);
         ended.TIMER = states.TIMER.execute(run.stop_for(places, state));
         switch (ended.TIMER) {
         case types::TIMER::Outcome::succeeded:
@@ -729,8 +733,12 @@ constexpr const char *name(Outcome outcome) {
 }
 
 struct Userdata {
-  smachac::Key<double> pause;
   TIMED::Userdata TIMED_;
+};
+
+struct UserdataView {
+  Userdata &own_;
+  const smachac::Key<double> &pause;
 };
 
 namespace types {
@@ -742,8 +750,8 @@ struct PAUSE {
     preempted,
   };
 
-  Outcome execute(Userdata &ud, smachac::Stop &stop) {
-    if (stop.wait(ud.pause.get())) {
+  Outcome execute(const UserdataView &ud, smachac::Stop &stop) {
+    if (stop.wait(ud.pause.unchecked())) {
       stop.service();
       return Outcome::preempted;
     }
@@ -769,38 +777,38 @@ inline constexpr smachac::Place places[] = {
 };
 
 template <class Run>
-[[gnu::always_inline]] inline Outcome execute(States &states, Userdata &ud, Run &run) {
+[[gnu::always_inline]] inline Outcome execute(States &states, const UserdataView &ud, Run &run) {
   State state = State::PAUSE;
   SMACHAC_TRY {
-    for (;;) {
+    switch (state) {
+    case State::PAUSE: // main.yml:6
       run.enter(places, state);
-      switch (state) {
-      case State::PAUSE: // main.yml:6
-        switch (states.PAUSE.execute(ud, run.stop_for(places, state))) {
-        case types::PAUSE::Outcome::succeeded:
-          run.go(places, state, "succeeded", State::TIMED);
-          continue;
-        case types::PAUSE::Outcome::preempted:
-          return run.end_asked(places, state, "preempted", Outcome::preempted);
-        }
-        break;
-      case State::TIMED: // main.yml:6
-        switch (TIMED::execute(states.TIMED_, ud.TIMED_, run)) {
-        case TIMED::Outcome::succeeded:
-          return run.end_asked(places, state, "succeeded", Outcome::succeeded);
-        case TIMED::Outcome::aborted:
-          return run.end_asked(places, state, "aborted", Outcome::aborted);
-        case TIMED::Outcome::preempted:
-          return run.end_asked(places, state, "preempted", Outcome::preempted);
-        case TIMED::Outcome::timeout:
-          return run.end_asked(places, state, "timeout", Outcome::timeout);
-        }
-        break;
-      default:
-        smachac::never();
+      switch (states.PAUSE.execute(ud, run.stop_for(places, state))) {
+      case types::PAUSE::Outcome::succeeded:
+        run.go(places, state, "succeeded", State::TIMED);
+        goto TIMED;
+      case types::PAUSE::Outcome::preempted:
+        return run.end_asked(places, state, "preempted", Outcome::preempted);
       }
-      run.no_outcome(places, state);
+      break;
+    case State::TIMED: // main.yml:6
+    TIMED:
+      run.enter(places, state);
+      switch (TIMED::execute(states.TIMED_, ud.own_.TIMED_, run)) {
+      case TIMED::Outcome::succeeded:
+        return run.end_asked(places, state, "succeeded", Outcome::succeeded);
+      case TIMED::Outcome::aborted:
+        return run.end_asked(places, state, "aborted", Outcome::aborted);
+      case TIMED::Outcome::preempted:
+        return run.end_asked(places, state, "preempted", Outcome::preempted);
+      case TIMED::Outcome::timeout:
+        return run.end_asked(places, state, "timeout", Outcome::timeout);
+      }
+      break;
+    default:
+      smachac::never();
     }
+    run.no_outcome(places, state);
   }
   SMACHAC_CATCH { run.failed(places, state); }
 }
@@ -850,8 +858,7 @@ template <class Run>
     // main.yml:6
     SMACHAC_TRY {
       run.enter(places, state);
-      ud.TRY_.pause.hold(ud.pause.get());
-      const auto outcome = TRY::execute(states.TRY_, ud.TRY_, run);
+      const auto outcome = TRY::execute(states.TRY_, {ud.TRY_, ud.pause}, run);
       const bool over = round.over();
       switch (outcome) {
       case TRY::Outcome::succeeded:
@@ -922,7 +929,7 @@ struct SHOW {
   };
 
   Outcome execute(Userdata &ud) {
-    smachac::print("count", ud.count.get());
+    smachac::print("count", ud.count.unchecked());
     return Outcome::succeeded;
   }
 };
@@ -963,87 +970,93 @@ template <class Run>
 [[gnu::always_inline]] inline Outcome execute(States &states, Userdata &ud, Run &run) {
   State state = State::LOOK;
   SMACHAC_TRY {
-    for (;;) {
+    switch (state) {
+    case State::LOOK: // main.yml:6
       run.enter(places, state);
-      switch (state) {
-      case State::LOOK: // main.yml:6
-        switch (LOOK::execute(states.LOOK_, ud.LOOK_, run)) {
-        case LOOK::Outcome::succeeded:
-          run.go(places, state, "succeeded", State::VISIT);
-          continue;
-        case LOOK::Outcome::preempted:
-          return run.end_asked(places, state, "preempted", Outcome::stopped);
-        case LOOK::Outcome::exhausted:
-          return run.end_asked(places, state, "exhausted", Outcome::failed);
-        }
-        break;
-      case State::VISIT: { // main.yml:13
-        ud.VISIT_.total.hold(ud.count.get());
-        ud.VISIT_.waypoints.hold(ud.waypoints.get());
-        const auto outcome = VISIT::execute(states.VISIT_, ud.VISIT_, run);
-        ud.count.replace(ud.VISIT_.total.get());
-        switch (outcome) {
-        case VISIT::Outcome::succeeded:
-          run.go(places, state, "succeeded", State::HASTE);
-          continue;
-        case VISIT::Outcome::preempted:
-          return run.end_asked(places, state, "preempted", Outcome::stopped);
-        }
-        break;
+      switch (LOOK::execute(states.LOOK_, ud.LOOK_, run)) {
+      case LOOK::Outcome::succeeded:
+        run.go(places, state, "succeeded", State::VISIT);
+        goto VISIT;
+      case LOOK::Outcome::preempted:
+        return run.end_asked(places, state, "preempted", Outcome::stopped);
+      case LOOK::Outcome::exhausted:
+        return run.end_asked(places, state, "exhausted", Outcome::failed);
       }
-      case State::HASTE: // main.yml:21
-        switch (HASTE::execute(states.HASTE_, ud.HASTE_, run)) {
-        case HASTE::Outcome::succeeded:
-          return run.end_asked(places, state, "succeeded", Outcome::failed);
-        case HASTE::Outcome::preempted:
-          return run.end_asked(places, state, "preempted", Outcome::stopped);
-        case HASTE::Outcome::timeout:
-          run.go(places, state, "timeout", State::TRIES);
-          continue;
-        }
-        break;
-      case State::TRIES: // main.yml:27
-        switch (TRIES::execute(states.TRIES_, ud.TRIES_, run)) {
-        case TRIES::Outcome::good:
-          return run.end_asked(places, state, "good", Outcome::failed);
-        case TRIES::Outcome::exhausted:
-          run.go(places, state, "exhausted", State::WITHOUT);
-          continue;
-        case TRIES::Outcome::preempted:
-          return run.end_asked(places, state, "preempted", Outcome::stopped);
-        }
-        break;
-      case State::WITHOUT: // main.yml:36
-        switch (WITHOUT::execute(states.WITHOUT_, ud.WITHOUT_, run)) {
-        case WITHOUT::Outcome::succeeded:
-          run.go(places, state, "succeeded", State::EACH);
-          continue;
-        case WITHOUT::Outcome::preempted:
-          return run.end_asked(places, state, "preempted", Outcome::stopped);
-        }
-        break;
-      case State::EACH: // main.yml:41
-        switch (EACH::execute(states.EACH_, ud.EACH_, run)) {
-        case EACH::Outcome::found:
-          run.go(places, state, "found", State::SHOW);
-          continue;
-        case EACH::Outcome::preempted:
-          return run.end_asked(places, state, "preempted", Outcome::stopped);
-        case EACH::Outcome::exhausted:
-          return run.end_asked(places, state, "exhausted", Outcome::failed);
-        }
-        break;
-      case State::SHOW: // main.yml:48
-        switch (states.SHOW.execute(ud)) {
-        case types::SHOW::Outcome::succeeded:
-          return run.end(places, state, "succeeded", Outcome::done);
-        }
-        break;
-      default:
-        smachac::never();
+      break;
+    case State::VISIT: // main.yml:13
+    VISIT:
+      run.enter(places, state);
+      ud.VISIT_.waypoints.hold(ud.waypoints.unchecked());
+      switch (VISIT::execute(states.VISIT_, {ud.VISIT_, ud.count}, run)) {
+      case VISIT::Outcome::succeeded:
+        run.go(places, state, "succeeded", State::HASTE);
+        goto HASTE;
+      case VISIT::Outcome::preempted:
+        return run.end_asked(places, state, "preempted", Outcome::stopped);
       }
-      run.no_outcome(places, state);
+      break;
+    case State::HASTE: // main.yml:21
+    HASTE:
+      run.enter(places, state);
+      switch (HASTE::execute(states.HASTE_, ud.HASTE_, run)) {
+      case HASTE::Outcome::succeeded:
+        return run.end_asked(places, state, "succeeded", Outcome::failed);
+      case HASTE::Outcome::preempted:
+        return run.end_asked(places, state, "preempted", Outcome::stopped);
+      case HASTE::Outcome::timeout:
+        run.go(places, state, "timeout", State::TRIES);
+        goto TRIES;
+      }
+      break;
+    case State::TRIES: // main.yml:27
+    TRIES:
+      run.enter(places, state);
+      switch (TRIES::execute(states.TRIES_, ud.TRIES_, run)) {
+      case TRIES::Outcome::good:
+        return run.end_asked(places, state, "good", Outcome::failed);
+      case TRIES::Outcome::exhausted:
+        run.go(places, state, "exhausted", State::WITHOUT);
+        goto WITHOUT;
+      case TRIES::Outcome::preempted:
+        return run.end_asked(places, state, "preempted", Outcome::stopped);
+      }
+      break;
+    case State::WITHOUT: // main.yml:36
+    WITHOUT:
+      run.enter(places, state);
+      switch (WITHOUT::execute(states.WITHOUT_, ud.WITHOUT_, run)) {
+      case WITHOUT::Outcome::succeeded:
+        run.go(places, state, "succeeded", State::EACH);
+        goto EACH;
+      case WITHOUT::Outcome::preempted:
+        return run.end_asked(places, state, "preempted", Outcome::stopped);
+      }
+      break;
+    case State::EACH: // main.yml:41
+    EACH:
+      run.enter(places, state);
+      switch (EACH::execute(states.EACH_, ud.EACH_, run)) {
+      case EACH::Outcome::found:
+        run.go(places, state, "found", State::SHOW);
+        goto SHOW;
+      case EACH::Outcome::preempted:
+        return run.end_asked(places, state, "preempted", Outcome::stopped);
+      case EACH::Outcome::exhausted:
+        return run.end_asked(places, state, "exhausted", Outcome::failed);
+      }
+      break;
+    case State::SHOW: // main.yml:48
+    SHOW:
+      run.enter(places, state);
+      switch (states.SHOW.execute(ud)) {
+      case types::SHOW::Outcome::succeeded:
+        return run.end(places, state, "succeeded", Outcome::done);
+      }
+      break;
+    default:
+      smachac::never();
     }
+    run.no_outcome(places, state);
   }
   SMACHAC_CATCH { run.failed(places, state); }
 }

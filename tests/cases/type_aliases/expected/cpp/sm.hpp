@@ -52,20 +52,18 @@ template <class Run>
 [[gnu::always_inline]] inline Outcome execute(States &states, Userdata &, Run &run) {
   State state = State::A;
   SMACHAC_TRY {
-    for (;;) {
+    switch (state) {
+    case State::A: // main.yml:10
       run.enter(places, state);
-      switch (state) {
-      case State::A: // main.yml:10
-        switch (states.A.execute()) {
-        case types::A::Outcome::done:
-          return run.end(places, state, "done", Outcome::succeeded);
-        }
-        break;
-      default:
-        smachac::never();
+      switch (states.A.execute()) {
+      case types::A::Outcome::done:
+        return run.end(places, state, "done", Outcome::succeeded);
       }
-      run.no_outcome(places, state);
+      break;
+    default:
+      smachac::never();
     }
+    run.no_outcome(places, state);
   }
   SMACHAC_CATCH { run.failed(places, state); }
 }

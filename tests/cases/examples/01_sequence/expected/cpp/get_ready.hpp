@@ -79,40 +79,42 @@ template <class Run>
 [[gnu::always_inline]] inline Outcome execute(States &states, Userdata &, Run &run) {
   State state = State::CHECK_BATTERY;
   SMACHAC_TRY {
-    for (;;) {
+    switch (state) {
+    case State::CHECK_BATTERY: // main.yml:7
       run.enter(places, state);
-      switch (state) {
-      case State::CHECK_BATTERY: // main.yml:7
-        switch (states.CHECK_BATTERY.execute()) {
-        case types::CHECK_BATTERY::Outcome::full:
-          run.go(places, state, "full", State::RELEASE_BRAKES);
-          continue;
-        case types::CHECK_BATTERY::Outcome::low:
-          return run.end(places, state, "low", Outcome::aborted);
-        }
-        break;
-      case State::RELEASE_BRAKES: // main.yml:12
-        switch (states.RELEASE_BRAKES.execute()) {
-        case types::RELEASE_BRAKES::Outcome::succeeded:
-          run.go(places, state, "succeeded", State::GO_HOME);
-          continue;
-        case types::RELEASE_BRAKES::Outcome::aborted:
-          return run.end(places, state, "aborted", Outcome::aborted);
-        }
-        break;
-      case State::GO_HOME: // main.yml:17
-        switch (states.GO_HOME.execute()) {
-        case types::GO_HOME::Outcome::succeeded:
-          return run.end(places, state, "succeeded", Outcome::succeeded);
-        case types::GO_HOME::Outcome::aborted:
-          return run.end(places, state, "aborted", Outcome::aborted);
-        }
-        break;
-      default:
-        smachac::never();
+      switch (states.CHECK_BATTERY.execute()) {
+      case types::CHECK_BATTERY::Outcome::full:
+        run.go(places, state, "full", State::RELEASE_BRAKES);
+        goto RELEASE_BRAKES;
+      case types::CHECK_BATTERY::Outcome::low:
+        return run.end(places, state, "low", Outcome::aborted);
       }
-      run.no_outcome(places, state);
+      break;
+    case State::RELEASE_BRAKES: // main.yml:12
+    RELEASE_BRAKES:
+      run.enter(places, state);
+      switch (states.RELEASE_BRAKES.execute()) {
+      case types::RELEASE_BRAKES::Outcome::succeeded:
+        run.go(places, state, "succeeded", State::GO_HOME);
+        goto GO_HOME;
+      case types::RELEASE_BRAKES::Outcome::aborted:
+        return run.end(places, state, "aborted", Outcome::aborted);
+      }
+      break;
+    case State::GO_HOME: // main.yml:17
+    GO_HOME:
+      run.enter(places, state);
+      switch (states.GO_HOME.execute()) {
+      case types::GO_HOME::Outcome::succeeded:
+        return run.end(places, state, "succeeded", Outcome::succeeded);
+      case types::GO_HOME::Outcome::aborted:
+        return run.end(places, state, "aborted", Outcome::aborted);
+      }
+      break;
+    default:
+      smachac::never();
     }
+    run.no_outcome(places, state);
   }
   SMACHAC_CATCH { run.failed(places, state); }
 }

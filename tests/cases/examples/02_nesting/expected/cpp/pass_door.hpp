@@ -79,40 +79,42 @@ template <class Run>
 [[gnu::always_inline]] inline Outcome execute(States &states, Userdata &, Run &run) {
   State state = State::GRASP_HANDLE;
   SMACHAC_TRY {
-    for (;;) {
+    switch (state) {
+    case State::GRASP_HANDLE: // main.yml:17
       run.enter(places, state);
-      switch (state) {
-      case State::GRASP_HANDLE: // main.yml:17
-        switch (states.GRASP_HANDLE.execute()) {
-        case types::GRASP_HANDLE::Outcome::held:
-          run.go(places, state, "held", State::TURN_HANDLE);
-          continue;
-        case types::GRASP_HANDLE::Outcome::missed:
-          return run.end(places, state, "missed", Outcome::stuck);
-        }
-        break;
-      case State::TURN_HANDLE: // main.yml:21
-        switch (states.TURN_HANDLE.execute()) {
-        case types::TURN_HANDLE::Outcome::turned:
-          run.go(places, state, "turned", State::PULL);
-          continue;
-        case types::TURN_HANDLE::Outcome::blocked:
-          return run.end(places, state, "blocked", Outcome::stuck);
-        }
-        break;
-      case State::PULL: // main.yml:25
-        switch (states.PULL.execute()) {
-        case types::PULL::Outcome::open:
-          return run.end(places, state, "open", Outcome::open);
-        case types::PULL::Outcome::stuck:
-          return run.end(places, state, "stuck", Outcome::stuck);
-        }
-        break;
-      default:
-        smachac::never();
+      switch (states.GRASP_HANDLE.execute()) {
+      case types::GRASP_HANDLE::Outcome::held:
+        run.go(places, state, "held", State::TURN_HANDLE);
+        goto TURN_HANDLE;
+      case types::GRASP_HANDLE::Outcome::missed:
+        return run.end(places, state, "missed", Outcome::stuck);
       }
-      run.no_outcome(places, state);
+      break;
+    case State::TURN_HANDLE: // main.yml:21
+    TURN_HANDLE:
+      run.enter(places, state);
+      switch (states.TURN_HANDLE.execute()) {
+      case types::TURN_HANDLE::Outcome::turned:
+        run.go(places, state, "turned", State::PULL);
+        goto PULL;
+      case types::TURN_HANDLE::Outcome::blocked:
+        return run.end(places, state, "blocked", Outcome::stuck);
+      }
+      break;
+    case State::PULL: // main.yml:25
+    PULL:
+      run.enter(places, state);
+      switch (states.PULL.execute()) {
+      case types::PULL::Outcome::open:
+        return run.end(places, state, "open", Outcome::open);
+      case types::PULL::Outcome::stuck:
+        return run.end(places, state, "stuck", Outcome::stuck);
+      }
+      break;
+    default:
+      smachac::never();
     }
+    run.no_outcome(places, state);
   }
   SMACHAC_CATCH { run.failed(places, state); }
 }
@@ -199,47 +201,51 @@ template <class Run>
 [[gnu::always_inline]] inline Outcome execute(States &states, Userdata &ud, Run &run) {
   State state = State::DRIVE_TO_DOOR;
   SMACHAC_TRY {
-    for (;;) {
+    switch (state) {
+    case State::DRIVE_TO_DOOR: // main.yml:7
       run.enter(places, state);
-      switch (state) {
-      case State::DRIVE_TO_DOOR: // main.yml:7
-        switch (states.DRIVE_TO_DOOR.execute()) {
-        case types::DRIVE_TO_DOOR::Outcome::there:
-          run.go(places, state, "there", State::OPEN_DOOR);
-          continue;
-        case types::DRIVE_TO_DOOR::Outcome::lost:
-          return run.end(places, state, "lost", Outcome::aborted);
-        }
-        break;
-      case State::OPEN_DOOR: // main.yml:12
-        switch (OPEN_DOOR::execute(states.OPEN_DOOR_, ud.OPEN_DOOR_, run)) {
-        case OPEN_DOOR::Outcome::open:
-          run.go(places, state, "open", State::DRIVE_THROUGH);
-          continue;
-        case OPEN_DOOR::Outcome::stuck:
-          run.go(places, state, "stuck", State::CALL_FOR_HELP);
-          continue;
-        }
-        break;
-      case State::DRIVE_THROUGH: // main.yml:30
-        switch (states.DRIVE_THROUGH.execute()) {
-        case types::DRIVE_THROUGH::Outcome::succeeded:
-          return run.end(places, state, "succeeded", Outcome::succeeded);
-        case types::DRIVE_THROUGH::Outcome::aborted:
-          return run.end(places, state, "aborted", Outcome::aborted);
-        }
-        break;
-      case State::CALL_FOR_HELP: // main.yml:35
-        switch (states.CALL_FOR_HELP.execute()) {
-        case types::CALL_FOR_HELP::Outcome::called:
-          return run.end(places, state, "called", Outcome::aborted);
-        }
-        break;
-      default:
-        smachac::never();
+      switch (states.DRIVE_TO_DOOR.execute()) {
+      case types::DRIVE_TO_DOOR::Outcome::there:
+        run.go(places, state, "there", State::OPEN_DOOR);
+        goto OPEN_DOOR;
+      case types::DRIVE_TO_DOOR::Outcome::lost:
+        return run.end(places, state, "lost", Outcome::aborted);
       }
-      run.no_outcome(places, state);
+      break;
+    case State::OPEN_DOOR: // main.yml:12
+    OPEN_DOOR:
+      run.enter(places, state);
+      switch (OPEN_DOOR::execute(states.OPEN_DOOR_, ud.OPEN_DOOR_, run)) {
+      case OPEN_DOOR::Outcome::open:
+        run.go(places, state, "open", State::DRIVE_THROUGH);
+        goto DRIVE_THROUGH;
+      case OPEN_DOOR::Outcome::stuck:
+        run.go(places, state, "stuck", State::CALL_FOR_HELP);
+        goto CALL_FOR_HELP;
+      }
+      break;
+    case State::DRIVE_THROUGH: // main.yml:30
+    DRIVE_THROUGH:
+      run.enter(places, state);
+      switch (states.DRIVE_THROUGH.execute()) {
+      case types::DRIVE_THROUGH::Outcome::succeeded:
+        return run.end(places, state, "succeeded", Outcome::succeeded);
+      case types::DRIVE_THROUGH::Outcome::aborted:
+        return run.end(places, state, "aborted", Outcome::aborted);
+      }
+      break;
+    case State::CALL_FOR_HELP: // main.yml:35
+    CALL_FOR_HELP:
+      run.enter(places, state);
+      switch (states.CALL_FOR_HELP.execute()) {
+      case types::CALL_FOR_HELP::Outcome::called:
+        return run.end(places, state, "called", Outcome::aborted);
+      }
+      break;
+    default:
+      smachac::never();
     }
+    run.no_outcome(places, state);
   }
   SMACHAC_CATCH { run.failed(places, state); }
 }

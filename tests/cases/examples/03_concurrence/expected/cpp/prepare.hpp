@@ -74,9 +74,9 @@ template <class Run>
   branches.run(false, [&](std::size_t branch, Run &run) {
     const auto state = static_cast<State>(branch);
     SMACHAC_TRY {
-      run.enter(places, state);
       switch (state) {
       case State::FIND_PART: // main.yml:15
+        run.enter(places, state);
         ended.FIND_PART = states.FIND_PART.execute();
         switch (ended.FIND_PART) {
         case types::FIND_PART::Outcome::found:
@@ -88,6 +88,7 @@ template <class Run>
         }
         break;
       case State::WARM_UP: // main.yml:18
+        run.enter(places, state);
         ended.WARM_UP = states.WARM_UP.execute(run.stop_for(places, state));
         switch (ended.WARM_UP) {
         case types::WARM_UP::Outcome::succeeded:
@@ -165,31 +166,31 @@ template <class Run>
 [[gnu::always_inline]] inline Outcome execute(States &states, Userdata &ud, Run &run) {
   State state = State::FIND_AND_WARM_UP;
   SMACHAC_TRY {
-    for (;;) {
+    switch (state) {
+    case State::FIND_AND_WARM_UP: // main.yml:7
       run.enter(places, state);
-      switch (state) {
-      case State::FIND_AND_WARM_UP: // main.yml:7
-        switch (FIND_AND_WARM_UP::execute(states.FIND_AND_WARM_UP_, ud.FIND_AND_WARM_UP_, run)) {
-        case FIND_AND_WARM_UP::Outcome::ready:
-          run.go(places, state, "ready", State::PICK);
-          continue;
-        case FIND_AND_WARM_UP::Outcome::not_ready:
-          return run.end_asked(places, state, "not_ready", Outcome::aborted);
-        }
-        break;
-      case State::PICK: // main.yml:22
-        switch (states.PICK.execute()) {
-        case types::PICK::Outcome::succeeded:
-          return run.end(places, state, "succeeded", Outcome::succeeded);
-        case types::PICK::Outcome::aborted:
-          return run.end(places, state, "aborted", Outcome::aborted);
-        }
-        break;
-      default:
-        smachac::never();
+      switch (FIND_AND_WARM_UP::execute(states.FIND_AND_WARM_UP_, ud.FIND_AND_WARM_UP_, run)) {
+      case FIND_AND_WARM_UP::Outcome::ready:
+        run.go(places, state, "ready", State::PICK);
+        goto PICK;
+      case FIND_AND_WARM_UP::Outcome::not_ready:
+        return run.end_asked(places, state, "not_ready", Outcome::aborted);
       }
-      run.no_outcome(places, state);
+      break;
+    case State::PICK: // main.yml:22
+    PICK:
+      run.enter(places, state);
+      switch (states.PICK.execute()) {
+      case types::PICK::Outcome::succeeded:
+        return run.end(places, state, "succeeded", Outcome::succeeded);
+      case types::PICK::Outcome::aborted:
+        return run.end(places, state, "aborted", Outcome::aborted);
+      }
+      break;
+    default:
+      smachac::never();
     }
+    run.no_outcome(places, state);
   }
   SMACHAC_CATCH { run.failed(places, state); }
 }

@@ -29,8 +29,8 @@ struct TELL {
   };
 
   Outcome execute(Userdata &ud) {
-    smachac::print("times", ud.times.get());
-    smachac::print("topic", ud.topic.get());
+    smachac::print("times", ud.times.unchecked());
+    smachac::print("topic", ud.topic.unchecked());
     return Outcome::succeeded;
   }
 };
@@ -68,29 +68,29 @@ template <class Run>
 [[gnu::always_inline]] inline Outcome execute(States &states, Userdata &ud, Run &run) {
   State state = State::TELL;
   SMACHAC_TRY {
-    for (;;) {
+    switch (state) {
+    case State::TELL: // wave.yml:10
       run.enter(places, state);
-      switch (state) {
-      case State::TELL: // wave.yml:10
-        switch (states.TELL.execute(ud)) {
-        case types::TELL::Outcome::succeeded:
-          run.go(places, state, "succeeded", State::MOVE);
-          continue;
-        }
-        break;
-      case State::MOVE: // wave.yml:14
-        switch (states.MOVE.execute()) {
-        case types::MOVE::Outcome::succeeded:
-          return run.end(places, state, "succeeded", Outcome::succeeded);
-        case types::MOVE::Outcome::aborted:
-          return run.end(places, state, "aborted", Outcome::aborted);
-        }
-        break;
-      default:
-        smachac::never();
+      switch (states.TELL.execute(ud)) {
+      case types::TELL::Outcome::succeeded:
+        run.go(places, state, "succeeded", State::MOVE);
+        goto MOVE;
       }
-      run.no_outcome(places, state);
+      break;
+    case State::MOVE: // wave.yml:14
+    MOVE:
+      run.enter(places, state);
+      switch (states.MOVE.execute()) {
+      case types::MOVE::Outcome::succeeded:
+        return run.end(places, state, "succeeded", Outcome::succeeded);
+      case types::MOVE::Outcome::aborted:
+        return run.end(places, state, "aborted", Outcome::aborted);
+      }
+      break;
+    default:
+      smachac::never();
     }
+    run.no_outcome(places, state);
   }
   SMACHAC_CATCH { run.failed(places, state); }
 }
@@ -123,8 +123,8 @@ struct TELL {
   };
 
   Outcome execute(Userdata &ud) {
-    smachac::print("times", ud.times.get());
-    smachac::print("topic", ud.topic.get());
+    smachac::print("times", ud.times.unchecked());
+    smachac::print("topic", ud.topic.unchecked());
     return Outcome::succeeded;
   }
 };
@@ -162,29 +162,29 @@ template <class Run>
 [[gnu::always_inline]] inline Outcome execute(States &states, Userdata &ud, Run &run) {
   State state = State::TELL;
   SMACHAC_TRY {
-    for (;;) {
+    switch (state) {
+    case State::TELL: // wave.yml:10
       run.enter(places, state);
-      switch (state) {
-      case State::TELL: // wave.yml:10
-        switch (states.TELL.execute(ud)) {
-        case types::TELL::Outcome::succeeded:
-          run.go(places, state, "succeeded", State::MOVE);
-          continue;
-        }
-        break;
-      case State::MOVE: // wave.yml:14
-        switch (states.MOVE.execute()) {
-        case types::MOVE::Outcome::succeeded:
-          return run.end(places, state, "succeeded", Outcome::succeeded);
-        case types::MOVE::Outcome::aborted:
-          return run.end(places, state, "aborted", Outcome::aborted);
-        }
-        break;
-      default:
-        smachac::never();
+      switch (states.TELL.execute(ud)) {
+      case types::TELL::Outcome::succeeded:
+        run.go(places, state, "succeeded", State::MOVE);
+        goto MOVE;
       }
-      run.no_outcome(places, state);
+      break;
+    case State::MOVE: // wave.yml:14
+    MOVE:
+      run.enter(places, state);
+      switch (states.MOVE.execute()) {
+      case types::MOVE::Outcome::succeeded:
+        return run.end(places, state, "succeeded", Outcome::succeeded);
+      case types::MOVE::Outcome::aborted:
+        return run.end(places, state, "aborted", Outcome::aborted);
+      }
+      break;
+    default:
+      smachac::never();
     }
+    run.no_outcome(places, state);
   }
   SMACHAC_CATCH { run.failed(places, state); }
 }
@@ -227,31 +227,31 @@ template <class Run>
 [[gnu::always_inline]] inline Outcome execute(States &states, Userdata &ud, Run &run) {
   State state = State::WAVE_LEFT;
   SMACHAC_TRY {
-    for (;;) {
+    switch (state) {
+    case State::WAVE_LEFT: // main.yml:9
       run.enter(places, state);
-      switch (state) {
-      case State::WAVE_LEFT: // main.yml:9
-        switch (WAVE_LEFT::execute(states.WAVE_LEFT_, ud.WAVE_LEFT_, run)) {
-        case WAVE_LEFT::Outcome::succeeded:
-          run.go(places, state, "succeeded", State::WAVE_RIGHT);
-          continue;
-        case WAVE_LEFT::Outcome::aborted:
-          return run.end(places, state, "aborted", Outcome::aborted);
-        }
-        break;
-      case State::WAVE_RIGHT: // main.yml:14
-        switch (WAVE_RIGHT::execute(states.WAVE_RIGHT_, ud.WAVE_RIGHT_, run)) {
-        case WAVE_RIGHT::Outcome::succeeded:
-          return run.end(places, state, "succeeded", Outcome::succeeded);
-        case WAVE_RIGHT::Outcome::aborted:
-          return run.end(places, state, "aborted", Outcome::aborted);
-        }
-        break;
-      default:
-        smachac::never();
+      switch (WAVE_LEFT::execute(states.WAVE_LEFT_, ud.WAVE_LEFT_, run)) {
+      case WAVE_LEFT::Outcome::succeeded:
+        run.go(places, state, "succeeded", State::WAVE_RIGHT);
+        goto WAVE_RIGHT;
+      case WAVE_LEFT::Outcome::aborted:
+        return run.end(places, state, "aborted", Outcome::aborted);
       }
-      run.no_outcome(places, state);
+      break;
+    case State::WAVE_RIGHT: // main.yml:14
+    WAVE_RIGHT:
+      run.enter(places, state);
+      switch (WAVE_RIGHT::execute(states.WAVE_RIGHT_, ud.WAVE_RIGHT_, run)) {
+      case WAVE_RIGHT::Outcome::succeeded:
+        return run.end(places, state, "succeeded", Outcome::succeeded);
+      case WAVE_RIGHT::Outcome::aborted:
+        return run.end(places, state, "aborted", Outcome::aborted);
+      }
+      break;
+    default:
+      smachac::never();
     }
+    run.no_outcome(places, state);
   }
   SMACHAC_CATCH { run.failed(places, state); }
 }

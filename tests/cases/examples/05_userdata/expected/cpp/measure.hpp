@@ -15,9 +15,12 @@ constexpr const char *name(Outcome outcome) {
   return names[static_cast<std::size_t>(outcome)];
 }
 
-struct Userdata {
-  smachac::Key<double> limit;
-  smachac::Key<double> width;
+struct Userdata {};
+
+struct UserdataView {
+  Userdata &own_;
+  const smachac::Key<double> &limit;
+  const smachac::Key<double> &width;
 };
 
 namespace types {
@@ -29,8 +32,8 @@ struct COMPARE {
     too_wide,
   };
 
-  Outcome execute(Userdata &ud) {
-    if (smachac::need(ud.width, "width") <= ud.limit.get()) {
+  Outcome execute(const UserdataView &ud) {
+    if (smachac::need(ud.width, "width") <= ud.limit.unchecked()) {
       return Outcome::fits;
     }
     return Outcome::too_wide;
@@ -52,25 +55,23 @@ inline constexpr smachac::Place places[] = {
 };
 
 template <class Run>
-[[gnu::always_inline]] inline Outcome execute(States &states, Userdata &ud, Run &run) {
+[[gnu::always_inline]] inline Outcome execute(States &states, const UserdataView &ud, Run &run) {
   State state = State::COMPARE;
   SMACHAC_TRY {
-    for (;;) {
+    switch (state) {
+    case State::COMPARE: // main.yml:24
       run.enter(places, state);
-      switch (state) {
-      case State::COMPARE: // main.yml:24
-        switch (states.COMPARE.execute(ud)) {
-        case types::COMPARE::Outcome::fits:
-          return run.end(places, state, "fits", Outcome::fits);
-        case types::COMPARE::Outcome::too_wide:
-          return run.end(places, state, "too_wide", Outcome::too_wide);
-        }
-        break;
-      default:
-        smachac::never();
+      switch (states.COMPARE.execute(ud)) {
+      case types::COMPARE::Outcome::fits:
+        return run.end(places, state, "fits", Outcome::fits);
+      case types::COMPARE::Outcome::too_wide:
+        return run.end(places, state, "too_wide", Outcome::too_wide);
       }
-      run.no_outcome(places, state);
+      break;
+    default:
+      smachac::never();
     }
+    run.no_outcome(places, state);
   }
   SMACHAC_CATCH { run.failed(places, state); }
 }
@@ -116,7 +117,7 @@ struct TELL {
   };
 
   Outcome execute(Userdata &ud) {
-    smachac::print("limit", ud.limit.get());
+    smachac::print("limit", ud.limit.unchecked());
     smachac::print("part_width", smachac::need(ud.part_width, "part_width"));
     return Outcome::succeeded;
   }
@@ -146,39 +147,39 @@ template <class Run>
 [[gnu::always_inline]] inline Outcome execute(States &states, Userdata &ud, Run &run) {
   State state = State::MEASURE_WIDTH;
   SMACHAC_TRY {
-    for (;;) {
+    switch (state) {
+    case State::MEASURE_WIDTH: // main.yml:9
       run.enter(places, state);
-      switch (state) {
-      case State::MEASURE_WIDTH: // main.yml:9
-        switch (states.MEASURE_WIDTH.execute(ud, run)) {
-        case types::MEASURE_WIDTH::Outcome::measured:
-          run.go(places, state, "measured", State::JUDGE);
-          continue;
-        }
-        break;
-      case State::JUDGE: // main.yml:17
-        ud.JUDGE_.width.take(ud.part_width);
-        ud.JUDGE_.limit.hold(ud.limit.get());
-        switch (JUDGE::execute(states.JUDGE_, ud.JUDGE_, run)) {
-        case JUDGE::Outcome::fits:
-          run.go(places, state, "fits", State::TELL);
-          continue;
-        case JUDGE::Outcome::too_wide:
-          run.go(places, state, "too_wide", State::TELL);
-          continue;
-        }
-        break;
-      case State::TELL: // main.yml:32
-        switch (states.TELL.execute(ud)) {
-        case types::TELL::Outcome::succeeded:
-          return run.end(places, state, "succeeded", Outcome::succeeded);
-        }
-        break;
-      default:
-        smachac::never();
+      switch (states.MEASURE_WIDTH.execute(ud, run)) {
+      case types::MEASURE_WIDTH::Outcome::measured:
+        run.go(places, state, "measured", State::JUDGE);
+        goto JUDGE;
       }
-      run.no_outcome(places, state);
+      break;
+    case State::JUDGE: // main.yml:17
+    JUDGE:
+      run.enter(places, state);
+      switch (JUDGE::execute(states.JUDGE_, {ud.JUDGE_, ud.limit, ud.part_width}, run)) {
+      case JUDGE::Outcome::fits:
+        run.go(places, state, "fits", State::TELL);
+        goto TELL;
+      case JUDGE::Outcome::too_wide:
+        run.go(places, state, "too_wide", State::TELL);
+        goto TELL;
+      }
+      break;
+    case State::TELL: // main.yml:32
+    TELL:
+      run.enter(places, state);
+      switch (states.TELL.execute(ud)) {
+      case types::TELL::Outcome::succeeded:
+        return run.end(places, state, "succeeded", Outcome::succeeded);
+      }
+      break;
+    default:
+      smachac::never();
     }
+    run.no_outcome(places, state);
   }
   SMACHAC_CATCH { run.failed(places, state); }
 }

@@ -51,7 +51,7 @@ struct COUNT {
 
   template <class Run>
   Outcome execute(Userdata &ud, Run &run) {
-    run.write("tries", ud.tries, smachac::py::add(ud.tries.get(), 1));
+    run.write("tries", ud.tries, smachac::py::add(ud.tries.unchecked(), 1));
     return Outcome::succeeded;
   }
 };
@@ -64,7 +64,7 @@ struct DECIDE {
   };
 
   Outcome execute(Userdata &ud) {
-    if (ud.tries.get() < 3) {
+    if (ud.tries.unchecked() < 3) {
       return Outcome::again;
     }
     return Outcome::enough;
@@ -95,39 +95,42 @@ template <class Run>
 [[gnu::always_inline]] inline Outcome execute(States &states, Userdata &ud, Run &run) {
   State state = State::TRY;
   SMACHAC_TRY {
-    for (;;) {
+    switch (state) {
+    case State::TRY: // main.yml:8
+    TRY:
       run.enter(places, state);
-      switch (state) {
-      case State::TRY: // main.yml:8
-        switch (states.TRY.execute()) {
-        case types::TRY::Outcome::succeeded:
-          return run.end(places, state, "succeeded", Outcome::succeeded);
-        case types::TRY::Outcome::aborted:
-          run.go(places, state, "aborted", State::COUNT);
-          continue;
-        }
-        break;
-      case State::COUNT: // main.yml:14
-        switch (states.COUNT.execute(ud, run)) {
-        case types::COUNT::Outcome::succeeded:
-          run.go(places, state, "succeeded", State::DECIDE);
-          continue;
-        }
-        break;
-      case State::DECIDE: // main.yml:21
-        switch (states.DECIDE.execute(ud)) {
-        case types::DECIDE::Outcome::again:
-          run.go(places, state, "again", State::TRY);
-          continue;
-        case types::DECIDE::Outcome::enough:
-          return run.end(places, state, "enough", Outcome::aborted);
-        }
-        break;
-      default:
-        smachac::never();
+      switch (states.TRY.execute()) {
+      case types::TRY::Outcome::succeeded:
+        return run.end(places, state, "succeeded", Outcome::succeeded);
+      case types::TRY::Outcome::aborted:
+        run.go(places, state, "aborted", State::COUNT);
+        goto COUNT;
       }
-      run.no_outcome(places, state);
+      break;
+    case State::COUNT: // main.yml:14
+    COUNT:
+      run.enter(places, state);
+      switch (states.COUNT.execute(ud, run)) {
+      case types::COUNT::Outcome::succeeded:
+        run.go(places, state, "succeeded", State::DECIDE);
+        goto DECIDE;
+      }
+      break;
+    case State::DECIDE: // main.yml:21
+    DECIDE:
+      run.enter(places, state);
+      switch (states.DECIDE.execute(ud)) {
+      case types::DECIDE::Outcome::again:
+        run.go(places, state, "again", State::TRY);
+        goto TRY;
+      case types::DECIDE::Outcome::enough:
+        return run.end(places, state, "enough", Outcome::aborted);
+      }
+      break;
+    default:
+      smachac::never();
     }
+    run.no_outcome(places, state);
   }
   SMACHAC_CATCH { run.failed(places, state); }
 }

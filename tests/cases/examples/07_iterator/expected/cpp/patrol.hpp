@@ -15,8 +15,11 @@ constexpr const char *name(Outcome outcome) {
   return names[static_cast<std::size_t>(outcome)];
 }
 
-struct Userdata {
-  smachac::Key<std::string> waypoint;
+struct Userdata {};
+
+struct UserdataView {
+  Userdata &own_;
+  const smachac::Key<std::string> &waypoint;
 };
 
 namespace types {
@@ -39,8 +42,8 @@ struct LOOK {
     succeeded,
   };
 
-  Outcome execute(Userdata &ud) {
-    smachac::print("waypoint", ud.waypoint.get());
+  Outcome execute(const UserdataView &ud) {
+    smachac::print("waypoint", ud.waypoint.unchecked());
     return Outcome::succeeded;
   }
 };
@@ -63,32 +66,32 @@ inline constexpr smachac::Place places[] = {
 };
 
 template <class Run>
-[[gnu::always_inline]] inline Outcome execute(States &states, Userdata &ud, Run &run) {
+[[gnu::always_inline]] inline Outcome execute(States &states, const UserdataView &ud, Run &run) {
   State state = State::DRIVE;
   SMACHAC_TRY {
-    for (;;) {
+    switch (state) {
+    case State::DRIVE: // main.yml:25
       run.enter(places, state);
-      switch (state) {
-      case State::DRIVE: // main.yml:25
-        switch (states.DRIVE.execute()) {
-        case types::DRIVE::Outcome::arrived:
-          run.go(places, state, "arrived", State::LOOK);
-          continue;
-        case types::DRIVE::Outcome::blocked:
-          return run.end(places, state, "blocked", Outcome::blocked);
-        }
-        break;
-      case State::LOOK: // main.yml:29
-        switch (states.LOOK.execute(ud)) {
-        case types::LOOK::Outcome::succeeded:
-          return run.end(places, state, "succeeded", Outcome::seen);
-        }
-        break;
-      default:
-        smachac::never();
+      switch (states.DRIVE.execute()) {
+      case types::DRIVE::Outcome::arrived:
+        run.go(places, state, "arrived", State::LOOK);
+        goto LOOK;
+      case types::DRIVE::Outcome::blocked:
+        return run.end(places, state, "blocked", Outcome::blocked);
       }
-      run.no_outcome(places, state);
+      break;
+    case State::LOOK: // main.yml:29
+    LOOK:
+      run.enter(places, state);
+      switch (states.LOOK.execute(ud)) {
+      case types::LOOK::Outcome::succeeded:
+        return run.end(places, state, "succeeded", Outcome::seen);
+      }
+      break;
+    default:
+      smachac::never();
     }
+    run.no_outcome(places, state);
   }
   SMACHAC_CATCH { run.failed(places, state); }
 }
@@ -110,8 +113,12 @@ constexpr const char *name(Outcome outcome) {
 
 struct Userdata {
   smachac::Key<std::string> waypoint;
-  smachac::Key<std::array<std::string, 3>> waypoints;
   VISIT::Userdata VISIT_;
+};
+
+struct UserdataView {
+  Userdata &own_;
+  const smachac::Key<std::array<std::string, 3>> &waypoints;
 };
 
 struct States {
@@ -127,7 +134,7 @@ inline constexpr smachac::Place places[] = {
 };
 
 template <class Run>
-[[gnu::always_inline]] inline Outcome execute(States &states, Userdata &ud, Run &run) {
+[[gnu::always_inline]] inline Outcome execute(States &states, const UserdataView &ud, Run &run) {
   const auto items = smachac::need(ud.waypoints, "waypoints");
   if (items.empty()) {
     return Outcome::all_seen;
@@ -135,12 +142,11 @@ template <class Run>
   const auto state = State::VISIT;
   smachac::Round round(run.stop, places[0], items.size());
   for (const auto &item : items) {
-    ud.waypoint.hold(item);
+    ud.own_.waypoint.hold(item);
     // main.yml:20
     SMACHAC_TRY {
       run.enter(places, state);
-      ud.VISIT_.waypoint.hold(ud.waypoint.get());
-      const auto outcome = VISIT::execute(states.VISIT_, ud.VISIT_, run);
+      const auto outcome = VISIT::execute(states.VISIT_, {ud.own_.VISIT_, ud.own_.waypoint}, run);
       const bool over = round.over();
       switch (outcome) {
       case VISIT::Outcome::seen:
@@ -197,25 +203,22 @@ template <class Run>
 [[gnu::always_inline]] inline Outcome execute(States &states, Userdata &ud, Run &run) {
   State state = State::VISIT_ALL;
   SMACHAC_TRY {
-    for (;;) {
+    switch (state) {
+    case State::VISIT_ALL: // main.yml:9
       run.enter(places, state);
-      switch (state) {
-      case State::VISIT_ALL: // main.yml:9
-        ud.VISIT_ALL_.waypoints.hold(ud.waypoints.get());
-        switch (VISIT_ALL::execute(states.VISIT_ALL_, ud.VISIT_ALL_, run)) {
-        case VISIT_ALL::Outcome::all_seen:
-          return run.end_asked(places, state, "all_seen", Outcome::succeeded);
-        case VISIT_ALL::Outcome::blocked:
-          return run.end_asked(places, state, "blocked", Outcome::aborted);
-        case VISIT_ALL::Outcome::preempted:
-          return run.end_asked(places, state, "preempted", Outcome::aborted);
-        }
-        break;
-      default:
-        smachac::never();
+      switch (VISIT_ALL::execute(states.VISIT_ALL_, {ud.VISIT_ALL_, ud.waypoints}, run)) {
+      case VISIT_ALL::Outcome::all_seen:
+        return run.end_asked(places, state, "all_seen", Outcome::succeeded);
+      case VISIT_ALL::Outcome::blocked:
+        return run.end_asked(places, state, "blocked", Outcome::aborted);
+      case VISIT_ALL::Outcome::preempted:
+        return run.end_asked(places, state, "preempted", Outcome::aborted);
       }
-      run.no_outcome(places, state);
+      break;
+    default:
+      smachac::never();
     }
+    run.no_outcome(places, state);
   }
   SMACHAC_CATCH { run.failed(places, state); }
 }

@@ -70,11 +70,15 @@ constexpr const char *name(Outcome outcome) {
 
 struct Userdata {
   smachac::Key<std::vector<double>> hover_joints;
-  smachac::Key<smachac::Pose> hover_offset;
   smachac::Key<std::optional<smachac::Pose>> offset;
-  smachac::Key<smachac::Pose> place_pose;
   smachac::Key<double> placing_error;
   smachac::Key<double> width;
+};
+
+struct UserdataView {
+  Userdata &own_;
+  const smachac::Key<smachac::Pose> &hover_offset;
+  const smachac::Key<smachac::Pose> &place_pose;
 };
 
 struct States {
@@ -117,87 +121,97 @@ inline constexpr smachac::Place places[] = {
 };
 
 template <class Run>
-[[gnu::always_inline]] inline Outcome execute(States &states, Userdata &ud, Run &run) {
+[[gnu::always_inline]] inline Outcome execute(States &states, const UserdataView &ud, Run &run) {
   State state = State::PLAN_HOVER;
   SMACHAC_TRY {
-    for (;;) {
+    switch (state) {
+    case State::PLAN_HOVER: // place_block.yml:9
       run.enter(places, state);
-      switch (state) {
-      case State::PLAN_HOVER: // place_block.yml:9
-        switch (run.wrote(states.PLAN_HOVER.execute({ud.place_pose.get(), smachac::convert<std::optional<smachac::Pose>>(ud.hover_offset.get())}, {run.out(ud.hover_joints)}), smachac::Output{"joints", ud.hover_joints})) {
-        case ::smachac::PoseToJointPositionsState::Outcome::succeeded:
-          run.go(places, state, "succeeded", State::MOVE_TO_HOVER);
-          continue;
-        case ::smachac::PoseToJointPositionsState::Outcome::aborted:
-          return run.end(places, state, "aborted", Outcome::aborted);
-        }
-        break;
-      case State::MOVE_TO_HOVER: // place_block.yml:15
-        switch (states.MOVE_TO_HOVER.execute({smachac::need(ud.hover_joints, "positions")}, run.stop_for(places, state))) {
-        case ::smachac::MoveToJointPositionsState::Outcome::succeeded:
-          run.go(places, state, "succeeded", State::CHECK_GRASP);
-          continue;
-        case ::smachac::MoveToJointPositionsState::Outcome::aborted:
-          return run.end_asked(places, state, "aborted", Outcome::aborted);
-        case ::smachac::MoveToJointPositionsState::Outcome::preempted:
-          return run.end_asked(places, state, "preempted", Outcome::aborted);
-        }
-        break;
-      case State::CHECK_GRASP: // place_block.yml:20
-        switch (states.CHECK_GRASP.execute()) {
-        case ::smachac::CheckGraspState::Outcome::succeeded:
-          run.go(places, state, "succeeded", State::MOVE_DOWN);
-          continue;
-        case ::smachac::CheckGraspState::Outcome::aborted:
-          return run.end(places, state, "aborted", Outcome::aborted);
-        }
-        break;
-      case State::MOVE_DOWN: // place_block.yml:25
-        switch (states.MOVE_DOWN.execute({ud.place_pose.get(), smachac::maybe<std::optional<smachac::Pose>>(ud.offset)}, run.stop_for(places, state))) {
-        case ::smachac::MoveAlongState::Outcome::succeeded:
-          run.go(places, state, "succeeded", State::OPEN_GRIPPER);
-          continue;
-        case ::smachac::MoveAlongState::Outcome::aborted:
-          return run.end_asked(places, state, "aborted", Outcome::aborted);
-        case ::smachac::MoveAlongState::Outcome::preempted:
-          return run.end_asked(places, state, "preempted", Outcome::aborted);
-        }
-        break;
-      case State::OPEN_GRIPPER: // place_block.yml:31
-        switch (run.wrote(states.OPEN_GRIPPER.execute({run.out(ud.width)}, run.stop_for(places, state)), smachac::Output{"width", ud.width})) {
-        case ::smachac::GripperState::Outcome::succeeded:
-          run.go(places, state, "succeeded", State::MOVE_UP);
-          continue;
-        case ::smachac::GripperState::Outcome::aborted:
-          return run.end_asked(places, state, "aborted", Outcome::aborted);
-        case ::smachac::GripperState::Outcome::preempted:
-          return run.end_asked(places, state, "preempted", Outcome::aborted);
-        }
-        break;
-      case State::MOVE_UP: // place_block.yml:36
-        switch (states.MOVE_UP.execute({ud.place_pose.get(), smachac::convert<std::optional<smachac::Pose>>(ud.hover_offset.get())}, run.stop_for(places, state))) {
-        case ::smachac::MoveAlongState::Outcome::succeeded:
-          run.go(places, state, "succeeded", State::CHECK_PLACED);
-          continue;
-        case ::smachac::MoveAlongState::Outcome::aborted:
-          return run.end_asked(places, state, "aborted", Outcome::aborted);
-        case ::smachac::MoveAlongState::Outcome::preempted:
-          return run.end_asked(places, state, "preempted", Outcome::aborted);
-        }
-        break;
-      case State::CHECK_PLACED: // place_block.yml:42
-        switch (run.wrote(states.CHECK_PLACED.execute({ud.place_pose.get()}, {run.out(ud.placing_error)}), smachac::Output{"error", ud.placing_error})) {
-        case ::smachac::CheckPlacedState::Outcome::succeeded:
-          return run.end(places, state, "succeeded", Outcome::succeeded);
-        case ::smachac::CheckPlacedState::Outcome::aborted:
-          return run.end(places, state, "aborted", Outcome::aborted);
-        }
-        break;
-      default:
-        smachac::never();
+      switch (run.wrote(states.PLAN_HOVER.execute({ud.place_pose.unchecked(), smachac::convert<std::optional<smachac::Pose>>(ud.hover_offset.unchecked())}, {run.out(ud.own_.hover_joints)}), smachac::Output{"joints", ud.own_.hover_joints})) {
+      case ::smachac::PoseToJointPositionsState::Outcome::succeeded:
+        run.go(places, state, "succeeded", State::MOVE_TO_HOVER);
+        goto MOVE_TO_HOVER;
+      case ::smachac::PoseToJointPositionsState::Outcome::aborted:
+        return run.end(places, state, "aborted", Outcome::aborted);
       }
-      run.no_outcome(places, state);
+      break;
+    case State::MOVE_TO_HOVER: // place_block.yml:15
+    MOVE_TO_HOVER:
+      run.enter(places, state);
+      switch (states.MOVE_TO_HOVER.execute({smachac::need(ud.own_.hover_joints, "positions")}, run.stop_for(places, state))) {
+      case ::smachac::MoveToJointPositionsState::Outcome::succeeded:
+        run.go(places, state, "succeeded", State::CHECK_GRASP);
+        goto CHECK_GRASP;
+      case ::smachac::MoveToJointPositionsState::Outcome::aborted:
+        return run.end_asked(places, state, "aborted", Outcome::aborted);
+      case ::smachac::MoveToJointPositionsState::Outcome::preempted:
+        return run.end_asked(places, state, "preempted", Outcome::aborted);
+      }
+      break;
+    case State::CHECK_GRASP: // place_block.yml:20
+    CHECK_GRASP:
+      run.enter(places, state);
+      switch (states.CHECK_GRASP.execute()) {
+      case ::smachac::CheckGraspState::Outcome::succeeded:
+        run.go(places, state, "succeeded", State::MOVE_DOWN);
+        goto MOVE_DOWN;
+      case ::smachac::CheckGraspState::Outcome::aborted:
+        return run.end(places, state, "aborted", Outcome::aborted);
+      }
+      break;
+    case State::MOVE_DOWN: // place_block.yml:25
+    MOVE_DOWN:
+      run.enter(places, state);
+      switch (states.MOVE_DOWN.execute({ud.place_pose.unchecked(), smachac::maybe<std::optional<smachac::Pose>>(ud.own_.offset)}, run.stop_for(places, state))) {
+      case ::smachac::MoveAlongState::Outcome::succeeded:
+        run.go(places, state, "succeeded", State::OPEN_GRIPPER);
+        goto OPEN_GRIPPER;
+      case ::smachac::MoveAlongState::Outcome::aborted:
+        return run.end_asked(places, state, "aborted", Outcome::aborted);
+      case ::smachac::MoveAlongState::Outcome::preempted:
+        return run.end_asked(places, state, "preempted", Outcome::aborted);
+      }
+      break;
+    case State::OPEN_GRIPPER: // place_block.yml:31
+    OPEN_GRIPPER:
+      run.enter(places, state);
+      switch (run.wrote(states.OPEN_GRIPPER.execute({run.out(ud.own_.width)}, run.stop_for(places, state)), smachac::Output{"width", ud.own_.width})) {
+      case ::smachac::GripperState::Outcome::succeeded:
+        run.go(places, state, "succeeded", State::MOVE_UP);
+        goto MOVE_UP;
+      case ::smachac::GripperState::Outcome::aborted:
+        return run.end_asked(places, state, "aborted", Outcome::aborted);
+      case ::smachac::GripperState::Outcome::preempted:
+        return run.end_asked(places, state, "preempted", Outcome::aborted);
+      }
+      break;
+    case State::MOVE_UP: // place_block.yml:36
+    MOVE_UP:
+      run.enter(places, state);
+      switch (states.MOVE_UP.execute({ud.place_pose.unchecked(), smachac::convert<std::optional<smachac::Pose>>(ud.hover_offset.unchecked())}, run.stop_for(places, state))) {
+      case ::smachac::MoveAlongState::Outcome::succeeded:
+        run.go(places, state, "succeeded", State::CHECK_PLACED);
+        goto CHECK_PLACED;
+      case ::smachac::MoveAlongState::Outcome::aborted:
+        return run.end_asked(places, state, "aborted", Outcome::aborted);
+      case ::smachac::MoveAlongState::Outcome::preempted:
+        return run.end_asked(places, state, "preempted", Outcome::aborted);
+      }
+      break;
+    case State::CHECK_PLACED: // place_block.yml:42
+    CHECK_PLACED:
+      run.enter(places, state);
+      switch (run.wrote(states.CHECK_PLACED.execute({ud.place_pose.unchecked()}, {run.out(ud.own_.placing_error)}), smachac::Output{"error", ud.own_.placing_error})) {
+      case ::smachac::CheckPlacedState::Outcome::succeeded:
+        return run.end(places, state, "succeeded", Outcome::succeeded);
+      case ::smachac::CheckPlacedState::Outcome::aborted:
+        return run.end(places, state, "aborted", Outcome::aborted);
+      }
+      break;
+    default:
+      smachac::never();
     }
+    run.no_outcome(places, state);
   }
   SMACHAC_CATCH { run.failed(places, state); }
 }
@@ -219,10 +233,14 @@ constexpr const char *name(Outcome outcome) {
 
 struct Userdata {
   smachac::Key<std::vector<double>> hover_joints;
-  smachac::Key<smachac::Pose> hover_offset;
   smachac::Key<std::optional<smachac::Pose>> offset;
-  smachac::Key<smachac::Pose> pick_pose;
   smachac::Key<double> width;
+};
+
+struct UserdataView {
+  Userdata &own_;
+  const smachac::Key<smachac::Pose> &hover_offset;
+  const smachac::Key<smachac::Pose> &pick_pose;
 };
 
 struct States {
@@ -265,89 +283,99 @@ inline constexpr smachac::Place places[] = {
 };
 
 template <class Run>
-[[gnu::always_inline]] inline Outcome execute(States &states, Userdata &ud, Run &run) {
+[[gnu::always_inline]] inline Outcome execute(States &states, const UserdataView &ud, Run &run) {
   State state = State::OPEN_GRIPPER;
   SMACHAC_TRY {
-    for (;;) {
+    switch (state) {
+    case State::OPEN_GRIPPER: // pick_block.yml:8
       run.enter(places, state);
-      switch (state) {
-      case State::OPEN_GRIPPER: // pick_block.yml:8
-        switch (run.wrote(states.OPEN_GRIPPER.execute({run.out(ud.width)}, run.stop_for(places, state)), smachac::Output{"width", ud.width})) {
-        case ::smachac::GripperState::Outcome::succeeded:
-          run.go(places, state, "succeeded", State::PLAN_HOVER);
-          continue;
-        case ::smachac::GripperState::Outcome::aborted:
-          return run.end_asked(places, state, "aborted", Outcome::aborted);
-        case ::smachac::GripperState::Outcome::preempted:
-          return run.end_asked(places, state, "preempted", Outcome::aborted);
-        }
-        break;
-      case State::PLAN_HOVER: // pick_block.yml:13
-        switch (run.wrote(states.PLAN_HOVER.execute({ud.pick_pose.get(), smachac::convert<std::optional<smachac::Pose>>(ud.hover_offset.get())}, {run.out(ud.hover_joints)}), smachac::Output{"joints", ud.hover_joints})) {
-        case ::smachac::PoseToJointPositionsState::Outcome::succeeded:
-          run.go(places, state, "succeeded", State::MOVE_TO_HOVER);
-          continue;
-        case ::smachac::PoseToJointPositionsState::Outcome::aborted:
-          return run.end(places, state, "aborted", Outcome::aborted);
-        }
-        break;
-      case State::MOVE_TO_HOVER: // pick_block.yml:19
-        switch (states.MOVE_TO_HOVER.execute({smachac::need(ud.hover_joints, "positions")}, run.stop_for(places, state))) {
-        case ::smachac::MoveToJointPositionsState::Outcome::succeeded:
-          run.go(places, state, "succeeded", State::MOVE_DOWN);
-          continue;
-        case ::smachac::MoveToJointPositionsState::Outcome::aborted:
-          return run.end_asked(places, state, "aborted", Outcome::aborted);
-        case ::smachac::MoveToJointPositionsState::Outcome::preempted:
-          return run.end_asked(places, state, "preempted", Outcome::aborted);
-        }
-        break;
-      case State::MOVE_DOWN: // pick_block.yml:24
-        switch (states.MOVE_DOWN.execute({ud.pick_pose.get(), smachac::maybe<std::optional<smachac::Pose>>(ud.offset)}, run.stop_for(places, state))) {
-        case ::smachac::MoveAlongState::Outcome::succeeded:
-          run.go(places, state, "succeeded", State::CLOSE_GRIPPER);
-          continue;
-        case ::smachac::MoveAlongState::Outcome::aborted:
-          return run.end_asked(places, state, "aborted", Outcome::aborted);
-        case ::smachac::MoveAlongState::Outcome::preempted:
-          return run.end_asked(places, state, "preempted", Outcome::aborted);
-        }
-        break;
-      case State::CLOSE_GRIPPER: // pick_block.yml:30
-        switch (run.wrote(states.CLOSE_GRIPPER.execute({run.out(ud.width)}, run.stop_for(places, state)), smachac::Output{"width", ud.width})) {
-        case ::smachac::GripperState::Outcome::succeeded:
-          run.go(places, state, "succeeded", State::LIFT);
-          continue;
-        case ::smachac::GripperState::Outcome::aborted:
-          return run.end_asked(places, state, "aborted", Outcome::aborted);
-        case ::smachac::GripperState::Outcome::preempted:
-          return run.end_asked(places, state, "preempted", Outcome::aborted);
-        }
-        break;
-      case State::LIFT: // pick_block.yml:35
-        switch (states.LIFT.execute({ud.pick_pose.get(), smachac::convert<std::optional<smachac::Pose>>(ud.hover_offset.get())}, run.stop_for(places, state))) {
-        case ::smachac::MoveAlongState::Outcome::succeeded:
-          run.go(places, state, "succeeded", State::CHECK_GRASP);
-          continue;
-        case ::smachac::MoveAlongState::Outcome::aborted:
-          return run.end_asked(places, state, "aborted", Outcome::aborted);
-        case ::smachac::MoveAlongState::Outcome::preempted:
-          return run.end_asked(places, state, "preempted", Outcome::aborted);
-        }
-        break;
-      case State::CHECK_GRASP: // pick_block.yml:41
-        switch (states.CHECK_GRASP.execute()) {
-        case ::smachac::CheckGraspState::Outcome::succeeded:
-          return run.end(places, state, "succeeded", Outcome::succeeded);
-        case ::smachac::CheckGraspState::Outcome::aborted:
-          return run.end(places, state, "aborted", Outcome::aborted);
-        }
-        break;
-      default:
-        smachac::never();
+      switch (run.wrote(states.OPEN_GRIPPER.execute({run.out(ud.own_.width)}, run.stop_for(places, state)), smachac::Output{"width", ud.own_.width})) {
+      case ::smachac::GripperState::Outcome::succeeded:
+        run.go(places, state, "succeeded", State::PLAN_HOVER);
+        goto PLAN_HOVER;
+      case ::smachac::GripperState::Outcome::aborted:
+        return run.end_asked(places, state, "aborted", Outcome::aborted);
+      case ::smachac::GripperState::Outcome::preempted:
+        return run.end_asked(places, state, "preempted", Outcome::aborted);
       }
-      run.no_outcome(places, state);
+      break;
+    case State::PLAN_HOVER: // pick_block.yml:13
+    PLAN_HOVER:
+      run.enter(places, state);
+      switch (run.wrote(states.PLAN_HOVER.execute({ud.pick_pose.unchecked(), smachac::convert<std::optional<smachac::Pose>>(ud.hover_offset.unchecked())}, {run.out(ud.own_.hover_joints)}), smachac::Output{"joints", ud.own_.hover_joints})) {
+      case ::smachac::PoseToJointPositionsState::Outcome::succeeded:
+        run.go(places, state, "succeeded", State::MOVE_TO_HOVER);
+        goto MOVE_TO_HOVER;
+      case ::smachac::PoseToJointPositionsState::Outcome::aborted:
+        return run.end(places, state, "aborted", Outcome::aborted);
+      }
+      break;
+    case State::MOVE_TO_HOVER: // pick_block.yml:19
+    MOVE_TO_HOVER:
+      run.enter(places, state);
+      switch (states.MOVE_TO_HOVER.execute({smachac::need(ud.own_.hover_joints, "positions")}, run.stop_for(places, state))) {
+      case ::smachac::MoveToJointPositionsState::Outcome::succeeded:
+        run.go(places, state, "succeeded", State::MOVE_DOWN);
+        goto MOVE_DOWN;
+      case ::smachac::MoveToJointPositionsState::Outcome::aborted:
+        return run.end_asked(places, state, "aborted", Outcome::aborted);
+      case ::smachac::MoveToJointPositionsState::Outcome::preempted:
+        return run.end_asked(places, state, "preempted", Outcome::aborted);
+      }
+      break;
+    case State::MOVE_DOWN: // pick_block.yml:24
+    MOVE_DOWN:
+      run.enter(places, state);
+      switch (states.MOVE_DOWN.execute({ud.pick_pose.unchecked(), smachac::maybe<std::optional<smachac::Pose>>(ud.own_.offset)}, run.stop_for(places, state))) {
+      case ::smachac::MoveAlongState::Outcome::succeeded:
+        run.go(places, state, "succeeded", State::CLOSE_GRIPPER);
+        goto CLOSE_GRIPPER;
+      case ::smachac::MoveAlongState::Outcome::aborted:
+        return run.end_asked(places, state, "aborted", Outcome::aborted);
+      case ::smachac::MoveAlongState::Outcome::preempted:
+        return run.end_asked(places, state, "preempted", Outcome::aborted);
+      }
+      break;
+    case State::CLOSE_GRIPPER: // pick_block.yml:30
+    CLOSE_GRIPPER:
+      run.enter(places, state);
+      switch (run.wrote(states.CLOSE_GRIPPER.execute({run.out(ud.own_.width)}, run.stop_for(places, state)), smachac::Output{"width", ud.own_.width})) {
+      case ::smachac::GripperState::Outcome::succeeded:
+        run.go(places, state, "succeeded", State::LIFT);
+        goto LIFT;
+      case ::smachac::GripperState::Outcome::aborted:
+        return run.end_asked(places, state, "aborted", Outcome::aborted);
+      case ::smachac::GripperState::Outcome::preempted:
+        return run.end_asked(places, state, "preempted", Outcome::aborted);
+      }
+      break;
+    case State::LIFT: // pick_block.yml:35
+    LIFT:
+      run.enter(places, state);
+      switch (states.LIFT.execute({ud.pick_pose.unchecked(), smachac::convert<std::optional<smachac::Pose>>(ud.hover_offset.unchecked())}, run.stop_for(places, state))) {
+      case ::smachac::MoveAlongState::Outcome::succeeded:
+        run.go(places, state, "succeeded", State::CHECK_GRASP);
+        goto CHECK_GRASP;
+      case ::smachac::MoveAlongState::Outcome::aborted:
+        return run.end_asked(places, state, "aborted", Outcome::aborted);
+      case ::smachac::MoveAlongState::Outcome::preempted:
+        return run.end_asked(places, state, "preempted", Outcome::aborted);
+      }
+      break;
+    case State::CHECK_GRASP: // pick_block.yml:41
+    CHECK_GRASP:
+      run.enter(places, state);
+      switch (states.CHECK_GRASP.execute()) {
+      case ::smachac::CheckGraspState::Outcome::succeeded:
+        return run.end(places, state, "succeeded", Outcome::succeeded);
+      case ::smachac::CheckGraspState::Outcome::aborted:
+        return run.end(places, state, "aborted", Outcome::aborted);
+      }
+      break;
+    default:
+      smachac::never();
     }
+    run.no_outcome(places, state);
   }
   SMACHAC_CATCH { run.failed(places, state); }
 }
@@ -431,108 +459,118 @@ template <class Run>
 [[gnu::always_inline]] inline Outcome execute(States &states, Userdata &ud, Run &run) {
   State state = State::LOAD_TABLE;
   SMACHAC_TRY {
-    for (;;) {
+    switch (state) {
+    case State::LOAD_TABLE: // main.yml:11
       run.enter(places, state);
-      switch (state) {
-      case State::LOAD_TABLE: // main.yml:11
-        switch (run.wrote(states.LOAD_TABLE.execute({ud.table_pose.get(), smachac::convert<std::optional<std::string>>(ud.table_frame.get())}, {run.out(ud.table_pose)}), smachac::Output{"pose", ud.table_pose})) {
-        case ::smachac::LoadModelState::Outcome::succeeded:
-          run.go(places, state, "succeeded", State::LOAD_BLOCK);
-          continue;
-        case ::smachac::LoadModelState::Outcome::aborted:
-          return run.end(places, state, "aborted", Outcome::aborted);
-        }
-        break;
-      case State::LOAD_BLOCK: // main.yml:20
-        switch (run.wrote(states.LOAD_BLOCK.execute({ud.block_pose.get(), smachac::maybe<std::optional<std::string>>(ud.reference_frame)}, {run.out(ud.block_pose)}), smachac::Output{"pose", ud.block_pose})) {
-        case ::smachac::LoadModelState::Outcome::succeeded:
-          run.go(places, state, "succeeded", State::LOAD_MARK);
-          continue;
-        case ::smachac::LoadModelState::Outcome::aborted:
-          return run.end(places, state, "aborted", Outcome::aborted);
-        }
-        break;
-      case State::LOAD_MARK: // main.yml:29
-        switch (run.wrote(states.LOAD_MARK.execute({ud.goal_pose.get(), smachac::maybe<std::optional<std::string>>(ud.reference_frame)}, {run.out(ud.goal_pose)}), smachac::Output{"pose", ud.goal_pose})) {
-        case ::smachac::LoadModelState::Outcome::succeeded:
-          run.go(places, state, "succeeded", State::MOVE_TO_START);
-          continue;
-        case ::smachac::LoadModelState::Outcome::aborted:
-          return run.end(places, state, "aborted", Outcome::aborted);
-        }
-        break;
-      case State::MOVE_TO_START: // main.yml:39
-        switch (states.MOVE_TO_START.execute({smachac::convert<std::vector<double>>(ud.home.get())}, run.stop_for(places, state))) {
-        case ::smachac::MoveToJointPositionsState::Outcome::succeeded:
-          run.go(places, state, "succeeded", State::PICK_BLOCK);
-          continue;
-        case ::smachac::MoveToJointPositionsState::Outcome::aborted:
-          return run.end_asked(places, state, "aborted", Outcome::aborted);
-        case ::smachac::MoveToJointPositionsState::Outcome::preempted:
-          return run.end_asked(places, state, "preempted", Outcome::aborted);
-        }
-        break;
-      case State::PICK_BLOCK: // main.yml:44
-        ud.PICK_BLOCK_.pick_pose.hold(ud.block_pose.get());
-        ud.PICK_BLOCK_.hover_offset.hold(ud.hover_offset.get());
-        switch (PICK_BLOCK::execute(states.PICK_BLOCK_, ud.PICK_BLOCK_, run)) {
-        case PICK_BLOCK::Outcome::succeeded:
-          run.go(places, state, "succeeded", State::PLACE_BLOCK);
-          continue;
-        case PICK_BLOCK::Outcome::aborted:
-          run.go(places, state, "aborted", State::LET_GO);
-          continue;
-        }
-        break;
-      case State::PLACE_BLOCK: // main.yml:50
-        ud.PLACE_BLOCK_.place_pose.hold(ud.goal_pose.get());
-        ud.PLACE_BLOCK_.hover_offset.hold(ud.hover_offset.get());
-        switch (PLACE_BLOCK::execute(states.PLACE_BLOCK_, ud.PLACE_BLOCK_, run)) {
-        case PLACE_BLOCK::Outcome::succeeded:
-          run.go(places, state, "succeeded", State::GO_HOME);
-          continue;
-        case PLACE_BLOCK::Outcome::aborted:
-          run.go(places, state, "aborted", State::LET_GO);
-          continue;
-        }
-        break;
-      case State::GO_HOME: // main.yml:56
-        switch (states.GO_HOME.execute({smachac::convert<std::vector<double>>(ud.home.get())}, run.stop_for(places, state))) {
-        case ::smachac::MoveToJointPositionsState::Outcome::succeeded:
-          return run.end_asked(places, state, "succeeded", Outcome::succeeded);
-        case ::smachac::MoveToJointPositionsState::Outcome::aborted:
-          return run.end_asked(places, state, "aborted", Outcome::aborted);
-        case ::smachac::MoveToJointPositionsState::Outcome::preempted:
-          return run.end_asked(places, state, "preempted", Outcome::aborted);
-        }
-        break;
-      case State::LET_GO: // main.yml:62
-        switch (run.wrote(states.LET_GO.execute({run.out(ud.gripper_width)}, run.stop_for(places, state)), smachac::Output{"width", ud.gripper_width})) {
-        case ::smachac::GripperState::Outcome::succeeded:
-          run.go(places, state, "succeeded", State::RETREAT);
-          continue;
-        case ::smachac::GripperState::Outcome::aborted:
-          run.go(places, state, "aborted", State::RETREAT);
-          continue;
-        case ::smachac::GripperState::Outcome::preempted:
-          return run.end_asked(places, state, "preempted", Outcome::aborted);
-        }
-        break;
-      case State::RETREAT: // main.yml:68
-        switch (states.RETREAT.execute({smachac::convert<std::vector<double>>(ud.home.get())}, run.stop_for(places, state))) {
-        case ::smachac::MoveToJointPositionsState::Outcome::succeeded:
-          return run.end_asked(places, state, "succeeded", Outcome::aborted);
-        case ::smachac::MoveToJointPositionsState::Outcome::aborted:
-          return run.end_asked(places, state, "aborted", Outcome::aborted);
-        case ::smachac::MoveToJointPositionsState::Outcome::preempted:
-          return run.end_asked(places, state, "preempted", Outcome::aborted);
-        }
-        break;
-      default:
-        smachac::never();
+      switch (run.wrote(states.LOAD_TABLE.execute({ud.table_pose.unchecked(), smachac::convert<std::optional<std::string>>(ud.table_frame.unchecked())}, {run.out(ud.table_pose)}), smachac::Output{"pose", ud.table_pose})) {
+      case ::smachac::LoadModelState::Outcome::succeeded:
+        run.go(places, state, "succeeded", State::LOAD_BLOCK);
+        goto LOAD_BLOCK;
+      case ::smachac::LoadModelState::Outcome::aborted:
+        return run.end(places, state, "aborted", Outcome::aborted);
       }
-      run.no_outcome(places, state);
+      break;
+    case State::LOAD_BLOCK: // main.yml:20
+    LOAD_BLOCK:
+      run.enter(places, state);
+      switch (run.wrote(states.LOAD_BLOCK.execute({ud.block_pose.unchecked(), smachac::maybe<std::optional<std::string>>(ud.reference_frame)}, {run.out(ud.block_pose)}), smachac::Output{"pose", ud.block_pose})) {
+      case ::smachac::LoadModelState::Outcome::succeeded:
+        run.go(places, state, "succeeded", State::LOAD_MARK);
+        goto LOAD_MARK;
+      case ::smachac::LoadModelState::Outcome::aborted:
+        return run.end(places, state, "aborted", Outcome::aborted);
+      }
+      break;
+    case State::LOAD_MARK: // main.yml:29
+    LOAD_MARK:
+      run.enter(places, state);
+      switch (run.wrote(states.LOAD_MARK.execute({ud.goal_pose.unchecked(), smachac::maybe<std::optional<std::string>>(ud.reference_frame)}, {run.out(ud.goal_pose)}), smachac::Output{"pose", ud.goal_pose})) {
+      case ::smachac::LoadModelState::Outcome::succeeded:
+        run.go(places, state, "succeeded", State::MOVE_TO_START);
+        goto MOVE_TO_START;
+      case ::smachac::LoadModelState::Outcome::aborted:
+        return run.end(places, state, "aborted", Outcome::aborted);
+      }
+      break;
+    case State::MOVE_TO_START: // main.yml:39
+    MOVE_TO_START:
+      run.enter(places, state);
+      switch (states.MOVE_TO_START.execute({smachac::convert<std::vector<double>>(ud.home.unchecked())}, run.stop_for(places, state))) {
+      case ::smachac::MoveToJointPositionsState::Outcome::succeeded:
+        run.go(places, state, "succeeded", State::PICK_BLOCK);
+        goto PICK_BLOCK;
+      case ::smachac::MoveToJointPositionsState::Outcome::aborted:
+        return run.end_asked(places, state, "aborted", Outcome::aborted);
+      case ::smachac::MoveToJointPositionsState::Outcome::preempted:
+        return run.end_asked(places, state, "preempted", Outcome::aborted);
+      }
+      break;
+    case State::PICK_BLOCK: // main.yml:44
+    PICK_BLOCK:
+      run.enter(places, state);
+      switch (PICK_BLOCK::execute(states.PICK_BLOCK_, {ud.PICK_BLOCK_, ud.hover_offset, ud.block_pose}, run)) {
+      case PICK_BLOCK::Outcome::succeeded:
+        run.go(places, state, "succeeded", State::PLACE_BLOCK);
+        goto PLACE_BLOCK;
+      case PICK_BLOCK::Outcome::aborted:
+        run.go(places, state, "aborted", State::LET_GO);
+        goto LET_GO;
+      }
+      break;
+    case State::PLACE_BLOCK: // main.yml:50
+    PLACE_BLOCK:
+      run.enter(places, state);
+      switch (PLACE_BLOCK::execute(states.PLACE_BLOCK_, {ud.PLACE_BLOCK_, ud.hover_offset, ud.goal_pose}, run)) {
+      case PLACE_BLOCK::Outcome::succeeded:
+        run.go(places, state, "succeeded", State::GO_HOME);
+        goto GO_HOME;
+      case PLACE_BLOCK::Outcome::aborted:
+        run.go(places, state, "aborted", State::LET_GO);
+        goto LET_GO;
+      }
+      break;
+    case State::GO_HOME: // main.yml:56
+    GO_HOME:
+      run.enter(places, state);
+      switch (states.GO_HOME.execute({smachac::convert<std::vector<double>>(ud.home.unchecked())}, run.stop_for(places, state))) {
+      case ::smachac::MoveToJointPositionsState::Outcome::succeeded:
+        return run.end_asked(places, state, "succeeded", Outcome::succeeded);
+      case ::smachac::MoveToJointPositionsState::Outcome::aborted:
+        return run.end_asked(places, state, "aborted", Outcome::aborted);
+      case ::smachac::MoveToJointPositionsState::Outcome::preempted:
+        return run.end_asked(places, state, "preempted", Outcome::aborted);
+      }
+      break;
+    case State::LET_GO: // main.yml:62
+    LET_GO:
+      run.enter(places, state);
+      switch (run.wrote(states.LET_GO.execute({run.out(ud.gripper_width)}, run.stop_for(places, state)), smachac::Output{"width", ud.gripper_width})) {
+      case ::smachac::GripperState::Outcome::succeeded:
+        run.go(places, state, "succeeded", State::RETREAT);
+        goto RETREAT;
+      case ::smachac::GripperState::Outcome::aborted:
+        run.go(places, state, "aborted", State::RETREAT);
+        goto RETREAT;
+      case ::smachac::GripperState::Outcome::preempted:
+        return run.end_asked(places, state, "preempted", Outcome::aborted);
+      }
+      break;
+    case State::RETREAT: // main.yml:68
+    RETREAT:
+      run.enter(places, state);
+      switch (states.RETREAT.execute({smachac::convert<std::vector<double>>(ud.home.unchecked())}, run.stop_for(places, state))) {
+      case ::smachac::MoveToJointPositionsState::Outcome::succeeded:
+        return run.end_asked(places, state, "succeeded", Outcome::aborted);
+      case ::smachac::MoveToJointPositionsState::Outcome::aborted:
+        return run.end_asked(places, state, "aborted", Outcome::aborted);
+      case ::smachac::MoveToJointPositionsState::Outcome::preempted:
+        return run.end_asked(places, state, "preempted", Outcome::aborted);
+      }
+      break;
+    default:
+      smachac::never();
     }
+    run.no_outcome(places, state);
   }
   SMACHAC_CATCH { run.failed(places, state); }
 }

@@ -70,11 +70,15 @@ constexpr const char *name(Outcome outcome) {
 
 struct Userdata {
   smachac::Key<std::vector<double>> hover_joints;
-  smachac::Key<smachac::Pose> hover_offset;
   smachac::Key<std::optional<smachac::Pose>> offset;
-  smachac::Key<smachac::Pose> place_pose;
   smachac::Key<double> placing_error;
   smachac::Key<double> width;
+};
+
+struct UserdataView {
+  Userdata &own_;
+  const smachac::Key<smachac::Pose> &hover_offset;
+  const smachac::Key<smachac::Pose> &place_pose;
 };
 
 struct States {
@@ -117,87 +121,97 @@ inline constexpr smachac::Place places[] = {
 };
 
 template <class Run>
-[[gnu::always_inline]] inline Outcome execute(States &states, Userdata &ud, Run &run) {
+inline Outcome execute(States &states, const UserdataView &ud, Run &run) {
   State state = State::PLAN_HOVER;
   SMACHAC_TRY {
-    for (;;) {
+    switch (state) {
+    case State::PLAN_HOVER: // place_block.yml:9
       run.enter(places, state);
-      switch (state) {
-      case State::PLAN_HOVER: // place_block.yml:9
-        switch (run.wrote(states.PLAN_HOVER.execute({smachac::need(ud.place_pose, "pose"), smachac::convert<std::optional<smachac::Pose>>(ud.hover_offset.get())}, {run.out(ud.hover_joints)}), smachac::Output{"joints", ud.hover_joints})) {
-        case ::smachac::PoseToJointPositionsState::Outcome::succeeded:
-          run.go(places, state, "succeeded", State::MOVE_TO_HOVER);
-          continue;
-        case ::smachac::PoseToJointPositionsState::Outcome::aborted:
-          return run.end(places, state, "aborted", Outcome::aborted);
-        }
-        break;
-      case State::MOVE_TO_HOVER: // place_block.yml:15
-        switch (states.MOVE_TO_HOVER.execute({smachac::need(ud.hover_joints, "positions")}, run.stop_for(places, state))) {
-        case ::smachac::MoveToJointPositionsState::Outcome::succeeded:
-          run.go(places, state, "succeeded", State::CHECK_GRASP);
-          continue;
-        case ::smachac::MoveToJointPositionsState::Outcome::aborted:
-          return run.end_asked(places, state, "aborted", Outcome::aborted);
-        case ::smachac::MoveToJointPositionsState::Outcome::preempted:
-          return run.end_asked(places, state, "preempted", Outcome::aborted);
-        }
-        break;
-      case State::CHECK_GRASP: // place_block.yml:20
-        switch (states.CHECK_GRASP.execute()) {
-        case ::smachac::CheckGraspState::Outcome::succeeded:
-          run.go(places, state, "succeeded", State::MOVE_DOWN);
-          continue;
-        case ::smachac::CheckGraspState::Outcome::aborted:
-          return run.end(places, state, "aborted", Outcome::aborted);
-        }
-        break;
-      case State::MOVE_DOWN: // place_block.yml:25
-        switch (states.MOVE_DOWN.execute({smachac::need(ud.place_pose, "pose"), smachac::maybe<std::optional<smachac::Pose>>(ud.offset)}, run.stop_for(places, state))) {
-        case ::smachac::MoveAlongState::Outcome::succeeded:
-          run.go(places, state, "succeeded", State::OPEN_GRIPPER);
-          continue;
-        case ::smachac::MoveAlongState::Outcome::aborted:
-          return run.end_asked(places, state, "aborted", Outcome::aborted);
-        case ::smachac::MoveAlongState::Outcome::preempted:
-          return run.end_asked(places, state, "preempted", Outcome::aborted);
-        }
-        break;
-      case State::OPEN_GRIPPER: // place_block.yml:31
-        switch (run.wrote(states.OPEN_GRIPPER.execute({run.out(ud.width)}, run.stop_for(places, state)), smachac::Output{"width", ud.width})) {
-        case ::smachac::GripperState::Outcome::succeeded:
-          run.go(places, state, "succeeded", State::MOVE_UP);
-          continue;
-        case ::smachac::GripperState::Outcome::aborted:
-          return run.end_asked(places, state, "aborted", Outcome::aborted);
-        case ::smachac::GripperState::Outcome::preempted:
-          return run.end_asked(places, state, "preempted", Outcome::aborted);
-        }
-        break;
-      case State::MOVE_UP: // place_block.yml:36
-        switch (states.MOVE_UP.execute({smachac::need(ud.place_pose, "pose"), smachac::convert<std::optional<smachac::Pose>>(ud.hover_offset.get())}, run.stop_for(places, state))) {
-        case ::smachac::MoveAlongState::Outcome::succeeded:
-          run.go(places, state, "succeeded", State::CHECK_PLACED);
-          continue;
-        case ::smachac::MoveAlongState::Outcome::aborted:
-          return run.end_asked(places, state, "aborted", Outcome::aborted);
-        case ::smachac::MoveAlongState::Outcome::preempted:
-          return run.end_asked(places, state, "preempted", Outcome::aborted);
-        }
-        break;
-      case State::CHECK_PLACED: // place_block.yml:42
-        switch (run.wrote(states.CHECK_PLACED.execute({smachac::need(ud.place_pose, "pose")}, {run.out(ud.placing_error)}), smachac::Output{"error", ud.placing_error})) {
-        case ::smachac::CheckPlacedState::Outcome::succeeded:
-          return run.end(places, state, "succeeded", Outcome::succeeded);
-        case ::smachac::CheckPlacedState::Outcome::aborted:
-          return run.end(places, state, "aborted", Outcome::aborted);
-        }
-        break;
-      default:
-        smachac::never();
+      switch (run.wrote(states.PLAN_HOVER.execute({smachac::need(ud.place_pose, "pose"), smachac::convert<std::optional<smachac::Pose>>(ud.hover_offset.unchecked())}, {run.out(ud.own_.hover_joints)}), smachac::Output{"joints", ud.own_.hover_joints})) {
+      case ::smachac::PoseToJointPositionsState::Outcome::succeeded:
+        run.go(places, state, "succeeded", State::MOVE_TO_HOVER);
+        goto MOVE_TO_HOVER;
+      case ::smachac::PoseToJointPositionsState::Outcome::aborted:
+        return run.end(places, state, "aborted", Outcome::aborted);
       }
-      run.no_outcome(places, state);
+      break;
+    case State::MOVE_TO_HOVER: // place_block.yml:15
+    MOVE_TO_HOVER:
+      run.enter(places, state);
+      switch (states.MOVE_TO_HOVER.execute({smachac::need(ud.own_.hover_joints, "positions")}, run.stop_for(places, state))) {
+      case ::smachac::MoveToJointPositionsState::Outcome::succeeded:
+        run.go(places, state, "succeeded", State::CHECK_GRASP);
+        goto CHECK_GRASP;
+      case ::smachac::MoveToJointPositionsState::Outcome::aborted:
+        return run.end_asked(places, state, "aborted", Outcome::aborted);
+      case ::smachac::MoveToJointPositionsState::Outcome::preempted:
+        return run.end_asked(places, state, "preempted", Outcome::aborted);
+      }
+      break;
+    case State::CHECK_GRASP: // place_block.yml:20
+    CHECK_GRASP:
+      run.enter(places, state);
+      switch (states.CHECK_GRASP.execute()) {
+      case ::smachac::CheckGraspState::Outcome::succeeded:
+        run.go(places, state, "succeeded", State::MOVE_DOWN);
+        goto MOVE_DOWN;
+      case ::smachac::CheckGraspState::Outcome::aborted:
+        return run.end(places, state, "aborted", Outcome::aborted);
+      }
+      break;
+    case State::MOVE_DOWN: // place_block.yml:25
+    MOVE_DOWN:
+      run.enter(places, state);
+      switch (states.MOVE_DOWN.execute({smachac::need(ud.place_pose, "pose"), smachac::maybe<std::optional<smachac::Pose>>(ud.own_.offset)}, run.stop_for(places, state))) {
+      case ::smachac::MoveAlongState::Outcome::succeeded:
+        run.go(places, state, "succeeded", State::OPEN_GRIPPER);
+        goto OPEN_GRIPPER;
+      case ::smachac::MoveAlongState::Outcome::aborted:
+        return run.end_asked(places, state, "aborted", Outcome::aborted);
+      case ::smachac::MoveAlongState::Outcome::preempted:
+        return run.end_asked(places, state, "preempted", Outcome::aborted);
+      }
+      break;
+    case State::OPEN_GRIPPER: // place_block.yml:31
+    OPEN_GRIPPER:
+      run.enter(places, state);
+      switch (run.wrote(states.OPEN_GRIPPER.execute({run.out(ud.own_.width)}, run.stop_for(places, state)), smachac::Output{"width", ud.own_.width})) {
+      case ::smachac::GripperState::Outcome::succeeded:
+        run.go(places, state, "succeeded", State::MOVE_UP);
+        goto MOVE_UP;
+      case ::smachac::GripperState::Outcome::aborted:
+        return run.end_asked(places, state, "aborted", Outcome::aborted);
+      case ::smachac::GripperState::Outcome::preempted:
+        return run.end_asked(places, state, "preempted", Outcome::aborted);
+      }
+      break;
+    case State::MOVE_UP: // place_block.yml:36
+    MOVE_UP:
+      run.enter(places, state);
+      switch (states.MOVE_UP.execute({smachac::need(ud.place_pose, "pose"), smachac::convert<std::optional<smachac::Pose>>(ud.hover_offset.unchecked())}, run.stop_for(places, state))) {
+      case ::smachac::MoveAlongState::Outcome::succeeded:
+        run.go(places, state, "succeeded", State::CHECK_PLACED);
+        goto CHECK_PLACED;
+      case ::smachac::MoveAlongState::Outcome::aborted:
+        return run.end_asked(places, state, "aborted", Outcome::aborted);
+      case ::smachac::MoveAlongState::Outcome::preempted:
+        return run.end_asked(places, state, "preempted", Outcome::aborted);
+      }
+      break;
+    case State::CHECK_PLACED: // place_block.yml:42
+    CHECK_PLACED:
+      run.enter(places, state);
+      switch (run.wrote(states.CHECK_PLACED.execute({smachac::need(ud.place_pose, "pose")}, {run.out(ud.own_.placing_error)}), smachac::Output{"error", ud.own_.placing_error})) {
+      case ::smachac::CheckPlacedState::Outcome::succeeded:
+        return run.end(places, state, "succeeded", Outcome::succeeded);
+      case ::smachac::CheckPlacedState::Outcome::aborted:
+        return run.end(places, state, "aborted", Outcome::aborted);
+      }
+      break;
+    default:
+      smachac::never();
     }
+    run.no_outcome(places, state);
   }
   SMACHAC_CATCH { run.failed(places, state); }
 }
@@ -219,10 +233,14 @@ constexpr const char *name(Outcome outcome) {
 
 struct Userdata {
   smachac::Key<std::vector<double>> hover_joints;
-  smachac::Key<smachac::Pose> hover_offset;
   smachac::Key<std::optional<smachac::Pose>> offset;
-  smachac::Key<smachac::Pose> pick_pose;
   smachac::Key<double> width;
+};
+
+struct UserdataView {
+  Userdata &own_;
+  const smachac::Key<smachac::Pose> &hover_offset;
+  const smachac::Key<smachac::Pose> &pick_pose;
 };
 
 struct States {
@@ -265,89 +283,99 @@ inline constexpr smachac::Place places[] = {
 };
 
 template <class Run>
-[[gnu::always_inline]] inline Outcome execute(States &states, Userdata &ud, Run &run) {
+inline Outcome execute(States &states, const UserdataView &ud, Run &run) {
   State state = State::OPEN_GRIPPER;
   SMACHAC_TRY {
-    for (;;) {
+    switch (state) {
+    case State::OPEN_GRIPPER: // pick_block.yml:8
       run.enter(places, state);
-      switch (state) {
-      case State::OPEN_GRIPPER: // pick_block.yml:8
-        switch (run.wrote(states.OPEN_GRIPPER.execute({run.out(ud.width)}, run.stop_for(places, state)), smachac::Output{"width", ud.width})) {
-        case ::smachac::GripperState::Outcome::succeeded:
-          run.go(places, state, "succeeded", State::PLAN_HOVER);
-          continue;
-        case ::smachac::GripperState::Outcome::aborted:
-          return run.end_asked(places, state, "aborted", Outcome::aborted);
-        case ::smachac::GripperState::Outcome::preempted:
-          return run.end_asked(places, state, "preempted", Outcome::aborted);
-        }
-        break;
-      case State::PLAN_HOVER: // pick_block.yml:13
-        switch (run.wrote(states.PLAN_HOVER.execute({ud.pick_pose.get(), smachac::convert<std::optional<smachac::Pose>>(ud.hover_offset.get())}, {run.out(ud.hover_joints)}), smachac::Output{"joints", ud.hover_joints})) {
-        case ::smachac::PoseToJointPositionsState::Outcome::succeeded:
-          run.go(places, state, "succeeded", State::MOVE_TO_HOVER);
-          continue;
-        case ::smachac::PoseToJointPositionsState::Outcome::aborted:
-          return run.end(places, state, "aborted", Outcome::aborted);
-        }
-        break;
-      case State::MOVE_TO_HOVER: // pick_block.yml:19
-        switch (states.MOVE_TO_HOVER.execute({smachac::need(ud.hover_joints, "positions")}, run.stop_for(places, state))) {
-        case ::smachac::MoveToJointPositionsState::Outcome::succeeded:
-          run.go(places, state, "succeeded", State::MOVE_DOWN);
-          continue;
-        case ::smachac::MoveToJointPositionsState::Outcome::aborted:
-          return run.end_asked(places, state, "aborted", Outcome::aborted);
-        case ::smachac::MoveToJointPositionsState::Outcome::preempted:
-          return run.end_asked(places, state, "preempted", Outcome::aborted);
-        }
-        break;
-      case State::MOVE_DOWN: // pick_block.yml:24
-        switch (states.MOVE_DOWN.execute({ud.pick_pose.get(), smachac::maybe<std::optional<smachac::Pose>>(ud.offset)}, run.stop_for(places, state))) {
-        case ::smachac::MoveAlongState::Outcome::succeeded:
-          run.go(places, state, "succeeded", State::CLOSE_GRIPPER);
-          continue;
-        case ::smachac::MoveAlongState::Outcome::aborted:
-          return run.end_asked(places, state, "aborted", Outcome::aborted);
-        case ::smachac::MoveAlongState::Outcome::preempted:
-          return run.end_asked(places, state, "preempted", Outcome::aborted);
-        }
-        break;
-      case State::CLOSE_GRIPPER: // pick_block.yml:30
-        switch (run.wrote(states.CLOSE_GRIPPER.execute({run.out(ud.width)}, run.stop_for(places, state)), smachac::Output{"width", ud.width})) {
-        case ::smachac::GripperState::Outcome::succeeded:
-          run.go(places, state, "succeeded", State::LIFT);
-          continue;
-        case ::smachac::GripperState::Outcome::aborted:
-          return run.end_asked(places, state, "aborted", Outcome::aborted);
-        case ::smachac::GripperState::Outcome::preempted:
-          return run.end_asked(places, state, "preempted", Outcome::aborted);
-        }
-        break;
-      case State::LIFT: // pick_block.yml:35
-        switch (states.LIFT.execute({ud.pick_pose.get(), smachac::convert<std::optional<smachac::Pose>>(ud.hover_offset.get())}, run.stop_for(places, state))) {
-        case ::smachac::MoveAlongState::Outcome::succeeded:
-          run.go(places, state, "succeeded", State::CHECK_GRASP);
-          continue;
-        case ::smachac::MoveAlongState::Outcome::aborted:
-          return run.end_asked(places, state, "aborted", Outcome::aborted);
-        case ::smachac::MoveAlongState::Outcome::preempted:
-          return run.end_asked(places, state, "preempted", Outcome::aborted);
-        }
-        break;
-      case State::CHECK_GRASP: // pick_block.yml:41
-        switch (states.CHECK_GRASP.execute()) {
-        case ::smachac::CheckGraspState::Outcome::succeeded:
-          return run.end(places, state, "succeeded", Outcome::succeeded);
-        case ::smachac::CheckGraspState::Outcome::aborted:
-          return run.end(places, state, "aborted", Outcome::aborted);
-        }
-        break;
-      default:
-        smachac::never();
+      switch (run.wrote(states.OPEN_GRIPPER.execute({run.out(ud.own_.width)}, run.stop_for(places, state)), smachac::Output{"width", ud.own_.width})) {
+      case ::smachac::GripperState::Outcome::succeeded:
+        run.go(places, state, "succeeded", State::PLAN_HOVER);
+        goto PLAN_HOVER;
+      case ::smachac::GripperState::Outcome::aborted:
+        return run.end_asked(places, state, "aborted", Outcome::aborted);
+      case ::smachac::GripperState::Outcome::preempted:
+        return run.end_asked(places, state, "preempted", Outcome::aborted);
       }
-      run.no_outcome(places, state);
+      break;
+    case State::PLAN_HOVER: // pick_block.yml:13
+    PLAN_HOVER:
+      run.enter(places, state);
+      switch (run.wrote(states.PLAN_HOVER.execute({ud.pick_pose.unchecked(), smachac::convert<std::optional<smachac::Pose>>(ud.hover_offset.unchecked())}, {run.out(ud.own_.hover_joints)}), smachac::Output{"joints", ud.own_.hover_joints})) {
+      case ::smachac::PoseToJointPositionsState::Outcome::succeeded:
+        run.go(places, state, "succeeded", State::MOVE_TO_HOVER);
+        goto MOVE_TO_HOVER;
+      case ::smachac::PoseToJointPositionsState::Outcome::aborted:
+        return run.end(places, state, "aborted", Outcome::aborted);
+      }
+      break;
+    case State::MOVE_TO_HOVER: // pick_block.yml:19
+    MOVE_TO_HOVER:
+      run.enter(places, state);
+      switch (states.MOVE_TO_HOVER.execute({smachac::need(ud.own_.hover_joints, "positions")}, run.stop_for(places, state))) {
+      case ::smachac::MoveToJointPositionsState::Outcome::succeeded:
+        run.go(places, state, "succeeded", State::MOVE_DOWN);
+        goto MOVE_DOWN;
+      case ::smachac::MoveToJointPositionsState::Outcome::aborted:
+        return run.end_asked(places, state, "aborted", Outcome::aborted);
+      case ::smachac::MoveToJointPositionsState::Outcome::preempted:
+        return run.end_asked(places, state, "preempted", Outcome::aborted);
+      }
+      break;
+    case State::MOVE_DOWN: // pick_block.yml:24
+    MOVE_DOWN:
+      run.enter(places, state);
+      switch (states.MOVE_DOWN.execute({ud.pick_pose.unchecked(), smachac::maybe<std::optional<smachac::Pose>>(ud.own_.offset)}, run.stop_for(places, state))) {
+      case ::smachac::MoveAlongState::Outcome::succeeded:
+        run.go(places, state, "succeeded", State::CLOSE_GRIPPER);
+        goto CLOSE_GRIPPER;
+      case ::smachac::MoveAlongState::Outcome::aborted:
+        return run.end_asked(places, state, "aborted", Outcome::aborted);
+      case ::smachac::MoveAlongState::Outcome::preempted:
+        return run.end_asked(places, state, "preempted", Outcome::aborted);
+      }
+      break;
+    case State::CLOSE_GRIPPER: // pick_block.yml:30
+    CLOSE_GRIPPER:
+      run.enter(places, state);
+      switch (run.wrote(states.CLOSE_GRIPPER.execute({run.out(ud.own_.width)}, run.stop_for(places, state)), smachac::Output{"width", ud.own_.width})) {
+      case ::smachac::GripperState::Outcome::succeeded:
+        run.go(places, state, "succeeded", State::LIFT);
+        goto LIFT;
+      case ::smachac::GripperState::Outcome::aborted:
+        return run.end_asked(places, state, "aborted", Outcome::aborted);
+      case ::smachac::GripperState::Outcome::preempted:
+        return run.end_asked(places, state, "preempted", Outcome::aborted);
+      }
+      break;
+    case State::LIFT: // pick_block.yml:35
+    LIFT:
+      run.enter(places, state);
+      switch (states.LIFT.execute({ud.pick_pose.unchecked(), smachac::convert<std::optional<smachac::Pose>>(ud.hover_offset.unchecked())}, run.stop_for(places, state))) {
+      case ::smachac::MoveAlongState::Outcome::succeeded:
+        run.go(places, state, "succeeded", State::CHECK_GRASP);
+        goto CHECK_GRASP;
+      case ::smachac::MoveAlongState::Outcome::aborted:
+        return run.end_asked(places, state, "aborted", Outcome::aborted);
+      case ::smachac::MoveAlongState::Outcome::preempted:
+        return run.end_asked(places, state, "preempted", Outcome::aborted);
+      }
+      break;
+    case State::CHECK_GRASP: // pick_block.yml:41
+    CHECK_GRASP:
+      run.enter(places, state);
+      switch (states.CHECK_GRASP.execute()) {
+      case ::smachac::CheckGraspState::Outcome::succeeded:
+        return run.end(places, state, "succeeded", Outcome::succeeded);
+      case ::smachac::CheckGraspState::Outcome::aborted:
+        return run.end(places, state, "aborted", Outcome::aborted);
+      }
+      break;
+    default:
+      smachac::never();
     }
+    run.no_outcome(places, state);
   }
   SMACHAC_CATCH { run.failed(places, state); }
 }
@@ -369,11 +397,15 @@ constexpr const char *name(Outcome outcome) {
 
 struct Userdata {
   smachac::Key<std::vector<double>> hover_joints;
-  smachac::Key<smachac::Pose> hover_offset;
   smachac::Key<std::optional<smachac::Pose>> offset;
-  smachac::Key<smachac::Pose> place_pose;
   smachac::Key<double> placing_error;
   smachac::Key<double> width;
+};
+
+struct UserdataView {
+  Userdata &own_;
+  const smachac::Key<smachac::Pose> &hover_offset;
+  const smachac::Key<smachac::Pose> &place_pose;
 };
 
 struct States {
@@ -416,87 +448,97 @@ inline constexpr smachac::Place places[] = {
 };
 
 template <class Run>
-[[gnu::always_inline]] inline Outcome execute(States &states, Userdata &ud, Run &run) {
+inline Outcome execute(States &states, const UserdataView &ud, Run &run) {
   State state = State::PLAN_HOVER;
   SMACHAC_TRY {
-    for (;;) {
+    switch (state) {
+    case State::PLAN_HOVER: // place_block.yml:9
       run.enter(places, state);
-      switch (state) {
-      case State::PLAN_HOVER: // place_block.yml:9
-        switch (run.wrote(states.PLAN_HOVER.execute({ud.place_pose.get(), smachac::convert<std::optional<smachac::Pose>>(ud.hover_offset.get())}, {run.out(ud.hover_joints)}), smachac::Output{"joints", ud.hover_joints})) {
-        case ::smachac::PoseToJointPositionsState::Outcome::succeeded:
-          run.go(places, state, "succeeded", State::MOVE_TO_HOVER);
-          continue;
-        case ::smachac::PoseToJointPositionsState::Outcome::aborted:
-          return run.end(places, state, "aborted", Outcome::aborted);
-        }
-        break;
-      case State::MOVE_TO_HOVER: // place_block.yml:15
-        switch (states.MOVE_TO_HOVER.execute({smachac::need(ud.hover_joints, "positions")}, run.stop_for(places, state))) {
-        case ::smachac::MoveToJointPositionsState::Outcome::succeeded:
-          run.go(places, state, "succeeded", State::CHECK_GRASP);
-          continue;
-        case ::smachac::MoveToJointPositionsState::Outcome::aborted:
-          return run.end_asked(places, state, "aborted", Outcome::aborted);
-        case ::smachac::MoveToJointPositionsState::Outcome::preempted:
-          return run.end_asked(places, state, "preempted", Outcome::aborted);
-        }
-        break;
-      case State::CHECK_GRASP: // place_block.yml:20
-        switch (states.CHECK_GRASP.execute()) {
-        case ::smachac::CheckGraspState::Outcome::succeeded:
-          run.go(places, state, "succeeded", State::MOVE_DOWN);
-          continue;
-        case ::smachac::CheckGraspState::Outcome::aborted:
-          return run.end(places, state, "aborted", Outcome::aborted);
-        }
-        break;
-      case State::MOVE_DOWN: // place_block.yml:25
-        switch (states.MOVE_DOWN.execute({ud.place_pose.get(), smachac::maybe<std::optional<smachac::Pose>>(ud.offset)}, run.stop_for(places, state))) {
-        case ::smachac::MoveAlongState::Outcome::succeeded:
-          run.go(places, state, "succeeded", State::OPEN_GRIPPER);
-          continue;
-        case ::smachac::MoveAlongState::Outcome::aborted:
-          return run.end_asked(places, state, "aborted", Outcome::aborted);
-        case ::smachac::MoveAlongState::Outcome::preempted:
-          return run.end_asked(places, state, "preempted", Outcome::aborted);
-        }
-        break;
-      case State::OPEN_GRIPPER: // place_block.yml:31
-        switch (run.wrote(states.OPEN_GRIPPER.execute({run.out(ud.width)}, run.stop_for(places, state)), smachac::Output{"width", ud.width})) {
-        case ::smachac::GripperState::Outcome::succeeded:
-          run.go(places, state, "succeeded", State::MOVE_UP);
-          continue;
-        case ::smachac::GripperState::Outcome::aborted:
-          return run.end_asked(places, state, "aborted", Outcome::aborted);
-        case ::smachac::GripperState::Outcome::preempted:
-          return run.end_asked(places, state, "preempted", Outcome::aborted);
-        }
-        break;
-      case State::MOVE_UP: // place_block.yml:36
-        switch (states.MOVE_UP.execute({ud.place_pose.get(), smachac::convert<std::optional<smachac::Pose>>(ud.hover_offset.get())}, run.stop_for(places, state))) {
-        case ::smachac::MoveAlongState::Outcome::succeeded:
-          run.go(places, state, "succeeded", State::CHECK_PLACED);
-          continue;
-        case ::smachac::MoveAlongState::Outcome::aborted:
-          return run.end_asked(places, state, "aborted", Outcome::aborted);
-        case ::smachac::MoveAlongState::Outcome::preempted:
-          return run.end_asked(places, state, "preempted", Outcome::aborted);
-        }
-        break;
-      case State::CHECK_PLACED: // place_block.yml:42
-        switch (run.wrote(states.CHECK_PLACED.execute({ud.place_pose.get()}, {run.out(ud.placing_error)}), smachac::Output{"error", ud.placing_error})) {
-        case ::smachac::CheckPlacedState::Outcome::succeeded:
-          return run.end(places, state, "succeeded", Outcome::succeeded);
-        case ::smachac::CheckPlacedState::Outcome::aborted:
-          return run.end(places, state, "aborted", Outcome::aborted);
-        }
-        break;
-      default:
-        smachac::never();
+      switch (run.wrote(states.PLAN_HOVER.execute({ud.place_pose.unchecked(), smachac::convert<std::optional<smachac::Pose>>(ud.hover_offset.unchecked())}, {run.out(ud.own_.hover_joints)}), smachac::Output{"joints", ud.own_.hover_joints})) {
+      case ::smachac::PoseToJointPositionsState::Outcome::succeeded:
+        run.go(places, state, "succeeded", State::MOVE_TO_HOVER);
+        goto MOVE_TO_HOVER;
+      case ::smachac::PoseToJointPositionsState::Outcome::aborted:
+        return run.end(places, state, "aborted", Outcome::aborted);
       }
-      run.no_outcome(places, state);
+      break;
+    case State::MOVE_TO_HOVER: // place_block.yml:15
+    MOVE_TO_HOVER:
+      run.enter(places, state);
+      switch (states.MOVE_TO_HOVER.execute({smachac::need(ud.own_.hover_joints, "positions")}, run.stop_for(places, state))) {
+      case ::smachac::MoveToJointPositionsState::Outcome::succeeded:
+        run.go(places, state, "succeeded", State::CHECK_GRASP);
+        goto CHECK_GRASP;
+      case ::smachac::MoveToJointPositionsState::Outcome::aborted:
+        return run.end_asked(places, state, "aborted", Outcome::aborted);
+      case ::smachac::MoveToJointPositionsState::Outcome::preempted:
+        return run.end_asked(places, state, "preempted", Outcome::aborted);
+      }
+      break;
+    case State::CHECK_GRASP: // place_block.yml:20
+    CHECK_GRASP:
+      run.enter(places, state);
+      switch (states.CHECK_GRASP.execute()) {
+      case ::smachac::CheckGraspState::Outcome::succeeded:
+        run.go(places, state, "succeeded", State::MOVE_DOWN);
+        goto MOVE_DOWN;
+      case ::smachac::CheckGraspState::Outcome::aborted:
+        return run.end(places, state, "aborted", Outcome::aborted);
+      }
+      break;
+    case State::MOVE_DOWN: // place_block.yml:25
+    MOVE_DOWN:
+      run.enter(places, state);
+      switch (states.MOVE_DOWN.execute({ud.place_pose.unchecked(), smachac::maybe<std::optional<smachac::Pose>>(ud.own_.offset)}, run.stop_for(places, state))) {
+      case ::smachac::MoveAlongState::Outcome::succeeded:
+        run.go(places, state, "succeeded", State::OPEN_GRIPPER);
+        goto OPEN_GRIPPER;
+      case ::smachac::MoveAlongState::Outcome::aborted:
+        return run.end_asked(places, state, "aborted", Outcome::aborted);
+      case ::smachac::MoveAlongState::Outcome::preempted:
+        return run.end_asked(places, state, "preempted", Outcome::aborted);
+      }
+      break;
+    case State::OPEN_GRIPPER: // place_block.yml:31
+    OPEN_GRIPPER:
+      run.enter(places, state);
+      switch (run.wrote(states.OPEN_GRIPPER.execute({run.out(ud.own_.width)}, run.stop_for(places, state)), smachac::Output{"width", ud.own_.width})) {
+      case ::smachac::GripperState::Outcome::succeeded:
+        run.go(places, state, "succeeded", State::MOVE_UP);
+        goto MOVE_UP;
+      case ::smachac::GripperState::Outcome::aborted:
+        return run.end_asked(places, state, "aborted", Outcome::aborted);
+      case ::smachac::GripperState::Outcome::preempted:
+        return run.end_asked(places, state, "preempted", Outcome::aborted);
+      }
+      break;
+    case State::MOVE_UP: // place_block.yml:36
+    MOVE_UP:
+      run.enter(places, state);
+      switch (states.MOVE_UP.execute({ud.place_pose.unchecked(), smachac::convert<std::optional<smachac::Pose>>(ud.hover_offset.unchecked())}, run.stop_for(places, state))) {
+      case ::smachac::MoveAlongState::Outcome::succeeded:
+        run.go(places, state, "succeeded", State::CHECK_PLACED);
+        goto CHECK_PLACED;
+      case ::smachac::MoveAlongState::Outcome::aborted:
+        return run.end_asked(places, state, "aborted", Outcome::aborted);
+      case ::smachac::MoveAlongState::Outcome::preempted:
+        return run.end_asked(places, state, "preempted", Outcome::aborted);
+      }
+      break;
+    case State::CHECK_PLACED: // place_block.yml:42
+    CHECK_PLACED:
+      run.enter(places, state);
+      switch (run.wrote(states.CHECK_PLACED.execute({ud.place_pose.unchecked()}, {run.out(ud.own_.placing_error)}), smachac::Output{"error", ud.own_.placing_error})) {
+      case ::smachac::CheckPlacedState::Outcome::succeeded:
+        return run.end(places, state, "succeeded", Outcome::succeeded);
+      case ::smachac::CheckPlacedState::Outcome::aborted:
+        return run.end(places, state, "aborted", Outcome::aborted);
+      }
+      break;
+    default:
+      smachac::never();
     }
+    run.no_outcome(places, state);
   }
   SMACHAC_CATCH { run.failed(places, state); }
 }
@@ -518,10 +560,14 @@ constexpr const char *name(Outcome outcome) {
 
 struct Userdata {
   smachac::Key<std::vector<double>> hover_joints;
-  smachac::Key<smachac::Pose> hover_offset;
   smachac::Key<std::optional<smachac::Pose>> offset;
-  smachac::Key<smachac::Pose> pick_pose;
   smachac::Key<double> width;
+};
+
+struct UserdataView {
+  Userdata &own_;
+  const smachac::Key<smachac::Pose> &hover_offset;
+  const smachac::Key<smachac::Pose> &pick_pose;
 };
 
 struct States {
@@ -564,89 +610,99 @@ inline constexpr smachac::Place places[] = {
 };
 
 template <class Run>
-[[gnu::always_inline]] inline Outcome execute(States &states, Userdata &ud, Run &run) {
+inline Outcome execute(States &states, const UserdataView &ud, Run &run) {
   State state = State::OPEN_GRIPPER;
   SMACHAC_TRY {
-    for (;;) {
+    switch (state) {
+    case State::OPEN_GRIPPER: // pick_block.yml:8
       run.enter(places, state);
-      switch (state) {
-      case State::OPEN_GRIPPER: // pick_block.yml:8
-        switch (run.wrote(states.OPEN_GRIPPER.execute({run.out(ud.width)}, run.stop_for(places, state)), smachac::Output{"width", ud.width})) {
-        case ::smachac::GripperState::Outcome::succeeded:
-          run.go(places, state, "succeeded", State::PLAN_HOVER);
-          continue;
-        case ::smachac::GripperState::Outcome::aborted:
-          return run.end_asked(places, state, "aborted", Outcome::aborted);
-        case ::smachac::GripperState::Outcome::preempted:
-          return run.end_asked(places, state, "preempted", Outcome::aborted);
-        }
-        break;
-      case State::PLAN_HOVER: // pick_block.yml:13
-        switch (run.wrote(states.PLAN_HOVER.execute({ud.pick_pose.get(), smachac::convert<std::optional<smachac::Pose>>(ud.hover_offset.get())}, {run.out(ud.hover_joints)}), smachac::Output{"joints", ud.hover_joints})) {
-        case ::smachac::PoseToJointPositionsState::Outcome::succeeded:
-          run.go(places, state, "succeeded", State::MOVE_TO_HOVER);
-          continue;
-        case ::smachac::PoseToJointPositionsState::Outcome::aborted:
-          return run.end(places, state, "aborted", Outcome::aborted);
-        }
-        break;
-      case State::MOVE_TO_HOVER: // pick_block.yml:19
-        switch (states.MOVE_TO_HOVER.execute({smachac::need(ud.hover_joints, "positions")}, run.stop_for(places, state))) {
-        case ::smachac::MoveToJointPositionsState::Outcome::succeeded:
-          run.go(places, state, "succeeded", State::MOVE_DOWN);
-          continue;
-        case ::smachac::MoveToJointPositionsState::Outcome::aborted:
-          return run.end_asked(places, state, "aborted", Outcome::aborted);
-        case ::smachac::MoveToJointPositionsState::Outcome::preempted:
-          return run.end_asked(places, state, "preempted", Outcome::aborted);
-        }
-        break;
-      case State::MOVE_DOWN: // pick_block.yml:24
-        switch (states.MOVE_DOWN.execute({ud.pick_pose.get(), smachac::maybe<std::optional<smachac::Pose>>(ud.offset)}, run.stop_for(places, state))) {
-        case ::smachac::MoveAlongState::Outcome::succeeded:
-          run.go(places, state, "succeeded", State::CLOSE_GRIPPER);
-          continue;
-        case ::smachac::MoveAlongState::Outcome::aborted:
-          return run.end_asked(places, state, "aborted", Outcome::aborted);
-        case ::smachac::MoveAlongState::Outcome::preempted:
-          return run.end_asked(places, state, "preempted", Outcome::aborted);
-        }
-        break;
-      case State::CLOSE_GRIPPER: // pick_block.yml:30
-        switch (run.wrote(states.CLOSE_GRIPPER.execute({run.out(ud.width)}, run.stop_for(places, state)), smachac::Output{"width", ud.width})) {
-        case ::smachac::GripperState::Outcome::succeeded:
-          run.go(places, state, "succeeded", State::LIFT);
-          continue;
-        case ::smachac::GripperState::Outcome::aborted:
-          return run.end_asked(places, state, "aborted", Outcome::aborted);
-        case ::smachac::GripperState::Outcome::preempted:
-          return run.end_asked(places, state, "preempted", Outcome::aborted);
-        }
-        break;
-      case State::LIFT: // pick_block.yml:35
-        switch (states.LIFT.execute({ud.pick_pose.get(), smachac::convert<std::optional<smachac::Pose>>(ud.hover_offset.get())}, run.stop_for(places, state))) {
-        case ::smachac::MoveAlongState::Outcome::succeeded:
-          run.go(places, state, "succeeded", State::CHECK_GRASP);
-          continue;
-        case ::smachac::MoveAlongState::Outcome::aborted:
-          return run.end_asked(places, state, "aborted", Outcome::aborted);
-        case ::smachac::MoveAlongState::Outcome::preempted:
-          return run.end_asked(places, state, "preempted", Outcome::aborted);
-        }
-        break;
-      case State::CHECK_GRASP: // pick_block.yml:41
-        switch (states.CHECK_GRASP.execute()) {
-        case ::smachac::CheckGraspState::Outcome::succeeded:
-          return run.end(places, state, "succeeded", Outcome::succeeded);
-        case ::smachac::CheckGraspState::Outcome::aborted:
-          return run.end(places, state, "aborted", Outcome::aborted);
-        }
-        break;
-      default:
-        smachac::never();
+      switch (run.wrote(states.OPEN_GRIPPER.execute({run.out(ud.own_.width)}, run.stop_for(places, state)), smachac::Output{"width", ud.own_.width})) {
+      case ::smachac::GripperState::Outcome::succeeded:
+        run.go(places, state, "succeeded", State::PLAN_HOVER);
+        goto PLAN_HOVER;
+      case ::smachac::GripperState::Outcome::aborted:
+        return run.end_asked(places, state, "aborted", Outcome::aborted);
+      case ::smachac::GripperState::Outcome::preempted:
+        return run.end_asked(places, state, "preempted", Outcome::aborted);
       }
-      run.no_outcome(places, state);
+      break;
+    case State::PLAN_HOVER: // pick_block.yml:13
+    PLAN_HOVER:
+      run.enter(places, state);
+      switch (run.wrote(states.PLAN_HOVER.execute({ud.pick_pose.unchecked(), smachac::convert<std::optional<smachac::Pose>>(ud.hover_offset.unchecked())}, {run.out(ud.own_.hover_joints)}), smachac::Output{"joints", ud.own_.hover_joints})) {
+      case ::smachac::PoseToJointPositionsState::Outcome::succeeded:
+        run.go(places, state, "succeeded", State::MOVE_TO_HOVER);
+        goto MOVE_TO_HOVER;
+      case ::smachac::PoseToJointPositionsState::Outcome::aborted:
+        return run.end(places, state, "aborted", Outcome::aborted);
+      }
+      break;
+    case State::MOVE_TO_HOVER: // pick_block.yml:19
+    MOVE_TO_HOVER:
+      run.enter(places, state);
+      switch (states.MOVE_TO_HOVER.execute({smachac::need(ud.own_.hover_joints, "positions")}, run.stop_for(places, state))) {
+      case ::smachac::MoveToJointPositionsState::Outcome::succeeded:
+        run.go(places, state, "succeeded", State::MOVE_DOWN);
+        goto MOVE_DOWN;
+      case ::smachac::MoveToJointPositionsState::Outcome::aborted:
+        return run.end_asked(places, state, "aborted", Outcome::aborted);
+      case ::smachac::MoveToJointPositionsState::Outcome::preempted:
+        return run.end_asked(places, state, "preempted", Outcome::aborted);
+      }
+      break;
+    case State::MOVE_DOWN: // pick_block.yml:24
+    MOVE_DOWN:
+      run.enter(places, state);
+      switch (states.MOVE_DOWN.execute({ud.pick_pose.unchecked(), smachac::maybe<std::optional<smachac::Pose>>(ud.own_.offset)}, run.stop_for(places, state))) {
+      case ::smachac::MoveAlongState::Outcome::succeeded:
+        run.go(places, state, "succeeded", State::CLOSE_GRIPPER);
+        goto CLOSE_GRIPPER;
+      case ::smachac::MoveAlongState::Outcome::aborted:
+        return run.end_asked(places, state, "aborted", Outcome::aborted);
+      case ::smachac::MoveAlongState::Outcome::preempted:
+        return run.end_asked(places, state, "preempted", Outcome::aborted);
+      }
+      break;
+    case State::CLOSE_GRIPPER: // pick_block.yml:30
+    CLOSE_GRIPPER:
+      run.enter(places, state);
+      switch (run.wrote(states.CLOSE_GRIPPER.execute({run.out(ud.own_.width)}, run.stop_for(places, state)), smachac::Output{"width", ud.own_.width})) {
+      case ::smachac::GripperState::Outcome::succeeded:
+        run.go(places, state, "succeeded", State::LIFT);
+        goto LIFT;
+      case ::smachac::GripperState::Outcome::aborted:
+        return run.end_asked(places, state, "aborted", Outcome::aborted);
+      case ::smachac::GripperState::Outcome::preempted:
+        return run.end_asked(places, state, "preempted", Outcome::aborted);
+      }
+      break;
+    case State::LIFT: // pick_block.yml:35
+    LIFT:
+      run.enter(places, state);
+      switch (states.LIFT.execute({ud.pick_pose.unchecked(), smachac::convert<std::optional<smachac::Pose>>(ud.hover_offset.unchecked())}, run.stop_for(places, state))) {
+      case ::smachac::MoveAlongState::Outcome::succeeded:
+        run.go(places, state, "succeeded", State::CHECK_GRASP);
+        goto CHECK_GRASP;
+      case ::smachac::MoveAlongState::Outcome::aborted:
+        return run.end_asked(places, state, "aborted", Outcome::aborted);
+      case ::smachac::MoveAlongState::Outcome::preempted:
+        return run.end_asked(places, state, "preempted", Outcome::aborted);
+      }
+      break;
+    case State::CHECK_GRASP: // pick_block.yml:41
+    CHECK_GRASP:
+      run.enter(places, state);
+      switch (states.CHECK_GRASP.execute()) {
+      case ::smachac::CheckGraspState::Outcome::succeeded:
+        return run.end(places, state, "succeeded", Outcome::succeeded);
+      case ::smachac::CheckGraspState::Outcome::aborted:
+        return run.end(places, state, "aborted", Outcome::aborted);
+      }
+      break;
+    default:
+      smachac::never();
     }
+    run.no_outcome(places, state);
   }
   SMACHAC_CATCH { run.failed(places, state); }
 }
@@ -694,7 +750,7 @@ struct PLAN_STACK {
 
   template <class Run>
   Outcome execute(Userdata &ud, Run &run) {
-    run.write("top_pose", ud.top_pose, smachac::Pose{smachac::Point{ud.goal_pose.get().position.x, ud.goal_pose.get().position.y, ud.goal_pose.get().position.z + 0.05}, ud.goal_pose.get().orientation});
+    run.write("top_pose", ud.top_pose, smachac::Pose{smachac::Point{ud.goal_pose.unchecked().position.x, ud.goal_pose.unchecked().position.y, ud.goal_pose.unchecked().position.z + 0.05}, ud.goal_pose.unchecked().orientation});
     return Outcome::succeeded;
   }
 };
@@ -773,158 +829,174 @@ template <class Run>
 inline Outcome execute(States &states, Userdata &ud, Run &run) {
   State state = State::LOAD_TABLE;
   SMACHAC_TRY {
-    for (;;) {
+    switch (state) {
+    case State::LOAD_TABLE: // main.yml:11
       run.enter(places, state);
-      switch (state) {
-      case State::LOAD_TABLE: // main.yml:11
-        switch (run.wrote(states.LOAD_TABLE.execute({ud.table_pose.get(), smachac::convert<std::optional<std::string>>(ud.table_frame.get())}, {run.out(ud.table_pose)}), smachac::Output{"pose", ud.table_pose})) {
-        case ::smachac::LoadModelState::Outcome::succeeded:
-          run.go(places, state, "succeeded", State::LOAD_FIRST);
-          continue;
-        case ::smachac::LoadModelState::Outcome::aborted:
-          return run.end(places, state, "aborted", Outcome::aborted);
-        }
-        break;
-      case State::LOAD_FIRST: // main.yml:20
-        switch (run.wrote(states.LOAD_FIRST.execute({ud.first_pose.get(), smachac::maybe<std::optional<std::string>>(ud.reference_frame)}, {run.out(ud.first_pose)}), smachac::Output{"pose", ud.first_pose})) {
-        case ::smachac::LoadModelState::Outcome::succeeded:
-          run.go(places, state, "succeeded", State::LOAD_SECOND);
-          continue;
-        case ::smachac::LoadModelState::Outcome::aborted:
-          return run.end(places, state, "aborted", Outcome::aborted);
-        }
-        break;
-      case State::LOAD_SECOND: // main.yml:30
-        switch (run.wrote(states.LOAD_SECOND.execute({ud.second_pose.get(), smachac::maybe<std::optional<std::string>>(ud.reference_frame)}, {run.out(ud.second_pose)}), smachac::Output{"pose", ud.second_pose})) {
-        case ::smachac::LoadModelState::Outcome::succeeded:
-          run.go(places, state, "succeeded", State::LOAD_MARK);
-          continue;
-        case ::smachac::LoadModelState::Outcome::aborted:
-          return run.end(places, state, "aborted", Outcome::aborted);
-        }
-        break;
-      case State::LOAD_MARK: // main.yml:41
-        switch (run.wrote(states.LOAD_MARK.execute({ud.goal_pose.get(), smachac::maybe<std::optional<std::string>>(ud.reference_frame)}, {run.out(ud.goal_pose)}), smachac::Output{"pose", ud.goal_pose})) {
-        case ::smachac::LoadModelState::Outcome::succeeded:
-          run.go(places, state, "succeeded", State::PLAN_STACK);
-          continue;
-        case ::smachac::LoadModelState::Outcome::aborted:
-          return run.end(places, state, "aborted", Outcome::aborted);
-        }
-        break;
-      case State::PLAN_STACK: // main.yml:51
-        switch (states.PLAN_STACK.execute(ud, run)) {
-        case types::PLAN_STACK::Outcome::succeeded:
-          run.go(places, state, "succeeded", State::MOVE_TO_START);
-          continue;
-        }
-        break;
-      case State::MOVE_TO_START: // main.yml:60
-        switch (states.MOVE_TO_START.execute({smachac::convert<std::vector<double>>(ud.home.get())}, run.stop_for(places, state))) {
-        case ::smachac::MoveToJointPositionsState::Outcome::succeeded:
-          run.go(places, state, "succeeded", State::PICK_FIRST);
-          continue;
-        case ::smachac::MoveToJointPositionsState::Outcome::aborted:
-          return run.end_asked(places, state, "aborted", Outcome::aborted);
-        case ::smachac::MoveToJointPositionsState::Outcome::preempted:
-          return run.end_asked(places, state, "preempted", Outcome::aborted);
-        }
-        break;
-      case State::PICK_FIRST: // main.yml:65
-        ud.PICK_FIRST_.pick_pose.hold(ud.first_pose.get());
-        ud.PICK_FIRST_.hover_offset.hold(ud.hover_offset.get());
-        switch (PICK_FIRST::execute(states.PICK_FIRST_, ud.PICK_FIRST_, run)) {
-        case PICK_FIRST::Outcome::succeeded:
-          run.go(places, state, "succeeded", State::PLACE_FIRST);
-          continue;
-        case PICK_FIRST::Outcome::aborted:
-          run.go(places, state, "aborted", State::LET_GO);
-          continue;
-        }
-        break;
-      case State::PLACE_FIRST: // main.yml:71
-        ud.PLACE_FIRST_.place_pose.hold(ud.goal_pose.get());
-        ud.PLACE_FIRST_.hover_offset.hold(ud.hover_offset.get());
-        switch (PLACE_FIRST::execute(states.PLACE_FIRST_, ud.PLACE_FIRST_, run)) {
-        case PLACE_FIRST::Outcome::succeeded:
-          run.go(places, state, "succeeded", State::PICK_SECOND);
-          continue;
-        case PLACE_FIRST::Outcome::aborted:
-          run.go(places, state, "aborted", State::LET_GO);
-          continue;
-        }
-        break;
-      case State::PICK_SECOND: // main.yml:77
-        ud.PICK_SECOND_.pick_pose.hold(ud.second_pose.get());
-        ud.PICK_SECOND_.hover_offset.hold(ud.hover_offset.get());
-        switch (PICK_SECOND::execute(states.PICK_SECOND_, ud.PICK_SECOND_, run)) {
-        case PICK_SECOND::Outcome::succeeded:
-          run.go(places, state, "succeeded", State::PLACE_SECOND);
-          continue;
-        case PICK_SECOND::Outcome::aborted:
-          run.go(places, state, "aborted", State::LET_GO);
-          continue;
-        }
-        break;
-      case State::PLACE_SECOND: // main.yml:83
-        ud.PLACE_SECOND_.place_pose.take(ud.top_pose);
-        ud.PLACE_SECOND_.hover_offset.hold(ud.hover_offset.get());
-        switch (PLACE_SECOND::execute(states.PLACE_SECOND_, ud.PLACE_SECOND_, run)) {
-        case PLACE_SECOND::Outcome::succeeded:
-          run.go(places, state, "succeeded", State::CHECK_FIRST);
-          continue;
-        case PLACE_SECOND::Outcome::aborted:
-          run.go(places, state, "aborted", State::LET_GO);
-          continue;
-        }
-        break;
-      case State::CHECK_FIRST: // main.yml:89
-        switch (run.wrote(states.CHECK_FIRST.execute({ud.goal_pose.get()}, {run.out(ud.first_error)}), smachac::Output{"error", ud.first_error})) {
-        case ::smachac::CheckPlacedState::Outcome::succeeded:
-          run.go(places, state, "succeeded", State::GO_HOME);
-          continue;
-        case ::smachac::CheckPlacedState::Outcome::aborted:
-          run.go(places, state, "aborted", State::LET_GO);
-          continue;
-        }
-        break;
-      case State::GO_HOME: // main.yml:96
-        switch (states.GO_HOME.execute({smachac::convert<std::vector<double>>(ud.home.get())}, run.stop_for(places, state))) {
-        case ::smachac::MoveToJointPositionsState::Outcome::succeeded:
-          return run.end_asked(places, state, "succeeded", Outcome::succeeded);
-        case ::smachac::MoveToJointPositionsState::Outcome::aborted:
-          return run.end_asked(places, state, "aborted", Outcome::aborted);
-        case ::smachac::MoveToJointPositionsState::Outcome::preempted:
-          return run.end_asked(places, state, "preempted", Outcome::aborted);
-        }
-        break;
-      case State::LET_GO: // main.yml:102
-        switch (run.wrote(states.LET_GO.execute({run.out(ud.gripper_width)}, run.stop_for(places, state)), smachac::Output{"width", ud.gripper_width})) {
-        case ::smachac::GripperState::Outcome::succeeded:
-          run.go(places, state, "succeeded", State::RETREAT);
-          continue;
-        case ::smachac::GripperState::Outcome::aborted:
-          run.go(places, state, "aborted", State::RETREAT);
-          continue;
-        case ::smachac::GripperState::Outcome::preempted:
-          return run.end_asked(places, state, "preempted", Outcome::aborted);
-        }
-        break;
-      case State::RETREAT: // main.yml:108
-        switch (states.RETREAT.execute({smachac::convert<std::vector<double>>(ud.home.get())}, run.stop_for(places, state))) {
-        case ::smachac::MoveToJointPositionsState::Outcome::succeeded:
-          return run.end_asked(places, state, "succeeded", Outcome::aborted);
-        case ::smachac::MoveToJointPositionsState::Outcome::aborted:
-          return run.end_asked(places, state, "aborted", Outcome::aborted);
-        case ::smachac::MoveToJointPositionsState::Outcome::preempted:
-          return run.end_asked(places, state, "preempted", Outcome::aborted);
-        }
-        break;
-      default:
-        smachac::never();
+      switch (run.wrote(states.LOAD_TABLE.execute({ud.table_pose.unchecked(), smachac::convert<std::optional<std::string>>(ud.table_frame.unchecked())}, {run.out(ud.table_pose)}), smachac::Output{"pose", ud.table_pose})) {
+      case ::smachac::LoadModelState::Outcome::succeeded:
+        run.go(places, state, "succeeded", State::LOAD_FIRST);
+        goto LOAD_FIRST;
+      case ::smachac::LoadModelState::Outcome::aborted:
+        return run.end(places, state, "aborted", Outcome::aborted);
       }
-      run.no_outcome(places, state);
+      break;
+    case State::LOAD_FIRST: // main.yml:20
+    LOAD_FIRST:
+      run.enter(places, state);
+      switch (run.wrote(states.LOAD_FIRST.execute({ud.first_pose.unchecked(), smachac::maybe<std::optional<std::string>>(ud.reference_frame)}, {run.out(ud.first_pose)}), smachac::Output{"pose", ud.first_pose})) {
+      case ::smachac::LoadModelState::Outcome::succeeded:
+        run.go(places, state, "succeeded", State::LOAD_SECOND);
+        goto LOAD_SECOND;
+      case ::smachac::LoadModelState::Outcome::aborted:
+        return run.end(places, state, "aborted", Outcome::aborted);
+      }
+      break;
+    case State::LOAD_SECOND: // main.yml:30
+    LOAD_SECOND:
+      run.enter(places, state);
+      switch (run.wrote(states.LOAD_SECOND.execute({ud.second_pose.unchecked(), smachac::maybe<std::optional<std::string>>(ud.reference_frame)}, {run.out(ud.second_pose)}), smachac::Output{"pose", ud.second_pose})) {
+      case ::smachac::LoadModelState::Outcome::succeeded:
+        run.go(places, state, "succeeded", State::LOAD_MARK);
+        goto LOAD_MARK;
+      case ::smachac::LoadModelState::Outcome::aborted:
+        return run.end(places, state, "aborted", Outcome::aborted);
+      }
+      break;
+    case State::LOAD_MARK: // main.yml:41
+    LOAD_MARK:
+      run.enter(places, state);
+      switch (run.wrote(states.LOAD_MARK.execute({ud.goal_pose.unchecked(), smachac::maybe<std::optional<std::string>>(ud.reference_frame)}, {run.out(ud.goal_pose)}), smachac::Output{"pose", ud.goal_pose})) {
+      case ::smachac::LoadModelState::Outcome::succeeded:
+        run.go(places, state, "succeeded", State::PLAN_STACK);
+        goto PLAN_STACK;
+      case ::smachac::LoadModelState::Outcome::aborted:
+        return run.end(places, state, "aborted", Outcome::aborted);
+      }
+      break;
+    case State::PLAN_STACK: // main.yml:51
+    PLAN_STACK:
+      run.enter(places, state);
+      switch (states.PLAN_STACK.execute(ud, run)) {
+      case types::PLAN_STACK::Outcome::succeeded:
+        run.go(places, state, "succeeded", State::MOVE_TO_START);
+        goto MOVE_TO_START;
+      }
+      break;
+    case State::MOVE_TO_START: // main.yml:60
+    MOVE_TO_START:
+      run.enter(places, state);
+      switch (states.MOVE_TO_START.execute({smachac::convert<std::vector<double>>(ud.home.unchecked())}, run.stop_for(places, state))) {
+      case ::smachac::MoveToJointPositionsState::Outcome::succeeded:
+        run.go(places, state, "succeeded", State::PICK_FIRST);
+        goto PICK_FIRST;
+      case ::smachac::MoveToJointPositionsState::Outcome::aborted:
+        return run.end_asked(places, state, "aborted", Outcome::aborted);
+      case ::smachac::MoveToJointPositionsState::Outcome::preempted:
+        return run.end_asked(places, state, "preempted", Outcome::aborted);
+      }
+      break;
+    case State::PICK_FIRST: // main.yml:65
+    PICK_FIRST:
+      run.enter(places, state);
+      switch (PICK_FIRST::execute(states.PICK_FIRST_, {ud.PICK_FIRST_, ud.hover_offset, ud.first_pose}, run)) {
+      case PICK_FIRST::Outcome::succeeded:
+        run.go(places, state, "succeeded", State::PLACE_FIRST);
+        goto PLACE_FIRST;
+      case PICK_FIRST::Outcome::aborted:
+        run.go(places, state, "aborted", State::LET_GO);
+        goto LET_GO;
+      }
+      break;
+    case State::PLACE_FIRST: // main.yml:71
+    PLACE_FIRST:
+      run.enter(places, state);
+      switch (PLACE_FIRST::execute(states.PLACE_FIRST_, {ud.PLACE_FIRST_, ud.hover_offset, ud.goal_pose}, run)) {
+      case PLACE_FIRST::Outcome::succeeded:
+        run.go(places, state, "succeeded", State::PICK_SECOND);
+        goto PICK_SECOND;
+      case PLACE_FIRST::Outcome::aborted:
+        run.go(places, state, "aborted", State::LET_GO);
+        goto LET_GO;
+      }
+      break;
+    case State::PICK_SECOND: // main.yml:77
+    PICK_SECOND:
+      run.enter(places, state);
+      switch (PICK_SECOND::execute(states.PICK_SECOND_, {ud.PICK_SECOND_, ud.hover_offset, ud.second_pose}, run)) {
+      case PICK_SECOND::Outcome::succeeded:
+        run.go(places, state, "succeeded", State::PLACE_SECOND);
+        goto PLACE_SECOND;
+      case PICK_SECOND::Outcome::aborted:
+        run.go(places, state, "aborted", State::LET_GO);
+        goto LET_GO;
+      }
+      break;
+    case State::PLACE_SECOND: // main.yml:83
+    PLACE_SECOND:
+      run.enter(places, state);
+      switch (PLACE_SECOND::execute(states.PLACE_SECOND_, {ud.PLACE_SECOND_, ud.hover_offset, ud.top_pose}, run)) {
+      case PLACE_SECOND::Outcome::succeeded:
+        run.go(places, state, "succeeded", State::CHECK_FIRST);
+        goto CHECK_FIRST;
+      case PLACE_SECOND::Outcome::aborted:
+        run.go(places, state, "aborted", State::LET_GO);
+        goto LET_GO;
+      }
+      break;
+    case State::CHECK_FIRST: // main.yml:89
+    CHECK_FIRST:
+      run.enter(places, state);
+      switch (run.wrote(states.CHECK_FIRST.execute({ud.goal_pose.unchecked()}, {run.out(ud.first_error)}), smachac::Output{"error", ud.first_error})) {
+      case ::smachac::CheckPlacedState::Outcome::succeeded:
+        run.go(places, state, "succeeded", State::GO_HOME);
+        goto GO_HOME;
+      case ::smachac::CheckPlacedState::Outcome::aborted:
+        run.go(places, state, "aborted", State::LET_GO);
+        goto LET_GO;
+      }
+      break;
+    case State::GO_HOME: // main.yml:96
+    GO_HOME:
+      run.enter(places, state);
+      switch (states.GO_HOME.execute({smachac::convert<std::vector<double>>(ud.home.unchecked())}, run.stop_for(places, state))) {
+      case ::smachac::MoveToJointPositionsState::Outcome::succeeded:
+        return run.end_asked(places, state, "succeeded", Outcome::succeeded);
+      case ::smachac::MoveToJointPositionsState::Outcome::aborted:
+        return run.end_asked(places, state, "aborted", Outcome::aborted);
+      case ::smachac::MoveToJointPositionsState::Outcome::preempted:
+        return run.end_asked(places, state, "preempted", Outcome::aborted);
+      }
+      break;
+    case State::LET_GO: // main.yml:102
+    LET_GO:
+      run.enter(places, state);
+      switch (run.wrote(states.LET_GO.execute({run.out(ud.gripper_width)}, run.stop_for(places, state)), smachac::Output{"width", ud.gripper_width})) {
+      case ::smachac::GripperState::Outcome::succeeded:
+        run.go(places, state, "succeeded", State::RETREAT);
+        goto RETREAT;
+      case ::smachac::GripperState::Outcome::aborted:
+        run.go(places, state, "aborted", State::RETREAT);
+        goto RETREAT;
+      case ::smachac::GripperState::Outcome::preempted:
+        return run.end_asked(places, state, "preempted", Outcome::aborted);
+      }
+      break;
+    case State::RETREAT: // main.yml:108
+    RETREAT:
+      run.enter(places, state);
+      switch (states.RETREAT.execute({smachac::convert<std::vector<double>>(ud.home.unchecked())}, run.stop_for(places, state))) {
+      case ::smachac::MoveToJointPositionsState::Outcome::succeeded:
+        return run.end_asked(places, state, "succeeded", Outcome::aborted);
+      case ::smachac::MoveToJointPositionsState::Outcome::aborted:
+        return run.end_asked(places, state, "aborted", Outcome::aborted);
+      case ::smachac::MoveToJointPositionsState::Outcome::preempted:
+        return run.end_asked(places, state, "preempted", Outcome::aborted);
+      }
+      break;
+    default:
+      smachac::never();
     }
+    run.no_outcome(places, state);
   }
   SMACHAC_CATCH { run.failed(places, state); }
 }
