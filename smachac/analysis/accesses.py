@@ -100,8 +100,22 @@ def leaf_writes(leaf: Leaf, outcome: str, *, raw: bool = False) -> Writes:
         unlisted -= results
     sure = called | (here & outputs)
     if outcome != PREEMPTED:
-        sure |= unlisted
+        sure |= unlisted - _never_set(leaf, outcome) if not raw else unlisted
     return Writes(sure, sure, unlisted | sure)
+
+
+def _never_set(leaf: Leaf, outcome: str) -> frozenset[str]:
+    """The outputs that the class of the user does not always set before an outcome. An output that
+    it never sets, or not where `writes:` promises it, is SM320."""
+    facts = leaf.class_facts
+    if facts is None or leaf.built_in:
+        return NONE
+    outputs = {key.name for key in leaf.outputs}
+    if any(word.text not in outputs for word in facts.writes):  # probably misspelt: SM308
+        return NONE
+    ever = NONE.union(*(each.written or NONE for each in facts.endings))
+    known = [each.written for each in facts.endings if each.outcome.text == outcome]
+    return NONE.union(*(ever - keys for keys in known if keys is not None))
 
 
 def _scripted(leaf: Leaf, outcome: str, outputs: frozenset[str], raw: bool) -> Writes:
