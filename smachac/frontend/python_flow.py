@@ -259,11 +259,12 @@ class _Reader:
                 head = _both(before, self._effects(node.test))
                 return _either(self._block(node.body, head), self._block(node.orelse, head))
             case ast.For() | ast.AsyncFor() | ast.While():
-                # A round can follow any other one.
-                head = _both(before, self._effects(node))
+                # A round can follow any other one that does not leave the function.
+                head = _both(before, self._carried(node.body) | self._head(node))
                 self._block(node.body, head)
                 self._block(node.orelse, head)
-                return None if is_end(node) else head
+                after = _both(head, self._carried(node.orelse))
+                return None if is_end(node) else after
             case ast.With() | ast.AsyncWith():
                 # A context manager can suppress an exception.
                 self._block(node.body, _both(before, self._all(node.items)))
@@ -285,6 +286,26 @@ class _Reader:
         after = _either(after, *(self._block(each.body, failed) for each in node.handlers))
         self._block(node.finalbody, _both(failed, self._all([*node.handlers, *node.orelse])))
         return None if is_end(node) else after
+
+    def _head(self, node: ast.For | ast.AsyncFor | ast.While) -> frozenset[str]:
+        """The keys that the head of a loop can set."""
+        parts = [node.test] if isinstance(node, ast.While) else [node.target, node.iter]
+        return self._all(parts)
+
+    def _carried(self, body: list[ast.stmt]) -> frozenset[str]:
+        """The keys that statements can set on paths that do not end with `return` or `raise`."""
+        leaves = any(isinstance(each, ast.Return | ast.Raise) for each in body)
+        jumps = ast.Break | ast.Continue
+        if leaves and not any(isinstance(node, jumps) for each in body for node in ast.walk(each)):
+            return NONE
+        found = NONE
+        for each in body:
+            if isinstance(each, ast.If):
+                found |= self._effects(each.test)
+                found |= self._carried(each.body) | self._carried(each.orelse)
+            else:
+                found |= self._effects(each)
+        return found
 
     def _all(self, parts: Iterable[ast.AST]) -> frozenset[str]:
         return NONE.union(*map(self._effects, parts))

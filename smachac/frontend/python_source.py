@@ -84,7 +84,7 @@ def syntax_error(source: Source) -> Word | None:
         line = min(max(error.lineno or 1, 1), len(source.line_starts))
         length = len(source.line(line))
         column = min(max((error.offset or 1) - 1, 0), length)
-        end = column + 1
+        end = min(column + 1, length)
         if error.end_lineno == line and error.end_offset is not None:
             end = max(end, min(error.end_offset - 1, length))
         start = source.line_starts[line - 1]
