@@ -45,8 +45,9 @@ class Value:
 
 
 VariableRole = Literal[
-    "", "callbacks", "conditions", "function", "duration", "steps", "limb", "grasp", "frame"
-]
+    "", "callbacks", "conditions", "function", "duration", "steps", "limb", "grasp", "frame",
+    "output_function",
+]  # fmt: skip
 """The meaning of a variable's value for a state (docs/state_types.md, Facts)."""
 
 KeyRole = Literal[
