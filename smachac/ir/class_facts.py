@@ -21,6 +21,7 @@ FaultKind = Literal[
     "defined twice",
     "no parameter",
     "required parameter",
+    "no outcome",
 ]
 
 

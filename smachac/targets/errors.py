@@ -385,8 +385,9 @@ def code_not_found(
         message = f"the code of `{state_type}` is not valid Python: {word.text}"
         help = "correct the syntax: the state cannot run before"
     elif fault.kind == "no module":
-        message = f"the code of `{state_type}` is in the module `{word.text}`, which does not exist"
-        help = near or f"correct the name {interface}, or create the module"
+        file = "header" if target == "cpp" else "module"
+        message = f"the code of `{state_type}` is in the {file} `{word.text}`, which does not exist"
+        help = near or f"correct the name {interface}, or create the {file}"
     else:
         message = f"the code of `{state_type}` is the class `{word.text}`, which its file does not"
         message += " define"
@@ -478,7 +479,7 @@ def _about_class(fault: ClassFault, state_type: str, name: str) -> tuple[str, st
             )
         case "no execute":
             return f"the class `{name}` has no method `execute`", (
-                "add `def execute(self, userdata):`, which returns an outcome"
+                "add the method `execute`, which returns an outcome"
             )
         case "no method":
             return f"`execute` of `{name}` returns a generator or a coroutine, not an outcome", (
@@ -503,6 +504,10 @@ def _about_class(fault: ClassFault, state_type: str, name: str) -> tuple[str, st
         case "defined twice":
             return f"`{word}` is defined twice: only the last definition counts", (
                 "remove one of them, or give it another name"
+            )
+        case "no outcome":
+            return f"`Outcome` of `{name}` has no `{word}`", (
+                "add it to `Outcome` and to the interface, or correct the name"
             )
         case "required parameter":
             return f"`__init__` of `{name}` requires `{word}`, which is not a variable of" + (

@@ -11,7 +11,7 @@ from dataclasses import dataclass, replace
 from typing import Protocol
 
 from smachac.diagnostics.diagnostic import Diagnostic, Related, Severity
-from smachac.diagnostics.source import Span, Word
+from smachac.diagnostics.source import NOWHERE, Span, Word
 from smachac.frontend.loader import Library
 from smachac.ir.class_facts import ClassFault
 from smachac.ir.nodes import Leaf, Machine, StateType
@@ -101,9 +101,14 @@ def type_faults(
     if found is None:
         return
     for fault in found.faults:
-        place = (Related(span=leaf.span, message=f"`{leaf.name}` is of the type `{type_.name}`"),)
-        name_fault = code_not_found if fault.kind in NOT_FOUND else bad_class
-        yield name_fault(fault, target.name, type_.name, found.name, place)
+        used: tuple[Related, ...] = (
+            Related(span=leaf.span, message=f"`{leaf.name}` is of the type `{type_.name}`"),
+        )
+        if fault.name.span.source is NOWHERE.source:
+            fault = replace(fault, name=Word(fault.name.text, leaf.span))
+            used = ()
+        judge = code_not_found if fault.kind in NOT_FOUND else bad_class
+        yield judge(fault, target.name, type_.name, found.name, used)
     differences = [*_differences(type_, found)]
     if found.stale is not None:
         yield stale_code(leaf.span, type_.name, found.name, found.stale, differences)
