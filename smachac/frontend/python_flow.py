@@ -44,9 +44,19 @@ class Flow:
 
 def is_plain(function: ast.FunctionDef) -> bool:
     """Whether a function runs when it is called: it is no generator and has no decorator."""
-    inner = list(ast.walk(function))
-    generator = any(isinstance(each, ast.Yield | ast.YieldFrom) for each in inner)
-    return not function.decorator_list and not generator
+    return not function.decorator_list and not _is_generator(function)
+
+
+def _is_generator(function: ast.FunctionDef) -> bool:
+    """Whether a function itself, not one inside it, has a `yield`."""
+    todo: list[ast.AST] = [*function.body]
+    while todo:
+        node = todo.pop()
+        if isinstance(node, ast.Yield | ast.YieldFrom):
+            return True
+        if not isinstance(node, ast.FunctionDef | ast.AsyncFunctionDef | ast.ClassDef | ast.Lambda):
+            todo.extend(ast.iter_child_nodes(node))
+    return False
 
 
 class Flows:

@@ -122,6 +122,8 @@ def absent_module(word: Word, library: Library) -> ClassFault | None:
         names = sorted({each.removesuffix(".py") for each in here if is_module(each)})
         if part in names:
             continue
+        if any(each.startswith(f"{part}.") for each in here):  # an extension module
+            return None
         guess = guesser(names)
         near = guess(part) if at else guess.sure(part)
         if near is None and (not at or not any(_is_package_file(each) for each in here)):
