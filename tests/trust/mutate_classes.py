@@ -78,7 +78,7 @@ def changed(
 
     fault, place = line_of(start), line_of(at or start)
     margin = lines[fault][: len(lines[fault]) - len(lines[fault].lstrip())]
-    lines[fault] = margin + ("pass" if new is None else new.replace("OLD", lines[fault].strip()))
+    lines[fault] = margin + ("pass" if new is None else new)
     subject.project[MODULE] = "\n".join(lines)
     return Mutant(codes=(code,), lines=((MODULE, place + 1),))
 

@@ -6,7 +6,7 @@ from tests.trust.mutate_classes import MODULE, interfaces, module_of
 from tests.trust.project_text import judged
 from tests.trust.random_projects import correct_project
 
-PROJECTS = 40
+PROJECTS = 15
 
 
 def test_correct_classes_bring_no_finding() -> None:
