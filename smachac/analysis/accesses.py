@@ -14,6 +14,7 @@ from typing import NamedTuple
 from smachac.ir import nodes
 from smachac.ir.leaf import default_outcome, functions, key_names, variable_of
 from smachac.ir.nodes import Leaf, Node, Struct
+from smachac.ir.outcome_names import is_failure
 from smachac.ir.traversal import PREEMPTED, remapping
 
 NONE: frozenset[str] = frozenset()
@@ -96,12 +97,32 @@ def leaf_writes(leaf: Leaf, outcome: str, *, raw: bool = False) -> Writes:
     here = frozenset(key for name, keys in leaf.writes for key in keys if name == outcome)
     unlisted = outputs - listed
     results = key_names(leaf.outputs, "result")
+    trusted = NONE
     if results and functions(leaf, "callbacks") is not None:
         unlisted -= results
+        held = variable_of(leaf, "output_function")
+        trusted = results if held is not None and held.value.data is not None else NONE
     sure = called | (here & outputs)
     if outcome != PREEMPTED:
-        sure |= unlisted
-    return Writes(sure, sure, unlisted | sure)
+        sure |= unlisted - _never_set(leaf, outcome) if not raw else unlisted
+    perhaps = unlisted | sure | trusted
+    if outcome == PREEMPTED or is_failure(outcome):
+        trusted = NONE
+    return Writes(sure, sure | trusted, perhaps)
+
+
+def _never_set(leaf: Leaf, outcome: str) -> frozenset[str]:
+    """The outputs that the class of the user does not always set before an outcome. An output that
+    it never sets, or not where `writes:` promises it, is SM320."""
+    facts = leaf.class_facts
+    if facts is None or leaf.built_in:
+        return NONE
+    outputs = {key.name for key in leaf.outputs}
+    if any(word.text not in outputs for word in facts.writes):  # probably misspelt: SM308
+        return NONE
+    ever = NONE.union(*(each.written or NONE for each in facts.endings))
+    known = [each.written for each in facts.endings if each.outcome.text == outcome]
+    return NONE.union(*(ever - keys for keys in known if keys is not None))
 
 
 def _scripted(leaf: Leaf, outcome: str, outputs: frozenset[str], raw: bool) -> Writes:

@@ -7,6 +7,7 @@ from dataclasses import replace
 
 from smachac.analysis.context import Context
 from smachac.checks import (
+    class_code,
     concurrence,
     declarations,
     expressions,
@@ -60,11 +61,13 @@ RULES: tuple[Rule, ...] = (
     declarations.unused_declaration,
     userdata.lost_output,
     declarations.lossy_write,
-    declarations.undeclared_return,
+    class_code.undeclared_return,
     declarations.undeclared_access,
     expressions.impossible_operation,
     expressions.constant_comparison,
     initial_values.overruled_value,
+    class_code.unwritten_output,
+    class_code.never_returned,
     concurrence.uncovered_combination,
     concurrence.overlapping_rules,
     concurrence.dead_rule,

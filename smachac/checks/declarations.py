@@ -12,19 +12,19 @@ from smachac.analysis.def_use import place_of
 from smachac.analysis.definite_assignment import UserdataScope
 from smachac.analysis.error_recovery import undeclared_reads, undeclared_writes
 from smachac.analysis.unset_reads import container_name
+from smachac.checks.class_code import dropped_writes, unknown_reads
 from smachac.checks.edits import with_output
 from smachac.checks.expressions import unknown_endings
 from smachac.checks.messages import CALLED_HERE, calls, did_you_mean
 from smachac.checks.rule import rule
 from smachac.diagnostics.diagnostic import Finding, Related, Severity
-from smachac.diagnostics.source import Span, Word
+from smachac.diagnostics.source import Span
 from smachac.diagnostics.spelling import guesser
-from smachac.diagnostics.wording import listed
 from smachac.ir import nodes
 from smachac.ir.graph import START
 from smachac.ir.leaf import functions, variable, variable_of
-from smachac.ir.nodes import Body, Key, Leaf, Machine, Node
-from smachac.ir.traversal import outcome_names, remapping
+from smachac.ir.nodes import Key, Leaf, Machine, Node
+from smachac.ir.traversal import remapping
 
 
 @rule("SM305", "dead-key", Severity.WARNING)
@@ -401,148 +401,3 @@ def undeclared_access(context: Context) -> Iterator[Finding]:
                 node=path,
             )
     yield from unknown_reads(context)
-
-
-def leaves_by_type(context: Context, *, declared: bool) -> Iterator[tuple[str, Leaf, Body]]:
-    """A leaf of each type whose code was read, with its path. `declared`: one that sees only the
-    keys it declares, unlike the child of an iterator."""
-    seen: set[str] = set()
-    for path, container in context.containers:
-        if declared and isinstance(container, nodes.Iterator):
-            continue
-        for child in container.children:
-            if isinstance(child, Leaf) and child.body is not None and child.type not in seen:
-                seen.add(child.type)
-                yield f"{path}/{child.name}", child, child.body
-
-
-@rule("SM309", "undeclared-return", Severity.ERROR)
-def undeclared_return(context: Context) -> Iterator[Finding]:
-    """The Python code of a state type returns a value that is not one of its outcomes, or no value.
-
-    Then SMACH stops the whole machine with an error, and the robot stops in the middle of its task.
-
-    Exactly: the code is read, never run, and parts that Jinja fills in are not checked. It is a
-    warning if only some paths through `execute` end without `return`, because such a path may be
-    impossible.
-
-    Wrong:
-        name: sm
-        template: Base
-        outcomes: [pressed, late]
-        states:
-          - WAIT:
-              template: WaitForButton
-              transitions: {pressed: pressed, timed_out: late}
-        == templates/WaitForButton.yml ==
-        name: WaitForButton
-        outcomes: {pressed: {}, timed_out: {}}
-        code: {python: WaitForButton.tpl.py}
-        == templates/WaitForButton.tpl.py ==
-        {% block class_defs %}
-        class WaitForButton(smach.State):
-            def __init__(self):
-                super().__init__(outcomes=["pressed", "timed_out"])
-
-            def execute(self, userdata):
-                return "pressed" if button.wait(10) else "timeout"
-        {% endblock %}
-
-    Right:
-        name: sm
-        template: Base
-        outcomes: [pressed, late]
-        states:
-          - WAIT:
-              template: WaitForButton
-              transitions: {pressed: pressed, timed_out: late}
-        == templates/WaitForButton.yml ==
-        name: WaitForButton
-        outcomes: {pressed: {}, timed_out: {}}
-        code: {python: WaitForButton.tpl.py}
-        == templates/WaitForButton.tpl.py ==
-        {% block class_defs %}
-        class WaitForButton(smach.State):
-            def __init__(self):
-                super().__init__(outcomes=["pressed", "timed_out"])
-
-            def execute(self, userdata):
-                return "pressed" if button.wait(10) else "timed_out"
-        {% endblock %}
-    """
-    for path, leaf, body in leaves_by_type(context, declared=False):
-        yield from _wrong_returns(path, leaf, body)
-
-
-def _wrong_returns(path: str, leaf: Leaf, body: Body) -> Iterator[Finding]:
-    outcomes = outcome_names(leaf)
-    guess = guesser(outcomes)
-    known = f"return one of its outcomes: {listed(outcomes)}"
-    if not outcomes:
-        known = f"add outcomes to the interface `{leaf.type}`"
-    for word in body.returns:
-        if word.text not in outcomes:
-            yield Finding(
-                span=word.span,
-                message=f"`{leaf.type}` returns `{word.text}`, which is not one of its outcomes",
-                arguments=(leaf.type, word.text),
-                help=did_you_mean(guess(word.text)) or known,
-                node=path,
-            )
-    if body.silent is not None:
-        does = "never returns" if body.always_silent else "can end without returning"
-        yield Finding(
-            span=body.silent,
-            message=f"`execute` of `{leaf.type}` {does} an outcome",
-            arguments=(leaf.type,),
-            help=known,
-            severity=None if body.always_silent else Severity.WARNING,
-            node=path,
-        )
-
-
-def unknown_reads(context: Context) -> Iterator[Finding]:
-    """The keys that the code of a type reads without an input in its interface (SM310)."""
-    for path, leaf, body in leaves_by_type(context, declared=True):
-        inputs = [key.name for key in leaf.inputs]
-        for word in _first_of_each(body.reads, inputs):
-            yield Finding(
-                span=word.span,
-                message=f"the code of `{leaf.type}` reads `{word.text}`, which is not an input"
-                " key of its interface",
-                arguments=(word.text,),
-                help=did_you_mean(guesser(inputs)(word.text))
-                or f"add `{word.text}` to the `input_keys` of the interface `{leaf.type}`",
-                node=path,
-            )
-
-
-def dropped_writes(context: Context) -> Iterator[Finding]:
-    """The keys that the code of a type sets without an output in its interface (SM308). Unknown
-    keys that the code also reads are left to SM310."""
-    for path, leaf, body in leaves_by_type(context, declared=True):
-        inputs = {key.name for key in leaf.inputs}
-        outputs = [key.name for key in leaf.outputs]
-        unknown = {word.text for word in body.reads} - inputs
-        for word in _first_of_each(body.writes, [*outputs, *unknown]):
-            only = word.text in inputs
-            what = "only an input key" if only else "not an output key of its interface"
-            guess = None if only else did_you_mean(guesser(outputs)(word.text))
-            yield Finding(
-                span=word.span,
-                message=f"the code of `{leaf.type}` sets `{word.text}`, which is {what}: the value"
-                " is discarded",
-                arguments=(word.text,),
-                help=guess
-                or f"add `{word.text}` to the `output_keys` of the interface `{leaf.type}`",
-                node=path,
-            )
-
-
-def _first_of_each(words: Iterable[Word], known: Iterable[str]) -> list[Word]:
-    """The first occurrence of each unknown word."""
-    found: dict[str, Word] = {}
-    for word in words:
-        found.setdefault(word.text, word)
-    left = found.keys() - set(known)
-    return [word for word in found.values() if word.text in left]

@@ -434,8 +434,8 @@ def _written_in(region: Iterable[Node]) -> frozenset[str] | None:
                 return None
             found.update(key.name for key in node.outputs)
             found.update(remapping(node).get(key.name, "") for key in node.outputs)
-            if isinstance(node, Leaf) and node.body is not None:
-                found.update(word.text for word in node.body.writes)
+            if isinstance(node, Leaf) and node.class_facts is not None:
+                found.update(word.text for word in node.class_facts.writes)
     return frozenset(found)
 
 

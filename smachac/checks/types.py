@@ -144,12 +144,21 @@ def written(flow: TypeFlow) -> str:
         match cell.role:
             case "output":
                 return f"{_owner(cell)} writes `{cell.key}` as `{flow.type}`"
+            case "scope" if is_promised(cell):
+                return f"the caller of {_owner(cell)} provides `{cell.key}` as `{flow.type}`"
             case "scope":
                 return f"{_owner(cell)} holds `{cell.key}` as `{flow.type}`"
     what = in_words(flow.type)
     if flow.how == "computed":
         return f"{_owner(cell)} computes `{cell.key}` as {what}"
     return f"`{cell.key}` is {what}"
+
+
+def is_promised(cell: Cell) -> bool:
+    """Whether a key is an input of the outermost machine: its caller provides the value."""
+    node = cell.node
+    outermost = node is not None and cell.path == node.name
+    return outermost and node is not None and any(key.name == cell.key for key in node.inputs)
 
 
 def in_words(type_: Type) -> str:
@@ -198,6 +207,9 @@ def _help(clash: Clash) -> str:
         return f"declare it as `{given}` where it is read, because it can be absent"
     if given.name == "float" and wanted.name == "int":
         return "declare it as `float` where it is read, or convert it with `round(...)`"
+    if clash.flow.origin.how == "declared" and is_promised(clash.flow.origin.cell):
+        owner = _owner(clash.flow.origin.cell)
+        return f"change the type in the `input_keys` of {owner}, or where it is read"
     return f"write a value that fits `{wanted}`, or change the type where it is read"
 
 

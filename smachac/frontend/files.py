@@ -290,6 +290,7 @@ def disk_library(
         template=template,
         own_template=lambda name: template(name, template_folders[: -len(BUILT_IN)]),
         code=lambda name: template(name, code_folders),
+        code_names=lambda name: _names_in(name, code_folders),
         script_folders=lambda caller: [str(folder) for folder in script_folders(caller)],
         template_folders=lambda: [str(folder) for folder in template_folders[: -len(BUILT_IN)]],
         script_names=lambda caller: _stems(script_folders(caller), (".yml", ".yaml")),
@@ -320,6 +321,16 @@ def _found(
                     if below:
                         refuse(path, folder)
     return None
+
+
+def _names_in(name: str, folders: Sequence[Path]) -> list[str]:
+    """The names of the files and folders in a folder that lies inside some folders."""
+    names: set[str] = set()
+    for folder in folders:
+        with contextlib.suppress(OSError, ValueError):
+            if lies_inside(folder / name, folder):
+                names.update(path.name for path in (folder / name).iterdir())
+    return sorted(names)
 
 
 def _stems(folders: Sequence[Path], suffixes: Sequence[str]) -> list[str]:

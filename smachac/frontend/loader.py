@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, field
 
 from smachac.diagnostics.diagnostic import (
@@ -20,14 +20,16 @@ class Library:
     `script(name, caller)` returns the text of a sub-script that the source `caller` names;
     `template(file)` an interface or a template by file name (`MoveTo.yml`, `MoveTo.tpl.py`);
     `own_template(file)` the same, but no built-in one; `code(file)` a module or header of the user
-    by path (`my_robot/grasp.hpp`). The lists of folders and names are for messages. `policy` has
-    the severities of the project. `parse` may return one tree for all scripts that share a text.
+    by path (`my_robot/grasp.hpp`); `code_names(folder)` the names of files and folders in a folder
+    of such code. The lists of folders and names are for messages. `policy` has the severities of
+    the project. `parse` may return one tree for all scripts that share a text.
     """
 
     script: Callable[[str, str], Source | None]
     template: Callable[[str], Source | None]
     own_template: Callable[[str], Source | None] = lambda file: None
     code: Callable[[str], Source | None] = lambda file: None
+    code_names: Callable[[str], Sequence[str]] = lambda folder: ()
     script_folders: Callable[[str], Sequence[str]] = lambda caller: ()
     template_folders: Callable[[], Sequence[str]] = lambda: ()
     script_names: Callable[[str], Sequence[str]] = lambda caller: ()
@@ -52,6 +54,7 @@ def memory_library(files: Mapping[str, str], built_in: Library) -> Library:
         template=lambda name: own_template(name) or built_in.template(name),
         own_template=own_template,
         code=lambda name: sources.get(name) or built_in.code(name),
+        code_names=lambda folder: [*_inside(folder, sources), *built_in.code_names(folder)],
         script_folders=lambda caller: ["."],
         template_folders=lambda: ["templates", *built_in.template_folders()],
         script_names=lambda caller: [name.removesuffix(".yml") for name in sources],
@@ -60,3 +63,11 @@ def memory_library(files: Mapping[str, str], built_in: Library) -> Library:
             *built_in.template_names(),
         ],
     )
+
+
+def _inside(folder: str, files: Iterable[str]) -> Iterator[str]:
+    """The names of files and folders in a folder."""
+    start = f"{folder}/" if folder else ""
+    for file in files:
+        if file.startswith(start):
+            yield file.removeprefix(start).partition("/")[0]

@@ -162,7 +162,7 @@ def _leaf(state: State) -> Leaf:
         writes=type_.writes,
         open=type_.open,
         blocking=type_.blocking,
-        body=type_.body,
+        class_facts=type_.class_facts,
         built_in=type_.built_in,
         stand_in=type_.stand_in,
         adds_frames=type_.adds_frames,

@@ -13,16 +13,16 @@ from typing import TypeAlias, TypeVar, get_args
 from smachac.diagnostics.diagnostic import Report, did_you_mean
 from smachac.diagnostics.source import Source, Span, Word
 from smachac.frontend import smacha_meta
+from smachac.frontend.class_reader import read_module, read_template
 from smachac.frontend.errors.script import Owner, unknown_variable, wrong_shape
 from smachac.frontend.fields import as_flag, as_map, as_name, as_names, as_text
 from smachac.frontend.loader import Library
-from smachac.frontend.python_source import python_body
 from smachac.frontend.type_annotations import read_type
 from smachac.frontend.unquoted import VARIABLE_SHAPES, check_name, check_unquoted, is_name
 from smachac.frontend.values import as_value
 from smachac.frontend.yaml_tree import Entry, Map, Scalar, Tree
+from smachac.ir.class_facts import ClassFacts
 from smachac.ir.nodes import (
-    Body,
     Key,
     KeyRole,
     Outcome,
@@ -129,8 +129,8 @@ def _read_interface(name: str, source: Source, library: Library, report: Report)
         listed_outputs=_listed_roles(sections["output_keys"], report),
         code=code,
         classes=_classes(sections["code"], report),
-        body=_body(
-            name, code.get("python", ""), given | ({"optional"} if optional else set()), library
+        class_facts=_class_facts(
+            name, sections["code"], given | ({"optional"} if optional else set()), library
         ),
         prints_itself=_prints_itself(code.get("python", ""), library),
         optional=optional,
@@ -181,17 +181,30 @@ def _role(tree: Tree, roles: tuple[_Role, ...], report: Report) -> _Role:
     return roles[0]
 
 
-def _body(name: str, file: str, given: frozenset[str], library: Library) -> Body | None:
-    """The analysis of the Python template, without parts that depend on what a script declares."""
-    template = library.template(file) if file and ":" not in file else None
-    body = python_body(template, name) if template is not None else None
-    if body is None:
+def _class_facts(
+    name: str, section: Section, given: frozenset[str], library: Library
+) -> ClassFacts | None:
+    """The facts about the Python class, without parts that depend on what a script declares."""
+    word = next((Word(str(value.value), value.span) for language, value in _declared(section)
+                 if language == "python" and isinstance(value, Scalar)), None)  # fmt: skip
+    if word is None:
         return None
+    if ":" in word.text:
+        facts = read_module(word, library)
+    else:
+        template = library.template(word.text)
+        facts = read_template(template, name, library) if template is not None else None
+        if facts is not None and _prints_itself(word.text, library):
+            facts = replace(facts, parameters=None)
+    if facts is None:
+        return None
+    free = bool({"outcomes", "optional"} & given)
     return replace(
-        body,
-        returns=() if {"outcomes", "optional"} & given else body.returns,
-        reads=() if "input_keys" in given else body.reads,
-        writes=() if {"input_keys", "output_keys"} & given else body.writes,
+        facts,
+        endings=() if free else facts.endings,
+        complete=facts.complete and not free,
+        reads=() if "input_keys" in given else facts.reads,
+        writes=() if {"input_keys", "output_keys"} & given else facts.writes,
     )
 
 
@@ -397,7 +410,7 @@ def _read_template(
         known = _without_facts(known) if known else StateType(name=name, open=True)
         return replace(
             known, name=name, outcomes=outcomes, code={"python": file}, prints_itself=whole,
-            body=None, given=known.given if known.open else _ALL_GIVEN,
+            class_facts=None, given=known.given if known.open else _ALL_GIVEN,
             used=smacha_meta.words_used(file, library.template),
             default_keys=smacha_meta.default_keys(template) or known.default_keys,
         )  # fmt: skip

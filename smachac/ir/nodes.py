@@ -12,6 +12,7 @@ from dataclasses import dataclass, field
 from typing import ClassVar, Literal, NamedTuple, NewType, TypeAlias
 
 from smachac.diagnostics.source import NOWHERE, Span, Word
+from smachac.ir.class_facts import ClassFacts
 from smachac.ir.robot import Robot
 from smachac.ir.types import ANY, Type
 
@@ -44,8 +45,9 @@ class Value:
 
 
 VariableRole = Literal[
-    "", "callbacks", "conditions", "function", "duration", "steps", "limb", "grasp", "frame"
-]
+    "", "callbacks", "conditions", "function", "duration", "steps", "limb", "grasp", "frame",
+    "output_function",
+]  # fmt: skip
 """The meaning of a variable's value for a state (docs/state_types.md, Facts)."""
 
 KeyRole = Literal[
@@ -190,29 +192,13 @@ class _State:
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
-class Body:
-    """Facts about the Python code of a state type, as far as the text shows them.
-
-    `returns` are the constants that it returns, as text. `silent` is the name of the function if
-    some path through it returns nothing, `always_silent` if no path returns anything. `reads` and
-    `writes` are userdata keys. Declarations of the script are not included.
-    """
-
-    returns: tuple[Word, ...] = ()
-    silent: Span | None = None
-    always_silent: bool = False
-    reads: tuple[Word, ...] = ()
-    writes: tuple[Word, ...] = ()
-
-
-@dataclass(frozen=True, slots=True, kw_only=True)
 class Leaf(_State):
     """One skill of a state type.
 
     `open`: the state type has no interface, so its keys and outcomes are unknown. `blocking`: it
     waits for the outside world, as its interface declares. `writes` are pairs of an outcome and
     output keys: an output in it is written on those outcomes only, any other output on all outcomes
-    except `preempted`. `body` has facts about the code, if it was read.
+    except `preempted`. `class_facts` are those of its Python class, if it was read.
 
     The other fields are facts of the state type (docs/state_types.md, Facts). `built_in` is the
     name of the built-in state type; it is empty for a type of the user, also for one of that name.
@@ -223,7 +209,7 @@ class Leaf(_State):
     writes: tuple[tuple[str, tuple[str, ...]], ...] = ()
     open: bool = False
     blocking: bool = False
-    body: Body | None = field(default=None, compare=False, repr=False)
+    class_facts: ClassFacts | None = field(default=None, compare=False, repr=False)
     built_in: str = field(default="", compare=False, repr=False)
     stand_in: bool = field(default=False, compare=False, repr=False)
     adds_frames: tuple[str, ...] | None = field(default=None, compare=False, repr=False)
@@ -344,7 +330,7 @@ class StateType:
     `given` names the parts that a script adds to the interface: any of "variables", "input_keys",
     "output_keys", "outcomes" (`"*": {}` in the interface). `code` maps a language to the file of a
     template or to a reference to code; `classes` maps a language to a class: `header`, `class`,
-    `with`. `body` is the analysed code of the Python template. `open`: there is no interface.
+    `with`. `class_facts` are those of its Python class. `open`: there is no interface.
     `prints_itself`: the Python template adds the state to its container, as SMACHA's templates do.
     A state has an outcome of `optional` only if its container or one of its transitions names it.
     `used` are the words in the template of a type that accepts any variable; None: not known.
@@ -371,7 +357,7 @@ class StateType:
     blocking: bool = False
     code: Mapping[str, str] = field(default_factory=dict)
     classes: Mapping[str, Mapping[str, str]] = field(default_factory=dict)
-    body: Body | None = None
+    class_facts: ClassFacts | None = None
     open: bool = False
     prints_itself: bool = False
     optional: frozenset[str] = frozenset()

@@ -7,6 +7,7 @@ from collections.abc import Sequence
 
 from smachac.diagnostics.diagnostic import Finding, Problem, Related, Severity, problem
 from smachac.diagnostics.source import Span, Word
+from smachac.ir.class_facts import ClassFault
 
 
 @problem("SM601", "unsupported-by-target", Severity.ERROR)
@@ -324,6 +325,199 @@ def defined_twice(
     )
 
 
+@problem("SM620", "code-not-found", Severity.ERROR)
+def code_not_found(
+    fault: ClassFault, target: str, state_type: str, name: str, used: tuple[Related, ...]
+) -> Finding:
+    """The class that an interface names as the code of a state type does not exist, or its file
+    cannot be parsed.
+
+    The generated program stops when it starts.
+
+    Exactly: a module is missing if the folder of its package has other modules, or if a module
+    with nearly the same name exists. Other modules can be installed packages, which are not
+    searched. `check` reports a warning; a build for the language of the class fails.
+
+    Wrong:
+        name: sm
+        outcomes: [done]
+        states:
+          - GRASP: {template: Grasp}
+        == templates/Grasp.yml ==
+        name: Grasp
+        outcomes: {done: {}}
+        code: {python: "cell.grasp:Grip"}
+        == cell/grasp.py ==
+        import smach
+
+
+        class Grasp(smach.State):
+            def __init__(self):
+                super().__init__(outcomes=["done"])
+
+            def execute(self, userdata):
+                return "done"
+
+    Right:
+        name: sm
+        outcomes: [done]
+        states:
+          - GRASP: {template: Grasp}
+        == templates/Grasp.yml ==
+        name: Grasp
+        outcomes: {done: {}}
+        code: {python: "cell.grasp:Grasp"}
+        == cell/grasp.py ==
+        import smach
+
+
+        class Grasp(smach.State):
+            def __init__(self):
+                super().__init__(outcomes=["done"])
+
+            def execute(self, userdata):
+                return "done"
+    """
+    word = fault.name
+    near = f"did you mean `{fault.near}`?" if fault.near is not None else None
+    interface = f"in the `code` of `{state_type}.yml`"
+    if fault.kind == "syntax":
+        message = f"the code of `{state_type}` is not valid Python: {word.text}"
+        help = "correct the syntax: the state cannot run before"
+    elif fault.kind == "no module":
+        file = "header" if target == "cpp" else "module"
+        message = f"the code of `{state_type}` is in the {file} `{word.text}`, which does not exist"
+        help = near or f"correct the name {interface}, or create the {file}"
+    else:
+        message = f"the code of `{state_type}` is the class `{word.text}`, which its file does not"
+        message += " define"
+        help = near or f"correct the name {interface}, or define the class"
+    return Finding(
+        span=word.span,
+        message=message,
+        arguments=(target, state_type, fault.kind, word.text),
+        help=help,
+        related=used,
+    )
+
+
+@problem("SM621", "unusable-class", Severity.ERROR)
+def bad_class(
+    fault: ClassFault, target: str, state_type: str, name: str, used: tuple[Related, ...]
+) -> Finding:
+    """The class of a state type does not work as a state: a method is missing or hidden, or the
+    constructor does not fit the interface.
+
+    The generated program stops with an error when it makes the state or runs it.
+
+    Exactly: the class is read, never run. A program makes the state with the variables that a
+    script sets, passed by their names. `check` reports a warning; a build for the language of the
+    class fails.
+
+    Wrong:
+        name: sm
+        outcomes: [done]
+        states:
+          - GRASP: {template: Grasp, force: 5.0}
+        == templates/Grasp.yml ==
+        name: Grasp
+        variables: {force: {type: float}}
+        outcomes: {done: {}}
+        code: {python: "cell.grasp:Grasp"}
+        == cell/grasp.py ==
+        import smach
+
+
+        class Grasp(smach.State):
+            def __init__(self):
+                super().__init__(outcomes=["done"])
+
+            def execute(self, userdata):
+                return "done"
+
+    Right:
+        name: sm
+        outcomes: [done]
+        states:
+          - GRASP: {template: Grasp, force: 5.0}
+        == templates/Grasp.yml ==
+        name: Grasp
+        variables: {force: {type: float}}
+        outcomes: {done: {}}
+        code: {python: "cell.grasp:Grasp"}
+        == cell/grasp.py ==
+        import smach
+
+
+        class Grasp(smach.State):
+            def __init__(self, force):
+                super().__init__(outcomes=["done"])
+                self.force = force
+
+            def execute(self, userdata):
+                return "done"
+    """
+    message, help = _about_class(fault, state_type, name)
+    if fault.near is not None:
+        help = f"did you mean `{fault.near}`?"
+    return Finding(
+        span=fault.name.span,
+        message=message,
+        arguments=(target, state_type, fault.kind, fault.name.text),
+        help=help,
+        related=used,
+    )
+
+
+def _about_class(fault: ClassFault, state_type: str, name: str) -> tuple[str, str]:
+    """The message and the help for a fault of a class."""
+    word = fault.name.text
+    match fault.kind:
+        case "no state":
+            return f"the class `{name}` is not derived from `smach.State`", (
+                f"write `class {word}(smach.State):`"
+            )
+        case "no execute":
+            return f"the class `{name}` has no method `execute`", (
+                "add the method `execute`, which returns an outcome"
+            )
+        case "no method":
+            return f"`execute` of `{name}` returns a generator or a coroutine, not an outcome", (
+                "write it as a plain method: `def execute(self, userdata):` without `yield`"
+            )
+        case "arguments":
+            return f"`execute` of `{name}` must accept exactly one argument: the userdata", (
+                "write `def execute(self, userdata):`"
+            )
+        case "no constructor call":
+            return f"`__init__` of `{name}` does not call `__init__` of `smach.State`", (
+                "call `super().__init__(outcomes=[...], input_keys=[...], output_keys=[...])`"
+            )
+        case "no outcomes":
+            return f"the class `{name}` has no `__init__`, so the state has no outcomes", (
+                "add `__init__`, which calls `super().__init__(outcomes=[...])`"
+            )
+        case "hidden method":
+            return f"`self.{word}` hides the method `{word}` of `smach.State`, which SMACH calls", (
+                "give the attribute another name"
+            )
+        case "defined twice":
+            return f"`{word}` is defined twice: only the last definition counts", (
+                "remove one of them, or give it another name"
+            )
+        case "no outcome":
+            return f"`Outcome` of `{name}` has no `{word}`", (
+                "add it to `Outcome` and to the interface, or correct the name"
+            )
+        case "required parameter":
+            return f"`__init__` of `{name}` requires `{word}`, which is not a variable of" + (
+                f" the interface `{state_type}`"
+            ), f"add `{word}` to the `variables` of the interface, or give it a default value"
+    return f"`__init__` of `{name}` does not accept `{word}`, a variable of" + (
+        f" the interface `{state_type}`"
+    ), f"add the parameter `{word}` to `__init__`"
+
+
 PROBLEMS: tuple[Problem[...], ...] = (
     unsupported_by_target,
     no_code_for_target,
@@ -331,5 +525,7 @@ PROBLEMS: tuple[Problem[...], ...] = (
     stale_code,
     python_2_code,
     defined_twice,
+    code_not_found,
+    bad_class,
 )
 """The problems of this module, in the order of their codes."""

@@ -10,12 +10,16 @@ from collections.abc import Callable, Iterable, Iterator
 from dataclasses import dataclass, replace
 from typing import Protocol
 
-from smachac.diagnostics.diagnostic import Diagnostic, Severity
-from smachac.diagnostics.source import Span, Word
+from smachac.diagnostics.diagnostic import Diagnostic, Related, Severity
+from smachac.diagnostics.source import NOWHERE, Span, Word
 from smachac.frontend.loader import Library
+from smachac.ir.class_facts import ClassFault
 from smachac.ir.nodes import Leaf, Machine, StateType
 from smachac.ir.traversal import walk
-from smachac.targets.errors import interfaces_differ, stale_code
+from smachac.targets.errors import bad_class, code_not_found, interfaces_differ, stale_code
+
+NOT_FOUND = ("no module", "no class", "syntax")
+"""The kinds of faults for which there is no class (SM620)."""
 
 Words = tuple[Word, ...]
 
@@ -26,6 +30,7 @@ class Declared:
 
     A part that could not be read is None. `others` are further differences, each with its place.
     `stale` is the place of an outdated interface hash in the class, with the present hash.
+    `faults` are those of a class that does not exist or does not work as a state.
     """
 
     name: str
@@ -35,6 +40,7 @@ class Declared:
     outputs: Words | None = None
     others: Words = ()
     stale: Word | None = None
+    faults: tuple[ClassFault, ...] = ()
 
 
 class Language(Protocol):
@@ -94,6 +100,15 @@ def type_faults(
     found = target.declared(type_, library)
     if found is None:
         return
+    for fault in found.faults:
+        used: tuple[Related, ...] = (
+            Related(span=leaf.span, message=f"`{leaf.name}` is of the type `{type_.name}`"),
+        )
+        if fault.name.span.source is NOWHERE.source:
+            fault = replace(fault, name=Word(fault.name.text, leaf.span))
+            used = ()
+        judge = code_not_found if fault.kind in NOT_FOUND else bad_class
+        yield judge(fault, target.name, type_.name, found.name, used)
     differences = [*_differences(type_, found)]
     if found.stale is not None:
         yield stale_code(leaf.span, type_.name, found.name, found.stale, differences)

@@ -183,3 +183,22 @@ def test_many_writers_and_readers_that_clash_take_no_longer_than_they_should() -
         lines += [f"state S{number}: Any {{", "outcomes ok", f"on ok -> {after}"]
         lines += ["input x: str", "output x: float", "}"]
     assert set(codes("\n".join([*lines, "}"]))) == {"SM304"}
+
+
+def test_an_input_of_the_machine_is_what_its_caller_provides() -> None:
+    (item,) = found("""
+machine sm: StateMachine {
+  outcomes done
+  input part: Pose
+  initial SAY
+  state SAY: Say {
+    outcomes ok
+    input part: str
+    on ok -> done
+  }
+}
+""")
+    first, _, second = item.message.partition(", but ")
+    assert first == "`SAY` reads `part` as `str`"
+    assert second == "the caller of `sm` provides `part` as `Pose`"
+    assert item.help == "change the type in the `input_keys` of `sm`, or where it is read"

@@ -7,8 +7,14 @@ from pathlib import Path
 import pytest
 
 import smachac
+from smachac.diagnostics.source import Source
+from smachac.driver import analyse
+from smachac.frontend.files import disk_library
+from smachac.frontend.loader import memory_library
 from smachac.interpreter.behaviours import builtin_behaviour
 from smachac.interpreter.interpreter import run
+from smachac.targets import BuildContext
+from smachac.targets.python import emit
 
 TEMPLATE = """\
 {% block class_defs %}
@@ -53,3 +59,51 @@ def test_there_is_no_code_of_ours_for_it(tmp_path: Path, name: str, interface: b
 def test_the_interpreter_takes_its_outcomes(tmp_path: Path) -> None:
     machine = smachac.load(project(tmp_path, "SleepState"))
     assert run(machine, builtin_behaviour()).outcome == "first"
+
+
+OWN = """
+name: {name}
+variables: {{force: {{type: float, default: 1.0}}}}
+outcomes: {{done: {{}}}}
+code: {{python: "{module}:Grasp"}}
+"""
+OWN_CLASS = """\
+import smach
+
+
+class Grasp(smach.State):
+    def __init__(self, force):
+        super().__init__(outcomes=["done"])
+        self.force = force
+
+    def execute(self, userdata):
+        return "done"
+"""
+
+
+def test_classes_of_one_name_and_defaults_that_a_constructor_requires() -> None:
+    script = """
+name: sm
+outcomes: [done]
+states:
+  - ONE: {template: Grasp, transitions: {done: TWO}}
+  - TWO: {template: Grip, force: 2.0, transitions: {done: THREE}}
+  - THREE: {template: Grip, transitions: {done: done}}
+"""
+    files = {
+        "main.yml": script,
+        "templates/Grasp.yml": OWN.format(name="Grasp", module="left.grasp"),
+        "templates/Grip.yml": OWN.format(name="Grip", module="right.grasp"),
+        "left/grasp.py": OWN_CLASS,
+        "right/grasp.py": OWN_CLASS,
+    }
+    library = memory_library(files, disk_library(Path("main.yml"), []))
+    analysis = analyse(Source("main.yml", script), library, [])
+    assert analysis.report == []
+    assert analysis.checked is not None
+    text = emit(analysis.checked, BuildContext(library=library), [])["sm.py"]
+    assert "from left.grasp import Grasp\n" in text
+    assert "from right.grasp import Grasp as Grip\n" in text
+    assert '"ONE", Grasp(force=1.0)' in text
+    assert '"TWO", Grip(force=2.0)' in text
+    assert "Grip(force=1.0)" in text

@@ -72,6 +72,7 @@ class Mutant:
     only if some run finds a key missing, and then the state that does is a right place too.
     `ends`: what is wrong has two ends, as writer and reader of a type; either may be blamed, if
     the other is shown as a related place. So are all who read a key that gets lost.
+    `lines` are right places in files that are no YAML.
     """
 
     codes: tuple[str, ...]
@@ -80,6 +81,7 @@ class Mutant:
     edit: Callable[[list[str], int], None] | None = None
     loss: bool = False
     ends: bool = False
+    lines: tuple[tuple[str, int], ...] = ()
 
 
 Mutation = Callable[[Subject], "Mutant | None"]
@@ -129,6 +131,7 @@ def judge(subject: Subject, mutant: Mutant) -> Verdict:
     right = {(file, printed[file].lines[steps][0]) for file, steps in mutant.places}
     if mutant.edit is not None:
         right |= {(file, line + 1) for file, line in right}
+    right |= {*mutant.lines}
     for site in mutant.owners:
         right |= {(site.file, line) for line in own_lines(site, printed[site.file])}
     analysis = analysed(files)

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from tests.trust import (
+    mutate_classes,
     mutate_concurrences,
     mutate_data,
     mutate_graph,
@@ -13,6 +14,7 @@ from tests.trust.mutants import MUTATIONS
 
 __all__ = [
     "MUTATIONS",
+    "mutate_classes",
     "mutate_concurrences",
     "mutate_data",
     "mutate_graph",

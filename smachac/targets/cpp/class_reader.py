@@ -10,12 +10,14 @@ import re
 from collections.abc import Iterable, Iterator, Sequence
 from dataclasses import dataclass
 
-from smachac.diagnostics.source import Source, Span, Word
+from smachac.diagnostics.source import NOWHERE, Source, Span, Word
+from smachac.diagnostics.spelling import guesser
 from smachac.frontend.loader import Library
+from smachac.ir.class_facts import ClassFault
 from smachac.ir.nodes import Key, StateType
 from smachac.targets.cpp.identifiers import identifier
 from smachac.targets.cpp.types import UnportableError
-from smachac.targets.cpp.user_classes import class_code, field_type, interface_hash
+from smachac.targets.cpp.user_classes import ClassCode, class_code, field_type, interface_hash
 from smachac.targets.interface_check import Declared, Words
 
 LONGEST = 200_000
@@ -29,6 +31,7 @@ _CLASS = (
     r"(?<!enum )\b(?:class|struct)\s+(?:\w+\s+)?(?P<name>{})\b(?P<base>[^;(){{}}=]{{0,1000}})\{{"
 )
 _OUTCOME = r"\benum\s+(?:class|struct)\s+Outcome\b[^;{]{0,1000}\{"
+_USED_OUTCOME = re.compile(r"(?<![\w:])Outcome\s*::\s*([A-Za-z_]\w*)")
 _STRUCT = r"\bstruct\s+{}\s*\{{"
 _NUMBER = (
     r"\bsmachac_interface\s*[={]\s*(0[xX][\da-fA-F']{1,20}|\d[\d']{0,20})[uUlL]*\s*(?:\}\s*)?;"
@@ -96,19 +99,28 @@ def declared(type_: StateType, library: Library) -> Declared | None:
     """The interface that the class of a state type declares; None where it cannot be read."""
     code = class_code(type_)
     source = library.code(code.header) if code is not None else None
-    if code is None or source is None or len(source.text) > LONGEST:
+    if code is None:
+        return None
+    if source is None:
+        return _absent(code, absent_header(code.header, library))
+    if len(source.text) > LONGEST:
         return None
     whole = _Part(source=source, text=without_literals(source.text))
-    head = whole.only(_CLASS.format(re.escape(code.name.rpartition("::")[2])))
+    name = code.name.rpartition("::")[2]
+    if not re.search(rf"\b{re.escape(name)}\b|^\s*#\s*define\b", whole.text, re.M):
+        return _absent(code, _absent_class(name, whole))
+    head = whole.only(_CLASS.format(re.escape(name)))
     body = whole.inside(head)
     if head is None or body is None or "#" in body.text:
         return None
     derived = ":" in head["base"]
     inputs, outputs = (_fields(body, name, derived=derived) for name in ("In", "Out"))
+    place = whole.word(name, *head.span("name"))
+    outcomes = _outcomes(body, [each.name for each in type_.outcomes])
     return Declared(
         name=code.name.removeprefix("::"),
-        span=whole.word("", *head.span("name")).span,
-        outcomes=_outcomes(body, [each.name for each in type_.outcomes]),
+        span=place.span,
+        outcomes=outcomes,
         inputs=_names(inputs, type_.input_keys),
         outputs=_names(outputs, type_.output_keys),
         others=(
@@ -116,7 +128,54 @@ def declared(type_: StateType, library: Library) -> Declared | None:
             *_other_fields("Out", outputs, type_.output_keys),
         ),
         stale=_stale(body, interface_hash(type_)),
+        faults=tuple(_faults(body, place, outcomes, derived=derived)),
     )
+
+
+def _absent(code: ClassCode, fault: ClassFault | None) -> Declared | None:
+    """A class that does not exist."""
+    name = code.name.removeprefix("::")
+    return Declared(name=name, span=NOWHERE, faults=(fault,)) if fault is not None else None
+
+
+def absent_header(header: str, library: Library) -> ClassFault | None:
+    """The fault that a header is in no searched folder; None where it can be an installed one.
+
+    It is certain if its folder has other headers.
+    """
+    folder, _, file = header.rpartition("/")
+    others = [each for each in library.code_names(folder) if each.endswith((".hpp", ".h", ".hh"))]
+    if not folder or not others:
+        return None
+    near = guesser(others)(file)
+    meant = f"{folder}/{near}" if near is not None else None
+    return ClassFault(kind="no module", name=Word(header, NOWHERE), near=meant)
+
+
+def _absent_class(name: str, whole: _Part) -> ClassFault | None:
+    """The fault that a header has no class of a name; None if it includes other headers of the
+    user, which can define it."""
+    included = re.findall(r'^\s*#\s*include\s*"([^"]*)"', whole.source.text, re.M)
+    if any(not each.startswith("smachac/") for each in included):
+        return None
+    classes = re.findall(r"\b(?:class|struct)\s+(\w+)", whole.text)
+    return ClassFault(kind="no class", name=Word(name, NOWHERE), near=guesser(classes)(name))
+
+
+def _faults(
+    body: _Part, name: Word, outcomes: Words | None, *, derived: bool
+) -> Iterator[ClassFault]:
+    """A missing `execute`, and uses of enumerators that `Outcome` does not have."""
+    if not derived and not re.search(r"\bexecute\b", body.text):
+        yield ClassFault(kind="no execute", name=name)
+    if outcomes is None:
+        return
+    known = [identifier(each.text) for each in outcomes]
+    guess = guesser(known)
+    for found in _USED_OUTCOME.finditer(body.text):
+        if found[1] not in known:
+            word = body.word(found[1], *found.span(1))
+            yield ClassFault(kind="no outcome", name=word, near=guess(found[1]))
 
 
 def without_literals(text: str) -> str:

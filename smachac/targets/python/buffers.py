@@ -62,11 +62,11 @@ class PrintedFunction:
 class ModuleParts:
     """The contributions of the states to a module, by block, and the state of its generation.
 
-    `classes` are the classes of the user that it imports, `module:Class`. `plan` holds the
-    containers that functions build, and `functions` those functions, by their key. `wrappers`
-    are the functions around containers, by path. `own_templates` are the files of the user's
-    templates for containers, by type. `names` are those in the printed code. `faults` are the
-    findings about templates, without duplicates.
+    `classes` are the classes of the user that it imports, `module:Class`, with their names in it.
+    `plan` holds the containers that functions build, and `functions` those functions, by their key.
+    `wrappers` are the functions around containers, by path. `own_templates` are the files of the
+    user's templates for containers, by type. `names` are those in the printed code. `faults` are
+    the findings about templates, without duplicates.
     """
 
     blocks: Blocks
@@ -77,7 +77,7 @@ class ModuleParts:
     fresh: Callable[[str, str], str] = field(default_factory=structure.variable_names)
     buffers: Buffers = field(default_factory=buffers)
     used: dict[str, UsedType] = field(default_factory=dict)
-    classes: dict[str, None] = field(default_factory=dict)
+    classes: dict[str, str] = field(default_factory=dict)
     defined_headers: Headers = field(default_factory=Headers)
     functions: dict[str, PrintedFunction] = field(default_factory=dict)
     own_templates: dict[str, str | None] = field(default_factory=dict)

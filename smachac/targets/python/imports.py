@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import ast
 import sys
-from collections.abc import Iterable, Iterator
+from collections.abc import Iterable, Iterator, Mapping
 from dataclasses import dataclass, field
 from textwrap import indent
 
@@ -104,15 +104,20 @@ except ModuleNotFoundError as error:
 and a program that imports this one gets the exception."""
 
 
-def class_imports(classes: Iterable[str], levels: int) -> tuple[list[str], str]:
-    """The code that imports the user's classes of states, `module:Class`, and the imports that it
-    needs. `levels`: the modules are in the folder so many levels above that of the program."""
+def class_imports(classes: Mapping[str, str], levels: int) -> tuple[list[str], str]:
+    """The code that imports the user's classes of states, `module:Class` with the name that the
+    program gives it, and the imports that it needs. `levels`: the modules are in the folder so many
+    levels above that of the program."""
     pairs = [each.partition(":")[::2] for each in classes]
     if not pairs:
         return [], ""
     listed = names(sorted({name for module, _ in pairs for name in _packages(module)}))
     modules = laid_out(listed, WIDTH - 4, len("modules = ")).replace("\n", "\n    ")
-    lines = import_lines(f"from {module} import {name}" for module, name in pairs)
+    own = zip(pairs, classes.values(), strict=True)
+    lines = import_lines(
+        f"from {module} import {name}" + (f" as {new}" if new != name else "")
+        for (module, name), new in own
+    )
     text = f"try:\n{indent(lines, '    ')}\n{NOT_FOUND.format(modules=modules)}"
     if not levels:
         return ["import sys"], text

@@ -6,6 +6,7 @@ from __future__ import annotations
 import re
 from collections.abc import Mapping
 from dataclasses import dataclass, field
+from itertools import chain, count
 from textwrap import indent
 
 from smachac.frontend import schema
@@ -334,6 +335,7 @@ def _leaf(leaf: Leaf, inside: EmittedContainer, path: str, module: ModuleParts) 
         for one in leaf.variables
         if one is not called
     ]
+    arguments += _required_defaults(leaf, used.type)
     given = used.type.given
     arguments += structure.key_arguments(
         leaf.inputs if "input_keys" in given else (),
@@ -343,6 +345,21 @@ def _leaf(leaf: Leaf, inside: EmittedContainer, path: str, module: ModuleParts) 
     made = structure.made(leaf, call(used.class_name, arguments), callbacks)
     depth = inside.depth + 1
     return f"{structure.notes(leaf, depth)}\n{structure.add(leaf, inside.node, made, depth)}"
+
+
+def _required_defaults(leaf: Leaf, type_: StateType) -> structure.Arguments:
+    """The defaults of the interface for variables that the script does not set and the constructor
+    of the class requires."""
+    facts = type_.class_facts
+    known = facts.parameters if facts is not None and not type_.built_in else None
+    set_ = {one.name for one in leaf.variables}
+    required = [each.word.text for each in known or () if each.required]
+    defaults = {name: type_.variables[name].default for name in required if name in type_.variables}
+    return [
+        (f"{name}=", literal(default.data))
+        for name, default in defaults.items()
+        if default is not None and name not in set_
+    ]
 
 
 def _called_first(leaf: Leaf, used: UsedType, module: ModuleParts) -> Variable | None:
@@ -362,8 +379,8 @@ def _used(leaf: Leaf, module: ModuleParts) -> UsedType:
     type_ = module.state_types.get(leaf.type) or StateType(name=leaf.type, open=True)
     code = type_.code.get("python", f"{leaf.type}.tpl.py")
     if ":" in code:
-        module.classes[code] = None
-        used = UsedType(type=type_, class_name=code.partition(":")[2])
+        own = module.classes.setdefault(code, _own_name(code.partition(":")[2], leaf.type, module))
+        used = UsedType(type=type_, class_name=own)
     elif module.blocks.source(code) is None:
         message = f"the state type `{leaf.type}` has no code for Python"
         help = f"add the template `{code}`, or name a class under `code` in `{leaf.type}.yml`"
@@ -372,7 +389,7 @@ def _used(leaf: Leaf, module: ModuleParts) -> UsedType:
         found = module.blocks.names(code)
         used = UsedType(
             type=type_,
-            class_name=re.sub(r"\W+", "_", leaf.type),
+            class_name=_class_name(leaf.type),
             template=code,
             whole="body" in found,
         )
@@ -385,6 +402,26 @@ def _used(leaf: Leaf, module: ModuleParts) -> UsedType:
     module.used[leaf.type] = used
     module.names.named.add(used.class_name)
     return used
+
+
+def _own_name(class_name: str, type_: str, module: ModuleParts) -> str:
+    """The name of an imported class in the module: where another state type has a class of the same
+    name, that of its own state type, or a number is added."""
+    taken = {*module.classes.values()}
+    taken |= {
+        _class_name(name)
+        for name, each in module.state_types.items()
+        if name != type_ and ":" not in each.code.get("python", "")
+    }
+    candidates = (f"{class_name}_{number}" for number in count(2))
+    return next(
+        each for each in chain([class_name, _class_name(type_)], candidates) if each not in taken
+    )
+
+
+def _class_name(type_: str) -> str:
+    """The name of the class of a state type with a template."""
+    return re.sub(r"\W+", "_", type_)
 
 
 def _whole(

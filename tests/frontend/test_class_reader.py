@@ -10,8 +10,9 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from smachac.diagnostics.source import Source
-from smachac.frontend.python_source import python_body
-from smachac.ir.nodes import Body
+from smachac.frontend.class_reader import read_template
+from smachac.frontend.files import disk_library
+from smachac.ir.class_facts import ClassFacts
 
 TEMPLATE = """{{% block class_defs %}}
 class Pick(smach.State):
@@ -25,11 +26,16 @@ class Pick(smach.State):
 """
 
 
-def body(code: str) -> Body | None:
-    return python_body(Source("Pick.tpl.py", TEMPLATE.format(indent(code, " " * 8))), "Pick")
+LIBRARY = disk_library(Path("main.yml"), [])
 
 
-def known(code: str) -> Body:
+def body(code: str) -> ClassFacts | None:
+    return read_template(
+        Source("Pick.tpl.py", TEMPLATE.format(indent(code, " " * 8))), "Pick", LIBRARY
+    )
+
+
+def known(code: str) -> ClassFacts:
     found = body(code)
     assert found is not None
     return found
@@ -91,9 +97,10 @@ def test_constants_that_are_returned(code: str, returns: list[str]) -> None:
 )
 def test_ways_without_an_outcome(code: str, silent: bool) -> None:
     found = known(code)
-    assert (found.silent is not None) == silent
-    if found.silent is not None:
-        assert found.silent.text == "execute"
+    assert found.silent == silent
+    assert found.execute is not None
+    if found.silent:
+        assert found.execute.text == "execute"
         assert found.always_silent == ("return" not in code)
 
 
@@ -140,21 +147,22 @@ def test_keys(code: str, reads: list[str], writes: list[str]) -> None:
     ],
 )
 def test_what_cannot_be_told(text: str) -> None:
-    assert python_body(Source("Pick.tpl.py", text), "Pick") is None
+    found = read_template(Source("Pick.tpl.py", text), "Pick", LIBRARY)
+    assert found is None or found.execute is None
 
 
 def test_one_class_of_several_is_that_of_the_name() -> None:
     text = "".join(
         f"class {name}:\n  def execute(self, ud):\n    return '{name}'\n" for name in ("A", "Pick")
     )
-    found = python_body(Source("Pick.tpl.py", text), "Pick")
+    found = read_template(Source("Pick.tpl.py", text), "Pick", LIBRARY)
     assert found is not None
     assert [word.text for word in found.returns] == ["Pick"]
 
 
 @given(st.text(alphabet="{%}#\n\r \"'():=ü", max_size=40), st.text(max_size=10))
 def test_any_text_is_read(code: str, name: str) -> None:
-    found = python_body(Source("x", code), name)
+    found = read_template(Source("x", code), name, LIBRARY)
     body(code)
     assert found is None or {word.span.source.name for word in found.returns} <= {"x"}
 
@@ -164,8 +172,8 @@ def test_our_own_state_types_are_read() -> None:
 
     folder = Path(smachac.__file__).parent / "stdlib"
     found = {
-        path.name.removesuffix(".tpl.py"): python_body(
-            Source(path.name, path.read_text("utf-8")), path.name.removesuffix(".tpl.py")
+        path.name.removesuffix(".tpl.py"): read_template(
+            Source(path.name, path.read_text("utf-8")), path.name.removesuffix(".tpl.py"), LIBRARY
         )
         for path in folder.glob("*State.tpl.py")
         if "def execute(" in path.read_text("utf-8") and "block body" not in path.read_text("utf-8")

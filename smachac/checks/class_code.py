@@ -1,0 +1,399 @@
+"""Rules on the code of state types: the Python class of a type against its interface.
+
+The facts about a class are read from its text (frontend/class_reader.py); it is never run. A fault
+of a class is reported once, with the first state of its type as a related place.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Iterator
+
+from smachac.analysis.context import Context
+from smachac.checks.messages import did_you_mean, other_place
+from smachac.checks.rule import rule
+from smachac.diagnostics.diagnostic import Finding, Related, Severity
+from smachac.diagnostics.source import Word
+from smachac.diagnostics.spelling import guesser
+from smachac.diagnostics.wording import listed
+from smachac.ir import nodes
+from smachac.ir.class_facts import ClassFacts
+from smachac.ir.nodes import Leaf, StateType
+from smachac.ir.outcome_names import PREEMPTED
+from smachac.ir.traversal import outcome_names
+
+
+def leaves_by_type(context: Context, *, declared: bool) -> Iterator[tuple[str, Leaf, ClassFacts]]:
+    """A leaf of each type whose code was read, with its path. `declared`: one that sees only the
+    keys it declares, unlike the child of an iterator."""
+    seen: set[str] = set()
+    for path, container in context.containers:
+        if declared and isinstance(container, nodes.Iterator):
+            continue
+        for child in container.children:
+            known = child.class_facts if isinstance(child, Leaf) else None
+            if isinstance(child, Leaf) and known is not None and child.type not in seen:
+                seen.add(child.type)
+                yield f"{path}/{child.name}", child, known
+
+
+def _own_types(
+    context: Context, *, declared: bool
+) -> Iterator[tuple[str, Leaf, StateType, ClassFacts]]:
+    """As `leaves_by_type`, for the types of the user."""
+    for path, leaf, facts in leaves_by_type(context, declared=declared):
+        type_ = context.machine.state_types.get(leaf.type)
+        if type_ is not None and not type_.built_in and not type_.open:
+            yield path, leaf, type_, facts
+
+
+def _used_here(leaf: Leaf) -> tuple[Related, ...]:
+    """The first state of a type, as a related place."""
+    return other_place(leaf.span, f"`{leaf.name}` is of the type `{leaf.type}`")
+
+
+@rule("SM309", "undeclared-return", Severity.ERROR)
+def undeclared_return(context: Context) -> Iterator[Finding]:
+    """The Python code of a state type returns a value that is not one of its outcomes, or no value.
+
+    Then SMACH stops the whole machine with an error, and the robot stops in the middle of its task.
+
+    Exactly: the code is read, never run, and parts that Jinja fills in are not checked. It is a
+    warning if only some paths through `execute` end without `return`, because such a path may be
+    impossible.
+
+    Wrong:
+        name: sm
+        template: Base
+        outcomes: [pressed, late]
+        states:
+          - WAIT:
+              template: WaitForButton
+              transitions: {pressed: pressed, timed_out: late}
+        == templates/WaitForButton.yml ==
+        name: WaitForButton
+        outcomes: {pressed: {}, timed_out: {}}
+        code: {python: WaitForButton.tpl.py}
+        == templates/WaitForButton.tpl.py ==
+        {% block class_defs %}
+        class WaitForButton(smach.State):
+            def __init__(self):
+                super().__init__(outcomes=["pressed", "timed_out"])
+
+            def execute(self, userdata):
+                return "pressed" if button.wait(10) else "timeout"
+        {% endblock %}
+
+    Right:
+        name: sm
+        template: Base
+        outcomes: [pressed, late]
+        states:
+          - WAIT:
+              template: WaitForButton
+              transitions: {pressed: pressed, timed_out: late}
+        == templates/WaitForButton.yml ==
+        name: WaitForButton
+        outcomes: {pressed: {}, timed_out: {}}
+        code: {python: WaitForButton.tpl.py}
+        == templates/WaitForButton.tpl.py ==
+        {% block class_defs %}
+        class WaitForButton(smach.State):
+            def __init__(self):
+                super().__init__(outcomes=["pressed", "timed_out"])
+
+            def execute(self, userdata):
+                return "pressed" if button.wait(10) else "timed_out"
+        {% endblock %}
+    """
+    for path, leaf, facts in leaves_by_type(context, declared=False):
+        yield from _wrong_returns(path, leaf, facts)
+
+
+def _wrong_returns(path: str, leaf: Leaf, facts: ClassFacts) -> Iterator[Finding]:
+    outcomes = outcome_names(leaf)
+    guess = guesser(outcomes)
+    known = f"return one of its outcomes: {listed(outcomes)}"
+    if not outcomes:
+        known = f"add outcomes to the interface `{leaf.type}`"
+    for word in facts.returns:
+        if word.text not in outcomes:
+            yield Finding(
+                span=word.span,
+                message=f"`{leaf.type}` returns `{word.text}`, which is not one of its outcomes",
+                arguments=(leaf.type, word.text),
+                help=did_you_mean(guess(word.text)) or known,
+                related=_used_here(leaf),
+                node=path,
+            )
+    if facts.silent and facts.execute is not None:
+        does = "never returns" if facts.always_silent else "can end without returning"
+        yield Finding(
+            span=facts.execute,
+            message=f"`execute` of `{leaf.type}` {does} an outcome",
+            arguments=(leaf.type,),
+            help=known,
+            related=_used_here(leaf),
+            severity=None if facts.always_silent else Severity.WARNING,
+            node=path,
+        )
+
+
+def unknown_reads(context: Context) -> Iterator[Finding]:
+    """The keys that the code of a type reads without an input in its interface (SM310)."""
+    for path, leaf, facts in leaves_by_type(context, declared=True):
+        inputs = [key.name for key in leaf.inputs]
+        for word in _first_of_each(facts.reads, inputs):
+            yield Finding(
+                span=word.span,
+                message=f"the code of `{leaf.type}` reads `{word.text}`, which is not an input"
+                " key of its interface",
+                arguments=(word.text,),
+                help=did_you_mean(guesser(inputs)(word.text))
+                or f"add `{word.text}` to the `input_keys` of the interface `{leaf.type}`",
+                related=_used_here(leaf),
+                node=path,
+            )
+
+
+def dropped_writes(context: Context) -> Iterator[Finding]:
+    """The keys that the code of a type sets without an output in its interface (SM308). Unknown
+    keys that the code also reads are left to SM310."""
+    for path, leaf, facts in leaves_by_type(context, declared=True):
+        inputs = {key.name for key in leaf.inputs}
+        outputs = [key.name for key in leaf.outputs]
+        unknown = {word.text for word in facts.reads} - inputs
+        for word in _first_of_each(facts.writes, [*outputs, *unknown]):
+            only = word.text in inputs
+            what = "only an input key" if only else "not an output key of its interface"
+            guess = None if only else did_you_mean(guesser(outputs)(word.text))
+            yield Finding(
+                span=word.span,
+                message=f"the code of `{leaf.type}` sets `{word.text}`, which is {what}: the value"
+                " is discarded",
+                arguments=(word.text,),
+                help=guess
+                or f"add `{word.text}` to the `output_keys` of the interface `{leaf.type}`",
+                related=_used_here(leaf),
+                node=path,
+            )
+
+
+def _first_of_each(words: Iterable[Word], known: Iterable[str]) -> list[Word]:
+    """The first occurrence of each unknown word."""
+    found: dict[str, Word] = {}
+    for word in words:
+        found.setdefault(word.text, word)
+    left = found.keys() - set(known)
+    return [word for word in found.values() if word.text in left]
+
+
+@rule("SM320", "unwritten-output", Severity.WARNING)
+def unwritten_output(context: Context) -> Iterator[Finding]:
+    """The class of a state type returns an outcome without setting an output key that its
+    interface promises for that outcome.
+
+    The rules and the next states rely on the interface: a state that reads the key stops the
+    machine with an error, or works with an old value.
+
+    Exactly: the class is read, never run. There is a finding only if no path to that `return` can
+    set the key: methods of the class and functions of its module are followed, and a class that
+    passes the userdata to other code is not checked. `writes:` in the interface names the outcomes
+    that set a key. A key that is not in it must be set before one `return` at least; after the
+    others it counts as unset (SM301).
+
+    Wrong:
+        name: sm
+        template: Base
+        outcomes: [seen, lost]
+        output_keys: [pose]
+        states:
+          - FIND:
+              template: FindPart
+              transitions: {found: seen, lost: lost}
+        == templates/FindPart.yml ==
+        name: FindPart
+        output_keys: {pose: Pose}
+        outcomes: {found: {}, lost: {}}
+        writes: {found: [pose]}
+        code: {python: "cell.find_part:FindPart"}
+        == cell/find_part.py ==
+        import smach
+
+
+        class FindPart(smach.State):
+            def __init__(self):
+                super().__init__(outcomes=["found", "lost"], output_keys=["pose"])
+
+            def execute(self, userdata):
+                pose = camera.look()
+                return "lost" if pose is None else "found"
+
+    Right:
+        name: sm
+        template: Base
+        outcomes: [seen, lost]
+        output_keys: [pose]
+        states:
+          - FIND:
+              template: FindPart
+              transitions: {found: seen, lost: lost}
+        == templates/FindPart.yml ==
+        name: FindPart
+        output_keys: {pose: Pose}
+        outcomes: {found: {}, lost: {}}
+        writes: {found: [pose]}
+        code: {python: "cell.find_part:FindPart"}
+        == cell/find_part.py ==
+        import smach
+
+
+        class FindPart(smach.State):
+            def __init__(self):
+                super().__init__(outcomes=["found", "lost"], output_keys=["pose"])
+
+            def execute(self, userdata):
+                pose = camera.look()
+                if pose is None:
+                    return "lost"
+                userdata.pose = pose
+                return "found"
+    """
+    for path, leaf, type_, facts in _own_types(context, declared=True):
+        if any(each.role == "callbacks" for each in type_.variables.values()):
+            continue
+        kept = {key.name for key in type_.input_keys}  # set before, perhaps changed in place
+        outputs = [key.name for key in type_.output_keys if key.name not in kept]
+        guess = guesser(outputs)
+        misspelt = {guess(word.text) for word in facts.writes if word.text not in outputs}
+        for key in outputs:
+            if key not in misspelt:
+                yield from _unwritten(path, leaf, type_, facts, key)
+
+
+def _unwritten(
+    path: str, leaf: Leaf, type_: StateType, facts: ClassFacts, key: str
+) -> Iterator[Finding]:
+    """The returns that break a promise of `writes:`, or the whole `execute` if it never sets a key
+    that is not in `writes:`."""
+    promised = {outcome for outcome, keys in type_.writes if key in keys}
+    missing = [each for each in facts.endings if each.written is not None]
+    missing = [each for each in missing if key not in (each.written or ())]
+    if promised:
+        for ending in missing:
+            if ending.outcome.text in promised:
+                yield Finding(
+                    span=ending.outcome.span,
+                    message=f"`{leaf.type}` returns `{ending.outcome.text}` without setting its"
+                    f" output key `{key}`",
+                    arguments=(leaf.type, key, ending.outcome.text),
+                    help=f"set `userdata.{key}` before this `return`, or correct `writes:` in the"
+                    f" interface `{leaf.type}`",
+                    related=_used_here(leaf),
+                    node=path,
+                )
+    elif facts.complete and facts.execute is not None and missing == [*facts.endings] != []:
+        yield Finding(
+            span=facts.execute,
+            message=f"`execute` of `{leaf.type}` never sets its output key `{key}`",
+            arguments=(leaf.type, key),
+            help=f"set `userdata.{key}`, or remove it from the interface `{leaf.type}`",
+            related=_used_here(leaf),
+            node=path,
+        )
+
+
+@rule("SM321", "never-returned", Severity.WARNING)
+def never_returned(context: Context) -> Iterator[Finding]:
+    """The class of a state type never returns an outcome that its interface declares.
+
+    What the script does after that outcome never happens. If the outcome is `preempted`, neither a
+    time limit nor a stop of the machine can end the state: the robot continues.
+
+    Exactly: the class is read, never run. There is no finding if `execute` returns a value that is
+    not a constant, or if it only returns one constant, because then it is not written yet.
+
+    Wrong:
+        name: sm
+        template: Base
+        outcomes: [ready, stopped]
+        states:
+          - WAIT:
+              template: WaitForPart
+              transitions: {arrived: ready, preempted: stopped}
+        == templates/WaitForPart.yml ==
+        name: WaitForPart
+        outcomes: {arrived: {}, preempted: {}}
+        blocking: true
+        code: {python: "cell.wait:WaitForPart"}
+        == cell/wait.py ==
+        import smach
+
+
+        class WaitForPart(smach.State):
+            def __init__(self):
+                super().__init__(outcomes=["arrived", "preempted"])
+
+            def execute(self, userdata):
+                while not belt.has_part():
+                    belt.wait(0.1)
+                return "arrived"
+
+    Right:
+        name: sm
+        template: Base
+        outcomes: [ready, stopped]
+        states:
+          - WAIT:
+              template: WaitForPart
+              transitions: {arrived: ready, preempted: stopped}
+        == templates/WaitForPart.yml ==
+        name: WaitForPart
+        outcomes: {arrived: {}, preempted: {}}
+        blocking: true
+        code: {python: "cell.wait:WaitForPart"}
+        == cell/wait.py ==
+        import smach
+
+
+        class WaitForPart(smach.State):
+            def __init__(self):
+                super().__init__(outcomes=["arrived", "preempted"])
+
+            def execute(self, userdata):
+                while not belt.has_part():
+                    if self.preempt_requested():
+                        self.service_preempt()
+                        return "preempted"
+                    belt.wait(0.1)
+                return "arrived"
+    """
+    for path, leaf, type_, facts in _own_types(context, declared=False):
+        known = facts.complete and facts.returns and facts.execute is not None
+        if not known or facts.stub or type_.optional:
+            continue
+        returned = {word.text for word in facts.returns}
+        names = [each.name for each in type_.outcomes]
+        declared = names if facts.outcomes is None else [word.text for word in facts.outcomes]
+        wrong = returned.difference(names)  # SM309: probably one of the others was meant
+        for name in names:
+            if name in declared and name not in returned and not (wrong and name != PREEMPTED):
+                yield _never(path, leaf, facts, name)
+
+
+def _never(path: str, leaf: Leaf, facts: ClassFacts, outcome: str) -> Finding:
+    assert facts.execute is not None
+    message = f"`execute` of `{leaf.type}` never returns `{outcome}`"
+    help = f"return `{outcome}` where it is meant, or remove it from the interface `{leaf.type}`"
+    if outcome == PREEMPTED:
+        help = "check `self.preempt_requested()` while it works, and then return `preempted`"
+        if not facts.checks_stop:
+            message += ": a time limit or a stop cannot end it"
+    place = next((each.span for each in leaf.outcomes if each.name == outcome), leaf.span)
+    return Finding(
+        span=facts.execute,
+        message=message,
+        arguments=(leaf.type, outcome),
+        help=help,
+        related=(*other_place(place, f"`{outcome}` is declared here"), *_used_here(leaf)),
+        node=path,
+    )

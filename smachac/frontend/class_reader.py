@@ -1,0 +1,368 @@
+"""The Python class of a state type: from its text to ClassFacts. The class is never run.
+
+The class is in a template of the state type, or in a module of the user. In a template, parts that
+Jinja replaces are not judged.
+"""
+
+from __future__ import annotations
+
+import ast
+import re
+
+from smachac.diagnostics.source import Source, Span, Word
+from smachac.diagnostics.spelling import guesser
+from smachac.frontend.loader import Library
+from smachac.frontend.python_flow import Flow, Flows, is_plain
+from smachac.frontend.python_modules import (
+    Module,
+    OwnClass,
+    absent_module,
+    find_class,
+    load_module,
+    template_module,
+    with_bases,
+)
+from smachac.frontend.python_source import PythonText
+from smachac.ir.class_facts import ClassFacts, ClassFault, FaultKind, Parameter
+
+PARAMETERS = ("outcomes", "input_keys", "output_keys", "io_keys")
+"""The parameters of `smach.State.__init__` with lists of names, in their order."""
+
+REGISTERS = re.compile(r"\.(register)?_(outcomes|(io|input|output)_keys)\b")
+"""Methods and attributes that change the declared interface; a class that has one is not read."""
+
+STATE_METHODS = frozenset([
+    "execute", "request_preempt", "service_preempt", "recall_preempt", "preempt_requested",
+    "register_outcomes", "get_registered_outcomes", "register_io_keys", "register_input_keys",
+    "get_registered_input_keys", "register_output_keys", "get_registered_output_keys",
+])  # fmt: skip
+"""The methods of `smach.State` that containers call (smachac/runtime/smach/state.py)."""
+
+Words = tuple[Word, ...]
+
+
+def read_template(source: Source, name: str, library: Library) -> ClassFacts | None:
+    """The facts about the class in the template of a state type; None if there is no such class.
+
+    The class has the name of the type, or is the only one with an `execute`, or the only one.
+    """
+    try:
+        module = template_module(source)
+        node = _in_template(module, re.sub(r"\W+", "_", name)) if module is not None else None
+        return _facts(module, node, library) if module is not None and node is not None else None
+    except (RecursionError, MemoryError, ValueError):  # ValueError: a name in full-width letters
+        return None
+
+
+def _in_template(module: Module, name: str) -> ast.ClassDef | None:
+    classes = [node for node in module.text.tree.body if isinstance(node, ast.ClassDef)]
+    named = [node for node in classes if node.name == name]
+    running = [node for node in classes if any(_is_execute(each) for each in ast.walk(node))]
+    for some in (named, running, classes):
+        if some:
+            return some[0] if len(some) == 1 else None
+    return None
+
+
+def _is_execute(node: ast.AST) -> bool:
+    return getattr(node, "name", "") == "execute"
+
+
+def read_module(word: Word, library: Library) -> ClassFacts | None:
+    """The facts about a class of a module, `my_robot.states:Grasp`; None if nothing is known."""
+    path, _, name = word.text.partition(":")
+    at = word.span.text.find(path)
+    start = word.span.start + max(at, 0)
+    place = Word(path, Span(word.span.source, start, min(start + len(path), word.span.end)))
+    try:
+        module = load_module(path, library)
+        if module is None:
+            module = absent_module(place, library)
+        if not isinstance(module, Module):
+            return ClassFacts(faults=(module,)) if module is not None else None
+        found = find_class(module, name, library)
+        if isinstance(found, ClassFault):
+            return ClassFacts(faults=(_at_the_name(found, word),))
+        return _facts(*found, library) if found is not None else None
+    except (RecursionError, MemoryError, ValueError):
+        return None
+
+
+def _at_the_name(fault: ClassFault, word: Word) -> ClassFault:
+    """A fault at the name of the class in the interface."""
+    at = word.span.text.rfind(fault.name.text)
+    start = word.span.start + max(at, 0)
+    span = Span(word.span.source, start, min(start + len(fault.name.text), word.span.end))
+    return ClassFault(kind=fault.kind, name=Word(fault.name.text, span), near=fault.near)
+
+
+def _facts(module: Module, node: ast.ClassDef, library: Library) -> ClassFacts:
+    """The facts about a class."""
+    own = with_bases(module, node, library)
+    flow, execute, place = _execute(own)
+    lists = _declared(module.text, node)
+    whole = not any(piece.startswith("{%") for piece in _fillings(module, node))
+    return ClassFacts(
+        name=Word(node.name, name_span(module.text, node)),
+        faults=tuple(_faults(own, module, node)) if whole else (),
+        parameters=_parameters(own) if whole else None,
+        outcomes=lists.get("outcomes", ()) if lists is not None else None,
+        inputs=_together(lists, "input_keys"),
+        outputs=_together(lists, "output_keys"),
+        endings=flow.endings,
+        complete=flow.complete,
+        execute=place,
+        silent=flow.silent,
+        always_silent=flow.always_silent,
+        reads=flow.reads,
+        writes=flow.writes,
+        stub=execute is not None and all(map(_does_nothing, execute.body)),
+        checks_stop=any(_checks_stop(each) for _, each in own.classes),
+    )
+
+
+def _fillings(module: Module, node: ast.stmt) -> list[str]:
+    return module.text.fillings(module.text.span(node))
+
+
+def name_span(text: PythonText, node: ast.ClassDef | ast.FunctionDef) -> Span:
+    """The place of the name in a definition."""
+    span = text.span(node)
+    at = max(span.source.text.find(node.name, span.start), span.start)
+    return Span(span.source, at, at + len(node.name))
+
+
+# --- execute
+
+
+def _execute(own: OwnClass) -> tuple[Flow, ast.FunctionDef | None, Span | None]:
+    """The flow of `execute`, its definition, and the place of its name."""
+    found = own.method("execute")
+    if found is None:
+        return Flow(), None, None
+    module, function = found
+    named = sum(_is_execute(each) for _, node in own.classes for each in ast.walk(node))
+    plain = is_plain(function) and len(function.args.args) == 2 and not function.args.posonlyargs
+    tags = any(piece.startswith("{%") for piece in _fillings(module, function))
+    overridden = sum("execute" in names for names in own.names)
+    if not plain or tags or named != overridden:
+        return Flow(), None, None
+    flow = Flows(own).of(module, function, function.args.args[1].arg)
+    return flow or Flow(), function, name_span(module.text, function)
+
+
+def _does_nothing(node: ast.stmt) -> bool:
+    """Whether a statement of `execute` is one of a stub: a constant that is kept or returned."""
+    match node:
+        case ast.Pass() | ast.Expr(value=ast.Constant()):
+            return True
+        case ast.Assign(value=value) | ast.Return(value=value):
+            return isinstance(value, ast.Constant)
+    return False
+
+
+def _checks_stop(node: ast.ClassDef) -> bool:
+    """Whether a class uses a method with a name such as `preempt_requested`."""
+    attributes = (each.attr for each in ast.walk(node) if isinstance(each, ast.Attribute))
+    return any("preempt" in name for name in attributes)
+
+
+# --- the structure of the class
+
+
+def _faults(own: OwnClass, module: Module, node: ast.ClassDef) -> list[ClassFault]:
+    """The certain faults of a class."""
+    found = _twice(module, node)
+    if own.root == "unknown":
+        return found
+    if own.root == "object":
+        certain = not own.binds("get_registered_outcomes")
+        return [*found, _at_class("no state", module, node)] if certain else found
+    return [*found, *_execute_faults(own, module, node), *_constructor_faults(own), *_hidden(own)]
+
+
+def _at_class(
+    kind: FaultKind, module: Module, node: ast.ClassDef, near: str | None = None
+) -> ClassFault:
+    return ClassFault(kind=kind, name=Word(node.name, name_span(module.text, node)), near=near)
+
+
+def _at_method(kind: FaultKind, module: Module, node: ast.FunctionDef) -> ClassFault:
+    return ClassFault(kind=kind, name=Word(node.name, name_span(module.text, node)))
+
+
+def _twice(module: Module, node: ast.ClassDef) -> list[ClassFault]:
+    """The later ones of two definitions of the class, and of two plain methods of one name."""
+    found = []
+    same = [each for each in module.text.tree.body if getattr(each, "name", "") == node.name]
+    if len(same) > 1 and same[-1] is node:
+        found.append(_at_class("defined twice", module, node))
+    methods: dict[str, ast.FunctionDef] = {}
+    for each in node.body:
+        if isinstance(each, ast.FunctionDef) and not each.decorator_list:
+            if each.name in methods:
+                found.append(_at_method("defined twice", module, each))
+            methods[each.name] = each
+    return found
+
+
+def _execute_faults(own: OwnClass, module: Module, node: ast.ClassDef) -> list[ClassFault]:
+    if not own.binds("execute"):
+        if "execute" in own.assigned() or any("__getattr__" in names for names in own.names):
+            return []
+        methods = [name for name in own.names[0] if own.method(name) is not None]
+        return [_at_class("no execute", module, node, guesser(methods)("execute"))]
+    bound = own.names[0].get("execute", ())
+    if bound and isinstance(bound[-1], ast.AsyncFunctionDef) and not bound[-1].decorator_list:
+        return [_at_class("no method", module, node)]
+    found = own.method("execute")
+    if found is None or found[1].decorator_list:
+        return []
+    module, function = found
+    if not is_plain(function):
+        return [_at_method("no method", module, function)]
+    taken = function.args
+    positional = len(taken.posonlyargs) + len(taken.args)
+    few = positional < 2 and taken.vararg is None
+    many = positional - len(taken.defaults) > 2 or None in taken.kw_defaults
+    return [_at_method("arguments", module, function)] if few or many else []
+
+
+def _constructor_faults(own: OwnClass) -> list[ClassFault]:
+    """A constructor that does not call the one of `smach.State`, or none at all."""
+    module, node = own.classes[0]
+    if own.binds("__new__") or any(_registers(each) for _, each in own.classes):
+        return []
+    if not own.binds("__init__"):
+        return [_at_class("no outcomes", module, node)]
+    found = own.method("__init__")
+    if found is None:
+        return []
+    owner = next(each for (_, each), names in zip(own.classes, own.names, strict=True)
+                 if "__init__" in names)  # fmt: skip
+    calls = any(
+        (isinstance(each, ast.Name) and each.id == "super")
+        or (isinstance(each, ast.Attribute) and each.attr == "__init__")
+        for each in ast.walk(owner)
+    )
+    return [] if calls else [_at_method("no constructor call", *found)]
+
+
+def _registers(node: ast.ClassDef) -> bool:
+    return REGISTERS.search(ast.unparse(node)) is not None
+
+
+def _hidden(own: OwnClass) -> list[ClassFault]:
+    """The methods of `smach.State` that an attribute of the object hides."""
+    return [
+        ClassFault(kind="hidden method", name=Word(name, span))
+        for name, entries in own.assigned().items()
+        if name in STATE_METHODS
+        for _, value, span in entries
+        if isinstance(value, ast.Constant | ast.Compare | ast.List | ast.Dict | ast.Tuple)
+    ]
+
+
+# --- the constructor
+
+
+def _parameters(own: OwnClass) -> tuple[Parameter, ...] | None:
+    """The parameters of the constructor that can be passed by name."""
+    if own.binds("__new__"):
+        return None
+    if not own.binds("__init__"):
+        place = name_span(own.classes[0][0].text, own.classes[0][1])
+        fixed = (Parameter(word=Word(name, place), required=False) for name in PARAMETERS)
+        return tuple(fixed) if own.root == "state" else None
+    found = own.method("__init__")
+    if found is None or found[1].decorator_list or found[1].args.kwarg is not None:
+        return None
+    module, function = found
+    given = function.args
+    positional = [*given.posonlyargs, *given.args]
+    first = len(positional) - len(given.defaults)
+    required = set(positional[:first])
+    required |= {
+        each
+        for each, default in zip(given.kwonlyargs, given.kw_defaults, strict=True)
+        if default is None
+    }
+    return tuple(
+        Parameter(word=Word(each.arg, _place(module.text, each)), required=each in required)
+        for each in [*given.args, *given.kwonlyargs]
+        if each is not positional[0]
+    )
+
+
+def _place(text: PythonText, node: ast.arg) -> Span:
+    start = text.offset(node.lineno, node.col_offset)
+    return Span(text.source, start, start + len(node.arg))
+
+
+def _declared(text: PythonText, node: ast.ClassDef) -> dict[str, Words | None] | None:
+    """The lists that a class passes to `smach.State`; None if it is more than one `__init__` of a
+    plain `smach.State`."""
+    bases = [ast.unparse(base) for base in node.bases]
+    makers = [each for each in node.body if getattr(each, "name", "") == "__init__"]
+    plain = bases in (["smach.State"], ["State"]) and not node.keywords and not node.decorator_list
+    if not plain or len(makers) != 1 or _registers(node):
+        return None
+    (maker,) = makers
+    if not isinstance(maker, ast.FunctionDef) or maker.decorator_list:
+        return None
+    if any(piece.startswith("{%") for piece in text.fillings(text.span(maker))):
+        return None
+    calls = [each for each in ast.walk(maker) if isinstance(each, ast.Call) and _is_super(each)]
+    alone = [each.value for each in maker.body if isinstance(each, ast.Expr)]
+    if len(calls) != 1 or calls[0] not in alone:
+        return None
+    given = _given(calls[0])
+    return {key: _words(text, value) for key, value in given.items()} if given is not None else None
+
+
+def _is_super(call: ast.Call) -> bool:
+    """Whether a call is that of the `__init__` of the base class."""
+    match call.func:
+        case ast.Attribute(value=ast.Call(func=ast.Name(id="super")), attr="__init__"):
+            return True
+        case ast.Attribute(value=owner, attr="__init__"):
+            return ast.unparse(owner) in ("smach.State", "State")
+    return False
+
+
+def _given(call: ast.Call) -> dict[str, ast.expr] | None:
+    """The arguments by name; None where some are in `*args` or `**kwargs`."""
+    arguments = list(call.args)
+    if isinstance(call.func, ast.Attribute) and not isinstance(call.func.value, ast.Call):
+        arguments = arguments[1:]  # the first one is `self`
+    if any(isinstance(each, ast.Starred) for each in arguments):
+        return None
+    found: dict[str, ast.expr] = dict(zip(PARAMETERS, arguments, strict=False))
+    for keyword in call.keywords:
+        if keyword.arg is None:
+            return None
+        found[keyword.arg] = keyword.value
+    return found
+
+
+def _words(text: PythonText, value: ast.expr) -> Words | None:
+    """The names in a list of string literals; None for other expressions."""
+    if not isinstance(value, ast.List | ast.Tuple | ast.Set):
+        return None
+    found = []
+    for each in value.elts:
+        span = text.span(each)
+        if not (isinstance(each, ast.Constant) and isinstance(each.value, str)):
+            return None
+        if text.is_filled(span):
+            return None
+        found.append(Word(each.value, span))
+    return None if text.is_filled(text.span(value)) else tuple(found)
+
+
+def _together(lists: dict[str, Words | None] | None, key: str) -> Words | None:
+    """The names in a list of the constructor, and those in the list of both kinds of keys."""
+    if lists is None:
+        return None
+    some, both = lists.get(key, ()), lists.get("io_keys", ())
+    return None if some is None or both is None else (*some, *both)

@@ -1,0 +1,489 @@
+"""The control flow of `execute`: returned constants, paths without an outcome, userdata accesses.
+
+Calls of methods of the same object and of functions of the same module are followed. The keys that
+can be set before a `return` are an upper bound: where the userdata is passed to other code, they
+are not known.
+"""
+
+from __future__ import annotations
+
+import ast
+from collections.abc import Iterable, Iterator
+from dataclasses import dataclass
+
+from smachac.diagnostics.source import Span, Word
+from smachac.frontend.python_modules import Module, OwnClass, constant
+from smachac.ir.class_facts import Ending
+
+METHODS = frozenset(["extract", "keys", "merge", "update"])
+"""The attributes of userdata that are no keys (smach.user_data)."""
+
+NONE: frozenset[str] = frozenset()
+
+Keys = frozenset[str] | None
+"""The keys that can be set; None: not known, or code that no path reaches."""
+
+_Functions = ast.FunctionDef | ast.AsyncFunctionDef | ast.ClassDef | ast.expr
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Flow:
+    """The control flow of a function; for the fields see ClassFacts.
+
+    `written` are the keys that it can set; None: not known.
+    """
+
+    endings: tuple[Ending, ...] = ()
+    complete: bool = False
+    silent: bool = False
+    always_silent: bool = False
+    reads: tuple[Word, ...] = ()
+    writes: tuple[Word, ...] = ()
+    written: Keys = None
+
+
+def is_plain(function: ast.FunctionDef) -> bool:
+    """Whether a function runs when it is called: it is no generator and has no decorator."""
+    return not function.decorator_list and not _is_generator(function)
+
+
+def _is_generator(function: ast.FunctionDef) -> bool:
+    """Whether a function itself, not one inside it, has a `yield`."""
+    todo: list[ast.AST] = [*function.body]
+    while todo:
+        node = todo.pop()
+        if isinstance(node, ast.Yield | ast.YieldFrom):
+            return True
+        if not isinstance(node, ast.FunctionDef | ast.AsyncFunctionDef | ast.ClassDef | ast.Lambda):
+            todo.extend(ast.iter_child_nodes(node))
+    return False
+
+
+class Flows:
+    """The flows of the methods of a class and of functions, each analysed once."""
+
+    def __init__(self, own: OwnClass) -> None:
+        self.own = own
+        self.assigned = own.assigned().keys()
+        self._known: dict[tuple[ast.FunctionDef, str], Flow | None] = {}
+
+    def of(self, module: Module, function: ast.FunctionDef, userdata: str) -> Flow | None:
+        """The flow of a function whose parameter `userdata` is the userdata; None inside itself."""
+        key = (function, userdata)
+        if key not in self._known:
+            self._known[key] = None
+            self._known[key] = _Reader(self, module, function, userdata).flow()
+        return self._known[key]
+
+
+class _Reader:
+    """Analyses one function."""
+
+    def __init__(
+        self, flows: Flows, module: Module, function: ast.FunctionDef, userdata: str
+    ) -> None:
+        self.flows = flows
+        self.module = module
+        self.text = module.text
+        self.function = function
+        self.userdata = userdata
+        self.nodes = list(ast.walk(function))
+        self.own_name = _first_argument(function)
+        self.called: dict[ast.Call, Flow | None] = {}
+        self.effect: dict[ast.AST, frozenset[str]] = {}
+        self.endings: list[Ending] = []
+        self.complete = True
+
+    def flow(self) -> Flow:
+        body = self.function.body
+        returns = list(returns_of(body))
+        filled = bool(self.text.fillings(self.text.span(self.function)))
+        rebound = self._is_rebound()
+        if not rebound:
+            self._follow_calls()
+        reads, writes = ((), ()) if rebound else self._accesses()
+        known = not rebound and self._is_closed() and not filled
+        self._block(body, NONE)
+        endings = self.endings if known else [Ending(outcome=e.outcome) for e in self.endings]
+        written = self._effects(self.function) if known else None
+        return Flow(
+            endings=tuple(endings),
+            complete=self.complete and not filled,
+            silent=not filled and not ends(body),
+            always_silent=not any(each.value is not None for each in returns),
+            reads=reads,
+            writes=writes,
+            written=written,
+        )
+
+    # --- userdata
+
+    def _is_rebound(self) -> bool:
+        """Whether the name of the userdata has another meaning somewhere in the function."""
+        name = self.userdata
+        own = [*self.function.args.posonlyargs, *self.function.args.args]
+        for node in self.nodes:
+            match node:
+                case ast.Name(id=other, ctx=ast.Store() | ast.Del()) if other == name:
+                    return True
+                case ast.arg(arg=other) if other == name and node not in own:
+                    return True
+        return False
+
+    def _follow_calls(self) -> None:
+        """The flows of the functions that get the userdata."""
+        for node in self.nodes:
+            if isinstance(node, ast.Call) and self._passes(node):
+                self.called[node] = self._call(node)
+
+    def _passes(self, call: ast.Call) -> bool:
+        given = [*call.args, *(each.value for each in call.keywords)]
+        return any(isinstance(each, ast.Name) and each.id == self.userdata for each in given)
+
+    def _call(self, call: ast.Call) -> Flow | None:
+        """The flow of a call of a method or function of the user; None where it is not known."""
+        found = self._target(call.func)
+        if found is None:
+            return None
+        module, function, bound = found
+        parameters = [each.arg for each in function.args.args][bound:]
+        named = {each.arg for each in (*function.args.args, *function.args.kwonlyargs)}
+        if function.args.posonlyargs or any(isinstance(each, ast.Starred) for each in call.args):
+            return None
+        given = list(zip(parameters, call.args, strict=False))
+        given += [(str(each.arg), each.value) for each in call.keywords if each.arg in named]
+        if len(given) != len(call.args) + len(call.keywords):
+            return None
+        names = [name for name, value in given
+                 if isinstance(value, ast.Name) and value.id == self.userdata]  # fmt: skip
+        return self.flows.of(module, function, "".join(names)) if len(names) <= 1 else None
+
+    def _target(self, called: ast.expr) -> tuple[Module, ast.FunctionDef, int] | None:
+        """The method or function that a call runs, and the number of arguments it has already."""
+        match called:
+            case ast.Attribute(value=ast.Name(id=owner), attr=name) if owner == self.own_name:
+                found = self.flows.own.method(name)
+                if found is None or name in self.flows.assigned:
+                    return None
+                module, function = found
+                match function.decorator_list:
+                    case [ast.Name(id="staticmethod")]:
+                        return module, function, 0
+                return (module, function, 1) if is_plain(function) else None
+            case ast.Name(id=name):
+                local = any(
+                    isinstance(each, ast.Name) and each.id == name
+                    and not isinstance(each.ctx, ast.Load)
+                    for each in self.nodes
+                )  # fmt: skip
+                match self.module.names.get(name, ()):
+                    case (ast.FunctionDef() as function,) if not local and is_plain(function):
+                        return self.module, function, 0
+        return None
+
+    def _is_closed(self) -> bool:
+        """Whether only this function and those it calls can write the userdata."""
+        uses = sum(isinstance(each, ast.Name) and each.id == self.userdata for each in self.nodes)
+        for node in self.nodes:
+            match node:
+                case ast.Attribute(value=ast.Name(id=name), attr=key) if name == self.userdata:
+                    uses -= key == "keys" or not (key in METHODS or key.startswith("_"))
+                case ast.Subscript(value=ast.Name(id=name), slice=key) if name == self.userdata:
+                    known = isinstance(key, ast.Constant) or isinstance(node.ctx, ast.Load)
+                    uses -= known
+                case ast.Compare(ops=[ast.In() | ast.NotIn()], comparators=[ast.Name(id=name)]):
+                    uses -= name == self.userdata
+        for flow in self.called.values():
+            uses -= flow is not None and flow.written is not None
+        return uses == 0
+
+    def _effects(self, node: ast.AST) -> frozenset[str]:
+        """The keys that a part of the function can set."""
+        if node not in self.effect:
+            found: set[str] = set()
+            todo = [node]
+            while todo:
+                each = todo.pop()
+                if isinstance(each, ast.Attribute | ast.Subscript):
+                    key = key_of(each, self.userdata)
+                    if key is not None and not isinstance(each.ctx, ast.Load):
+                        found.add(key)
+                flow = self.called.get(each) if isinstance(each, ast.Call) else None
+                found.update(flow.written or () if flow is not None else ())
+                todo.extend(ast.iter_child_nodes(each))
+            self.effect[node] = frozenset(found)
+        return self.effect[node]
+
+    def _accesses(self) -> tuple[tuple[Word, ...], tuple[Word, ...]]:
+        """The keys that are read and written; without keys whose presence the code tests, and
+        without code in `try`."""
+        reads: list[Word] = []
+        writes: list[Word] = []
+        tested: set[str] = set()
+        tried: set[ast.AST] = set()
+        for node in self.nodes:
+            match node:
+                case ast.Compare(left=ast.Constant(str() as word), ops=[ast.In() | ast.NotIn()]):
+                    tested.add(word)
+                case ast.Try(handlers=[_, *_]):
+                    tried.update(inner for each in node.body for inner in ast.walk(each))
+        updated = {each.target for each in self.nodes if isinstance(each, ast.AugAssign)}
+        for node in self.nodes:
+            if not isinstance(node, ast.Attribute | ast.Subscript) or node in tried:
+                continue
+            key = key_of(node, self.userdata)
+            if key is None or key in tested:
+                continue
+            span = self.text.span(node)
+            if self.text.is_filled(span):
+                continue
+            if isinstance(node.ctx, ast.Load) or node in updated:
+                reads.append(Word(key, span))
+            if not isinstance(node.ctx, ast.Load):
+                writes.append(Word(key, span))
+        inner = [
+            flow for call, flow in self.called.items() if flow is not None and call not in tried
+        ]
+        reads.sort(key=_start)
+        writes.sort(key=_start)
+        reads += [word for flow in inner for word in flow.reads if word.text not in tested]
+        writes += [word for flow in inner for word in flow.writes if word.text not in tested]
+        return tuple(reads), tuple(writes)
+
+    # --- outcomes
+
+    def _block(self, body: Iterable[ast.stmt], before: Keys) -> Keys:
+        """The keys that can be set after statements; None where control does not get there."""
+        for statement in body:
+            before = self._statement(statement, before)
+        return before
+
+    def _statement(self, node: ast.stmt, before: Keys) -> Keys:
+        match node:
+            case ast.Return():
+                self._returned(node, _both(before, self._effects(node)))
+                return None
+            case ast.Raise() | ast.Break() | ast.Continue():
+                return None
+            case ast.If():
+                head = _both(before, self._effects(node.test))
+                return _either(self._block(node.body, head), self._block(node.orelse, head))
+            case ast.For() | ast.AsyncFor() | ast.While():
+                # A round can follow any other one that does not leave the function.
+                head = _both(before, self._carried(node.body) | self._head(node))
+                self._block(node.body, head)
+                self._block(node.orelse, head)
+                after = _both(head, self._carried(node.orelse))
+                return None if is_end(node) else after
+            case ast.With() | ast.AsyncWith():
+                # A context manager can suppress an exception.
+                self._block(node.body, _both(before, self._all(node.items)))
+                return None if is_end(node) else _both(before, self._effects(node))
+            case ast.Try():
+                return self._try(node, before)
+            case ast.Match():
+                head = _both(before, self._effects(node.subject))
+                found = [self._block(case.body, head) for case in node.cases]
+                return _either(head, *found)
+            case ast.FunctionDef() | ast.AsyncFunctionDef() | ast.ClassDef():
+                return _both(before, self._effects(node))
+        return None if is_end(node) else _both(before, self._effects(node))
+
+    def _try(self, node: ast.Try, before: Keys) -> Keys:
+        head = _both(before, self._all(node.finalbody))
+        after = self._block(node.orelse, self._block(node.body, head))
+        failed = _both(head, self._all(node.body))
+        after = _either(after, *(self._block(each.body, failed) for each in node.handlers))
+        self._block(node.finalbody, _both(failed, self._all([*node.handlers, *node.orelse])))
+        return None if is_end(node) else after
+
+    def _head(self, node: ast.For | ast.AsyncFor | ast.While) -> frozenset[str]:
+        """The keys that the head of a loop can set."""
+        parts = [node.test] if isinstance(node, ast.While) else [node.target, node.iter]
+        return self._all(parts)
+
+    def _carried(self, body: list[ast.stmt]) -> frozenset[str]:
+        """The keys that statements can set on paths that do not end with `return` or `raise`."""
+        leaves = any(isinstance(each, ast.Return | ast.Raise) for each in body)
+        jumps = ast.Break | ast.Continue
+        if leaves and not any(isinstance(node, jumps) for each in body for node in ast.walk(each)):
+            return NONE
+        found = NONE
+        for each in body:
+            if isinstance(each, ast.If):
+                found |= self._effects(each.test)
+                found |= self._carried(each.body) | self._carried(each.orelse)
+            else:
+                found |= self._effects(each)
+        return found
+
+    def _all(self, parts: Iterable[ast.AST]) -> frozenset[str]:
+        return NONE.union(*map(self._effects, parts))
+
+    def _returned(self, node: ast.Return, before: Keys) -> None:
+        if node.value is None:
+            self.endings.append(Ending(outcome=Word("None", self.text.span(node)), written=before))
+            return
+        for value in alternatives(node.value):
+            if not self._constants(value, before):
+                self.complete = False
+
+    def _constants(self, value: ast.expr, before: Keys) -> bool:
+        """Adds the endings with the values of an expression; False if it can have others."""
+        span = self.text.span(value)
+        if self.text.is_filled(span):
+            return False
+        match value:
+            case ast.Constant(value=found):
+                return self._add(found if isinstance(found, str) else repr(found), span, before)
+            case ast.Name(id=name):
+                return self._named(name, span, before)
+            case ast.Attribute(value=ast.Name(id=owner), attr=name) if owner == self.own_name:
+                bound = [names for names in self.flows.own.names if name in names]
+                text = constant(bound[0], name) if bound else None
+                return name not in self.flows.assigned and self._add(text, span, before)
+            case ast.Call():
+                return self._results(value, before)
+        return False
+
+    def _add(self, text: str | None, span: Span, before: Keys) -> bool:
+        """Adds the ending with a constant, if it is known."""
+        if text is not None:
+            self.endings.append(Ending(outcome=Word(text, span), written=before))
+        return text is not None
+
+    def _named(self, name: str, span: Span, before: Keys) -> bool:
+        """As `_constants` for a local variable that has only constants, or a constant of the
+        module."""
+        stores = [each for each in self.nodes if isinstance(each, ast.Name) and each.id == name
+                  and not isinstance(each.ctx, ast.Load)]  # fmt: skip
+        other = any(isinstance(each, ast.arg) and each.arg == name for each in self.nodes)
+        other = other or any(isinstance(each, ast.Global | ast.Nonlocal) for each in self.nodes)
+        if other:
+            return False
+        if not stores:
+            return self._add(constant(self.module.names, name), span, before)
+        given = [(_targets(each), each.value) for each in self.nodes
+                 if isinstance(each, ast.Assign | ast.AnnAssign)]  # fmt: skip
+        values = [value for targets, value in given for each in targets if each in stores]
+        found = [one for value in values if value is not None for one in alternatives(value)]
+        texts = [isinstance(each, ast.Constant) and isinstance(each.value, str) for each in found]
+        if len(values) != len(stores) or None in values or not all(texts):
+            return False
+        for each in found:
+            self._constants(each, before)
+        return True
+
+    def _results(self, call: ast.Call, before: Keys) -> bool:
+        """As `_constants` for what a method or function of the user returns."""
+        flow = self.called.get(call) if call in self.called else self._call(call)
+        if flow is None:
+            return False
+        for each in flow.endings:
+            written = each.written if call in self.called else NONE
+            known = None if written is None else _both(before, written)
+            self.endings.append(Ending(outcome=each.outcome, written=known))
+        return flow.complete and not flow.silent
+
+
+def _targets(node: ast.Assign | ast.AnnAssign) -> list[ast.expr]:
+    return node.targets if isinstance(node, ast.Assign) else [node.target]
+
+
+def _start(word: Word) -> int:
+    return word.span.start
+
+
+def _first_argument(function: ast.FunctionDef) -> str:
+    names = [*function.args.posonlyargs, *function.args.args]
+    return names[0].arg if names else ""
+
+
+def _both(some: Keys, more: Keys) -> Keys:
+    return None if some is None else some | (more or NONE)
+
+
+def _either(*several: Keys) -> Keys:
+    reached = [each for each in several if each is not None]
+    return NONE.union(*reached) if reached else None
+
+
+def key_of(node: ast.AST, name: str) -> str | None:
+    """The key of the userdata that an expression accesses."""
+    match node:
+        case ast.Attribute(value=ast.Name(id=owner), attr=key) if owner == name:
+            return None if key in METHODS or key.startswith("_") else key
+        case ast.Subscript(value=ast.Name(id=owner), slice=ast.Constant(str() as key)):
+            return key if owner == name else None
+    return None
+
+
+def alternatives(value: ast.expr) -> Iterator[ast.expr]:
+    """The expressions one of which is the value of an expression."""
+    if isinstance(value, ast.IfExp):
+        yield from alternatives(value.body)
+        yield from alternatives(value.orelse)
+    else:
+        yield value
+
+
+def returns_of(body: list[ast.stmt]) -> Iterator[ast.Return]:
+    """The return statements of a function, without those of nested functions."""
+    todo: list[ast.AST] = [*reversed(body)]
+    while todo:
+        node = todo.pop()
+        if isinstance(node, ast.Return):
+            yield node
+        elif not isinstance(node, _Functions):
+            todo.extend(reversed(list(ast.iter_child_nodes(node))))
+
+
+def ends(body: list[ast.stmt]) -> bool:
+    """Whether control never reaches the end: statements return, raise or loop for ever."""
+    return any(map(is_end, body))
+
+
+def is_end(statement: ast.stmt) -> bool:
+    match statement:
+        case ast.Return() | ast.Raise() | ast.Break() | ast.Continue():
+            # A loop with `break` is handled below; `continue` stays in the loop.
+            return True
+        case ast.If(body=body, orelse=orelse):
+            return ends(body) and ends(orelse)
+        case ast.While(test=ast.Constant(value=test), body=body) if test:
+            return not any(_breaks(body))
+        case (
+            ast.For(body=body, orelse=[_, *_] as orelse)
+            | ast.While(body=body, orelse=[_, *_] as orelse)
+        ):
+            return ends(orelse) and not any(_breaks(body))
+        case ast.With(body=body):
+            return ends(body)
+        case ast.Try(body=body, handlers=handlers, orelse=orelse, finalbody=final):
+            whole = ends(body) or ends(orelse)
+            return ends(final) or (whole and all(ends(each.body) for each in handlers))
+        case ast.Match(cases=cases):
+            last = cases[-1]
+            whole = isinstance(last.pattern, ast.MatchAs) and last.pattern.pattern is None
+            return whole and last.guard is None and all(ends(each.body) for each in cases)
+        case ast.Assert(test=ast.Constant(value=test)):
+            return not test
+        case ast.Expr(value=ast.Call(func=ast.Name() | ast.Attribute() as function)):
+            # Whether a call returns is not known: `sys.exit()`, `self.give_up()`.
+            word = function.id if isinstance(function, ast.Name) else function.attr
+            return word in ("abort", "exit", "_exit", "fail", "quit")
+    return False
+
+
+def _breaks(body: list[ast.stmt]) -> Iterator[bool]:
+    """True for each `break` that leaves the loop with this body."""
+    todo: list[ast.AST] = [*body]
+    while todo:
+        node = todo.pop()
+        if isinstance(node, ast.Break):
+            yield True
+        loops = ast.For | ast.While | ast.AsyncFor | ast.FunctionDef | ast.ClassDef | ast.expr
+        if not isinstance(node, loops):
+            todo.extend(ast.iter_child_nodes(node))
+        elif isinstance(node, ast.For | ast.While):
+            todo.extend(node.orelse)

@@ -1,0 +1,299 @@
+"""Modules and classes of the user in Python: the class of a name, its base classes, its methods.
+
+Names are followed through imports and base classes to files that the library finds, and no
+further. Where a name can be bound in another way, the answer is None: not known.
+"""
+
+from __future__ import annotations
+
+import ast
+from collections.abc import Iterator, Mapping
+from dataclasses import dataclass
+from typing import Literal, TypeAlias
+
+from smachac.diagnostics.source import Source, Span, Word
+from smachac.diagnostics.spelling import guesser
+from smachac.frontend.loader import Library
+from smachac.frontend.python_source import PythonText, python_text, syntax_error
+from smachac.ir.class_facts import ClassFault
+
+MOST_STEPS = 10
+"""The most imports, and the most base classes, that are followed."""
+
+Root: TypeAlias = Literal["state", "object", "unknown"]
+"""The class at the end of a chain of base classes: `smach.State`, none, or one that is not read."""
+
+Names: TypeAlias = Mapping[str, tuple[ast.AST, ...]]
+"""The statements that bind each name of a module or a class."""
+
+_INNER = ast.FunctionDef | ast.AsyncFunctionDef | ast.ClassDef | ast.Lambda
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Module:
+    """A module with the names that it binds; `dynamic`: it can bind others.
+
+    `name` is its dotted name, empty for a template; `package`: it is the file of a package.
+    """
+
+    text: PythonText
+    name: str
+    package: bool
+    names: Names
+    dynamic: bool
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class OwnClass:
+    """A class with its base classes that are known, the derived class first, and their root."""
+
+    classes: tuple[tuple[Module, ast.ClassDef], ...]
+    names: tuple[Names, ...]
+    root: Root
+
+    def method(self, name: str) -> tuple[Module, ast.FunctionDef] | None:
+        """The method of a name; None if it is not known or does not exist."""
+        for (module, node), names in zip(self.classes, self.names, strict=True):
+            match names.get(name, ()):
+                case ():
+                    continue
+                case (*_, ast.FunctionDef() as last) as bound:
+                    plain = all(isinstance(each, ast.FunctionDef) for each in bound)
+                    return (module, last) if plain and last in node.body else None
+                case _:
+                    return None
+        return None
+
+    def binds(self, name: str) -> bool:
+        """Whether one of the classes binds a name."""
+        return any(name in names for names in self.names)
+
+    def assigned(self) -> dict[str, list[tuple[Module, ast.expr | None, Span]]]:
+        """The attributes of the object that its methods assign: `self.name = value`."""
+        found: dict[str, list[tuple[Module, ast.expr | None, Span]]] = {}
+        for module, node in self.classes:
+            for method in ast.walk(node):
+                if isinstance(method, ast.Assign | ast.AnnAssign | ast.AugAssign):
+                    targets = method.targets if isinstance(method, ast.Assign) else [method.target]
+                    value = None if isinstance(method, ast.AugAssign) else method.value
+                    for target in targets:
+                        for each in ast.walk(target):
+                            if isinstance(each, ast.Attribute) and _is_self(each.value):
+                                whole = value if each is target else None
+                                entry = (module, whole, module.text.span(each))
+                                found.setdefault(each.attr, []).append(entry)
+        return found
+
+
+def _is_self(node: ast.expr) -> bool:
+    return isinstance(node, ast.Name) and node.id == "self"
+
+
+def template_module(source: Source) -> Module | None:
+    """The Python in a template; None if it cannot be parsed."""
+    text = python_text(source, template=True)
+    return _module(text, "", package=False) if text is not None else None
+
+
+def load_module(name: str, library: Library) -> Module | ClassFault | None:
+    """The module of a dotted name; a fault if it certainly does not exist or cannot be parsed."""
+    path = name.replace(".", "/")
+    for file, package in ((f"{path}/__init__.py", True), (f"{path}.py", False)):
+        source = library.code(file)
+        if source is None:
+            continue
+        text = python_text(source, template=False)
+        if text is not None:
+            return _module(text, name, package=package)
+        error = syntax_error(source)
+        return ClassFault(kind="syntax", name=error) if error is not None else None
+    return None
+
+
+def absent_module(word: Word, library: Library) -> ClassFault | None:
+    """The fault that a module is in no searched folder; None where it can be an installed one.
+
+    It is certain if the folder of its package has other modules, or if a module with nearly the
+    same name exists.
+    """
+    parts = word.text.split(".")
+    for at, part in enumerate(parts):
+        here = library.code_names("/".join(parts[:at]))
+        names = sorted({each.removesuffix(".py") for each in here if is_module(each)})
+        if part in names:
+            continue
+        if any(each.startswith(f"{part}.") for each in here):  # an extension module
+            return None
+        guess = guesser(names)
+        near = guess(part) if at else guess.sure(part)
+        if near is None and (not at or not any(_is_package_file(each) for each in here)):
+            return None
+        meant = ".".join([*parts[:at], near, *parts[at + 1 :]]) if near is not None else None
+        return ClassFault(kind="no module", name=word, near=meant)
+    return None
+
+
+def is_module(file: str) -> bool:
+    """Whether a name of a file or folder can be that of a module."""
+    return file.removesuffix(".py").isidentifier() and not file.startswith("__")
+
+
+def _is_package_file(file: str) -> bool:
+    """Whether a file shows that its folder is a package. `setup.py` is beside one."""
+    return file.endswith(".py") and file != "setup.py"
+
+
+def find_class(
+    module: Module, name: str, library: Library, steps: int = MOST_STEPS
+) -> tuple[Module, ast.ClassDef] | ClassFault | None:
+    """The class of a name in a module, also where the module imports it."""
+    bound = module.names.get(name, ())
+    match bound:
+        case ():
+            if module.dynamic:
+                return None
+            classes = [key for key, by in module.names.items() if isinstance(by[-1], ast.ClassDef)]
+            top = Span(module.text.source, 0, 0)
+            return ClassFault(kind="no class", name=Word(name, top), near=guesser(classes)(name))
+        case (ast.ImportFrom() as imported,) if steps and imported in module.text.tree.body:
+            return _imported(module, imported, name, library, steps)
+        case (*_, ast.ClassDef() as last) if all(isinstance(each, ast.ClassDef) for each in bound):
+            at_top = all(each in module.text.tree.body for each in bound)
+            return (module, last) if at_top or len(bound) == 1 else None
+    return None
+
+
+def _imported(
+    module: Module, node: ast.ImportFrom, name: str, library: Library, steps: int
+) -> tuple[Module, ast.ClassDef] | None:
+    own = next(each.name for each in node.names if (each.asname or each.name) == name)
+    other = load_module(source_module(module, node), library)
+    if not isinstance(other, Module):
+        return None
+    found = find_class(other, own, library, steps - 1)
+    return found if isinstance(found, tuple) else None
+
+
+def source_module(module: Module, node: ast.ImportFrom) -> str:
+    """The dotted name of the module that a statement imports from."""
+    if not node.level:
+        return node.module or ""
+    parts = module.name.split(".")
+    kept = parts[: len(parts) - node.level + module.package]
+    return ".".join([*kept, node.module] if node.module else kept)
+
+
+def with_bases(module: Module, node: ast.ClassDef, library: Library) -> OwnClass:
+    """A class with its base classes, as far as each has one base."""
+    classes = [(module, node)]
+    root: Root | None = None
+    while root is None:
+        module, node = classes[-1]
+        if node.decorator_list or node.keywords or len(node.bases) > 1:
+            root = "unknown"
+            break
+        if not node.bases:
+            root = "object"
+            break
+        base = node.bases[0]
+        if _is_smach_state(module, base):
+            root = "state"
+            break
+        found = None
+        if isinstance(base, ast.Name) and base.id == "object" and "object" not in module.names:
+            root = "object"
+        elif isinstance(base, ast.Name):
+            found = find_class(module, base.id, library)
+            again = isinstance(found, tuple) and any(found[1] is each for _, each in classes)
+            if not isinstance(found, tuple) or again or len(classes) == MOST_STEPS:
+                root = "unknown"
+            else:
+                classes.append(found)
+        else:
+            root = "unknown"
+    names = tuple(_names(each.body)[0] for _, each in classes)
+    return OwnClass(classes=tuple(classes), names=names, root=root)
+
+
+def _is_smach_state(module: Module, base: ast.expr) -> bool:
+    """Whether an expression is the class `State` of SMACH. In a template, whose imports are in
+    other templates, it is by its name."""
+    match base:
+        case ast.Attribute(value=ast.Name(id=owner), attr="State"):
+            bound = module.names.get(owner, ())
+            return owner == "smach" or any("smach" in _imports(each, owner) for each in bound)
+        case ast.Name(id=name):
+            bound = module.names.get(name, ())
+            if not bound:
+                return name == "State" and not module.name
+            froms = [each for each in bound if isinstance(each, ast.ImportFrom)]
+            own = {alias.name for each in froms for alias in each.names
+                   if (alias.asname or alias.name) == name}  # fmt: skip
+            modules = {(each.module or "").rpartition(".")[2] for each in froms}
+            return len(froms) == len(bound) and own == {"State"} and modules <= {"smach", "state"}
+    return False
+
+
+def _imports(node: ast.AST, name: str) -> set[str]:
+    """The last parts of what a statement imports under a name."""
+    names = node.names if isinstance(node, ast.Import | ast.ImportFrom) else ()
+    return {
+        each.name.rpartition(".")[2]
+        for each in names
+        if (each.asname or each.name.partition(".")[0]) == name
+    }
+
+
+def constant(names: Names, name: str) -> str | None:
+    """The text that a name is bound to, if it is bound once, and to a text."""
+    match names.get(name, ()):
+        case (ast.Assign(targets=[ast.Name()], value=ast.Constant(str() as text)),):
+            return text
+        case (ast.AnnAssign(value=ast.Constant(str() as text)),):
+            return text
+    return None
+
+
+def _module(text: PythonText, name: str, *, package: bool) -> Module:
+    names, dynamic = _names(text.tree.body)
+    if "__getattr__" in names:
+        dynamic = True
+    return Module(text=text, name=name, package=package, names=names, dynamic=dynamic)
+
+
+def _names(body: list[ast.stmt]) -> tuple[Names, bool]:
+    """The statements that bind each name in a body, in their order, and whether there can be
+    other names."""
+    found: dict[str, list[ast.AST]] = {}
+    dynamic = False
+    for statement, node in _own(body):
+        match node:
+            case ast.FunctionDef() | ast.AsyncFunctionDef() | ast.ClassDef():
+                found.setdefault(node.name, []).append(node)
+            case ast.Import():
+                for alias in node.names:
+                    name = alias.asname or alias.name.partition(".")[0]
+                    found.setdefault(name, []).append(node)
+            case ast.ImportFrom():
+                for alias in node.names:
+                    found.setdefault(alias.asname or alias.name, []).append(node)
+                    dynamic = dynamic or alias.name == "*"
+            case ast.Name(id=name, ctx=ast.Store() | ast.Del()):
+                found.setdefault(name, []).append(statement)
+            case ast.Call(func=ast.Name(id="exec" | "globals" | "locals" | "vars")):
+                dynamic = True
+    return {name: tuple(bound) for name, bound in found.items()}, dynamic
+
+
+def _own(body: list[ast.stmt]) -> Iterator[tuple[ast.AST, ast.AST]]:
+    """The nodes of a body in their order, without those inside functions and classes, each with
+    its innermost statement."""
+    todo: list[tuple[ast.AST, ast.AST]] = [(each, each) for each in reversed(body)]
+    while todo:
+        statement, node = todo.pop()
+        yield statement, node
+        if not isinstance(node, _INNER):
+            children = reversed([*ast.iter_child_nodes(node)])
+            todo.extend(
+                (each if isinstance(each, ast.stmt) else statement, each) for each in children
+            )

@@ -1,0 +1,91 @@
+"""Facts about the class of a state type, as far as its text shows them."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import Literal
+
+from smachac.diagnostics.source import Span, Word
+
+FaultKind = Literal[
+    "no module",
+    "no class",
+    "syntax",
+    "no state",
+    "no execute",
+    "no method",
+    "arguments",
+    "no constructor call",
+    "no outcomes",
+    "hidden method",
+    "defined twice",
+    "no parameter",
+    "required parameter",
+    "no outcome",
+]
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class ClassFault:
+    """A certain fault in the structure of a class, at the name that it is about.
+
+    For `syntax`, the text of `name` is the message of the parser. `near` is the name that was
+    probably meant.
+    """
+
+    kind: FaultKind
+    name: Word
+    near: str | None = None
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Parameter:
+    """A parameter of a constructor that can be passed by its name."""
+
+    word: Word
+    required: bool
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Ending:
+    """A constant that `execute` returns, and the userdata keys that the code before it can set;
+    None: not known."""
+
+    outcome: Word
+    written: frozenset[str] | None = None
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class ClassFacts:
+    """Facts about the class of a state type; declarations of a script are not included.
+
+    `name` is the class name in its file, `faults` are certain faults of its structure.
+    `parameters` are those of its constructor; None: not known, or it accepts any.
+    `outcomes`, `inputs` and `outputs` are the names that the constructor declares; None: not known.
+
+    `endings` are the constants that `execute` returns; `complete`: it returns nothing else.
+    `execute` is the place of its name. `silent`: some path through it returns nothing,
+    `always_silent`: every path. `reads` and `writes` are the userdata keys that it accesses.
+    `stub`: it only returns one constant. `checks_stop`: the class checks for preempt requests.
+    """
+
+    name: Word | None = None
+    faults: tuple[ClassFault, ...] = ()
+    parameters: tuple[Parameter, ...] | None = None
+    outcomes: tuple[Word, ...] | None = None
+    inputs: tuple[Word, ...] | None = None
+    outputs: tuple[Word, ...] | None = None
+    endings: tuple[Ending, ...] = ()
+    complete: bool = False
+    execute: Span | None = None
+    silent: bool = False
+    always_silent: bool = False
+    reads: tuple[Word, ...] = ()
+    writes: tuple[Word, ...] = ()
+    stub: bool = False
+    checks_stop: bool = False
+
+    @property
+    def returns(self) -> tuple[Word, ...]:
+        """The constants that `execute` returns."""
+        return tuple(each.outcome for each in self.endings)

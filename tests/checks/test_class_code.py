@@ -1,0 +1,293 @@
+"""Classes of state types in modules: faults at the right place, and no finding without one."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import pytest
+
+from smachac.diagnostics.diagnostic import Report, Severity
+from smachac.diagnostics.source import Source
+from smachac.driver import analyse
+from smachac.frontend.files import disk_library
+from smachac.frontend.loader import memory_library
+
+SCRIPT = """
+name: sm
+template: Base
+outcomes: [seen, lost, stopped]
+output_keys: [pose]
+userdata: {tries: 0}
+states:
+  - FIND:
+      template: FindPart
+      speed: 0.5
+      transitions: {found: seen, lost: lost, preempted: stopped}
+"""
+INTERFACE = """
+name: FindPart
+variables: {speed: {type: float}}
+input_keys: {tries: int}
+output_keys: {pose: Pose}
+outcomes: {found: {}, lost: {}, preempted: {}}
+writes: {found: [pose]}
+blocking: true
+code: {python: "cell.find:FindPart"}
+"""
+CLASS = """\
+import smach
+
+
+class FindPart(smach.State):
+    def __init__(self, speed):
+        super().__init__(
+            outcomes=["found", "lost", "preempted"], input_keys=["tries"], output_keys=["pose"]
+        )
+        self.speed = speed
+
+    def execute(self, userdata):
+        for _ in range(userdata.tries):
+            if self.preempt_requested():
+                return "preempted"
+            pose = camera.look(self.speed)
+            if pose is not None:
+                userdata.pose = pose
+                return "found"
+        return "lost"
+"""
+BUILT_IN = disk_library(Path("main.yml"), [])
+FIRST = "        for _ in range(userdata.tries):\n"
+SET = "                userdata.pose = pose\n"
+HEAD = "class FindPart(smach.State):\n"
+LISTS = CLASS[CLASS.index("        super()") : CLASS.index("        self.speed")]
+BODY = CLASS[CLASS.index("    def execute") :]
+
+
+def findings(
+    text: str | None = CLASS, interface: str = INTERFACE, script: str = SCRIPT, **more: str
+) -> Report:
+    files = {
+        "main.yml": script,
+        "templates/FindPart.yml": interface,
+        "cell/__init__.py": "",
+        **more,
+    }
+    if text is not None:
+        files["cell/find.py"] = text
+    library = memory_library(files, BUILT_IN)
+    report = analyse(Source("main.yml", script), library, []).report
+    return [item for item in report if item.severity is not Severity.INFO]
+
+
+def lines(report: Report) -> list[str]:
+    """Code, file, line and marked text of each finding."""
+    return [
+        f"{item.code} {item.span.source.name}:{item.span.line} {item.span.text}" for item in report
+    ]
+
+
+def changed(*pairs: tuple[str, str]) -> str:
+    text = CLASS
+    for old, new in pairs:
+        assert old in text
+        text = text.replace(old, new, 1)
+    return text
+
+
+def test_a_correct_class() -> None:
+    assert findings() == []
+
+
+@pytest.mark.parametrize(
+    ("text", "found", "help"),
+    [
+        (changed(('return "lost"', 'return "lots"')), ['SM309 cell/find.py:19 "lots"'],
+         "did you mean `lost`?"),
+        (changed(('        return "lost"\n', "")), ["SM309 cell/find.py:11 execute",
+                                                   "SM321 cell/find.py:11 execute"], None),
+        (changed((SET, "")), ['SM320 cell/find.py:17 "found"'], None),
+        (changed((SET, "                pose = userdata.tries\n")),
+         ['SM320 cell/find.py:18 "found"'], None),
+        (changed(("userdata.pose =", "userdata.psoe =")), ["SM308 cell/find.py:17 userdata.psoe"],
+         "did you mean `pose`?"),
+        (changed(("range(userdata.tries)", "range(userdata.trys)")),
+         ["SM310 cell/find.py:12 userdata.trys"], "did you mean `tries`?"),
+        (changed((FIRST, "        userdata.tries = 3\n" + FIRST)),
+         ["SM308 cell/find.py:12 userdata.tries"], None),
+        (changed(('                return "preempted"\n', "                pass\n")),
+         ["SM321 cell/find.py:11 execute"], None),
+        (changed(('return "lost"', 'return "found"')),
+         ["SM321 cell/find.py:11 execute", 'SM320 cell/find.py:19 "found"'], None),
+        (changed(("class FindPart", "class FindParts")),
+         ["SM620 templates/FindPart.yml:9 FindPart"], "did you mean `FindParts`?"),
+        (changed(("range(userdata.tries):", "range(userdata.tries)")),
+         ["SM620 cell/find.py:12 "], None),
+        (changed(("def execute", "def excute")), ["SM621 cell/find.py:4 FindPart"],
+         "did you mean `excute`?"),
+        (changed((LISTS, "")), ["SM621 cell/find.py:5 __init__"], None),
+        (changed((HEAD, "class FindPart:\n")), ["SM621 cell/find.py:4 FindPart"], None),
+        (changed(("(self, speed)", "(self)"), ("= speed", "= 1")),
+         ["SM621 cell/find.py:4 FindPart"], "add the parameter `speed` to `__init__`"),
+        (changed(("(self, speed)", "(self, sped)"), ("= speed", "= sped")),
+         ["SM621 cell/find.py:4 FindPart"], "did you mean `sped`?"),
+        (changed(("(self, speed)", "(self, speed, camera)")),
+         ["SM621 cell/find.py:5 camera"], None),
+        (changed(("(self, userdata)", "(self)")), ["SM621 cell/find.py:11 execute"], None),
+        (changed(("(self, userdata)", "(self, userdata, robot)")),
+         ["SM621 cell/find.py:11 execute"], None),
+        (changed(("    def execute", "    async def execute")), ["SM621 cell/find.py:4 FindPart"],
+         None),
+        (changed((SET, SET + "                yield pose\n")), ["SM621 cell/find.py:11 execute"],
+         None),
+        (changed(("self.speed = speed", "self.execute = None")),
+         ["SM621 cell/find.py:9 self.execute"], None),
+        (CLASS + "\n" + BODY, ["SM621 cell/find.py:21 execute"], None),
+        (CLASS[: CLASS.index("    def __init__")] + BODY, ["SM621 cell/find.py:4 FindPart"] * 2,
+         None),
+        # through methods, functions, variables and base classes
+        (changed(('return "lost"', "return self.end(userdata)")) + "\n    def end(self, data):\n"
+         '        data.seen = 1\n        return "lots"\n',
+         ["SM308 cell/find.py:22 data.seen", 'SM309 cell/find.py:23 "lots"'], None),
+        (changed((SET, "                self.keep(userdata)\n")) + "\n    def keep(self, data):\n"
+         "        self.pose = data.tries\n", ['SM320 cell/find.py:18 "found"'], None),
+        (changed(('        return "lost"', '        end = "lots"\n        return end')),
+         ['SM309 cell/find.py:19 "lots"'], None),
+        (changed(('return "lost"', "return LOST"),
+                 ("import smach\n", 'import smach\n\nLOST = "lots"\n')),
+         ["SM309 cell/find.py:21 LOST"], None),
+        (changed(("(smach.State)", "(Skill)"), ("import smach\n", "from smach import State\n\n\n"
+         "class Skill(State):\n    def stop(self):\n        return 1\n"),
+                 ("def execute", "def exec")), ["SM621 cell/find.py:9 FindPart"], None),
+    ],
+)  # fmt: skip
+def test_a_fault(text: str, found: list[str], help: str | None) -> None:
+    report = findings(text)
+    assert lines(report) == found
+    if help is not None:
+        assert report[0].help == help
+    for item in report:
+        assert any(place.span.source.name == "main.yml" for place in item.related)
+
+
+@pytest.mark.parametrize(
+    "pair",
+    [
+        # the value of the return is not known
+        ('return "lost"', "return OUTCOMES[self.speed]"),
+        ('return "lost"', "return self.result"),
+        ('return "lost"', 'return "lost" if camera.on else camera.state'),
+        ('                return "preempted"\n', "                return self.stop()\n"),
+        # the userdata goes elsewhere
+        (SET, "                camera.store(userdata)\n"),
+        (SET, "                userdata.update(pose=pose)\n"),
+        (SET, "                setattr(userdata, 'pose', pose)\n"),
+        (SET, "                userdata[KEY] = pose\n"),
+        (SET, "                data = userdata\n                data.pose = pose\n"),
+        # set in another way
+        (SET, "                userdata['pose'] = pose\n"),
+        (SET, "                pose, userdata.pose = 1, pose\n"),
+        (SET, "                with lock:\n                    userdata.pose = pose\n"),
+        (SET, "                if pose.ok:\n                    userdata.pose = pose\n"),
+        (FIRST, "        userdata.pose = None\n" + FIRST),
+        # the class is made in another way
+        (HEAD, "class FindPart(Skill):\n"),
+        (HEAD, "class FindPart(smach.State, Logged):\n"),
+        (HEAD, "@registered\n" + HEAD),
+        ("    def execute", "    @timed\n    def execute"),
+        ("def execute", "def run"),
+        (FIRST, "        def each():\n            yield 1\n\n" + FIRST),
+        (FIRST, "        def found(ud):\n            return 'nothing'\n\n" + FIRST),
+        (FIRST, "        run(lambda: userdata.tries)\n" + FIRST),
+        (FIRST, "        Thread(target=camera.look, args=(userdata,)).start()\n" + FIRST),
+        (
+            "        self.speed = speed\n",
+            "        self.speed = speed\n        self.ended = False\n",
+        ),
+        ("(self, speed)", "(self, *, speed)"),
+        ("(self, speed)", "(self, **values)"),
+        ("(self, speed)", "(self, speed=1.0, camera=None)"),
+        (", userdata)", ", userdata, robot=None)"),
+        (", userdata)", ", *data)"),
+        ("self.speed = speed", "self.execute = make(speed)"),
+        ("import smach\n", "from smachac.runtime import smach\n"),
+        ("(smach.State)", "(sm.State)"),
+    ],
+)
+def test_what_cannot_be_judged_and_what_is_correct(pair: tuple[str, str]) -> None:
+    text = changed(pair)
+    if pair == ("def execute", "def run"):
+        text = text.replace("import smach", "from cell.base import *").replace(
+            "smach.State", "Base"
+        )
+    if "OUTCOMES" in text or "state" in pair[1] or "self.re" in pair[1]:
+        text = text.replace('return "preempted"', "pass")
+    if "sm.State" in text:
+        text = text.replace("import smach", "import smach as sm")
+    assert lines(findings(text)) == []
+
+
+def test_a_stub_is_not_written_yet() -> None:
+    body = (
+        '    def execute(self, userdata):\n        userdata.pose = None\n        return "found"\n'
+    )
+    assert findings(CLASS.replace(BODY, body)) == []
+
+
+@pytest.mark.parametrize("number", [1, 2])
+def test_an_unset_key_counts_where_it_is_read(number: int) -> None:
+    """Without `writes:` the class shows which outcomes set a key."""
+    target = ["lost", "SHOW"][number - 1]
+    script = SCRIPT.replace("lost: lost", f"lost: {target}")
+    script += (
+        """  - SHOW:
+      template: PrintUserdataState
+      input_keys: [pose]
+      transitions: {succeeded: lost}
+"""
+        if number == 2
+        else ""
+    )
+    interface = INTERFACE.replace("writes: {found: [pose]}\n", "")
+    report = findings(interface=interface, script=script)
+    assert [item.code for item in report] == ["SM301"] * (number - 1)
+
+
+def test_a_key_that_no_outcome_sets() -> None:
+    interface = INTERFACE.replace("writes: {found: [pose]}\n", "")
+    report = findings(changed((SET, "")), interface)
+    assert lines(report) == ["SM320 cell/find.py:11 execute"]
+    kept = interface.replace("{tries: int}", "{tries: int, pose: any}")
+    report = findings(changed((SET, "")), kept, SCRIPT.replace("{tries: 0}", "{tries: 0, pose: 1}"))
+    assert all(item.code != "SM320" for item in report)
+
+
+def test_a_module_that_does_not_exist() -> None:
+    (item,) = findings(None, **{"cell/fund.py": "", "cell/look.py": ""})
+    assert lines([item]) == ["SM620 templates/FindPart.yml:9 cell.find"]
+    assert item.help == "did you mean `cell.fund`?"
+    assert item.severity is Severity.WARNING
+    near = INTERFACE.replace("cell.find", "celll.find")
+    assert lines(findings(CLASS, near)) == ["SM620 templates/FindPart.yml:9 celll.find"]
+
+
+def test_an_installed_module_is_not_searched() -> None:
+    assert findings(CLASS, INTERFACE.replace("cell.find", "robot_skills.find")) == []
+
+
+def test_a_class_is_found_through_imports() -> None:
+    interface = INTERFACE.replace("cell.find:", "cell:")
+    texts = {"cell/__init__.py": "from .find import FindPart\n"}
+    assert findings(CLASS, interface, **texts) == []
+    wrong = changed(('return "lost"', 'return "lots"'))
+    assert lines(findings(wrong, interface, **texts)) == ['SM309 cell/find.py:19 "lots"']
+    assert findings(None, interface, **texts) == []
+
+
+def test_the_state_of_another_module_is_the_base() -> None:
+    base = CLASS.replace("FindPart", "Skill")
+    derived = (
+        "from cell.base import Skill\n\n\nclass FindPart(Skill):\n"
+        "    def execute(self, userdata):\n        return super().execute(userdata)\n"
+    )
+    assert findings(derived, **{"cell/base.py": base}) == []
+    assert findings(derived.replace("def execute", "def look"), **{"cell/base.py": base}) == []
