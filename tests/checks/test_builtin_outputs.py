@@ -45,6 +45,8 @@ BUILT_IN = disk_library(Path("main.yml"), [])
         ("template: ReadTopicState\n      output_keys: [KEY]", "output_msg", ""),
         ("template: ReadTopicState\n      output_keys: [KEY]", "AB", "every"),
         ("template: ReadTopicState\n      output_keys: [KEY]", "seen", "every"),
+        ("template: TransformMsgState\n      output_keys: [KEY]", "transform", ""),
+        ("template: TransformMsgState\n      output_keys: [KEY]", "AB", "every"),
     ],
 )  # fmt: skip
 def test_what_is_set_after_a_built_in_state(fields: str, key: str, unset: str) -> None:
@@ -56,6 +58,7 @@ def test_what_is_set_after_a_built_in_state(fields: str, key: str, unset: str) -
     fields += "\n      outcomes: [a, b]" if "Random" in fields else ""
     fields += "\n      timeout: 2.0" if waits else ""
     fields += "\n      input_keys: [topic]" if "Topic" in fields else ""
+    fields += "\n      remapping: {msg: level, frame_id: topic}" if "Transform" in fields else ""
     fields += "\n      topic: /a\n      msg_type: std_msgs/String" if "WaitForMsg" in fields else ""
     ends = ENDS.replace("AB", "SHOW" if key == "AB" else "done")
     ends = ends.replace("succeeded: SHOW", "succeeded: done") if key == "AB" else ends
@@ -63,7 +66,7 @@ def test_what_is_set_after_a_built_in_state(fields: str, key: str, unset: str) -
         ends = "transitions: {low: SHOW, high: SHOW, a: SHOW, b: SHOW}"
         gone = ("a: SHOW, b: SHOW", "low: SHOW, high: SHOW, ")["Random" in fields]
         ends = ends.replace(gone, "").replace(", }", "}")
-    name = "output" if key == "AB" else key
+    name = ("output_msg" if "Transform" in fields else "output") if key == "AB" else key
     fields = f"{fields}\n      {ends}".replace("KEY", name)
     base = "ROSBase" if waits else "Base"
     text = SCRIPT.format(base=base, fields=fields, key=name)
