@@ -113,7 +113,7 @@ def leaf_writes(leaf: Leaf, outcome: str, *, raw: bool = False) -> Writes:
 
 def _never_set(leaf: Leaf, outcome: str) -> frozenset[str]:
     """The outputs that the class of the user does not always set before an outcome. An output that
-    it never sets, or not where `writes:` promises it, is SM320."""
+    it never sets, or not where `writes:` promises it, is SM314."""
     facts = leaf.class_facts
     if facts is None or leaf.built_in:
         return NONE

@@ -187,7 +187,7 @@ def _first_of_each(words: Iterable[Word], known: Iterable[str]) -> list[Word]:
     return [word for word in found.values() if word.text in left]
 
 
-@rule("SM320", "unwritten-output", Severity.WARNING)
+@rule("SM314", "unwritten-output", Severity.WARNING)
 def unwritten_output(context: Context) -> Iterator[Finding]:
     """The class of a state type returns an outcome without setting an output key that its
     interface promises for that outcome.
@@ -302,7 +302,7 @@ def _unwritten(
         )
 
 
-@rule("SM321", "never-returned", Severity.WARNING)
+@rule("SM315", "never-returned", Severity.WARNING)
 def never_returned(context: Context) -> Iterator[Finding]:
     """The class of a state type never returns an outcome that its interface declares.
 

@@ -325,7 +325,7 @@ def defined_twice(
     )
 
 
-@problem("SM620", "code-not-found", Severity.ERROR)
+@problem("SM608", "code-not-found", Severity.ERROR)
 def code_not_found(
     fault: ClassFault, target: str, state_type: str, name: str, used: tuple[Related, ...]
 ) -> Finding:
@@ -401,7 +401,7 @@ def code_not_found(
     )
 
 
-@problem("SM621", "unusable-class", Severity.ERROR)
+@problem("SM609", "unusable-class", Severity.ERROR)
 def bad_class(
     fault: ClassFault, target: str, state_type: str, name: str, used: tuple[Related, ...]
 ) -> Finding:

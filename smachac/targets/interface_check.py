@@ -19,7 +19,7 @@ from smachac.ir.traversal import walk
 from smachac.targets.errors import bad_class, code_not_found, interfaces_differ, stale_code
 
 NOT_FOUND = ("no module", "no class", "syntax")
-"""The kinds of faults for which there is no class (SM620)."""
+"""The kinds of faults for which there is no class (SM608)."""
 
 Words = tuple[Word, ...]
 

@@ -104,10 +104,10 @@ def test_a_correct_class() -> None:
         (changed(('return "lost"', 'return "lots"')), ['SM309 cell/find.py:19 "lots"'],
          "did you mean `lost`?"),
         (changed(('        return "lost"\n', "")), ["SM309 cell/find.py:11 execute",
-                                                   "SM321 cell/find.py:11 execute"], None),
-        (changed((SET, "")), ['SM320 cell/find.py:17 "found"'], None),
+                                                   "SM315 cell/find.py:11 execute"], None),
+        (changed((SET, "")), ['SM314 cell/find.py:17 "found"'], None),
         (changed((SET, "                pose = userdata.tries\n")),
-         ['SM320 cell/find.py:18 "found"'], None),
+         ['SM314 cell/find.py:18 "found"'], None),
         (changed(("userdata.pose =", "userdata.psoe =")), ["SM308 cell/find.py:17 userdata.psoe"],
          "did you mean `pose`?"),
         (changed(("range(userdata.tries)", "range(userdata.trys)")),
@@ -115,41 +115,41 @@ def test_a_correct_class() -> None:
         (changed((FIRST, "        userdata.tries = 3\n" + FIRST)),
          ["SM308 cell/find.py:12 userdata.tries"], None),
         (changed(('                return "preempted"\n', "                pass\n")),
-         ["SM321 cell/find.py:11 execute"], None),
+         ["SM315 cell/find.py:11 execute"], None),
         (changed(('return "lost"', 'return "found"')),
-         ["SM321 cell/find.py:11 execute", 'SM320 cell/find.py:19 "found"'], None),
+         ["SM315 cell/find.py:11 execute", 'SM314 cell/find.py:19 "found"'], None),
         (changed(("class FindPart", "class FindParts")),
-         ["SM620 templates/FindPart.yml:9 FindPart"], "did you mean `FindParts`?"),
+         ["SM608 templates/FindPart.yml:9 FindPart"], "did you mean `FindParts`?"),
         (changed(("range(userdata.tries):", "range(userdata.tries)")),
-         ["SM620 cell/find.py:12 "], None),
-        (changed(("def execute", "def excute")), ["SM621 cell/find.py:4 FindPart"],
+         ["SM608 cell/find.py:12 "], None),
+        (changed(("def execute", "def excute")), ["SM609 cell/find.py:4 FindPart"],
          "did you mean `excute`?"),
-        (changed((LISTS, "")), ["SM621 cell/find.py:5 __init__"], None),
-        (changed((HEAD, "class FindPart:\n")), ["SM621 cell/find.py:4 FindPart"], None),
+        (changed((LISTS, "")), ["SM609 cell/find.py:5 __init__"], None),
+        (changed((HEAD, "class FindPart:\n")), ["SM609 cell/find.py:4 FindPart"], None),
         (changed(("(self, speed)", "(self)"), ("= speed", "= 1")),
-         ["SM621 cell/find.py:4 FindPart"], "add the parameter `speed` to `__init__`"),
+         ["SM609 cell/find.py:4 FindPart"], "add the parameter `speed` to `__init__`"),
         (changed(("(self, speed)", "(self, sped)"), ("= speed", "= sped")),
-         ["SM621 cell/find.py:4 FindPart"], "did you mean `sped`?"),
+         ["SM609 cell/find.py:4 FindPart"], "did you mean `sped`?"),
         (changed(("(self, speed)", "(self, speed, camera)")),
-         ["SM621 cell/find.py:5 camera"], None),
-        (changed(("(self, userdata)", "(self)")), ["SM621 cell/find.py:11 execute"], None),
+         ["SM609 cell/find.py:5 camera"], None),
+        (changed(("(self, userdata)", "(self)")), ["SM609 cell/find.py:11 execute"], None),
         (changed(("(self, userdata)", "(self, userdata, robot)")),
-         ["SM621 cell/find.py:11 execute"], None),
-        (changed(("    def execute", "    async def execute")), ["SM621 cell/find.py:4 FindPart"],
+         ["SM609 cell/find.py:11 execute"], None),
+        (changed(("    def execute", "    async def execute")), ["SM609 cell/find.py:4 FindPart"],
          None),
-        (changed((SET, SET + "                yield pose\n")), ["SM621 cell/find.py:11 execute"],
+        (changed((SET, SET + "                yield pose\n")), ["SM609 cell/find.py:11 execute"],
          None),
         (changed(("self.speed = speed", "self.execute = None")),
-         ["SM621 cell/find.py:9 self.execute"], None),
-        (CLASS + "\n" + BODY, ["SM621 cell/find.py:21 execute"], None),
-        (CLASS[: CLASS.index("    def __init__")] + BODY, ["SM621 cell/find.py:4 FindPart"] * 2,
+         ["SM609 cell/find.py:9 self.execute"], None),
+        (CLASS + "\n" + BODY, ["SM609 cell/find.py:21 execute"], None),
+        (CLASS[: CLASS.index("    def __init__")] + BODY, ["SM609 cell/find.py:4 FindPart"] * 2,
          None),
         # through methods, functions, variables and base classes
         (changed(('return "lost"', "return self.end(userdata)")) + "\n    def end(self, data):\n"
          '        data.seen = 1\n        return "lots"\n',
          ["SM308 cell/find.py:22 data.seen", 'SM309 cell/find.py:23 "lots"'], None),
         (changed((SET, "                self.keep(userdata)\n")) + "\n    def keep(self, data):\n"
-         "        self.pose = data.tries\n", ['SM320 cell/find.py:18 "found"'], None),
+         "        self.pose = data.tries\n", ['SM314 cell/find.py:18 "found"'], None),
         (changed(('        return "lost"', '        end = "lots"\n        return end')),
          ['SM309 cell/find.py:19 "lots"'], None),
         (changed(('return "lost"', "return LOST"),
@@ -157,7 +157,7 @@ def test_a_correct_class() -> None:
          ["SM309 cell/find.py:21 LOST"], None),
         (changed(("(smach.State)", "(Skill)"), ("import smach\n", "from smach import State\n\n\n"
          "class Skill(State):\n    def stop(self):\n        return 1\n"),
-                 ("def execute", "def exec")), ["SM621 cell/find.py:9 FindPart"], None),
+                 ("def execute", "def exec")), ["SM609 cell/find.py:9 FindPart"], None),
     ],
 )  # fmt: skip
 def test_a_fault(text: str, found: list[str], help: str | None) -> None:
@@ -255,19 +255,19 @@ def test_an_unset_key_counts_where_it_is_read(number: int) -> None:
 def test_a_key_that_no_outcome_sets() -> None:
     interface = INTERFACE.replace("writes: {found: [pose]}\n", "")
     report = findings(changed((SET, "")), interface)
-    assert lines(report) == ["SM320 cell/find.py:11 execute"]
+    assert lines(report) == ["SM314 cell/find.py:11 execute"]
     kept = interface.replace("{tries: int}", "{tries: int, pose: any}")
     report = findings(changed((SET, "")), kept, SCRIPT.replace("{tries: 0}", "{tries: 0, pose: 1}"))
-    assert all(item.code != "SM320" for item in report)
+    assert all(item.code != "SM314" for item in report)
 
 
 def test_a_module_that_does_not_exist() -> None:
     (item,) = findings(None, **{"cell/fund.py": "", "cell/look.py": ""})
-    assert lines([item]) == ["SM620 templates/FindPart.yml:9 cell.find"]
+    assert lines([item]) == ["SM608 templates/FindPart.yml:9 cell.find"]
     assert item.help == "did you mean `cell.fund`?"
     assert item.severity is Severity.WARNING
     near = INTERFACE.replace("cell.find", "celll.find")
-    assert lines(findings(CLASS, near)) == ["SM620 templates/FindPart.yml:9 celll.find"]
+    assert lines(findings(CLASS, near)) == ["SM608 templates/FindPart.yml:9 celll.find"]
 
 
 def test_an_installed_module_is_not_searched() -> None:

@@ -51,13 +51,13 @@ def test_a_correct_class() -> None:
     ("headers", "place", "words"),
     [
         ({"grasp": CLASS.replace(": Outcome::missed", ": Outcome::mised")},
-         "SM621 arm/grasp.hpp:7:66",
+         "SM609 arm/grasp.hpp:7:66",
          "`Outcome` of `arm::Grasp` has no `mised` did you mean `missed`?"),
-        ({"grasp": CLASS.replace("execute", "run")}, "SM621 arm/grasp.hpp:3:7",
+        ({"grasp": CLASS.replace("execute", "run")}, "SM609 arm/grasp.hpp:3:7",
          "the class `arm::Grasp` has no method `execute`"),
-        ({"grasp": CLASS.replace("class Grasp", "class Grip")}, "SM620 main.yml:5:5",
+        ({"grasp": CLASS.replace("class Grasp", "class Grip")}, "SM608 main.yml:5:5",
          "the class `Grasp`, which its file does not define did you mean `Grip`?"),
-        ({"grisp": CLASS}, "SM620 main.yml:5:5", "did you mean `arm/grisp.hpp`?"),
+        ({"grisp": CLASS}, "SM608 main.yml:5:5", "did you mean `arm/grisp.hpp`?"),
     ],
 )  # fmt: skip
 def test_a_fault(headers: dict[str, str], place: str, words: str) -> None:

@@ -1,4 +1,4 @@
-"""Mutations of the Python classes of state types: SM308 to SM310, SM320, SM321, SM620 and SM621.
+"""Mutations of the Python classes of state types: SM308 to SM310, SM314, SM315, SM608 and SM609.
 
 The random projects have interfaces that name classes of one module. The module is written here,
 first without a fault, and then one line of it is changed.
@@ -95,7 +95,7 @@ def return_nothing(subject: Subject) -> Mutant | None:
 
 @mutation
 def set_no_output(subject: Subject) -> Mutant | None:
-    mutant = changed(subject, "userdata[", None, "SM320", "def execute")
+    mutant = changed(subject, "userdata[", None, "SM314", "def execute")
     held = [each for each in interfaces(subject.project).values() if "writes" in each]
     if mutant is None or not held:
         return mutant
@@ -119,7 +119,7 @@ def read_another_key(subject: Subject) -> Mutant | None:
 
 @mutation
 def ignore_a_stop(subject: Subject) -> Mutant | None:
-    mutant = changed(subject, "if self.preempt", "if False:", "SM321", "def execute")
+    mutant = changed(subject, "if self.preempt", "if False:", "SM315", "def execute")
     text = subject.project.get(MODULE, "")
     before, _, rest = text.partition("if False:\n            return ")
     if mutant is not None:
@@ -130,35 +130,35 @@ def ignore_a_stop(subject: Subject) -> Mutant | None:
 @mutation
 def rename_a_class(subject: Subject) -> Mutant | None:
     held = interfaces(subject.project)
-    mutant = changed(subject, "class", "class Other(smach.State):", "SM620")
+    mutant = changed(subject, "class", "class Other(smach.State):", "SM608")
     if mutant is None:
         return None
     names = {line for line in subject.project[MODULE].split("\n") if line.startswith("class")}
     (file,) = [f for f, each in held.items() if f"class {each['name']}(smach.State):" not in names]
-    return Mutant(codes=("SM620",), places=((file, ("code", "python")),))
+    return Mutant(codes=("SM608",), places=((file, ("code", "python")),))
 
 
 @mutation
 def take_no_variable(subject: Subject) -> Mutant | None:
-    return changed(subject, "def __init__", "def __init__(self):", "SM621", "class")
+    return changed(subject, "def __init__", "def __init__(self):", "SM609", "class")
 
 
 @mutation
 def require_another_variable(subject: Subject) -> Mutant | None:
-    return changed(subject, "def __init__", "def __init__(self, speed, robot):", "SM621")
+    return changed(subject, "def __init__", "def __init__(self, speed, robot):", "SM609")
 
 
 @mutation
 def make_no_state(subject: Subject) -> Mutant | None:
-    return changed(subject, "super()", None, "SM621", "def __init__")
+    return changed(subject, "super()", None, "SM609", "def __init__")
 
 
 @mutation
 def misspell_execute(subject: Subject) -> Mutant | None:
     new = f"def {swap_letters('execute')}(self, userdata):"
-    return changed(subject, "def execute", new, "SM621", "class")
+    return changed(subject, "def execute", new, "SM609", "class")
 
 
 @mutation
 def hide_a_method(subject: Subject) -> Mutant | None:
-    return changed(subject, "self.speed", "self.preempt_requested = False", "SM621")
+    return changed(subject, "self.speed", "self.preempt_requested = False", "SM609")
