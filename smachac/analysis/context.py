@@ -13,6 +13,7 @@ from smachac.analysis.expression_sites import ExpressionSite, expression_sites
 from smachac.analysis.failure_paths import Failure, failures
 from smachac.analysis.lost_outputs import Lost, lost_outputs
 from smachac.analysis.possible_outcomes import Endings, Judged, endings, judged
+from smachac.analysis.properties import Judgement, judge
 from smachac.analysis.reaching_values import reaching_clashes
 from smachac.analysis.resource_claims import Held, claims
 from smachac.analysis.stop_paths import StopPaths, stop_paths
@@ -148,6 +149,13 @@ class Context:
     def routes(self) -> Routes:
         """The control flow of the whole machine."""
         return Routes(self.states, self.endings)
+
+    @cached_property
+    def judgements(self) -> tuple[Judgement, ...]:
+        """The properties of the script with their verdicts."""
+        if not self.machine.properties:
+            return ()
+        return tuple(judge(self.machine.properties, self.machine.root, self.claims))
 
     @cached_property
     def failures(self) -> tuple[Failure, ...]:

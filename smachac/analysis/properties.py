@@ -1,0 +1,283 @@
+"""Properties of a machine: whether they hold on all its paths.
+
+The product of the machine's configurations (execution.py) and the property's automaton
+(property_automaton.py) is searched breadth-first, so a counterexample is a shortest one.
+"""
+
+from __future__ import annotations
+
+from collections import deque
+from collections.abc import Iterable, Mapping, Sequence
+from typing import TYPE_CHECKING, Literal, NamedTuple, TypeAlias
+
+from smachac.analysis.execution import STOP, Config, Event, Execution, Step, TooLargeError, leaves
+from smachac.analysis.property_automaton import BAD, LEAF, PREMISE, Automaton, automaton, parts
+from smachac.analysis.property_events import NameFault, Names
+from smachac.analysis.resource_claims import Held
+from smachac.diagnostics.diagnostic import PathStep, ended, entered
+from smachac.ir.nodes import Leaf, StateMachine
+from smachac.ir.properties import After, AlwaysEnds, Exceptions, Property
+
+if TYPE_CHECKING:
+    import networkx as nx
+
+MOST_PAIRS, PAIRS_BY_STATE = 50_000, 30
+"""Limit on the pairs of a configuration and a state of the automaton that are examined, about two
+seconds of CPU time, and so many more for each state of the machine."""
+
+Verdict = Literal["holds", "fails", "vacuous", "undecided", "unclear"]
+"""`vacuous`: it holds because what it is about cannot happen. `undecided`: there are too many
+configurations. `unclear`: its names have faults."""
+
+
+class Visit(NamedTuple):
+    """One visit of a leaf in a counterexample, by path: its outcome, None for an exception.
+    `stop`: a request to stop arrives as it begins."""
+
+    path: str
+    outcome: str | None
+    stop: bool
+
+
+class Counterexample(NamedTuple):
+    """The visits of leaves up to the violation. `then` is the state whose entry violates the
+    property, empty where it is an end. `again` is the number of the visit from which the visits
+    are repeated for ever, -1 if they are not. `last` is the state, by path, or the outcome of the
+    machine that the path leads to."""
+
+    visits: tuple[Visit, ...]
+    then: str = ""
+    again: int = -1
+    last: str = ""
+
+
+def witness(example: Counterexample) -> tuple[PathStep, ...]:
+    """A counterexample as a witness path: the leaves that are visited and their outcomes."""
+    steps: list[PathStep] = []
+    for visit in example.visits:
+        steps.append(entered(visit.path.rpartition("/")[2], visit.path))
+        outcome = visit.outcome if visit.outcome is not None else "exception"
+        steps.append(ended(f"stop request, {outcome}" if visit.stop else outcome))
+    if example.last:
+        steps.append(entered(example.last.rpartition("/")[2], example.last))
+    return tuple(steps)
+
+
+class Judgement(NamedTuple):
+    """A property with its verdict. `states` are the paths of the states that it names."""
+
+    property: Property
+    verdict: Verdict
+    counterexample: Counterexample | None = None
+    faults: tuple[NameFault, ...] = ()
+    states: tuple[str, ...] = ()
+
+
+def judge(properties: Sequence[Property], root: StateMachine, claims: Held) -> list[Judgement]:
+    """The verdicts on the properties of a machine. None are given where the machine is incomplete.
+
+    The steps of a machine are computed once for properties over the same kind of paths.
+    """
+    if not properties:
+        return []
+    plain = Execution(root)
+    if not plain.is_complete:
+        return []
+    names = Names(plain.paths, plain.nodes, claims)
+    executions: dict[tuple[Exceptions, bool, bool], Execution] = {("caught", True, False): plain}
+    found = []
+    for each in properties:
+        few = isinstance(each.form, AlwaysEnds)
+        key = (each.exceptions, each.stops, few)
+        if key not in executions:
+            executions[key] = Execution(
+                root, exceptions=each.exceptions, stops=each.stops, few_items=few
+            )
+        found.append(_judged(each, executions[key], names))
+    return found
+
+
+def _judged(given: Property, execution: Execution, names: Names) -> Judgement:
+    watched: dict[Event, int] = {}
+    faults: list[NameFault] = []
+    for part in parts(given.form):
+        for atom in part.atoms:
+            events = names.resolve(atom)
+            if isinstance(events, NameFault):
+                faults.append(events)
+                continue
+            for event in events:
+                watched[event] = watched.get(event, 0) | part.bits
+    states = tuple(execution.paths[number] for number in dict.fromkeys(each for each, _ in watched))
+    if faults:
+        return Judgement(given, "unclear", None, tuple(faults), states)
+    if isinstance(given.form, After) and given.form.within:
+        for number, node in enumerate(execution.nodes):
+            if isinstance(node, Leaf):
+                watched[number, None] = watched.get((number, None), 0) | LEAF
+    try:
+        if isinstance(given.form, AlwaysEnds):
+            endless = _endless(execution)
+            return Judgement(given, "fails" if endless else "holds", endless, (), states)
+        search = _Search(execution, automaton(given.form), watched)
+        counterexample = search.run()
+    except TooLargeError:
+        return Judgement(given, "undecided", None, (), states)
+    if counterexample is not None:
+        return Judgement(given, "fails", counterexample, (), states)
+    verdict: Verdict = "holds" if search.seen & PREMISE or not _has_premise(given) else "vacuous"
+    return Judgement(given, verdict, None, (), states)
+
+
+def _limit(execution: Execution) -> int:
+    return MOST_PAIRS + PAIRS_BY_STATE * len(execution.nodes)
+
+
+def _has_premise(given: Property) -> bool:
+    return any(part.atoms and part.bits == PREMISE for part in parts(given.form))
+
+
+Pair: TypeAlias = "tuple[Config, int]"
+"""A configuration and a state of the automaton."""
+
+
+class _Search:
+    """A breadth-first search of the product; `seen` are the bits of all events met.
+
+    By hand: a property over 10,000 states takes 0.45 s of CPU time; a graph of networkx would
+    first hold all of the product, of which the search needs only the part before a violation.
+    """
+
+    def __init__(
+        self, execution: Execution, table: Automaton, watched: Mapping[Event, int]
+    ) -> None:
+        self.execution = execution
+        self.automaton = table
+        self.watched = watched
+        self.seen = 0
+        self.before: dict[Pair, tuple[Pair | None, Step]] = {}
+
+    def run(self) -> Counterexample | None:
+        """A shortest violation; None if there is none."""
+        todo: deque[Pair] = deque()
+        steps: dict[Config, list[Step]] = {}
+        limit = _limit(self.execution)
+        for step in self.execution.start(self.watched):
+            if (bad := self._follow(None, 0, step, todo)) is not None:
+                return self._counterexample(None, step, bad)
+        while todo:
+            pair = todo.popleft()
+            config, state = pair
+            following = steps.get(config)
+            if following is None:
+                following = steps[config] = self.execution.steps(config, self.watched)
+            for step in following:
+                if (bad := self._follow(pair, state, step, todo)) is not None:
+                    return self._counterexample(pair, step, bad)
+            if len(self.before) > limit:
+                raise TooLargeError
+        return None
+
+    def _follow(self, pair: Pair | None, state: int, step: Step, todo: deque[Pair]) -> Event | None:
+        """Take a step; the event that violates the property, None if none does."""
+        for event in step.events:
+            bits = self.watched[event]
+            self.seen |= bits
+            state = self.automaton.table[state][bits]
+            if state == BAD:
+                return event
+        if state in self.automaton.open_ends and step.config.outcome is not None:
+            return 0, ""
+        after = (step.config, state)
+        if after not in self.before:
+            self.before[after] = (pair, step)
+            todo.append(after)
+        return None
+
+    def _counterexample(self, pair: Pair | None, last: Step, bad: Event) -> Counterexample:
+        steps = [last]
+        while pair is not None:
+            pair, step = self.before[pair]
+            steps.append(step)
+        then = self.execution.paths[bad[0]] if bad[1] is None else ""
+        visits = _visits(self.execution, steps[::-1])
+        return Counterexample(visits, then, last=then or self._last(last))
+
+    def _last(self, step: Step) -> str:
+        """The state or the outcome that a step leads to."""
+        if step.config.outcome is not None:
+            return step.config.outcome[0] or ""
+        return self.execution.paths[next(leaves(step.config.control))]
+
+
+def _visits(execution: Execution, steps: Iterable[Step]) -> tuple[Visit, ...]:
+    found: list[Visit] = []
+    stop = False
+    for step in steps:
+        if step.leaf >= 0:
+            found.append(Visit(execution.paths[step.leaf], step.outcome, stop))
+        stop = step.leaf == STOP
+    return tuple(found)
+
+
+def _endless(execution: Execution) -> Counterexample | None:
+    """The shortest way to a loop that can go on for ever without further requests to stop, or to a
+    state that never ends."""
+    import networkx as nx
+
+    graph = nx.DiGraph()
+    before: dict[Config, tuple[Config | None, Step]] = {}
+    todo: deque[Config] = deque()
+    for step in execution.start(()):
+        before.setdefault(step.config, (None, step))
+        todo.append(step.config)
+    while todo:
+        config = todo.popleft()
+        following = execution.steps(config, ())
+        if config.outcome is None and all(step.leaf == STOP for step in following):
+            return Counterexample(_visits(execution, _steps_to(config, before)))
+        for step in following:
+            if step.leaf != STOP and not graph.has_edge(config, step.config):
+                graph.add_edge(config, step.config, step=step)
+            if step.config not in before:
+                before[step.config] = (config, step)
+                todo.append(step.config)
+        if len(before) > _limit(execution):
+            raise TooLargeError
+    loops: set[Config] = set()
+    for region in nx.strongly_connected_components(graph):
+        if len(region) > 1 or any(graph.has_edge(each, each) for each in region):
+            loops |= region
+    for config in before:
+        if config in loops:
+            there = _visits(execution, _steps_to(config, before))
+            around = _visits(execution, _circle(graph, config))
+            return Counterexample((*there, *around), "", len(there), around[0].path)
+    return None
+
+
+def _steps_to(config: Config, before: Mapping[Config, tuple[Config | None, Step]]) -> list[Step]:
+    steps: list[Step] = []
+    here: Config | None = config
+    while here is not None:
+        here, step = before[here]
+        steps.append(step)
+    return steps[::-1]
+
+
+def _circle(graph: nx.DiGraph, config: Config) -> list[Step]:
+    """The steps of a shortest circle from a configuration back to it."""
+    before: dict[Config, Config] = {}
+    todo = deque([config])
+    while config not in before:
+        here = todo.popleft()
+        for following in graph.adj[here]:
+            if following not in before:
+                before[following] = here
+                todo.append(following)
+    steps: list[Step] = []
+    here = config
+    while not steps or here != config:
+        steps.append(graph.edges[before[here], here]["step"])
+        here = before[here]
+    return steps[::-1]
