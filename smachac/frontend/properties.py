@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import re
 from collections.abc import Callable, Iterator, Mapping
+from dataclasses import replace
 from functools import cache
 from typing import TYPE_CHECKING, Any, cast
 
@@ -106,7 +107,7 @@ class _Reader:
     def item(self, tree: Tree) -> Iterator[Property]:
         """The properties of one item: one for each pair of its form."""
         if isinstance(tree, Scalar) and tree.value == "always_ends":
-            tree = Map((Entry(tree, Scalar(True, True, tree.span)),), tree.span)
+            tree = Map((Entry(tree, replace(tree, value=True)),), tree.span)
         if not isinstance(tree, Map):
             help = f"write it like {EXAMPLES['before']}"
             self.fault(tree, f"a property must be a mapping, not {kind_of(tree)}", help, "item")
