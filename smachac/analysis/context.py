@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from functools import cached_property
+from typing import TYPE_CHECKING
 
 from smachac.analysis.accesses import Accesses, accesses
 from smachac.analysis.control_flow import Linear, endless_states
@@ -13,7 +14,6 @@ from smachac.analysis.expression_sites import ExpressionSite, expression_sites
 from smachac.analysis.failure_paths import Failure, failures
 from smachac.analysis.lost_outputs import Lost, lost_outputs
 from smachac.analysis.possible_outcomes import Endings, Judged, endings, judged
-from smachac.analysis.properties import Judgement, judge
 from smachac.analysis.reaching_values import reaching_clashes
 from smachac.analysis.resource_claims import Held, claims
 from smachac.analysis.stop_paths import StopPaths, stop_paths
@@ -24,6 +24,9 @@ from smachac.analysis.unset_reads import Cause, Missing, missing_keys
 from smachac.diagnostics.source import Span
 from smachac.ir import nodes, script_paths, traversal
 from smachac.ir.nodes import Container, Machine, Node, StateMachine
+
+if TYPE_CHECKING:
+    from smachac.analysis.properties import Judgement
 
 
 class Context:
@@ -155,6 +158,8 @@ class Context:
         """The properties of the script with their verdicts."""
         if not self.machine.properties:
             return ()
+        from smachac.analysis.properties import judge
+
         return tuple(judge(self.machine.properties, self.machine.root, self.claims))
 
     @cached_property

@@ -3,18 +3,21 @@
 from __future__ import annotations
 
 from collections.abc import Iterator
+from typing import TYPE_CHECKING
 
 from smachac.analysis.context import Context
-from smachac.analysis.properties import Counterexample, Judgement, witness
-from smachac.analysis.property_events import NameFault
 from smachac.checks.rule import rule
 from smachac.diagnostics.diagnostic import Finding, Severity, did_you_mean
 from smachac.diagnostics.source import Word
 from smachac.diagnostics.spelling import guesser, respelt
 from smachac.diagnostics.wording import listed
-from smachac.interpreter.counterexample import Replay, replay
 from smachac.ir.graph import reachable
 from smachac.ir.properties import After, AlwaysEnds, AtMost, Before, Never, Property, in_words
+
+if TYPE_CHECKING:
+    from smachac.analysis.properties import Counterexample, Judgement
+    from smachac.analysis.property_events import NameFault
+    from smachac.interpreter.counterexample import Replay
 
 LONGEST_SCENARIO = 400
 """Limit on the characters of a scenario in a help line."""
@@ -67,6 +70,11 @@ def property_fails(context: Context) -> Iterator[Finding]:
               transitions: {done: LIFT, slipped: aborted}
           - LIFT: {template: ScriptedState, outcomes: [done], transitions: {done: succeeded}}
     """
+    if not context.machine.properties:
+        return
+    from smachac.analysis.properties import witness
+    from smachac.interpreter.counterexample import replay
+
     for each in _with(context, "fails"):
         example = each.counterexample
         assert example is not None
