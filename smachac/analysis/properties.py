@@ -40,13 +40,17 @@ class Visit(NamedTuple):
 
 
 class Counterexample(NamedTuple):
-    """The visits of leaves up to the violation. `then` is the state whose entry violates the
-    property, empty where it is an end. `again` is the number of the visit from which the visits
-    are repeated for ever, -1 if they are not. `last` is the state, by path, or the outcome of the
-    machine that the path leads to."""
+    """The visits of leaves up to the violation.
+
+    `node` and `outcome` are the event that violates the property: the state at a path is entered
+    (None) or ends; `node` is empty where it is the end of the run. `again` is the number of the
+    visit from which the visits are repeated for ever, -1 if they are not. `last` is what the path
+    leads to: a state, by path, or the outcome of the machine.
+    """
 
     visits: tuple[Visit, ...]
-    then: str = ""
+    node: str = ""
+    outcome: str | None = None
     again: int = -1
     last: str = ""
 
@@ -137,6 +141,9 @@ def _has_premise(given: Property) -> bool:
     return any(part.atoms and part.bits == PREMISE for part in parts(given.form))
 
 
+END: Event = (0, "")
+"""In place of an event: the run ends although an answer is missing."""
+
 Pair: TypeAlias = "tuple[Config, int]"
 """A configuration and a state of the automaton."""
 
@@ -187,7 +194,7 @@ class _Search:
             if state == BAD:
                 return event
         if state in self.automaton.open_ends and step.config.outcome is not None:
-            return 0, ""
+            return END
         after = (step.config, state)
         if after not in self.before:
             self.before[after] = (pair, step)
@@ -199,14 +206,15 @@ class _Search:
         while pair is not None:
             pair, step = self.before[pair]
             steps.append(step)
-        then = self.execution.paths[bad[0]] if bad[1] is None else ""
         visits = _visits(self.execution, steps[::-1])
-        return Counterexample(visits, then, last=then or self._last(last))
+        node = "" if bad == END else self.execution.paths[bad[0]]
+        then = node if bad[1] is None else self._last(last)
+        return Counterexample(visits, node, bad[1], last=then)
 
     def _last(self, step: Step) -> str:
         """The state or the outcome that a step leads to."""
         if step.config.outcome is not None:
-            return step.config.outcome[0] or ""
+            return step.config.outcome[0] or "the run ends"
         return self.execution.paths[next(leaves(step.config.control))]
 
 
@@ -252,7 +260,8 @@ def _endless(execution: Execution) -> Counterexample | None:
         if config in loops:
             there = _visits(execution, _steps_to(config, before))
             around = _visits(execution, _circle(graph, config))
-            return Counterexample((*there, *around), "", len(there), around[0].path)
+            visits = (*there, *around)
+            return Counterexample(visits, again=len(there), last=around[0].path)
     return None
 
 

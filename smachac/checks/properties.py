@@ -8,18 +8,29 @@ from typing import TYPE_CHECKING
 from smachac.analysis.context import Context
 from smachac.checks.rule import rule
 from smachac.diagnostics.diagnostic import Finding, Severity, did_you_mean
-from smachac.diagnostics.source import Word
+from smachac.diagnostics.source import Word, assert_never
 from smachac.diagnostics.spelling import guesser, respelt
 from smachac.diagnostics.wording import listed
 from smachac.ir.graph import reachable
-from smachac.ir.properties import After, AlwaysEnds, AtMost, Before, Never, Property, in_words
+from smachac.ir.properties import (
+    After,
+    AlwaysEnds,
+    AtMost,
+    Atoms,
+    Before,
+    Form,
+    Never,
+    Property,
+    either,
+    in_words,
+)
 
 if TYPE_CHECKING:
     from smachac.analysis.properties import Counterexample, Judgement
     from smachac.analysis.property_events import NameFault
     from smachac.interpreter.counterexample import Replay
 
-LONGEST_SCENARIO = 400
+LONGEST_SCENARIO = 200
 """Limit on the characters of a scenario in a help line."""
 
 
@@ -75,17 +86,19 @@ def property_fails(context: Context) -> Iterator[Finding]:
     from smachac.analysis.properties import witness
     from smachac.interpreter.counterexample import replay
 
-    for each in _with(context, "fails"):
+    for number, each in enumerate(context.judgements, 1):
         example = each.counterexample
-        assert example is not None
+        if example is None:
+            continue
         shown = replay(context.machine, example.visits, example.again)
+        form = each.property.form
         yield Finding(
             span=each.property.span,
-            message=f"{_named(each.property)} does not hold: {_violation(each.property, example)}",
-            arguments=(each.property.name, in_words(each.property.form)),
-            help=_scenario_help(shown),
+            message=f"{_named(each.property)} does not hold: {_violation(form, example)}",
+            arguments=(each.property.name, in_words(form)),
+            help=f"{_cure(form)}\n{_replayed(shown, number)}",
             path=witness(example),
-            node=example.then or context.machine.root.name,
+            node=example.node or context.machine.root.name,
         )
 
 
@@ -95,39 +108,59 @@ def _named(given: Property) -> str:
     return f"the property `{given.name}`" if given.name != words else f"the property “{words}”"
 
 
-def _violation(given: Property, example: Counterexample) -> str:
+def _violation(form: Form, example: Counterexample) -> str:
     """What happens at the end of a counterexample."""
-    last = f"`{example.then.rpartition('/')[2]}` is entered" if example.then else ""
-    match given.form:
-        case Never(until=until):
-            what = last or "this outcome occurs"
-            return f"{what} although it must not be{' yet' if until else ''}"
-        case Before():
-            return f"{last or 'this outcome occurs'} on a path without what must come before"
-        case After():
-            return f"{last} too early" if last else "the run ends without it"
+    name = example.node.rpartition("/")[2]
+    entered = f"`{name}` is entered"
+    event = entered if example.outcome is None else f"`{name}` ends with `{example.outcome}`"
+    match form:
+        case Never(after=after, until=until):
+            since = f" after {either(after)}" if after else ""
+            return f"{event}{since}{' and' * bool(since and until)}{_before(until)}"
+        case Before(earlier=earlier):
+            return f"{event}{_before(earlier)}"
+        case After(answer=answer, within=within) if example.node:
+            if within and not example.outcome:
+                return f"{entered}, and {either(answer)} has not come within {within} states"
+            return f"{event}{_before(answer)}"
+        case After(first=first, answer=answer):
+            return f"the run ends without {either(answer)} after {either(first)}"
         case AtMost(times=times):
-            return f"it can happen more than {times} time{'s' * (times != 1)}"
+            return f"{event} {times + 1} times"
         case AlwaysEnds():
             if example.again >= 0:
                 return "these states can follow one another for ever"
             return "the run waits for ever in a state without an outcome"
-    return last
+    return assert_never(form)
 
 
-def _scenario_help(shown: Replay) -> str:
-    """How the counterexample is replayed."""
+def _before(events: Atoms) -> str:
+    return f" before {either(events)}" if events else ""
+
+
+def _cure(form: Form) -> str:
+    """What to do about a property that fails."""
+    match form:
+        case Never(until=until, enter=enter):
+            through = f" through {either(until)}, or" if until else ""
+            return f"lead this path{through} away from {either(enter)}"
+        case Before(later=later, earlier=earlier):
+            return f"lead each path to {either(later)} through {either(earlier)}"
+        case After(first=first, answer=answer):
+            return f"lead each path from {either(first)} through {either(answer)}"
+        case AtMost() | AlwaysEnds():
+            return "limit the number of tries, for example with `retry`, and leave the loop then"
+    return assert_never(form)
+
+
+def _replayed(shown: Replay, number: int) -> str:
+    """How the counterexample of the property with a number is replayed."""
     turns = f" --schedule {','.join(shown.schedule)}" if shown.schedule else ""
     text = shown.flow
     if len(text) + len(turns) > LONGEST_SCENARIO:
-        return (
-            "add or change a transition on this path; `smachac explain SCRIPT --properties"
-            " --scenario NAME` prints it as a scenario for `smachac run --mock`"
-        )
-    return (
-        "add or change a transition on this path; to replay it: `smachac run"
-        f" --mock FILE{turns}` with the scenario {text}"
-    )
+        option = f"--properties --scenario {number}"
+        return f"to replay this path: `smachac explain SCRIPT {option}` prints it as a scenario"
+    return f"to replay this path: `smachac run SCRIPT --mock FILE{turns}`, with {text} in FILE"
 
 
 @rule("SM702", "property-vacuous", Severity.WARNING)
@@ -196,7 +229,7 @@ def _premise(given: Property) -> str:
     """The event that a property is about."""
     match given.form:
         case Never(after=atoms) | Before(later=atoms) | After(first=atoms) | AtMost(event=atoms):
-            return " or ".join(f"`{atom}`" for atom in atoms)
+            return either(atoms)
     return "it"
 
 

@@ -75,10 +75,10 @@ class _Guided(Scheduler):
         self._done = done
 
     def choose(self, ready: Sequence[str]) -> str:
-        taken = ready[0]
-        if len(self._done) < len(self._visits):
-            path = self._visits[len(self._done)].path
-            taken = next((each for each in ready if f"{path}/".startswith(f"{each}/")), taken)
+        if len(self._done) == len(self._visits):
+            return ready[0]  # as after the end of a schedule
+        path = self._visits[len(self._done)].path
+        taken = next((each for each in ready if f"{path}/".startswith(f"{each}/")), ready[0])
         self.choices.append(SchedulingChoice(taken=taken, ready=tuple(ready)))
         return taken
 
@@ -99,9 +99,9 @@ def replay(machine: Machine, visits: Sequence[Visited], again: int = -1) -> Repl
     right: list[bool] = []
 
     def behave(path: str, leaf: Leaf, visit: int, userdata: Userdata) -> str:
-        number = len(done)
-        done.append(number)
-        right.append(number >= len(rounds) or rounds[number].path == path)
+        if len(done) < len(rounds):
+            right.append(rounds[len(done)].path == path)
+            done.append(len(done))
         made[path] = made.get(path, 0) + 1
         row = steps.get(path, [Step(outcome=default_outcome(leaf))])
         step = row[min(made[path], len(row)) - 1]
@@ -115,7 +115,7 @@ def replay(machine: Machine, visits: Sequence[Visited], again: int = -1) -> Repl
     result = interpreter.execute()
     schedule = tuple(_short(choice) for choice in result.choices)
     scenario = Scenario(steps={path: tuple(row) for path, row in steps.items()})
-    followed = all(right) and len(right) >= len(rounds)
+    followed = all(right) and len(right) == len(rounds)
     return Replay(scenario, schedule, tuple(events), followed)
 
 

@@ -114,19 +114,20 @@ def in_words(form: Form) -> str:
     """A property as a sentence."""
     match form:
         case Never(after=after, until=until, enter=enter):
-            start = f" after {_either(after)}" if after else ""
-            end = f" until {_either(until)}" if until else ""
-            return f"never {_either(enter)}{start}{end}"
+            start = f" after {either(after)}" if after else ""
+            end = f" until {either(until)}" if until else ""
+            return f"never {either(enter)}{start}{end}"
         case Before(later=later, earlier=earlier):
-            return f"{_either(earlier)} before {_either(later)}"
+            return f"{either(earlier)} before {either(later)}"
         case After(first=first, answer=answer, within=within, before_claim=claims):
             limit = f" within {within} state{'s' * (within != 1)}" if within else ""
-            claimed = f" before {_either(claims)}" if claims else ""
-            return f"{_either(answer)} after {_either(first)}{limit}{claimed}"
+            claimed = f" before {either(claims)}" if claims else ""
+            return f"{either(answer)} after {either(first)}{limit}{claimed}"
         case AtMost(event=event, times=times):
-            return f"{_either(event)} at most {times} time{'s' * (times != 1)}"
+            return f"{either(event)} at most {times} time{'s' * (times != 1)}"
     return "always ends"
 
 
-def _either(events: Atoms) -> str:
+def either(events: Atoms) -> str:
+    """Alternatives in words."""
     return " or ".join(f"`{each}`" for each in events)
