@@ -23,7 +23,11 @@ if TYPE_CHECKING:
 
 MOST_PAIRS, PAIRS_BY_STATE = 50_000, 30
 """Limit on the pairs of a configuration and a state of the automaton that are examined, about two
-seconds of CPU time, and so many more for each state of the machine."""
+seconds of CPU time, and so many more for each state of the machine. Each property that is not
+decided halves it for the others."""
+
+MOST_IN_ALL = 5_000_000
+"""Limit on the pairs that are examined for all properties of a machine."""
 
 Verdict = Literal["holds", "fails", "vacuous", "undecided", "unclear"]
 """`vacuous`: it holds because what it is about cannot happen. `undecided`: there are too many
@@ -89,7 +93,8 @@ def judge(properties: Sequence[Property], root: StateMachine, claims: Held) -> l
         return []
     names = Names(plain.paths, plain.nodes, claims)
     executions: dict[tuple[Exceptions, bool, bool], Execution] = {("caught", True, False): plain}
-    found = []
+    found: list[Judgement] = []
+    limit, left = MOST_PAIRS + PAIRS_BY_STATE * len(plain.nodes), MOST_IN_ALL
     for each in properties:
         few = isinstance(each.form, AlwaysEnds)
         key = (each.exceptions, each.stops, few)
@@ -97,11 +102,18 @@ def judge(properties: Sequence[Property], root: StateMachine, claims: Held) -> l
             executions[key] = Execution(
                 root, exceptions=each.exceptions, stops=each.stops, few_items=few
             )
-        found.append(_judged(each, executions[key], names))
+        judgement, used = _judged(each, executions[key], names, min(limit, left))
+        found.append(judgement)
+        left -= used
+        if judgement.verdict == "undecided":
+            limit //= 2
     return found
 
 
-def _judged(given: Property, execution: Execution, names: Names) -> Judgement:
+def _judged(
+    given: Property, execution: Execution, names: Names, limit: int
+) -> tuple[Judgement, int]:
+    """The verdict on a property, and the number of pairs that were examined."""
     watched: dict[Event, int] = {}
     faults: list[NameFault] = []
     for part in parts(given.form):
@@ -114,27 +126,24 @@ def _judged(given: Property, execution: Execution, names: Names) -> Judgement:
                 watched[event] = watched.get(event, 0) | part.bits
     states = tuple(execution.paths[number] for number in dict.fromkeys(each for each, _ in watched))
     if faults:
-        return Judgement(given, "unclear", None, tuple(faults), states)
+        return Judgement(given, "unclear", None, tuple(faults), states), 0
     if isinstance(given.form, After) and given.form.within:
         for number, node in enumerate(execution.nodes):
             if isinstance(node, Leaf):
                 watched[number, None] = watched.get((number, None), 0) | LEAF
+    verdict: Verdict = "holds"
     try:
         if isinstance(given.form, AlwaysEnds):
-            endless = _endless(execution)
-            return Judgement(given, "fails" if endless else "holds", endless, (), states)
-        search = _Search(execution, automaton(given.form), watched)
-        counterexample = search.run()
+            counterexample, used = _endless(execution, limit)
+        else:
+            search = _Search(execution, automaton(given.form), watched)
+            counterexample, used = search.run(limit), len(search.before)
+            if _has_premise(given) and not search.seen & PREMISE:
+                verdict = "vacuous"
     except TooLargeError:
-        return Judgement(given, "undecided", None, (), states)
-    if counterexample is not None:
-        return Judgement(given, "fails", counterexample, (), states)
-    verdict: Verdict = "holds" if search.seen & PREMISE or not _has_premise(given) else "vacuous"
-    return Judgement(given, verdict, None, (), states)
-
-
-def _limit(execution: Execution) -> int:
-    return MOST_PAIRS + PAIRS_BY_STATE * len(execution.nodes)
+        return Judgement(given, "undecided", None, (), states), limit
+    verdict = "fails" if counterexample is not None else verdict
+    return Judgement(given, verdict, counterexample, (), states), used
 
 
 def _has_premise(given: Property) -> bool:
@@ -164,11 +173,10 @@ class _Search:
         self.seen = 0
         self.before: dict[Pair, tuple[Pair | None, Step]] = {}
 
-    def run(self) -> Counterexample | None:
-        """A shortest violation; None if there is none."""
+    def run(self, limit: int) -> Counterexample | None:
+        """A shortest violation; None if there is none. Raises TooLargeError."""
         todo: deque[Pair] = deque()
         steps: dict[Config, list[Step]] = {}
-        limit = _limit(self.execution)
         for step in self.execution.start(self.watched):
             if (bad := self._follow(None, 0, step, todo)) is not None:
                 return self._counterexample(None, step, bad)
@@ -228,9 +236,9 @@ def _visits(execution: Execution, steps: Iterable[Step]) -> tuple[Visit, ...]:
     return tuple(found)
 
 
-def _endless(execution: Execution) -> Counterexample | None:
+def _endless(execution: Execution, limit: int) -> tuple[Counterexample | None, int]:
     """The shortest way to a loop that can go on for ever without further requests to stop, or to a
-    state that never ends."""
+    state that never ends; and the number of configurations. Raises TooLargeError."""
     import networkx as nx
 
     graph = nx.DiGraph()
@@ -243,14 +251,14 @@ def _endless(execution: Execution) -> Counterexample | None:
         config = todo.popleft()
         following = execution.steps(config, ())
         if config.outcome is None and all(step.leaf == STOP for step in following):
-            return Counterexample(_visits(execution, _steps_to(config, before)))
+            return Counterexample(_visits(execution, _steps_to(config, before))), len(before)
         for step in following:
             if step.leaf != STOP and not graph.has_edge(config, step.config):
                 graph.add_edge(config, step.config, step=step)
             if step.config not in before:
                 before[step.config] = (config, step)
                 todo.append(step.config)
-        if len(before) > _limit(execution):
+        if len(before) > limit:
             raise TooLargeError
     loops: set[Config] = set()
     for region in nx.strongly_connected_components(graph):
@@ -261,8 +269,9 @@ def _endless(execution: Execution) -> Counterexample | None:
             there = _visits(execution, _steps_to(config, before))
             around = _visits(execution, _circle(graph, config))
             visits = (*there, *around)
-            return Counterexample(visits, again=len(there), last=around[0].path)
-    return None
+            found = Counterexample(visits, again=len(there), last=around[0].path)
+            return found, len(before)
+    return None, len(before)
 
 
 def _steps_to(config: Config, before: Mapping[Config, tuple[Config | None, Step]]) -> list[Step]:

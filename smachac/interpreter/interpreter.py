@@ -390,7 +390,7 @@ def _concurrence(
                 for other in live:
                     run.preemption.request(other)
         if live and not starting:
-            yield run.clock
+            yield run.clock  # also after the end of a branch: branches further out may be next
     stopped = node.sugar and path in run.preemption.requested
     run.preemption.after_concurrence(path, children)
     for end in ended.values():
