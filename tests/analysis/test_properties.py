@@ -3,14 +3,18 @@
 from __future__ import annotations
 
 import random
+from dataclasses import replace
 
 import pytest
+from hypothesis import given, settings
+from hypothesis import strategies as st
 
 from smachac.analysis.context import Context
 from smachac.analysis.properties import Judgement, judge
 from smachac.interpreter.counterexample import replay
 from smachac.ir.nodes import Machine
 from smachac.ir.properties import AlwaysEnds
+from tests.strategies.machines import machines
 from tests.support.property_machines import (
     Monitor,
     random_machine,
@@ -59,3 +63,12 @@ def test_verdicts_agree_with_runs() -> None:
 @pytest.mark.slow
 def test_more_verdicts_agree_with_runs() -> None:
     compare(range(1000, 4000), runs=40)
+
+
+@settings(max_examples=100)
+@given(machine=machines(), seed=st.integers(0, 1000))
+def test_any_graph_is_judged(machine: Machine, seed: int) -> None:
+    """Also a graph with dangling targets, names that clash and containers without states."""
+    properties = [random_property(random.Random(seed), machine) for _ in range(3)]
+    context = Context(replace(machine, properties=tuple(properties)))
+    assert len(context.judgements) in (0, 3)

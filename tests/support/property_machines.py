@@ -203,7 +203,8 @@ def random_property(rng: random.Random, machine: Machine) -> Property:
         if kind < 0.2 and claims:
             return Atom(subject="claim", name=rng.choice(claims), span=NOWHERE)
         node = rng.choice(nodes)
-        outcome = rng.choice(outcome_names(node)) if rng.random() < 0.4 else None
+        names = outcome_names(node)
+        outcome = rng.choice(names) if names and rng.random() < 0.4 else None
         return Atom(subject="path", name=node.name, outcome=outcome, span=NOWHERE)
 
     def some() -> Atoms:
