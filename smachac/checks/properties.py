@@ -104,8 +104,8 @@ def property_fails(context: Context) -> Iterator[Finding]:
 
 def _named(given: Property) -> str:
     """A property as the subject of a message."""
-    words = in_words(given.form)
-    return f"the property `{given.name}`" if given.name != words else f"the property “{words}”"
+    unnamed = given.name == in_words(given.form)
+    return "this property" if unnamed else f"the property `{given.name}`"
 
 
 def _violation(form: Form, example: Counterexample) -> str:
