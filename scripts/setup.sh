@@ -97,6 +97,11 @@ cpp_parts() {
     printf '%s\n' gcc-arm-none-eabi libstdc++-arm-none-eabi-dev libnewlib-dev
 }
 
+# Prints the package that judges the properties of machines in the tests.
+spin_parts() {
+  command -v spin >/dev/null || echo spin
+}
+
 # PyPI has PyBullet ready-made for these alone.
 prepare_pybullet() {
   if [[ "$version $(uname -sm)" =~ ^3\.1[01]\ Linux\ x86_64$ ]] || pip show -qq pybullet 2>/dev/null; then return; fi
@@ -116,6 +121,8 @@ prepare_optional() {
   ((${#parts[@]} == 0)) || install_packages "${parts[@]}" || say "going on without a compiler"
   mapfile -t parts < <(cpp_parts)
   ((${#parts[@]} == 0)) || install_packages "${parts[@]}" || say "going on with fewer C++ compilers"
+  mapfile -t parts < <(spin_parts)
+  ((${#parts[@]} == 0)) || install_packages "${parts[@]}" || say "going on without SPIN"
 }
 
 # The state of .venv that a stamp stands for; the folder, because installed scripts name it.

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from functools import cached_property
+from typing import TYPE_CHECKING
 
 from smachac.analysis.accesses import Accesses, accesses
 from smachac.analysis.control_flow import Linear, endless_states
@@ -23,6 +24,9 @@ from smachac.analysis.unset_reads import Cause, Missing, missing_keys
 from smachac.diagnostics.source import Span
 from smachac.ir import nodes, script_paths, traversal
 from smachac.ir.nodes import Container, Machine, Node, StateMachine
+
+if TYPE_CHECKING:
+    from smachac.analysis.properties import Judgement
 
 
 class Context:
@@ -148,6 +152,15 @@ class Context:
     def routes(self) -> Routes:
         """The control flow of the whole machine."""
         return Routes(self.states, self.endings)
+
+    @cached_property
+    def judgements(self) -> tuple[Judgement, ...]:
+        """The properties of the script with their verdicts."""
+        if not self.machine.properties:
+            return ()
+        from smachac.analysis.properties import judge
+
+        return tuple(judge(self.machine.properties, self.machine.root, self.claims))
 
     @cached_property
     def failures(self) -> tuple[Failure, ...]:

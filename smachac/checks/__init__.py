@@ -16,6 +16,7 @@ from smachac.checks import (
     loops,
     names,
     outcomes,
+    properties,
     races,
     reachability,
     robot,
@@ -81,6 +82,10 @@ RULES: tuple[Rule, ...] = (
     robot.not_a_rotation,
     robot.unit_mismatch,
     robot.unknown_frame,
+    properties.property_fails,
+    properties.property_vacuous,
+    properties.unknown_event,
+    properties.property_undecided,
 )
 """All rules, in the order of their codes."""
 

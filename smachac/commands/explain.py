@@ -1,4 +1,5 @@
-"""The command `explain`: explain a code, a state, a key, or the failures of a script."""
+"""The command `explain`: explain a code, or a state, a key, the failures or the
+properties of a script."""
 
 from __future__ import annotations
 
@@ -9,6 +10,10 @@ from argparse import Namespace
 from smachac.commands.arguments import colour, search_folders
 from smachac.commands.output import FINDINGS, OK, print_report, usage, without_notes
 
+TYPE_CHECKING = False  # annotations only: `--help` imports none of this
+if TYPE_CHECKING:
+    from smachac.analysis.context import Context
+
 EXAMPLES = """\
 examples:
   smachac explain SM201                  a code: what it means, with examples
@@ -16,6 +21,9 @@ examples:
   smachac explain main.yml PICK/GRASP    a state, by its path or the end of its path
   smachac explain main.yml --failures    where every failure leads
   smachac explain main.yml --failures --format csv > failures.csv
+  smachac explain main.yml --properties  the properties of the script, and which of them hold
+  smachac explain main.yml --properties --scenario NAME > fails.yml
+                                         a counterexample, for `run main.yml --mock fails.yml`
 
 exit codes: 0 success, 1 the script cannot be read, 2 wrong usage or unknown name,
 70 a bug in smachac
@@ -29,6 +37,11 @@ def explain_arguments(parser: argparse.ArgumentParser) -> None:
     parser.add_argument("--all", action="store_true", help="explain all codes, as Markdown")
     parser.add_argument("--failures", action="store_true",
                         help="list where every failure of the script leads")  # fmt: skip
+    parser.add_argument("--properties", action="store_true",
+                        help="list the properties of the script and whether they hold")  # fmt: skip
+    parser.add_argument("--scenario", metavar="NAME",
+                        help="with --properties: the counterexample of the property with this name"
+                        " or number, as a scenario for `run --mock`")  # fmt: skip
     parser.add_argument("--format", choices=("text", "json", "md", "csv"), default="text",
                         help="format of the output; md and csv only with --failures")  # fmt: skip
     search_folders(parser)
@@ -45,21 +58,30 @@ def explain_command(arguments: Namespace) -> int:
     words, form = arguments.words, arguments.format
     if form in ("md", "csv") and not arguments.failures:
         return usage(f"--format {form} needs --failures")
+    if arguments.scenario is not None and not arguments.properties:
+        return usage("--scenario needs --properties")
+    if arguments.failures and arguments.properties:
+        return usage("use one of --failures and --properties")
+    whole = arguments.failures or arguments.properties
     if arguments.all:
         from smachac.report.explain_code import render_rules
 
         sys.stdout.write(render_rules(CODES))
         return OK
-    if len(words) == 1 and not arguments.failures:
+    if len(words) == 1 and not whole:
         return _explain_code(words[0])
-    if len(words) != (1 if arguments.failures else 2):
-        return usage("name a code such as SM201, or a script with a state or a key or --failures")
+    if len(words) != (1 if whole else 2):
+        return usage(
+            "name a code such as SM201, or a script with a state, a key, --failures or --properties"
+        )
     analysis = analyse_script(Path(words[0]), arguments.scripts, arguments.templates)
     if analysis.machine is None:
         print_report(without_notes(analysis.report), arguments, sys.stderr)
         return FINDINGS
-    if analysis.checked is None:
+    if analysis.checked is None and not arguments.properties:
         print("the script has errors: the explanation may be incomplete", file=sys.stderr)
+    if arguments.properties:
+        return _explain_properties(Context(analysis.machine), arguments.scenario, form)
     if arguments.failures:
         from smachac.report.explain_failures import render_failures
 
@@ -71,6 +93,25 @@ def explain_command(arguments: Namespace) -> int:
     try:
         sys.stdout.write(explain_name(Context(analysis.machine), analysis.report, words[1], form))
     except UnclearError as error:
+        return usage(str(error))
+    return OK
+
+
+def _explain_properties(context: Context, scenario: str | None, form: str) -> int:
+    """Print the properties of a script, or the counterexample of one; the exit code."""
+    from smachac.report.explain_properties import (
+        NoScenarioError,
+        render_properties,
+        render_scenario,
+    )
+
+    machine, found = context.machine, context.judgements
+    if scenario is None:
+        sys.stdout.write(render_properties(machine, found, form))
+        return OK
+    try:
+        sys.stdout.write(render_scenario(machine, found, scenario))
+    except NoScenarioError as error:
         return usage(str(error))
     return OK
 

@@ -147,7 +147,7 @@ def _run_program(arguments: Namespace, analysis: Analysis) -> int:
 def _run_scenario(arguments: Namespace, analysis: Analysis) -> int:
     """Play a scenario; the exit code."""
     print_report(without_notes(analysis.report), arguments, sys.stderr)
-    machine = analysis.checked
+    machine = analysis.checked or _playable(analysis)
     if machine is None:
         return FINDINGS
     report: Report = []
@@ -161,6 +161,15 @@ def _run_scenario(arguments: Namespace, analysis: Analysis) -> int:
         return OK if agree else FINDINGS
     seed, schedule = arguments.seed, arguments.schedule
     return _observed(arguments, machine, partial(play, machine, scenario, seed, schedule))
+
+
+def _playable(analysis: Analysis) -> Machine | None:
+    """The machine of a script whose only errors are properties that fail: their counterexamples can
+    be played."""
+    from smachac.diagnostics.diagnostic import Severity
+
+    errors = [item.code for item in analysis.report if item.severity is Severity.ERROR]
+    return analysis.machine if errors and set(errors) == {"SM701"} else None
 
 
 def _observed(

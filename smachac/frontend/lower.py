@@ -63,6 +63,7 @@ def lower(script: Script) -> Machine:
         digest=digest.hexdigest(),
         robot=script.robot,
         unused=script.unused,
+        properties=script.properties,
         state_types=script.state_types,
     )
 
@@ -123,6 +124,7 @@ def _interface(state: State) -> dict[str, Any]:
                 for claim in (*type_.claims, *(word.text for word in state.claims))
             )
         ),
+        "tags": tuple(word.text for word in state.tags),
         "span": state.name.span,
         "via": state.via,
         "written": state.written,

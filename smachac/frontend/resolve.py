@@ -39,6 +39,7 @@ from smachac.frontend.params import (
     is_too_deep,
     size_up_to,
 )
+from smachac.frontend.properties import properties_of
 from smachac.frontend.robots import robot_of
 from smachac.frontend.schema import FieldOwner
 from smachac.frontend.script import TIMER, Pairs, Script, State, Sugar
@@ -148,6 +149,7 @@ class _Resolver:
             sources=tuple(self.sources),
             robot=robot,
             unused=self.uses.unused(self.report),
+            properties=properties_of(entries.get("properties"), source, self.library, self.report),
             state_types={name: type_ for name, type_ in self.types.items() if type_ is not None},
         )
 

@@ -12,6 +12,7 @@ from typing import NamedTuple, TypeAlias
 from smachac.diagnostics.source import Source, Span, Word
 from smachac.frontend.schema import FieldOwner
 from smachac.ir.nodes import Preset, StateType, Unused, Value, Variable
+from smachac.ir.properties import Property
 from smachac.ir.robot import Robot
 from smachac.ir.types import Type
 
@@ -97,6 +98,7 @@ class State(NamedTuple):
     transitions: Pairs = ()
     remapping: Pairs = ()
     claims: tuple[Word, ...] = ()
+    tags: tuple[Word, ...] = ()
     initial: Word | None = None
     forever: bool = False
     on_error: Word | None = None
@@ -126,4 +128,5 @@ class Script:
     sources: tuple[Source, ...]
     robot: Robot | None = None
     unused: tuple[Unused, ...] = ()
+    properties: tuple[Property, ...] = ()
     state_types: Mapping[str, StateType] = field(default_factory=dict)

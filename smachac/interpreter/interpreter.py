@@ -389,6 +389,8 @@ def _concurrence(
             if path not in run.preemption.requested:  # else every branch has a request already
                 for other in live:
                     run.preemption.request(other)
+        if live and not starting:
+            yield run.clock  # also after the end of a branch: branches further out may be next
     stopped = node.sugar and path in run.preemption.requested
     run.preemption.after_concurrence(path, children)
     for end in ended.values():

@@ -4,11 +4,13 @@ code."""
 from __future__ import annotations
 
 import copy
-from collections.abc import Mapping
+import json
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from typing import NamedTuple
 
 from smachac.diagnostics.diagnostic import did_you_mean
+from smachac.diagnostics.spelling import is_plain
 from smachac.interpreter.behaviours import preemptible
 from smachac.interpreter.result import Behaviour
 from smachac.interpreter.userdata import BehaviourError, Userdata
@@ -116,6 +118,45 @@ def plain_steps_by_path(scenario: Scenario, machine: Machine) -> dict[str, list[
             for step in steps
         ]
     return rows
+
+
+def scenario_text(rows: Mapping[str, Sequence[PlainStep]]) -> str:
+    """A scenario as a file for `smachac run --mock`."""
+    lines = ["states:"]
+    for path, row in rows.items():
+        lines.append(f"  {quoted(path)}:")
+        lines += [f"    - {quoted(step)}" for step in map(_step, row)]
+    return "\n".join(lines) + "\n"
+
+
+def scenario_line(rows: Mapping[str, Sequence[PlainStep]]) -> str:
+    """A scenario on one line, with steps that are only an outcome as short as possible."""
+    states = {path: [_short(_step(step)) for step in row] for path, row in rows.items()}
+    parts = (f"{_plain(path)}: [{', '.join(steps)}]" for path, steps in states.items())
+    return f"{{states: {{{', '.join(parts)}}}}}"
+
+
+def _plain(text: str) -> str:
+    return text if is_plain(text) else quoted(text)
+
+
+def _short(step: dict[str, object]) -> str:
+    if [*step] == ["outcome"]:
+        return _plain(str(step["outcome"]))
+    return quoted(step)
+
+
+def _step(row: PlainStep) -> dict[str, object]:
+    step: dict[str, object] = {"stop": True} if row.stop else {}
+    if row.error:
+        return step | {"error": row.error}
+    step |= {"wait": True} if row.wait else {}
+    return step | {"outcome": row.outcome} | ({"set": row.writes} if row.writes else {})
+
+
+def quoted(value: object) -> str:
+    """A value as YAML on one line."""
+    return json.dumps(value, ensure_ascii=False)
 
 
 def _by_path(scenario: Scenario, machine: Machine) -> dict[str, tuple[Step, ...]]:

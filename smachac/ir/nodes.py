@@ -13,6 +13,7 @@ from typing import ClassVar, Literal, NamedTuple, NewType, TypeAlias
 
 from smachac.diagnostics.source import NOWHERE, Span, Word
 from smachac.ir.class_facts import ClassFacts
+from smachac.ir.properties import Property
 from smachac.ir.robot import Robot
 from smachac.ir.types import ANY, Type
 
@@ -169,10 +170,10 @@ class _State:
 
     `keyword` is that of the class in the text form. `type` is the state type (the name of the
     template). `via` are the calls of sub-scripts that lead to the node, outermost first. `inputs`
-    and `outputs` are its userdata keys. `catches` is the outcome that exceptions in the state
-    become: it is one of `outcomes`, the state's own code never returns it, and it is empty if
-    exceptions are not caught. `written` are the fields of the script, for templates that print
-    them; empty for all others.
+    and `outputs` are its userdata keys. `tags` are names for properties. `catches` is the outcome
+    that exceptions in the state become: it is one of `outcomes`, the state's own code never returns
+    it, and it is empty if exceptions are not caught. `written` are the fields of the script, for
+    templates that print them; empty for all others.
     """
 
     keyword: ClassVar[str]
@@ -185,6 +186,7 @@ class _State:
     transitions: tuple[Transition, ...] = ()
     remaps: tuple[Remap, ...] = ()
     claims: tuple[str, ...] = ()
+    tags: tuple[str, ...] = ()
     catches: str = ""
     span: Span = field(compare=False, repr=False)
     via: tuple[Span, ...] = field(default=(), compare=False, repr=False)
@@ -377,9 +379,9 @@ class Machine:
 
     `base` is the base template; `variables` are its variables (`node_name`, `function_name`,
     `manifest`, and those of its interface). `source` is the name of the script without its folder,
-    `digest` a SHA-256 over the texts of the script and its sub-scripts. `robot` and `unused` are
-    used by rules only; no target prints them. `state_types` are the interfaces of its states and of
-    its base, by name.
+    `digest` a SHA-256 over the texts of the script and its sub-scripts. `robot`, `unused` and
+    `properties` are for rules; of the targets only `dot` uses properties. `state_types` are the
+    interfaces of its states and of its base, by name.
     """
 
     root: StateMachine
@@ -389,6 +391,7 @@ class Machine:
     digest: str = field(default="", compare=False)
     robot: Robot | None = field(default=None, compare=False, repr=False)
     unused: tuple[Unused, ...] = field(default=(), compare=False, repr=False)
+    properties: tuple[Property, ...] = field(default=(), compare=False, repr=False)
     state_types: Mapping[str, StateType] = field(default_factory=dict, compare=False, repr=False)
 
 

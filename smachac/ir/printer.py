@@ -152,6 +152,7 @@ def _statements(node: Node) -> Iterator[str]:
         yield f"output {_key(key)}"
     if node.claims:
         yield f"claims {_names(node.claims)}"
+    yield from _line("tags", _names(node.tags))
     yield from _optional("catches", node.catches)
     if isinstance(node, Leaf):
         yield from _leaf(node)

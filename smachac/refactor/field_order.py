@@ -16,13 +16,13 @@ Spelling = Literal["kept", "short", "long"]
 
 FIRST = (
     *("<<", "name", "script", "template", "doc", "node_name", "function_name", "manifest"),
-    *("types", "outcomes", "input_keys", "output_keys", "params"),
+    *("types", "outcomes", "input_keys", "output_keys", "params", "properties"),
 )
 """The first fields of a state; outcomes and keys are in the order of SMACH's constructor. Fields in
 neither list belong to the state type; they stay in their order, between the two."""
 
 LAST = (
-    *("userdata", "remapping", "claims", "timeout", "retry", "for_each", "forever"),
+    *("userdata", "remapping", "claims", "tags", "timeout", "retry", "for_each", "forever"),
     *("transitions", "on_error", "initial", "states"),
 )
 """The last fields of a state: its keys, its transitions, its children."""

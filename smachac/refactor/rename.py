@@ -9,13 +9,16 @@ from __future__ import annotations
 
 import ast
 from collections.abc import Callable, Iterable, Iterator
+from dataclasses import replace
 
+from smachac.analysis.property_events import NameFault, Names
 from smachac.diagnostics.source import Source, Span
 from smachac.ir import nodes
 from smachac.ir.leaf import variable_of
 from smachac.ir.nodes import Container, Leaf, Machine, Node
+from smachac.ir.properties import atoms
 from smachac.ir.script_paths import sugared_child
-from smachac.ir.traversal import expressions_in, leads_to_child, remapping
+from smachac.ir.traversal import expressions_in, leads_to_child, remapping, walk
 from smachac.refactor.cst import Atom, Collection, Item
 from smachac.refactor.editor import RefusedError, ScriptEditor, add_entry, variable
 from smachac.refactor.field_order import variables_of
@@ -127,6 +130,11 @@ def containers_of(machine: Machine) -> Iterator[Container]:
 
 def rename_state(renaming: Renaming, machine: Machine, declared: Span) -> None:
     """Rename the state whose name is at a span, and the references to it."""
+
+    def is_declared(node: Node) -> bool:
+        return node.name == renaming.old and same_place(node.span, declared)
+
+    _rename_in_properties(renaming, machine, is_state=is_declared)
     if same_place(machine.root.span, declared) and machine.root.name == renaming.old:
         renaming.replace_word(declared)
         return
@@ -160,6 +168,37 @@ def rename_state(renaming: Renaming, machine: Machine, declared: Span) -> None:
                     renaming.replace_word(container.initial_span)
 
 
+def _rename_in_properties(
+    renaming: Renaming,
+    machine: Machine,
+    *,
+    is_state: Callable[[Node], bool] = lambda node: False,
+    has_outcome: Callable[[Node], bool] = lambda node: False,
+) -> None:
+    """Rename a state, or an outcome of the states that have it, in the properties of a script."""
+    if not machine.properties:
+        return
+    known = dict(walk(machine.root))
+    names = Names([*known], [*known.values()], {})
+    for atom in (atom for given in machine.properties for atom in atoms(given.form)):
+        events = names.resolve(atom)
+        if isinstance(events, NameFault):
+            continue
+        name, outcome = atom.name, atom.outcome
+        if atom.subject == "path":
+            words = names.paths[events[0][0]].split("/")
+            path = ["/".join(words[: end + 1]) for end in range(len(words))]
+            parts = name.split("/")
+            for at, each in enumerate(path[-len(parts) :]):
+                parts[at] = renaming.new if is_state(known[each]) else parts[at]
+            name = "/".join(parts)
+        if outcome == renaming.old and any(has_outcome(names.nodes[each]) for each, _ in events):
+            outcome = renaming.new
+        new = str(replace(atom, name=name, outcome=outcome))
+        if new != str(atom) and atom.span.text.strip("'\"") == str(atom):
+            renaming.editors(atom.span.source).replace_word(atom.span, new)
+
+
 # --- outcomes
 
 
@@ -170,6 +209,7 @@ def rename_outcome(renaming: Renaming, machine: Machine, declared: Span) -> None
         return any(each.name == renaming.old and same_place(each.span, declared)
                    for each in node.outcomes)  # fmt: skip
 
+    _rename_in_properties(renaming, machine, has_outcome=has_declaration)
     if has_declaration(machine.root):
         _rename_in_state(renaming, machine.root)
     for container in containers_of(machine):

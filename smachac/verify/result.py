@@ -2,13 +2,12 @@
 
 from __future__ import annotations
 
-import json
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from typing import Any
 
 from smachac.diagnostics.source import Span
-from smachac.interpreter.scenario import PlainStep
+from smachac.interpreter.scenario import PlainStep, quoted, scenario_text
 from smachac.report.json import json_text
 from smachac.report.terminal import on_one_line
 from smachac.verify.coverage import CoverageItem, Reason
@@ -54,27 +53,6 @@ class Verdict:
     missing: Sequence[tuple[CoverageItem, Span, Reason]]
     left_out: Sequence[str]
     disagreements: Sequence[Disagreement]
-
-
-def scenario_text(rows: Mapping[str, Sequence[PlainStep]]) -> str:
-    """A scenario as a file for `smachac run --mock`."""
-    lines = ["states:"]
-    for path, row in rows.items():
-        lines.append(f"  {_quoted(path)}:")
-        lines += [f"    - {_quoted(step)}" for step in map(_step, row)]
-    return "\n".join(lines) + "\n"
-
-
-def _step(row: PlainStep) -> dict[str, object]:
-    step: dict[str, object] = {"stop": True} if row.stop else {}
-    if row.error:
-        return step | {"error": row.error}
-    step |= {"wait": True} if row.wait else {}
-    return step | {"outcome": row.outcome} | ({"set": row.writes} if row.writes else {})
-
-
-def _quoted(value: object) -> str:
-    return json.dumps(value, ensure_ascii=False)
 
 
 def render_json(verdict: Verdict) -> str:
@@ -177,7 +155,7 @@ def _event(event: Event) -> str:
     if "to" in event:
         words.append(f"-> {event['to']}")
     if "key" in event:
-        words.append(f"{event['key']} = {_quoted(event.get('value'))}")
+        words.append(f"{event['key']} = {quoted(event.get('value'))}")
     if event["event"] == "finish":
         words.append(str(event.get("outcome")))
     text = " ".join(words)

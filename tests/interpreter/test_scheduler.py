@@ -10,7 +10,10 @@ from typing import Any
 import pytest
 
 from smachac.commands.cli import main
+from smachac.interpreter.behaviours import builtin_behaviour
 from smachac.interpreter.explore import explore
+from smachac.interpreter.interpreter import run
+from smachac.interpreter.result import Event
 from smachac.interpreter.scheduler import ScheduleError
 from smachac.ir.nodes import Machine, StateMachine
 from tests.support.ir_machines import acting, concurrence, leaf, machine, ran
@@ -144,3 +147,24 @@ def test_a_schedule_on_the_command_line(tmp_path: Path, capsys: pytest.CaptureFi
 def test_exploring_is_lazy() -> None:
     orders = explore(Machine(root=beside(row("A", 4), row("B", 4))), lambda: acting({}))
     assert len(list(islice(orders, 3))) == 3
+
+
+def test_a_turn_ends_with_the_end_of_a_nested_branch() -> None:
+    """After the end of a branch in a nested concurrence every branch of the outer one can be
+    next."""
+    inner_leaves = (leaf("X", outcomes="x"), leaf("Y", outcomes="y"))
+    inner = concurrence("IN", "done", *inner_leaves, default="done")
+    outer = concurrence(
+        "OUT", "done", inner, leaf("Z", outcomes="z"), default="done", to={"done": "done"}
+    )
+    root = machine("sm", "done", outer)
+    order = {"X": 0, "Z": 1, "Y": 2}
+    lines: list[str] = []
+
+    def observe(event: Event) -> None:
+        name = str(event["path"]).rpartition("/")[2]
+        if event["event"] == "exit" and name in order:
+            lines.append(name)
+
+    run(Machine(root=root), builtin_behaviour(), observe, schedule=["IN", "X", "Z"])
+    assert lines == ["X", "Z", "Y"]

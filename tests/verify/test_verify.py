@@ -11,13 +11,14 @@ import pytest
 
 import smachac
 from smachac.commands.cli import main
+from smachac.interpreter.scenario import scenario_text
 from smachac.ir.nodes import Machine
 from smachac.runtime import smach
 from smachac.runtime.tracing import trace
 from smachac.verify import verify
 from smachac.verify.generate import PathGenerator
 from smachac.verify.players.python import player
-from smachac.verify.result import Verdict, render_json, render_text, scenario_text
+from smachac.verify.result import Verdict, render_json, render_text
 from smachac.verify.sample_values import SampleValues
 from tests.support.ir_machines import iterator, leaf
 from tests.support.ir_machines import machine as state_machine

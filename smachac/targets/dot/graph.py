@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterator, Mapping
 from typing import NamedTuple
 
+from smachac.analysis.context import Context
 from smachac.ir import nodes
 from smachac.ir.nodes import Concurrence, Container, Leaf, Machine, Node
 from smachac.ir.script_paths import name_in_script, role_in_words, script_paths
@@ -34,16 +35,17 @@ from smachac.targets.dot.style import (
 
 class Position(NamedTuple):
     """The position of a state: its full path, its node name in DOT and its depth; `paths` are those
-    of the script by full path, where they differ."""
+    of the script by full path, where they differ; `tones` those of the states in properties."""
 
     path: str
     id: str
     level: int
     paths: Mapping[str, str]
+    tones: Mapping[str, str]
 
     def below(self, name: str) -> Position:
         path, id = f"{self.path}/{name}", f"{self.id}/{identifier(name)}"
-        return Position(path, id, self.level + 1, self.paths)
+        return self._replace(path=path, id=id, level=self.level + 1)
 
     @property
     def shown(self) -> str:
@@ -66,7 +68,9 @@ def picture(machine: Machine, *, depth: int | None, rankdir: str) -> Iterator[st
     for line in _settings(machine, rankdir):
         yield f"  {line}"
     todo: list[str | tuple[Position, Container]] = ["}"]
-    todo.append((Position(root.name, identifier(root.name), 1, script_paths(root)), root))
+    tones = property_tones(machine)
+    start = Position(root.name, identifier(root.name), 1, script_paths(root), tones)
+    todo.append((start, root))
     while todo:
         item = todo.pop()
         if isinstance(item, str):
@@ -123,6 +127,8 @@ def _frame(container: Container, place: Position) -> Iterator[str]:
     kind = html(role_in_words(container)) if container.sugar else kind
     name = name_in_script(container)
     title = f"<B>{html(name)}</B>  {font(kind, colour=FAINT, size=9)}"
+    if shade := place.tones.get(place.path):
+        title += f"  {_property_mark(shade)}"
     look = {"labeljust": "c", "labelloc": "t", "style": style}
     colours = {"fillcolor": fill, "color": border, "fontsize": "11"}
     yield f'subgraph "cluster_{place.id}" {{'
@@ -137,8 +143,30 @@ def _box(node: Node, place: Position) -> str:
     kind = kind if isinstance(node, Leaf) else f"{kind} <B>+</B>"
     if node.type:
         rows.append(font(kind, colour=FAINT, size=9))
-    tip = {"tooltip": node.doc or place.shown}
-    return f'"{place.id}"{attributes(tip, spaced(rows))}'
+    look = {"tooltip": node.doc or place.shown}
+    if shade := place.tones.get(place.path):
+        rows.append(_property_mark(shade))
+        look |= {"color": TONES[shade][0], "penwidth": "2"} if shade == "failure" else {}
+    return f'"{place.id}"{attributes(look, spaced(rows))}'
+
+
+def _property_mark(shade: str) -> str:
+    return font("&#9670; property", colour=TONES[shade][0], size=8)
+
+
+def property_tones(machine: Machine) -> dict[str, str]:
+    """The tones of the states in properties, by full path: `failure` for those on the path of a
+    counterexample, `neutral` for the others that a property names."""
+    if not machine.properties:
+        return {}
+    found: dict[str, str] = {}
+    judgements = Context(machine).judgements
+    for each in judgements:
+        found |= dict.fromkeys(each.states, "neutral")
+    for each in judgements:
+        if each.counterexample is not None:
+            found |= dict.fromkeys((visit.path for visit in each.counterexample.visits), "failure")
+    return found
 
 
 def _exit(container: Container, outcome: nodes.Outcome, id: str, *, final: bool) -> str:

@@ -1,0 +1,301 @@
+"""Properties of a machine: whether they hold on all its paths.
+
+The product of the machine's configurations (execution.py) and the property's automaton
+(property_automaton.py) is searched breadth-first, so a counterexample is a shortest one.
+"""
+
+from __future__ import annotations
+
+from collections import deque
+from collections.abc import Iterable, Mapping, Sequence
+from typing import TYPE_CHECKING, Literal, NamedTuple, TypeAlias
+
+from smachac.analysis.execution import STOP, Config, Event, Execution, Step, TooLargeError, leaves
+from smachac.analysis.property_automaton import BAD, LEAF, PREMISE, Automaton, automaton, parts
+from smachac.analysis.property_events import NameFault, Names
+from smachac.analysis.resource_claims import Held
+from smachac.diagnostics.diagnostic import PathStep, ended, entered
+from smachac.ir.nodes import Leaf, StateMachine
+from smachac.ir.properties import After, AlwaysEnds, Exceptions, Property
+
+if TYPE_CHECKING:
+    import networkx as nx
+
+MOST_PAIRS, PAIRS_BY_STATE = 50_000, 30
+"""Limit on the pairs of a configuration and a state of the automaton that are examined, about two
+seconds of CPU time, and so many more for each state of the machine. Each property that is not
+decided halves it for the others."""
+
+MOST_IN_ALL = 5_000_000
+"""Limit on the pairs that are examined for all properties of a machine."""
+
+Verdict = Literal["holds", "fails", "vacuous", "undecided", "unclear"]
+"""`vacuous`: it holds because what it is about cannot happen. `undecided`: there are too many
+configurations. `unclear`: its names have faults."""
+
+
+class Visit(NamedTuple):
+    """One visit of a leaf in a counterexample, by path: its outcome, None for an exception.
+    `stop`: a request to stop arrives as it begins."""
+
+    path: str
+    outcome: str | None
+    stop: bool
+
+
+class Counterexample(NamedTuple):
+    """The visits of leaves up to the violation.
+
+    `node` and `outcome` are the event that violates the property: the state at a path is entered
+    (None) or ends; `node` is empty where it is the end of the run. `again` is the number of the
+    visit from which the visits are repeated for ever, -1 if they are not. `last` is what the path
+    leads to: a state, by path, or the outcome of the machine.
+    """
+
+    visits: tuple[Visit, ...]
+    node: str = ""
+    outcome: str | None = None
+    again: int = -1
+    last: str = ""
+
+
+def witness(example: Counterexample) -> tuple[PathStep, ...]:
+    """A counterexample as a witness path: the leaves that are visited and their outcomes."""
+    steps: list[PathStep] = []
+    for visit in example.visits:
+        steps.append(entered(visit.path.rpartition("/")[2], visit.path))
+        outcome = visit.outcome if visit.outcome is not None else "exception"
+        steps.append(ended(f"stop request, {outcome}" if visit.stop else outcome))
+    if example.last:
+        steps.append(entered(example.last.rpartition("/")[2], example.last))
+    return tuple(steps)
+
+
+class Judgement(NamedTuple):
+    """A property with its verdict. `states` are the paths of the states that it names."""
+
+    property: Property
+    verdict: Verdict
+    counterexample: Counterexample | None = None
+    faults: tuple[NameFault, ...] = ()
+    states: tuple[str, ...] = ()
+
+
+def judge(properties: Sequence[Property], root: StateMachine, claims: Held) -> list[Judgement]:
+    """The verdicts on the properties of a machine. None are given where the machine is incomplete.
+
+    The steps of a machine are computed once for properties over the same kind of paths.
+    """
+    if not properties:
+        return []
+    plain = Execution(root)
+    if not plain.is_complete:
+        return []
+    names = Names(plain.paths, plain.nodes, claims)
+    executions: dict[tuple[Exceptions, bool, bool], Execution] = {("caught", True, False): plain}
+    found: list[Judgement] = []
+    limit, left = MOST_PAIRS + PAIRS_BY_STATE * len(plain.nodes), MOST_IN_ALL
+    for each in properties:
+        few = isinstance(each.form, AlwaysEnds)
+        key = (each.exceptions, each.stops, few)
+        if key not in executions:
+            executions[key] = Execution(
+                root, exceptions=each.exceptions, stops=each.stops, few_items=few
+            )
+        judgement, used = _judged(each, executions[key], names, min(limit, left))
+        found.append(judgement)
+        left -= used
+        if judgement.verdict == "undecided":
+            limit //= 2
+    return found
+
+
+def _judged(
+    given: Property, execution: Execution, names: Names, limit: int
+) -> tuple[Judgement, int]:
+    """The verdict on a property, and the number of pairs that were examined."""
+    watched: dict[Event, int] = {}
+    faults: list[NameFault] = []
+    for part in parts(given.form):
+        for atom in part.atoms:
+            events = names.resolve(atom)
+            if isinstance(events, NameFault):
+                faults.append(events)
+                continue
+            for event in events:
+                watched[event] = watched.get(event, 0) | part.bits
+    states = tuple(execution.paths[number] for number in dict.fromkeys(each for each, _ in watched))
+    if faults:
+        return Judgement(given, "unclear", None, tuple(faults), states), 0
+    if isinstance(given.form, After) and given.form.within:
+        for number, node in enumerate(execution.nodes):
+            if isinstance(node, Leaf):
+                watched[number, None] = watched.get((number, None), 0) | LEAF
+    verdict: Verdict = "holds"
+    try:
+        if isinstance(given.form, AlwaysEnds):
+            counterexample, used = _endless(execution, limit)
+        else:
+            search = _Search(execution, automaton(given.form), watched)
+            counterexample, used = search.run(limit), len(search.before)
+            if _has_premise(given) and not search.seen & PREMISE:
+                verdict = "vacuous"
+    except TooLargeError:
+        return Judgement(given, "undecided", None, (), states), limit
+    verdict = "fails" if counterexample is not None else verdict
+    return Judgement(given, verdict, counterexample, (), states), used
+
+
+def _has_premise(given: Property) -> bool:
+    return any(part.atoms and part.bits == PREMISE for part in parts(given.form))
+
+
+END: Event = (0, "")
+"""In place of an event: the run ends although an answer is missing."""
+
+Pair: TypeAlias = "tuple[Config, int]"
+"""A configuration and a state of the automaton."""
+
+
+class _Search:
+    """A breadth-first search of the product; `seen` are the bits of all events met.
+
+    By hand: a property over 10,000 states takes 0.45 s of CPU time; a graph of networkx would
+    first hold all of the product, of which the search needs only the part before a violation.
+    """
+
+    def __init__(
+        self, execution: Execution, table: Automaton, watched: Mapping[Event, int]
+    ) -> None:
+        self.execution = execution
+        self.automaton = table
+        self.watched = watched
+        self.seen = 0
+        self.before: dict[Pair, tuple[Pair | None, Step]] = {}
+
+    def run(self, limit: int) -> Counterexample | None:
+        """A shortest violation; None if there is none. Raises TooLargeError."""
+        todo: deque[Pair] = deque()
+        steps: dict[Config, list[Step]] = {}
+        for step in self.execution.start(self.watched):
+            if (bad := self._follow(None, 0, step, todo)) is not None:
+                return self._counterexample(None, step, bad)
+        while todo:
+            pair = todo.popleft()
+            config, state = pair
+            following = steps.get(config)
+            if following is None:
+                following = steps[config] = self.execution.steps(config, self.watched)
+            for step in following:
+                if (bad := self._follow(pair, state, step, todo)) is not None:
+                    return self._counterexample(pair, step, bad)
+            if len(self.before) > limit:
+                raise TooLargeError
+        return None
+
+    def _follow(self, pair: Pair | None, state: int, step: Step, todo: deque[Pair]) -> Event | None:
+        """Take a step; the event that violates the property, None if none does."""
+        for event in step.events:
+            bits = self.watched[event]
+            self.seen |= bits
+            state = self.automaton.table[state][bits]
+            if state == BAD:
+                return event
+        if state in self.automaton.open_ends and step.config.outcome is not None:
+            return END
+        after = (step.config, state)
+        if after not in self.before:
+            self.before[after] = (pair, step)
+            todo.append(after)
+        return None
+
+    def _counterexample(self, pair: Pair | None, last: Step, bad: Event) -> Counterexample:
+        steps = [last]
+        while pair is not None:
+            pair, step = self.before[pair]
+            steps.append(step)
+        visits = _visits(self.execution, steps[::-1])
+        node = "" if bad == END else self.execution.paths[bad[0]]
+        then = node if bad[1] is None else self._last(last)
+        return Counterexample(visits, node, bad[1], last=then)
+
+    def _last(self, step: Step) -> str:
+        """The state or the outcome that a step leads to."""
+        if step.config.outcome is not None:
+            return step.config.outcome[0] or "the run ends"
+        return self.execution.paths[next(leaves(step.config.control))]
+
+
+def _visits(execution: Execution, steps: Iterable[Step]) -> tuple[Visit, ...]:
+    found: list[Visit] = []
+    stop = False
+    for step in steps:
+        if step.leaf >= 0:
+            found.append(Visit(execution.paths[step.leaf], step.outcome, stop))
+        stop = step.leaf == STOP
+    return tuple(found)
+
+
+def _endless(execution: Execution, limit: int) -> tuple[Counterexample | None, int]:
+    """The shortest way to a loop that can go on for ever without further requests to stop, or to a
+    state that never ends; and the number of configurations. Raises TooLargeError."""
+    import networkx as nx
+
+    graph = nx.DiGraph()
+    before: dict[Config, tuple[Config | None, Step]] = {}
+    todo: deque[Config] = deque()
+    for step in execution.start(()):
+        before.setdefault(step.config, (None, step))
+        todo.append(step.config)
+    while todo:
+        config = todo.popleft()
+        following = execution.steps(config, ())
+        if config.outcome is None and all(step.leaf == STOP for step in following):
+            return Counterexample(_visits(execution, _steps_to(config, before))), len(before)
+        for step in following:
+            if step.leaf != STOP and not graph.has_edge(config, step.config):
+                graph.add_edge(config, step.config, step=step)
+            if step.config not in before:
+                before[step.config] = (config, step)
+                todo.append(step.config)
+        if len(before) > limit:
+            raise TooLargeError
+    loops: set[Config] = set()
+    for region in nx.strongly_connected_components(graph):
+        if len(region) > 1 or any(graph.has_edge(each, each) for each in region):
+            loops |= region
+    for config in before:
+        if config in loops:
+            there = _visits(execution, _steps_to(config, before))
+            around = _visits(execution, _circle(graph, config))
+            visits = (*there, *around)
+            found = Counterexample(visits, again=len(there), last=around[0].path)
+            return found, len(before)
+    return None, len(before)
+
+
+def _steps_to(config: Config, before: Mapping[Config, tuple[Config | None, Step]]) -> list[Step]:
+    steps: list[Step] = []
+    here: Config | None = config
+    while here is not None:
+        here, step = before[here]
+        steps.append(step)
+    return steps[::-1]
+
+
+def _circle(graph: nx.DiGraph, config: Config) -> list[Step]:
+    """The steps of a shortest circle from a configuration back to it."""
+    before: dict[Config, Config] = {}
+    todo = deque([config])
+    while config not in before:
+        here = todo.popleft()
+        for following in graph.adj[here]:
+            if following not in before:
+                before[following] = here
+                todo.append(following)
+    steps: list[Step] = []
+    here = config
+    while not steps or here != config:
+        steps.append(graph.edges[before[here], here]["step"])
+        here = before[here]
+    return steps[::-1]

@@ -1,0 +1,356 @@
+"""Rules over the properties of a script (docs/properties.md)."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from typing import TYPE_CHECKING
+
+from smachac.analysis.context import Context
+from smachac.checks.rule import rule
+from smachac.diagnostics.diagnostic import Finding, Severity, did_you_mean
+from smachac.diagnostics.source import Word, assert_never
+from smachac.diagnostics.spelling import guesser, respelt
+from smachac.diagnostics.wording import listed
+from smachac.ir.graph import reachable
+from smachac.ir.properties import (
+    After,
+    AlwaysEnds,
+    AtMost,
+    Atoms,
+    Before,
+    Form,
+    Never,
+    Property,
+    either,
+    in_words,
+)
+
+if TYPE_CHECKING:
+    from smachac.analysis.properties import Counterexample, Judgement
+    from smachac.analysis.property_events import NameFault
+    from smachac.interpreter.counterexample import Replay
+
+LONGEST_SCENARIO = 200
+"""Limit on the characters of a scenario in a help line."""
+
+
+def _with(context: Context, verdict: str) -> Iterator[Judgement]:
+    """The properties with a verdict."""
+    return (each for each in context.judgements if each.verdict == verdict)
+
+
+@rule("SM701", "property-fails", Severity.ERROR)
+def property_fails(context: Context) -> Iterator[Finding]:
+    """A property of the script does not hold on all paths.
+
+    The path shows how the robot comes to do what the property forbids. All outcomes are followed,
+    exceptions that the script catches, stop requests and time limits. The scenario in the help line
+    replays the path with `smachac run --mock`.
+
+    Wrong:
+        name: sm
+        template: Base
+        outcomes: [succeeded, aborted]
+        properties:
+          - before: {LIFT: GRASP}
+        states:
+          - FIND:
+              template: ScriptedState
+              outcomes: [found, held]
+              transitions: {found: GRASP, held: LIFT}
+          - GRASP:
+              template: ScriptedState
+              outcomes: [done, slipped]
+              transitions: {done: LIFT, slipped: aborted}
+          - LIFT: {template: ScriptedState, outcomes: [done], transitions: {done: succeeded}}
+
+    Right:
+        name: sm
+        template: Base
+        outcomes: [succeeded, aborted]
+        properties:
+          - before: {LIFT: GRASP}
+        states:
+          - FIND:
+              template: ScriptedState
+              outcomes: [found, held]
+              transitions: {found: GRASP, held: succeeded}
+          - GRASP:
+              template: ScriptedState
+              outcomes: [done, slipped]
+              transitions: {done: LIFT, slipped: aborted}
+          - LIFT: {template: ScriptedState, outcomes: [done], transitions: {done: succeeded}}
+    """
+    if not context.machine.properties:
+        return
+    from smachac.analysis.properties import witness
+    from smachac.interpreter.counterexample import replay
+
+    for number, each in enumerate(context.judgements, 1):
+        example = each.counterexample
+        if example is None:
+            continue
+        shown = replay(context.machine, example.visits, example.again)
+        form = each.property.form
+        yield Finding(
+            span=each.property.span,
+            message=f"{_named(each.property)} does not hold: {_violation(form, example)}",
+            arguments=(each.property.name, in_words(form)),
+            help=f"{_cure(form)}\n{_replayed(shown, number)}",
+            path=witness(example),
+            node=example.node or context.machine.root.name,
+        )
+
+
+def _named(given: Property) -> str:
+    """A property as the subject of a message."""
+    unnamed = given.name == in_words(given.form)
+    return "this property" if unnamed else f"the property `{given.name}`"
+
+
+def _violation(form: Form, example: Counterexample) -> str:
+    """What happens at the end of a counterexample."""
+    name = example.node.rpartition("/")[2]
+    entered = f"`{name}` is entered"
+    event = entered if example.outcome is None else f"`{name}` ends with `{example.outcome}`"
+    match form:
+        case Never(after=after, until=until):
+            since = f" after {either(after)}" if after else ""
+            return f"{event}{since}{' and' * bool(since and until)}{_before(until)}"
+        case Before(earlier=earlier):
+            return f"{event}{_before(earlier)}"
+        case After(answer=answer, within=within) if example.node:
+            if within and not example.outcome:
+                return f"{entered}, and {either(answer)} has not come within {within} states"
+            return f"{event}{_before(answer)}"
+        case After(first=first, answer=answer):
+            return f"the run ends without {either(answer)} after {either(first)}"
+        case AtMost(times=times):
+            return f"{event} {times + 1} times"
+        case AlwaysEnds():
+            if example.again >= 0:
+                return "these states can follow one another for ever"
+            return "the run waits for ever in a state without an outcome"
+    return assert_never(form)
+
+
+def _before(events: Atoms) -> str:
+    return f" before {either(events)}" if events else ""
+
+
+def _cure(form: Form) -> str:
+    """What to do about a property that fails."""
+    match form:
+        case Never(until=until, enter=enter):
+            through = f" through {either(until)}, or" if until else ""
+            return f"lead this path{through} away from {either(enter)}"
+        case Before(later=later, earlier=earlier):
+            return f"lead each path to {either(later)} through {either(earlier)}"
+        case After(first=first, answer=answer):
+            return f"lead each path from {either(first)} through {either(answer)}"
+        case AtMost() | AlwaysEnds():
+            return "limit the number of tries, for example with `retry`, and leave the loop then"
+    return assert_never(form)
+
+
+def _replayed(shown: Replay, number: int) -> str:
+    """How the counterexample of the property with a number is replayed."""
+    turns = f" --schedule {','.join(shown.schedule)}" if shown.schedule else ""
+    text = shown.flow
+    if len(text) + len(turns) > LONGEST_SCENARIO:
+        option = f"--properties --scenario {number}"
+        return f"to replay this path: `smachac explain SCRIPT {option}` prints it as a scenario"
+    return f"to replay this path: `smachac run SCRIPT --mock FILE{turns}`, with {text} in FILE"
+
+
+@rule("SM702", "property-vacuous", Severity.WARNING)
+def property_vacuous(context: Context) -> Iterator[Finding]:
+    """A property holds only because what it is about cannot happen.
+
+    The property checks nothing, so a change of the script that breaks the intention is not noticed.
+    Often the property has the name of another state than the one that was meant.
+
+    Exactly: no path reaches the event that the property is about: `after` of `never`, the first
+    event of `before`, `after` and `whenever`, the event of `at_most`. A state that cannot be
+    reached in its own container is SM201.
+
+    Wrong:
+        name: sm
+        template: Base
+        outcomes: [done]
+        properties:
+          - after: {"GRASP:preempted": LET_GO}
+            stops: false
+        states:
+          - GRASP:
+              template: ScriptedState
+              outcomes: [done, preempted]
+              transitions: {done: LET_GO, preempted: LET_GO}
+          - LET_GO: {template: ScriptedState, outcomes: [done], transitions: {done: done}}
+
+    Right:
+        name: sm
+        template: Base
+        outcomes: [done]
+        properties:
+          - after: {"GRASP:preempted": LET_GO}
+        states:
+          - GRASP:
+              template: ScriptedState
+              outcomes: [done, preempted]
+              transitions: {done: LET_GO, preempted: LET_GO}
+          - LET_GO: {template: ScriptedState, outcomes: [done], transitions: {done: done}}
+    """
+    unreachable = _unreachable(context) if any(_with(context, "vacuous")) else ()
+    for each in _with(context, "vacuous"):
+        if any(f"{state}/".startswith(unreachable) for state in each.states):
+            continue
+        yield Finding(
+            span=each.property.span,
+            message=f"{_named(each.property)} checks nothing: no path leads to"
+            f" {_premise(each.property)}",
+            arguments=(each.property.name, in_words(each.property.form)),
+            help="name the event that was meant, or add the transition that leads to it",
+        )
+
+
+def _unreachable(context: Context) -> tuple[str, ...]:
+    """The paths of the states that cannot be reached in their container, each with a slash."""
+    return tuple(
+        f"{path}/{child.name}/"
+        for path, container in context.containers
+        for found in [reachable(container)]
+        for child in container.children
+        if child.name not in found
+    )
+
+
+def _premise(given: Property) -> str:
+    """The event that a property is about."""
+    match given.form:
+        case Never(after=atoms) | Before(later=atoms) | After(first=atoms) | AtMost(event=atoms):
+            return either(atoms)
+    return "it"
+
+
+@rule("SM703", "unknown-event", Severity.ERROR)
+def unknown_event(context: Context) -> Iterator[Finding]:
+    """A property names no state of the script, or several, or an outcome that the state never has.
+
+    A property whose names are not clear is not checked: the script would pass a check that nobody
+    made.
+
+    Exactly: a path may be shortened to its end where one state has it. Tags, types and claims may
+    have several states.
+
+    Wrong:
+        name: sm
+        template: Base
+        outcomes: [done]
+        properties:
+          - before: {LIFT: GRAPS}
+        states:
+          - GRASP: {template: ScriptedState, outcomes: [done], transitions: {done: LIFT}}
+          - LIFT: {template: ScriptedState, outcomes: [done], transitions: {done: done}}
+
+    Right:
+        name: sm
+        template: Base
+        outcomes: [done]
+        properties:
+          - before: {LIFT: GRASP}
+        states:
+          - GRASP: {template: ScriptedState, outcomes: [done], transitions: {done: LIFT}}
+          - LIFT: {template: ScriptedState, outcomes: [done], transitions: {done: done}}
+    """
+    for judgement in _with(context, "unclear"):
+        for fault in judgement.faults:
+            yield _name_fault(fault)
+
+
+def _name_fault(fault: NameFault) -> Finding:
+    atom = fault.atom
+    if fault.kind == "ambiguous":
+        return Finding(
+            span=atom.span,
+            message=f"`{atom.name}` may be any of {listed(fault.known)}",
+            arguments=("ambiguous", atom.name),
+            help="write more of its path",
+        )
+    if fault.kind == "outcome":
+        outcome = atom.outcome or ""
+        return Finding(
+            span=atom.span,
+            message=f"`{atom.name}` has no outcome `{outcome}`",
+            arguments=("outcome", atom.name, outcome),
+            help=did_you_mean(outcome, fault.known)
+            or f"use one of its outcomes: {listed(fault.known) or 'it has none'}",
+        )
+    what = {"path": "state", "tag": "state with the tag", "type": "state of the type"}
+    subject = what.get(atom.subject, "state with a claim of")
+    sure = guesser(fault.known).sure(atom.name)
+    edits = respelt(Word(atom.name, atom.span), sure) if atom.subject == "path" else ()
+    names = listed(fault.known)
+    return Finding(
+        span=atom.span,
+        message=f"there is no {subject} `{atom.name}`",
+        arguments=("unknown", atom.subject, atom.name),
+        help=did_you_mean(atom.name, fault.known)
+        or (f"use one of {names}" if names else f"add `{atom.subject}s:` to a state"),
+        edits=edits,
+    )
+
+
+@rule("SM704", "property-undecided", Severity.WARNING)
+def property_undecided(context: Context) -> Iterator[Finding]:
+    """The branches of concurrences can interleave in too many ways to check a property.
+
+    Nothing is known about the property: it may hold or fail.
+
+    Exactly: the check gives up after 50,000 combinations of the positions of all branches, and
+    30 more for each state of the script.
+
+    Wrong:
+        name: sm
+        template: Base
+        outcomes: [done, aborted]
+        properties:
+          - at_most: {A: 1}
+        states:
+          - ALL:
+              template: Concurrence
+              outcomes: [done, aborted]
+              default_outcome: aborted
+              outcome_map: {done: {A: done, B: done, C: done, D: done}}
+              states:
+                - A: {template: ScriptedState, outcomes: [done, slip], retry: {on: [slip], max: 30}}
+                - B: {template: ScriptedState, outcomes: [done, slip], retry: {on: [slip], max: 30}}
+                - C: {template: ScriptedState, outcomes: [done, slip], retry: {on: [slip], max: 30}}
+                - D: {template: ScriptedState, outcomes: [done, slip], retry: {on: [slip], max: 30}}
+
+    Right:
+        name: sm
+        template: Base
+        outcomes: [done, aborted]
+        properties:
+          - at_most: {A: 1}
+        states:
+          - ALL:
+              template: Concurrence
+              outcomes: [done, aborted]
+              default_outcome: aborted
+              outcome_map: {done: {A: done, B: done, C: done, D: done}}
+              states:
+                - A: {template: ScriptedState, outcomes: [done, slip], retry: {on: [slip], max: 3}}
+                - B: {template: ScriptedState, outcomes: [done, slip], retry: {on: [slip], max: 3}}
+                - C: {template: ScriptedState, outcomes: [done, slip], retry: {on: [slip], max: 3}}
+                - D: {template: ScriptedState, outcomes: [done, slip], retry: {on: [slip], max: 3}}
+    """
+    for each in _with(context, "undecided"):
+        yield Finding(
+            span=each.property.span,
+            message=f"{_named(each.property)} cannot be checked: the branches of this script can"
+            " interleave in too many ways",
+            arguments=(each.property.name, in_words(each.property.form)),
+            help="use fewer or shorter branches, or state it for a smaller part of the task",
+        )

@@ -1,0 +1,74 @@
+"""Verdicts on properties, compared with runs of the interpreter and a monitor of their traces."""
+
+from __future__ import annotations
+
+import random
+from dataclasses import replace
+
+import pytest
+from hypothesis import given, settings
+from hypothesis import strategies as st
+
+from smachac.analysis.context import Context
+from smachac.analysis.properties import Judgement, judge
+from smachac.interpreter.counterexample import replay
+from smachac.ir.nodes import Machine
+from smachac.ir.properties import AlwaysEnds
+from tests.strategies.machines import machines
+from tests.support.property_machines import (
+    Monitor,
+    random_machine,
+    random_property,
+    random_trace,
+)
+
+
+def drawn(seed: int) -> tuple[Machine, Judgement]:
+    """A random machine, and the verdict on a random property of it."""
+    rng = random.Random(seed)
+    machine = random_machine(rng, depth=rng.choice([1, 2, 3]))
+    given = random_property(rng, machine)
+    (judgement,) = judge([given], machine.root, Context(machine).claims)
+    assert judgement.verdict != "unclear"
+    return machine, judgement
+
+
+def compare(seeds: range, *, runs: int) -> dict[str, int]:
+    """Each counterexample violates its property in the interpreter; where a property holds, no
+    random run violates it. The number of each verdict."""
+    counts: dict[str, int] = {}
+    for seed in seeds:
+        machine, judgement = drawn(seed)
+        counts[judgement.verdict] = counts.get(judgement.verdict, 0) + 1
+        given, example = judgement.property, judgement.counterexample
+        monitor = Monitor(machine, given.form)
+        if example is not None:
+            shown = replay(machine, example.visits, example.again)
+            assert shown.followed, seed
+            if not isinstance(given.form, AlwaysEnds):
+                ended = any(event["event"] == "finish" for event in shown.events)
+                assert monitor.violated(shown.events, ended=ended), seed
+        elif judgement.verdict in ("holds", "vacuous") and not isinstance(given.form, AlwaysEnds):
+            for number in range(runs):
+                trace, ended = random_trace(machine, 1000 * seed + number, stops=given.stops)
+                assert not monitor.violated(trace, ended=ended), (seed, number)
+    return counts
+
+
+def test_verdicts_agree_with_runs() -> None:
+    counts = compare(range(250), runs=15)
+    assert min(counts["holds"], counts["fails"], counts["vacuous"]) > 20
+
+
+@pytest.mark.slow
+def test_more_verdicts_agree_with_runs() -> None:
+    compare(range(1000, 4000), runs=40)
+
+
+@settings(max_examples=100)
+@given(machine=machines(), seed=st.integers(0, 1000))
+def test_any_graph_is_judged(machine: Machine, seed: int) -> None:
+    """Also a graph with dangling targets, names that clash and containers without states."""
+    properties = [random_property(random.Random(seed), machine) for _ in range(3)]
+    context = Context(replace(machine, properties=tuple(properties)))
+    assert len(context.judgements) in (0, 3)

@@ -1,0 +1,296 @@
+# Made by smachac 0.1.0 from main.yml (sha256 81866c077464b068).
+"""Pick a part, carry it away, and never keep it."""
+
+import threading
+import traceback
+
+try:
+    import smach
+except ImportError:  # no ROS on this machine: the same names without it
+    from smachac.runtime import smach
+
+
+def withdraw(state):
+    """Take back the unanswered stop requests of a state and of the states inside."""
+    if state.preempt_requested():
+        state.recall_preempt()
+        for child in getattr(state, "get_children", dict)().values():
+            withdraw(child)
+
+
+def stoppable(container):
+    """Let a container pass on every stop request, also an early one and a second one."""
+    if not getattr(smach, "compat", True):  # the bundled runtime does so itself
+        return container
+    run, request = container.execute, container.request_preempt
+    children = container.get_children
+    concurrent = isinstance(container, smach.Concurrence)
+    container.busy = container.asked = False
+
+    def pass_on():
+        for label in container.get_active_states() or list(children()):
+            child = children().get(label)
+            again = hasattr(child, "get_children")
+            if child and (again or not child.preempt_requested()):
+                child.request_preempt()
+
+    def request_preempt():
+        if not container.busy:
+            return request()
+        container.asked = True
+        if not concurrent:
+            smach.State.request_preempt(container)
+        pass_on()
+
+    def execute(*userdata):
+        container.busy, container.asked = True, container.preempt_requested()
+        if container.asked:
+            pass_on()
+        if concurrent:  # with its own request, SMACH for ROS 1 ends as preempted
+            container.service_preempt()
+        unanswered = True
+        try:
+            outcome = run(*userdata)
+            unanswered = any(child.preempt_requested() for child in children().values())
+            return outcome
+        finally:
+            container.busy = False
+            for child in children().values():
+                withdraw(child)
+            if concurrent and container.asked and unanswered:
+                request()
+
+    if concurrent and container._child_termination_cb:
+        ends = container._child_termination_cb
+
+        def ends_others(outcomes):
+            return not container.asked and ends(outcomes)
+
+        container._child_termination_cb = ends_others
+    container.execute, container.request_preempt = execute, request_preempt
+    return container
+
+
+def stoppable_again(machine):
+    """Let a machine pass on a second stop request while the same container in it runs."""
+    request, children = machine.request_preempt, machine.get_children
+
+    def request_preempt():
+        again = machine.preempt_requested() and getattr(smach, "compat", True)
+        request()
+        for label in machine.get_active_states() if again else ():
+            if hasattr(children().get(label), "get_children"):
+                children()[label].request_preempt()
+
+    machine.request_preempt = request_preempt
+    return machine
+
+
+def ends_preempted(container):
+    """Let a time limit or loop end as preempted after a request to stop."""
+    run, request = container.execute, container.request_preempt
+    recall = container.recall_preempt
+
+    def request_preempt():
+        container.stopped = True
+        request()
+
+    def recall_preempt():
+        container.stopped = False
+        recall()
+
+    def execute(*userdata):
+        container.stopped = container.stopped or container.preempt_requested()
+        try:
+            outcome = run(*userdata)
+            if container.stopped:
+                container.service_preempt()
+                outcome = "preempted"
+            return outcome
+        finally:
+            container.stopped = False
+
+    container.execute, container.stopped = execute, False
+    container.request_preempt = request_preempt
+    container.recall_preempt = recall_preempt
+    return container
+
+
+def error_as_outcome(state, outcome):
+    """Let a state end with an outcome where it would raise an exception, which is logged."""
+
+    def attempt(*userdata):
+        try:
+            return state.attempted(*userdata)
+        except Exception as error:
+            smach.logerr(traceback.format_exc(chain=False))
+            state.caught = error
+            return outcome
+
+    state.attempted, state.execute = state.execute, attempt
+    state.caught = None
+    state.register_outcomes([outcome])
+    return state
+
+
+class ScriptedState(smach.State):
+    """Ends as it is told: visit n does step n, the last step is repeated.
+
+    Asked to stop, it ends as `preempted` where it has that outcome.
+    """
+
+    def __init__(self, outcomes, steps=(), input_keys=(), output_keys=()):
+        super().__init__(
+            outcomes=outcomes,
+            input_keys=list(input_keys),
+            output_keys=list(output_keys),
+        )
+        self.steps = list(steps) or [{"outcome": outcomes[0]}]
+        self.visits = 0
+
+    def execute(self, userdata):
+        step = self.steps[min(self.visits, len(self.steps) - 1)]
+        self.visits += 1
+        if self.preempt_requested() and "preempted" in self.get_registered_outcomes():
+            self.service_preempt()
+            return "preempted"
+        for key, value in step.get("set", {}).items():
+            userdata[key] = value
+        return step["outcome"]
+
+
+class SleepState(smach.State):
+    """Waits for `time` seconds, a number or a function of userdata; a preempt request ends it."""
+
+    def __init__(self, time, input_keys=(), outcomes=("succeeded", "preempted")):
+        super().__init__(
+            outcomes=list(outcomes),
+            input_keys=list(input_keys),
+        )
+        self.time = time
+        self.woken = threading.Event()
+
+    def request_preempt(self):
+        super().request_preempt()
+        self.woken.set()
+
+    def execute(self, userdata):
+        self.woken.wait(self.time(userdata) if callable(self.time) else self.time)
+        self.woken.clear()
+        if self.preempt_requested() and "preempted" in self.get_registered_outcomes():
+            self.service_preempt()
+            return "preempted"
+        return "succeeded"
+
+
+def build():
+    """Build the state machine `properties`."""
+    # main.yml:2
+    properties = stoppable_again(smach.StateMachine(outcomes=["succeeded", "aborted"]))
+    with properties:
+        # main.yml:16
+        sm_pick = stoppable_again(
+            smach.StateMachine(outcomes=["succeeded", "aborted", "error"]),
+        )
+        with sm_pick:
+            # main.yml:20
+            sm_close = stoppable(
+                smach.Iterator(
+                    outcomes=["succeeded", "preempted", "exhausted"],
+                    it=[1, 2, 3],
+                    it_label="attempt",
+                    exhausted_outcome="exhausted",
+                    input_keys=[],
+                    output_keys=[],
+                ),
+            )
+            with sm_close:
+                # main.yml:20
+                smach.Iterator.set_contained_state(
+                    "CLOSE",
+                    ScriptedState(outcomes=["succeeded", "aborted", "preempted"]),
+                    loop_outcomes=["aborted"],
+                    final_outcome_map={"aborted": "preempted"},
+                )
+
+            smach.StateMachine.add(
+                "CLOSE",
+                ends_preempted(sm_close),
+                transitions={
+                    "exhausted": "aborted",
+                    "preempted": "aborted",
+                    "succeeded": "succeeded",
+                },
+            )
+
+        smach.StateMachine.add(
+            "PICK",
+            error_as_outcome(sm_pick, "error"),
+            transitions={"succeeded": "CARRY", "aborted": "LET_GO", "error": "LET_GO"},
+        )
+
+        # main.yml:27
+        sm_carry = stoppable(
+            smach.Concurrence(
+                outcomes=["succeeded", "preempted", "timeout", "error"],
+                default_outcome="timeout",
+                outcome_map={
+                    "succeeded": {"CARRY": "succeeded", "TIMER": "preempted"},
+                    "preempted": {"CARRY": "preempted", "TIMER": "preempted"},
+                },
+                child_termination_cb=lambda outcomes: True,
+            ),
+        )
+        with sm_carry:
+            # main.yml:27
+            smach.Concurrence.add(
+                "CARRY",
+                ScriptedState(outcomes=["succeeded", "preempted"]),
+            )
+
+            # main.yml:27
+            smach.Concurrence.add("TIMER", SleepState(time=5.0))
+
+        smach.StateMachine.add(
+            "CARRY",
+            error_as_outcome(ends_preempted(sm_carry), "error"),
+            transitions={
+                "succeeded": "PLACE",
+                "timeout": "LET_GO",
+                "preempted": "LET_GO",
+                "error": "LET_GO",
+            },
+        )
+
+        # main.yml:33
+        smach.StateMachine.add(
+            "PLACE",
+            error_as_outcome(ScriptedState(outcomes=["succeeded"]), "error"),
+            transitions={"succeeded": "REST", "error": "LET_GO"},
+        )
+
+        # main.yml:38
+        smach.StateMachine.add(
+            "LET_GO",
+            ScriptedState(outcomes=["succeeded"]),
+            transitions={"succeeded": "aborted"},
+        )
+
+        # main.yml:43
+        smach.StateMachine.add(
+            "REST",
+            error_as_outcome(ScriptedState(outcomes=["succeeded"]), "error"),
+            transitions={"error": "LET_GO", "succeeded": "succeeded"},
+        )
+    return properties
+
+
+def main():
+    """Run the state machine once and return its outcome."""
+    return build().execute()
+
+
+if __name__ == "__main__":
+    outcome = main()
+    print(f"outcome: {outcome}")
+    raise SystemExit(outcome is None)

@@ -1,0 +1,155 @@
+"""Rules over properties: paths that count, what is reported, and how it is replayed."""
+
+from __future__ import annotations
+
+import json
+import re
+from pathlib import Path
+
+import pytest
+
+import smachac
+from smachac.commands.cli import main
+
+STATES = """\
+  - PICK:
+      template: ScriptedState
+      outcomes: [done, lost, preempted]
+      transitions: {done: CARRY, lost: aborted, preempted: aborted}
+  - CARRY:
+      template: ScriptedState
+      outcomes: [done]
+      transitions: {done: PLACE}
+  - PLACE: {template: ScriptedState, outcomes: [done], transitions: {done: succeeded}}
+  - LET_GO: {template: ScriptedState, outcomes: [done], transitions: {done: aborted}}
+"""
+
+
+def findings(folder: Path, properties: str, states: str = STATES, head: str = "") -> list[str]:
+    """Code, message and path of each finding about properties."""
+    text = f"name: sm\ntemplate: Base\noutcomes: [succeeded, aborted]\n{head}"
+    script = folder / "main.yml"
+    script.write_text(f"{text}properties:\n{properties}states:\n{states}", "utf-8")
+    return [
+        f"{item.code} {item.message.partition('hold: ')[2]} | {' '.join(item.finding.path_labels)}"
+        for item in smachac.check(script)
+        if item.code.startswith("SM7")
+    ]
+
+
+def test_stops_are_paths_unless_they_are_left_out(tmp_path: Path) -> None:
+    states = STATES.replace("lost: aborted", "lost: LET_GO")
+    given = "  - after: {PICK: [PLACE, LET_GO]}\n"
+    assert findings(tmp_path, given, states) == [
+        "SM701 the run ends without `PLACE` or `LET_GO` after `PICK`"
+        " | PICK (stop request, preempted) aborted"
+    ]
+    assert findings(tmp_path, f"{given}    stops: false\n", states) == []
+
+
+def test_exceptions_are_paths_where_they_are_caught(tmp_path: Path) -> None:
+    states = STATES.replace("aborted, preempted: aborted", "LET_GO, preempted: LET_GO")
+    given = "  - after: {PICK: [PLACE, LET_GO]}\n"
+    assert findings(tmp_path, given, states) == []
+    (crash,) = findings(tmp_path, f"{given}    exceptions: all\n", states)
+    assert crash.endswith("| PICK (exception) the run ends")
+    caught = states.replace("{done: PLACE}", "{done: PLACE, error: aborted}")
+    (found,) = findings(tmp_path, given, caught)
+    assert found.endswith("| PICK (done) CARRY (exception) aborted")
+    assert findings(tmp_path, f"{given}    exceptions: none\n", caught) == []
+    assert findings(tmp_path, given, states, head="on_error: LET_GO\n") == []
+
+
+def test_time_limits_are_paths(tmp_path: Path) -> None:
+    states = STATES.replace("aborted, preempted: aborted", "LET_GO, preempted: LET_GO")
+    limited = states.replace("{done: PLACE}", "{done: PLACE, timeout: aborted, preempted: LET_GO}")
+    limited = limited.replace("outcomes: [done]\n", "outcomes: [done]\n      timeout: 2s\n", 1)
+    (found,) = findings(tmp_path, "  - after: {PICK: [PLACE, LET_GO]}\n", limited)
+    assert "TIMER (succeeded)" in found
+    assert found.endswith("aborted")
+
+
+def test_a_state_that_cannot_be_reached_is_one_fault(tmp_path: Path) -> None:
+    assert findings(tmp_path, "  - after: {LET_GO: PLACE}\n") == []
+    assert len(findings(tmp_path, "  - after: {'PICK:preempted': PLACE}\n    stops: false\n")) == 1
+
+
+def test_each_property_is_reported(tmp_path: Path) -> None:
+    """Two properties at one place differ in their arguments."""
+    found = findings(tmp_path, "  - before: {CARRY: LET_GO, PLACE: LET_GO}\n")
+    assert [each.partition(" |")[0] for each in found] == [
+        "SM701 `CARRY` is entered before `LET_GO`",
+        "SM701 `PLACE` is entered before `LET_GO`",
+    ]
+
+
+BRANCHES = """\
+  - BOTH:
+      template: Concurrence
+      outcomes: [done]
+      default_outcome: done
+      states:
+        - LEFT: {template: ScriptedState, outcomes: [done]}
+        - RIGHT: {template: ScriptedState, outcomes: [done]}
+      transitions: {done: succeeded}
+"""
+
+
+@pytest.mark.parametrize(("first", "second"), [("LEFT", "RIGHT"), ("RIGHT", "LEFT")])
+def test_the_help_of_a_finding_replays_it(
+    first: str, second: str, tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    """The branches end in the order that violates the property."""
+    given = f"  - before: {{'{second}:done': '{first}:done'}}\n"
+    assert len(findings(tmp_path, given, BRANCHES)) == 1
+    script = tmp_path / "main.yml"
+    (item,) = [each for each in smachac.check(script) if each.code == "SM701"]
+    command = re.search(r"--schedule (\S+)`, with (\{.*\}) in FILE", item.help or "")
+    assert command is not None
+    scenario = tmp_path / "fails.yml"
+    scenario.write_text(command[2], "utf-8")
+    trace = tmp_path / "trace.jsonl"
+    options = ["--mock", str(scenario), "--schedule", command[1], "--trace", str(trace)]
+    assert main(["run", str(script), *options]) == 0
+    events = [json.loads(line) for line in trace.read_text("utf-8").splitlines()]
+    ends = [each["path"] for each in events if each["event"] == "exit"]
+    assert ends[:2] == [f"sm/BOTH/{second}", f"sm/BOTH/{first}"]
+    capsys.readouterr()
+    assert main(["explain", str(script), "--properties", "--scenario", "1"]) == 0
+    printed = capsys.readouterr().out
+    assert f"--schedule {command[1]}" in printed.splitlines()[0]
+    scenario.write_text(printed, "utf-8")
+    assert main(["run", str(script), *options]) == 0
+
+
+def test_other_errors_forbid_a_replay(tmp_path: Path) -> None:
+    scenario = tmp_path / "fails.yml"
+    scenario.write_text("states: {}\n", "utf-8")
+    findings(tmp_path, "  - before: {PLACE: LET_GO}\n", STATES.replace("CARRY,", "CARY,"))
+    assert main(["run", str(tmp_path / "main.yml"), "--mock", str(scenario)]) == 1
+
+
+def test_a_counterexample_is_a_code_flow(
+    tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    findings(tmp_path, "  - before: {PLACE: LET_GO}\n")
+    main(["check", str(tmp_path / "main.yml"), "--format", "sarif"])
+    (run,) = json.loads(capsys.readouterr().out)["runs"]
+    (result,) = [each for each in run["results"] if each["ruleId"] == "SM701"]
+    (flow,) = result["codeFlows"][0]["threadFlows"]
+    texts = [each["location"]["message"]["text"] for each in flow["locations"]]
+    assert texts == ["PICK -(done)->", "CARRY -(done)->", "PLACE"]
+
+
+def test_explain_lists_the_properties(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    findings(tmp_path, "  - {name: a, before: {PLACE: CARRY}}\n  - at_most: {PICK: 1}\n")
+    script = str(tmp_path / "main.yml")
+    assert main(["explain", script, "--properties", "--format", "json"]) == 0
+    data = json.loads(capsys.readouterr().out)["properties"]
+    assert [(each["name"], each["verdict"]) for each in data] == [
+        ("a", "holds"),
+        ("`PICK` at most 1 time", "holds"),
+    ]
+    assert main(["explain", script, "--properties", "--scenario", "a"]) == 2
+    assert "all properties hold" in capsys.readouterr().err
+    assert main(["explain", script, "PICK", "--scenario", "a"]) == 2
