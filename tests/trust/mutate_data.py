@@ -313,7 +313,8 @@ def break_an_expression(subject: Subject) -> Mutant | None:
         return None
     site, key = subject.draw.choice(found)
     code = str(site.body["callbacks"][key])
-    broken = subject.draw.choice([f"{code} +", f"{code})", code.replace(":", "", 1)])
+    ends = [] if "#" in code else [f"{code} +", f"{code})"]  # behind a comment nothing breaks
+    broken = subject.draw.choice([*ends, code.replace(":", "", 1)])
     site.body["callbacks"][key] = Quoted(broken)
     return Mutant(codes=("SM016",), places=((site.file, (*site.path, "callbacks", key)),))
 
