@@ -71,7 +71,16 @@ def test_a_header_that_nobody_edited_agrees(
 
 @HERE
 @pytest.mark.parametrize(
-    "edit", [astray, mistaken, without_stop, forgetful, swapped_outcomes, deaf, crashing]
+    "edit",
+    [
+        astray,
+        forgetful,
+        without_stop,
+        *(
+            pytest.param(each, marks=pytest.mark.slow)
+            for each in (mistaken, swapped_outcomes, deaf, crashing)
+        ),
+    ],
 )
 def test_a_fault_made_by_hand_is_found(
     edit: Edit, tmp_path: Path, capsys: pytest.CaptureFixture[str]

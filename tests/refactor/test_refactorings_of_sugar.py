@@ -69,9 +69,12 @@ def _states(draw: random.Random, names: list[str], last: str, pad: str, depth: i
     return rows
 
 
-@settings(max_examples=40, deadline=None)
-@given(st.integers(0, 10**9))
-def test_sugar_survives_refactoring(seed: int) -> None:
+@pytest.mark.parametrize("scripts", [10, pytest.param(100, marks=pytest.mark.slow)])
+def test_sugar_survives_refactoring(scripts: int) -> None:
+    settings(max_examples=scripts, deadline=None)(given(st.integers(0, 10**9))(survives))()
+
+
+def survives(seed: int) -> None:
     """Contained states run as before; a container that is extracted can be inlined again; a state
     that is renamed twice has its old name."""
     draw = random.Random(seed)

@@ -204,7 +204,7 @@ def one_of_eight(ends: str) -> None:
 
 MANY = {"all": 1000, "any": 300, "raises": 300, "preempted": 300}
 ROUNDS = [
-    *((ends, 60) for ends in MANY),
+    *((ends, 20) for ends in MANY),
     *(pytest.param(*row, marks=pytest.mark.slow) for row in MANY.items()),
 ]
 

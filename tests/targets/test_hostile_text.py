@@ -41,7 +41,11 @@ VALUES = {
     "command": "open",
 }
 
-TYPES = sorted(path.stem for path in Path(smachac.stdlib.__path__[0]).glob("*.yml"))
+QUICK = {"Base", "CallbacksState", "GripperState", "SleepState", "WriteCSVFileState"}
+TYPES = [
+    pytest.param(name, marks=() if name in QUICK else pytest.mark.slow)
+    for name in sorted(path.stem for path in Path(smachac.stdlib.__path__[0]).glob("*.yml"))
+]
 
 FRONTEND = re.compile(r"SM0\d\d")
 """Codes of findings that refuse a script before anything is printed."""
