@@ -71,37 +71,41 @@ def _states(draw: random.Random, names: list[str], last: str, pad: str, depth: i
 
 @pytest.mark.parametrize("scripts", [10, pytest.param(100, marks=pytest.mark.slow)])
 def test_sugar_survives_refactoring(scripts: int) -> None:
-    settings(max_examples=scripts, deadline=None)(given(st.integers(0, 10**9))(survives))()
-
-
-def survives(seed: int) -> None:
     """Contained states run as before; a container that is extracted can be inlined again; a state
     that is renamed twice has its old name."""
-    draw = random.Random(seed)
-    with tempfile.TemporaryDirectory() as folder, inside(folder):
-        Path("main.yml").write_text(written(draw), "utf-8")
-        before, text = machine(), machine_text()
-        found = [each for each in walk_script(before.root) if not each.added][1:]
-        outer = [each for each in found if not isinstance(each.node, Leaf) and not each.node.sugar]
-        for each in outer[:1]:
-            assert command("extract", "main.yml", each.plain, "--to", "sub.yml") == 0
+
+    @settings(max_examples=scripts, deadline=None)
+    @given(st.integers(0, 10**9))
+    def survives(seed: int) -> None:
+        draw = random.Random(seed)
+        with tempfile.TemporaryDirectory() as folder, inside(folder):
+            Path("main.yml").write_text(written(draw), "utf-8")
+            before, text = machine(), machine_text()
+            found = [each for each in walk_script(before.root) if not each.added][1:]
+            outer = [
+                each for each in found if not isinstance(each.node, Leaf) and not each.node.sugar
+            ]
+            for each in outer[:1]:
+                assert command("extract", "main.yml", each.plain, "--to", "sub.yml") == 0
+                assert machine_text() == text
+                assert command("inline", "main.yml", each.plain) == 0
+                Path("sub.yml").unlink()
+                assert machine_text() == text
+            old = draw.choice(found)
+            around, _, name = old.plain.rpartition("/")
+            assert command("rename", "main.yml", old.plain, "NEW_NAME", "--kind", "state") == 0
+            new = f"{around}/NEW_NAME"
+            assert command("rename", "main.yml", new, name, "--kind", "state") == 0
             assert machine_text() == text
-            assert command("inline", "main.yml", each.plain) == 0
-            Path("sub.yml").unlink()
-            assert machine_text() == text
-        old = draw.choice(found)
-        around, _, name = old.plain.rpartition("/")
-        assert command("rename", "main.yml", old.plain, "NEW_NAME", "--kind", "state") == 0
-        new = f"{around}/NEW_NAME"
-        assert command("rename", "main.yml", new, name, "--kind", "state") == 0
-        assert machine_text() == text
-        first = draw.randrange(3)
-        names = ["A", "B", "C"][first : first + draw.randint(1, 3)]
-        code = command("contain", "main.yml", "NEW", "StateMachine", *names)
-        after = machine()
-    assert (code == 0) == ("NEW" in {each.node.name for each in walk_script(after.root)})
-    for number in range(10 if code == 0 else 0):
-        assert transcript(after, number) == transcript(before, number)
+            first = draw.randrange(3)
+            names = ["A", "B", "C"][first : first + draw.randint(1, 3)]
+            code = command("contain", "main.yml", "NEW", "StateMachine", *names)
+            after = machine()
+        assert (code == 0) == ("NEW" in {each.node.name for each in walk_script(after.root)})
+        for number in range(10 if code == 0 else 0):
+            assert transcript(after, number) == transcript(before, number)
+
+    survives()
 
 
 def test_most_states_with_sugar_can_be_contained() -> None:
