@@ -29,7 +29,7 @@ from smachac.targets.cpp.user_classes import (
 )
 from smachac.targets.errors import no_code_for_target
 
-STRICT = """// A class with more outcomes than its interface is an error, whatever the warnings are.
+STRICT = """// A class with more outcomes than its interface is an error at every warning level.
 #if defined(__GNUC__)
 #pragma GCC diagnostic push
 #pragma GCC diagnostic error "-Wswitch"
@@ -305,7 +305,7 @@ def _root(machine: Machine) -> Lines:
     root = machine.root
     here = f"{{{cpp_literal(root.name)}, {cpp_literal(place(root))}}}"
     return [
-        "/// Run the machine once. An observer hears of all that it does; there may be none.",
+        "/// Runs the machine once. The observer receives all events of the run; it may be null.",
         "inline Outcome run(States &states, Userdata &ud, smachac::Observer *observer,",
         "                   smachac::Stop &stop) {",
         "  if (observer == nullptr) {",

@@ -1,7 +1,8 @@
-// Made by smachac, as it is for every machine: do not edit.
+// Made by smachac. The file is the same for every machine. Do not edit.
 //
-// The state types of an arm (MoveAlongState, GripperState, ...) in C++, over a robot that is yours:
-// derive from `smachac::Arm` and `smachac::World`, and give both to the States of the machine.
+// The state types of an arm (MoveAlongState, GripperState, ...) in C++, over your own robot: derive
+// from `smachac::Arm` and `smachac::World`, and pass an object of each to the States of the
+// machine.
 //
 // Lengths are in metres, angles in radians, poses in the frame of the robot's base.
 #ifndef SMACHAC_ARM_HPP
@@ -21,14 +22,17 @@
 namespace smachac {
 inline namespace v0_1_0 {
 
-/// The name of an arm; none where the robot has one only.
+/// The name of an arm; empty if the robot has only one arm.
 using Limb = std::optional<std::string>;
 
-/// How a motion ended: at its goal, elsewhere, or because somebody asked to stop.
+/// The result of a motion: the goal was reached, it was not reached, or a preempt request ended the
+/// motion.
 enum class Motion : std::uint8_t { succeeded, aborted, preempted };
 
-/// What the states ask of a robot. A motion blocks until it is over; while it goes on it looks at
-/// `stop.requested()` and, when that is true, holds the arm where it is and ends as preempted.
+/// The interface of a robot: its actions, called by the states. The functions with a Stop block
+/// until the motion is over. During a motion they must check `stop.requested()` repeatedly; if it
+/// is true, they stop the arm where it is and return Motion::preempted. The state then serves the
+/// request.
 class Arm {
 public:
   Arm() = default;
@@ -36,32 +40,36 @@ public:
   Arm &operator=(const Arm &) = delete;
   virtual ~Arm() = default;
 
-  /// The pose of the tool that holds a body from above, where the body has a pose.
+  /// The pose of the tool for a grasp of a body from above. `body` is the pose of the body.
   virtual Pose grasp_pose(const Limb &limb, const Pose &body) = 0;
-  /// Joint positions that bring the tool to a pose; none where it is out of reach.
+  /// The joint positions for a pose of the tool; empty if the pose is out of reach.
   virtual std::optional<std::vector<double>> solve_ik(const Limb &limb, const Pose &tool) = 0;
-  /// Move along a straight line in joint space; `speed` is that of the fastest joint (rad/s).
+  /// Moves the arm to joint positions along a straight line in joint space. `speed` is the speed of
+  /// the fastest joint in rad/s.
   virtual Motion move_to_joints(const Limb &limb, const std::vector<double> &positions,
                                 double speed, Stop &stop) = 0;
-  /// Move the tool along a straight line to a pose.
+  /// Moves the tool to a pose along a straight line. `speed` is the speed of the fastest joint in
+  /// rad/s.
   virtual Motion move_along(const Limb &limb, const Pose &tool, double speed, Stop &stop) = 0;
-  /// Open or close the gripper; to close on nothing is to abort.
+  /// Opens or closes the gripper. Returns Motion::aborted if the gripper does not open, or closes
+  /// without a body between its fingers.
   virtual Motion grip(const Limb &limb, bool open, Stop &stop) = 0;
-  /// How far the gripper stands open.
+  /// The distance between the fingers of the gripper in metres.
   virtual double width(const Limb &limb) = 0;
-  /// Whether the gripper holds a body, or any where none is named.
+  /// Whether the gripper holds the named body; without a name, whether it holds any body.
   virtual bool holds(const Limb &limb, const std::optional<std::string> &body) = 0;
 };
 
-/// A model to be put into a world: a built-in one by its name, or one of a file.
+/// A model to load into a world: the name of a built-in model, or a model from a file.
 struct Model {
   std::string name;
   std::optional<std::string> path;
-  std::string body;  ///< the name it gets in the world
-  std::string frame; ///< `base`, `world`, or a body
+  std::string body;  ///< the name of the loaded body in the world
+  std::string frame; ///< `base`, `world` or the name of a body
 };
 
-/// What the states ask of the world around the robot, simulated or seen by a camera.
+/// The interface of the world around the robot, called by the states: a simulator, or the
+/// measurements of a camera.
 class World {
 public:
   World() = default;
@@ -69,18 +77,21 @@ public:
   World &operator=(const World &) = delete;
   virtual ~World() = default;
 
-  /// A pose displaced at random by at most `spread` (x, y, yaw), `apart` from these bodies.
+  /// A random pose near `pose`: displaced by at most `spread` (x and y in metres, yaw in radians).
+  /// `apart` maps names of bodies to their least distance from the result in metres.
   virtual Pose scattered(const Pose &pose, const std::array<double, 3> &spread,
                          const std::map<std::string, double> &apart) = 0;
-  /// Put a model there; false where there is no such model or frame, or the name is taken.
+  /// Loads a model at a pose. Returns false if the model or its frame does not exist, or the name
+  /// of the body is in use.
   virtual bool load(const Model &model, const Pose &pose) = 0;
-  /// The distance of a body from a pose; none where there is no such body.
+  /// The distance between a body and a pose in metres; empty if the body does not exist.
   virtual std::optional<double> distance(const std::string &body, const Pose &pose) = 0;
-  /// Whether a body stands upright and does not move.
+  /// Whether a body is upright and does not move.
   virtual bool at_rest(const std::string &body) = 0;
 };
 
-/// A pose moved and turned by an offset, both along the axes of the base.
+/// A pose after a translation and a rotation by an offset, both along the axes of the robot's base.
+/// Without an offset, the pose unchanged.
 inline Pose shifted(const Pose &pose, const std::optional<Pose> &offset) {
   if (!offset.has_value()) {
     return pose;
@@ -98,7 +109,8 @@ inline Pose shifted(const Pose &pose, const std::optional<Pose> &offset) {
 
 namespace detail {
 
-/// The outcome of a state whose motion ended so; a request to stop is answered.
+/// The outcome of a state for the result of its motion. After Motion::preempted the call serves the
+/// preempt request.
 template <class Outcome> Outcome outcome_of(Motion motion, Stop &stop) {
   switch (motion) {
   case Motion::succeeded:
@@ -114,7 +126,7 @@ template <class Outcome> Outcome outcome_of(Motion motion, Stop &stop) {
 
 } // namespace detail
 
-/// Moves one arm to a joint configuration along a straight line in joint space.
+/// State type: moves an arm to joint positions along a straight line in joint space.
 class MoveToJointPositionsState {
 public:
   enum class Outcome { succeeded, aborted, preempted };
@@ -137,7 +149,7 @@ private:
   double speed_;
 };
 
-/// Moves the tool along a straight line to a pose.
+/// State type: moves the tool to a pose along a straight line.
 class MoveAlongState {
 public:
   enum class Outcome { succeeded, aborted, preempted };
@@ -163,7 +175,7 @@ private:
   double speed_;
 };
 
-/// Opens or closes a gripper.
+/// State type: opens or closes a gripper.
 class GripperState {
 public:
   enum class Outcome { succeeded, aborted, preempted };
@@ -187,7 +199,7 @@ private:
   bool open_;
 };
 
-/// Solves inverse kinematics: joint positions that bring the tool to a pose.
+/// State type: solves inverse kinematics, from a pose of the tool to joint positions.
 class PoseToJointPositionsState {
 public:
   enum class Outcome { succeeded, aborted };
@@ -219,7 +231,7 @@ private:
   bool grasp_;
 };
 
-/// Looks whether the gripper holds something.
+/// State type: checks whether the gripper holds a body.
 class CheckGraspState {
 public:
   enum class Outcome { succeeded, aborted };
@@ -236,7 +248,7 @@ private:
   std::optional<std::string> body_;
 };
 
-/// Looks whether a body lies at rest where it was to be placed.
+/// State type: checks whether a body is at rest at its goal pose, within a tolerance.
 class CheckPlacedState {
 public:
   enum class Outcome { succeeded, aborted };
@@ -266,7 +278,7 @@ private:
   double tolerance_;
 };
 
-/// Puts a model into the world.
+/// State type: loads a model into the world.
 class LoadModelState {
 public:
   enum class Outcome { succeeded, aborted };

@@ -1,6 +1,7 @@
-// Made by smachac, as it is for every machine: do not edit.
+// Made by smachac. The file is the same for every machine. Do not edit.
 //
-// A program around a machine: `--trace FILE`, Ctrl-C, and its outcome at the end. For POSIX.
+// The program around a machine: reads the option `--trace FILE`, makes Ctrl-C a preempt request,
+// prints the outcome at the end. For POSIX.
 #ifndef SMACHAC_PROGRAM_HPP
 #define SMACHAC_PROGRAM_HPP
 
@@ -19,8 +20,10 @@ inline namespace v0_1_0 {
 
 namespace detail {
 
-/// While it lives, the first SIGINT or SIGTERM asks a machine to stop, the second ends the program.
-/// The threads that start meanwhile leave the signals to it.
+/// The signal handling of a program, during the lifetime of the object: the first SIGINT or SIGTERM
+/// sends a preempt request, the second one ends the program with the exit code 128 + signal number.
+/// A thread of the object receives the signals. They are blocked in the thread that creates the
+/// object and in the threads that it starts later.
 class Listener {
 public:
   explicit Listener(Stop &stop) {
@@ -61,10 +64,10 @@ private:
 
 } // namespace detail
 
-/// Reads the arguments of a program and runs its machine.
+/// The command line of a program and the run of its machine.
 class Program {
 public:
-  /// Ends the program with 2 where the arguments make no sense.
+  /// Reads the arguments. Prints the usage and exits with the code 2 if they are invalid.
   Program(int count, char **arguments) {
     for (int i = 1; i < count; ++i) {
       if (std::strcmp(arguments[i], "--trace") != 0 || i + 1 == count) {
@@ -75,8 +78,9 @@ public:
     }
   }
 
-  /// Runs a machine, called with an Observer * and a Stop &, prints the name of the outcome that it
-  /// returns, and is what `main` returns: 0, or 1 where a state threw or the trace was not written.
+  /// Runs a machine and prints the name of its outcome. `machine` takes an Observer * and a Stop &
+  /// and returns this name. Returns the exit code for `main`: 0, or 1 if the machine threw an
+  /// exception or the trace file could not be opened or completely written.
   template <class Machine> int run(Machine machine) {
     std::FILE *file = nullptr;
     if (trace_ != nullptr) {

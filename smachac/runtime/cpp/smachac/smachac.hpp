@@ -1,11 +1,11 @@
-// Made by smachac, as it is for every machine: do not edit.
+// Made by smachac. The file is the same for every machine. Do not edit.
 //
-// What generated state machines stand on. C++17, header only, no dependency.
+// The runtime of generated state machines. C++17, header only, without dependencies.
 //
-// Userdata keys (Key), requests to stop (Stop), who hears what a run does (Observer, TraceWriter),
-// the threads of a concurrence (Branches). A machine runs with a Run, or with a WatchedRun where
-// somebody listens; the hooks of a Run are empty, so they cost nothing. Builds with -fno-exceptions
-// and -fno-rtti: then a failure ends the program.
+// Contents: userdata keys (Key), preempt requests (Stop), observers (Observer, TraceWriter), the
+// branches of a concurrence (Branches). A machine runs with a context: a Run without observer, a
+// WatchedRun with an observer. The hooks of a Run send no events. The header compiles with
+// -fno-exceptions and -fno-rtti; an error then ends the program with a message.
 #ifndef SMACHAC_SMACHAC_HPP
 #define SMACHAC_SMACHAC_HPP
 
@@ -41,7 +41,7 @@
 #define SMACHAC_CATCH if constexpr (false)
 #endif
 
-// Whether the standard library has threads: that of GCC has none over a bare Newlib.
+// Whether the standard library has threads. That of GCC over a bare Newlib has none.
 #if defined(__GLIBCXX__) && !defined(_GLIBCXX_HAS_GTHREADS)
 #define SMACHAC_THREADS 0
 #else
@@ -51,7 +51,8 @@
 namespace smachac {
 inline namespace v0_1_0 {
 
-/// Whether the compiler has exceptions; machines whose states catch exceptions need them.
+/// Whether exceptions are enabled. A machine whose script catches exceptions does not compile
+/// without them.
 #if defined(__cpp_exceptions)
 inline constexpr bool has_exceptions = true;
 #else
@@ -63,14 +64,16 @@ using Mutex = std::mutex;
 using RecursiveMutex = std::recursive_mutex;
 using Condition = std::condition_variable;
 #else
-/// A lock in a program that has one thread.
+/// A mutex for a program with one thread: its functions do nothing.
 struct Mutex {
   void lock() {}
   void unlock() {}
 };
 using RecursiveMutex = Mutex;
 
-/// A condition in a program that has one thread: nobody can change it while this thread waits.
+/// A condition variable for a program with one thread: no other thread can notify during a wait.
+/// `wait` returns at once. `wait_for` evaluates `test` in a loop until it is true or the time is
+/// over.
 struct Condition {
   void notify_all() {}
   template <class Test> void wait(std::unique_lock<Mutex> &, Test) {}
@@ -84,12 +87,12 @@ struct Condition {
 };
 #endif
 
-/// Fails because a key was read that holds nothing.
+/// Throws the Error for a read of an unset key.
 [[noreturn, gnu::cold, gnu::noinline]] inline void unset_key() {
   fail("reads a key that holds nothing");
 }
 
-/// A userdata key: a value, once somebody has put one there. A read of an unset key is an Error.
+/// A userdata key: a value that is set or unset. A read of an unset key throws an Error.
 template <class T> class Key {
 public:
   Key() = default;
@@ -107,36 +110,38 @@ public:
     }
     return value_;
   }
-  /// The value of a key that surely holds one, without a check.
+  /// The value without a check, for a key that is certainly set. In an unset key it is the default
+  /// value of T.
   [[nodiscard]] const T &unchecked() const { return value_; }
-  /// The value, to be changed in place; the key counts as written. A key that holds nothing starts
-  /// with the default value of its type.
+  /// A reference to the value for a change in place. The key then counts as written by a state. An
+  /// unset key starts with the default value of T.
   [[nodiscard]] T &edit() {
     state_ = written;
     return value_;
   }
   [[nodiscard]] bool set() const { return state_ != unset; }
 
-  /// What containers do at their borders: no state has written it, so no trace tells of it.
+  /// Sets the value at the border of a container. This is not a write of a state: it causes no
+  /// trace event. Throws an Error if the value cannot be converted to T.
   template <class U> void hold(const U &value) {
     replace(value);
     state_ = held;
   }
-  /// The same, where it holds a value already.
+  /// As `hold`, for a key that is already set.
   template <class U> void replace(const U &value) {
     if constexpr (std::is_same_v<T, U>) {
-      value_ = value; // keeps the memory that the value has
+      value_ = value; // reuses the memory of the value
     } else {
       value_ = convert<T>(value);
     }
   }
-  /// Hold what another key holds, if it does.
+  /// Copies the value of another key as `hold` does; does nothing if that key is unset.
   template <class U> void take(const Key<U> &other) {
     if (other.set()) {
       hold(other.get());
     }
   }
-  /// Whether a state has written it since it was last looked at.
+  /// Whether a state has written the key since the last call. The call clears this mark.
   bool fresh() {
     const bool found = state_ == written;
     if (found) {
@@ -152,13 +157,13 @@ private:
   std::uint8_t state_ = unset;
 };
 
-/// A key was read that holds nothing.
+/// The error of a read of an unset key, with the name of the key.
 struct MissingKey : Error {
   explicit MissingKey(const char *key)
       : Error(std::string("reads `") + key + "`, which holds nothing") {}
 };
 
-/// The value of a key that has to hold one. Throws MissingKey.
+/// The value of a key that must be set. Throws MissingKey if it is unset.
 template <class T> [[nodiscard]] const T &need(const Key<T> &key, const char *name) {
   if (!key.set()) {
 #if defined(__cpp_exceptions)
@@ -170,7 +175,7 @@ template <class T> [[nodiscard]] const T &need(const Key<T> &key, const char *na
   return key.get();
 }
 
-/// The value of a key that may hold none.
+/// The value of a key as an optional; empty if the key is unset.
 template <class Optional, class T> [[nodiscard]] Optional maybe(const Key<T> &key) {
   return key.set() ? convert<Optional>(key.get()) : Optional();
 }
@@ -180,14 +185,16 @@ template <class Optional, class T> [[nodiscard]] Optional maybe(const Key<T> &ke
 #pragma clang diagnostic ignored "-Wundefined-var-template"
 #endif
 
-/// What the compiler tells the fields of a class apart by: objects that are nowhere defined, as
-/// only their places are looked at, and only while compiling.
+/// Two objects of the type T, for the check of the order of fields (`in_order`): a reference field
+/// with the mark refers to `one`, a reference field without it to `other`. Both are declared and
+/// never defined: only their addresses are compared, and only in constant expressions.
 template <class T> struct Marks {
   static T one;
   static T other;
 };
 
-/// A value for a field of the type `T`, marked or not.
+/// The initial value of a field of the type `T` with or without the mark: 1 or 0, or for a
+/// reference `one` or `other` of Marks.
 template <class T> constexpr T with_mark(bool marked) {
   if constexpr (std::is_reference_v<T>) {
     using Object = std::remove_const_t<std::remove_reference_t<T>>;
@@ -209,7 +216,7 @@ template <class T> constexpr bool is_marked(const T &field) {
 #pragma clang diagnostic pop
 #endif
 
-/// How many fields stand before the one that is marked.
+/// The number of fields before the first field with the mark.
 template <class... Fields> constexpr std::size_t before_mark(const Fields &...fields) {
   std::size_t count = 0;
   static_cast<void>((... || (is_marked(fields) || (++count, false))));
@@ -230,14 +237,18 @@ constexpr bool in_order(Fields fields, std::index_sequence<all...> each) {
   return (has_at<all, Keys, Types...>(fields, each) && ...);
 }
 
-/// Whether the class `Keys` has its fields in the order of `Types`, which `fields` tells by name.
+/// Whether the fields of the class `Keys` have the types `Types` in this order and the names in the
+/// expected order. `fields` takes an object of `Keys` and returns `before_mark` of its fields,
+/// listed by name in the expected order. The check initializes `Keys` once for each field, with the
+/// mark at that field.
 template <class Keys, class... Types, class Fields> constexpr bool in_order(Fields fields) {
   return in_order<Keys, Types...>(fields, std::index_sequence_for<Types...>());
 }
 
-/// A state in the script: its path, `sm/PICK/OPEN`, and where it stands, `main.yml:12`. Where a
-/// time limit, retry or loop is around it, also its path in the machine, and the path in the script
-/// of the container around it (docs/language.md, Paths).
+/// A state in the script: its path, `sm/PICK/OPEN`, and its file and line, `main.yml:12`. For a
+/// state inside a time limit, retry or loop also `in_machine`, its path in the machine, and
+/// `around`, the path in the script of the container around it (docs/language.md, Paths). Otherwise
+/// these are null.
 struct Place {
   const char *path;
   const char *src;
@@ -247,7 +258,7 @@ struct Place {
   [[nodiscard]] const char *full() const { return in_machine != nullptr ? in_machine : path; }
 };
 
-/// One thing that happened. What an event does not have is null.
+/// One event of a run. Fields that an event does not have are null.
 struct Event {
   const char *event; ///< start enter exit transition write preempt error finish
   Place place;
@@ -258,8 +269,9 @@ struct Event {
   const char *message = nullptr; ///< of error
 };
 
-/// Hears what a machine does. Branches of a concurrence and whoever asks it to stop call from
-/// their threads, one at a time.
+/// Observer of a machine: receives its events. Calls come from the thread of the machine, from the
+/// threads of the branches of a concurrence and from threads that send a preempt request, one call
+/// at a time. The observer must exist until `run` has returned.
 class Observer {
 public:
   Observer() = default;
@@ -267,9 +279,10 @@ public:
   Observer &operator=(const Observer &) = delete;
   virtual ~Observer() = default;
 
-  /// What to do with an event, which is gone after the call.
+  /// Receives an event. The event and its texts are valid only during the call. The call may send a
+  /// preempt request; the events of that request arrive before the call returns.
   virtual void on(const Event &event) = 0;
-  /// Whether `on` is called for writes. Without, no value is turned into JSON.
+  /// Whether `on` receives the events of writes. If false, no value is converted to JSON.
   [[nodiscard]] virtual bool wants_writes() const { return true; }
 
   void tell(const Event &event) {
@@ -281,7 +294,8 @@ private:
   RecursiveMutex lock_{};
 };
 
-/// Writes each event as a line of JSON, at once: what has happened is in the file.
+/// Observer that writes each event to a file as a line of JSON and flushes the file after each
+/// line. The time `t` is in seconds since the event `start`. The caller opens and closes the file.
 class TraceWriter : public Observer {
 public:
   explicit TraceWriter(std::FILE *file) : file_(file) {}
@@ -328,18 +342,21 @@ private:
   std::chrono::steady_clock::time_point began_ = std::chrono::steady_clock::now();
 };
 
-/// Requests to stop, as one thread of control sees them: that of the machine, or of a branch.
+/// The preempt requests of one thread of control: that of a machine or that of a branch.
 ///
-/// Any thread may request. A signal handler may not: let it set a flag that a thread looks at.
+/// Every thread may call `request`. A signal handler may not: it can set a flag that a thread
+/// reads.
 class Stop {
 public:
   Stop() = default;
   Stop(const Stop &) = delete;
   Stop &operator=(const Stop &) = delete;
 
-  /// Ask what runs to stop. It goes on until a state answers; until then each next state is asked.
-  /// A state that ends its machine without an answer keeps the request: it is asked when it runs
-  /// again.
+  /// Sends a preempt request to everything that runs, also in the branches of a concurrence. The
+  /// request is pending until a state calls `service`; until then each next state receives it. A
+  /// state that ends its machine without `service` keeps the request and receives it again at its
+  /// next run. The observer receives an event `preempt` for each running state, in the thread of
+  /// the caller.
   void request() {
     std::vector<std::pair<Observer *, Place>> told;
     {
@@ -355,14 +372,15 @@ public:
       observer->tell({"preempt", place});
     }
   }
-  /// Whether a request waits for an answer.
+  /// Whether a preempt request is pending. May be called from every thread.
   [[nodiscard]] bool requested() const { return asked_.load(std::memory_order_relaxed); }
-  /// Answer it: what comes next runs on.
+  /// Serves the pending request: the states after it run without the request.
   void service() { asked_.store(false, std::memory_order_relaxed); }
-  /// How many requests there were.
+  /// The number of requests so far.
   [[nodiscard]] std::uint64_t requests() const { return requests_.load(std::memory_order_relaxed); }
 
-  /// Wait for so many seconds, or for a request; whether one has come. NaN is an Error.
+  /// Waits for `seconds`, at most 1e9, or until a preempt request is pending. Returns whether one
+  /// is pending. A negative time does not wait. Throws an Error if `seconds` is NaN.
   bool wait(double seconds) {
     if (std::isnan(seconds)) {
       fail("waits for `nan` seconds");
@@ -380,7 +398,8 @@ private:
 
   static constexpr double longest = 1e9;
 
-  /// The end of a request that calls observers: the run that they watch may end.
+  /// Marks the end of the observer calls of a request. The destructor of a WatchedRun waits for
+  /// this.
   struct EndOfCalls {
     Stop &stop;
     ~EndOfCalls() {
@@ -390,7 +409,8 @@ private:
     }
   };
 
-  /// To be called under the lock.
+  /// Marks the request as pending here and in the branches, and adds the running states and their
+  /// observers to `told`. The caller must hold `lock_`.
   void ask(std::vector<std::pair<Observer *, Place>> &told) {
     if (ended_) {
       return;
@@ -412,13 +432,15 @@ private:
     return path.substr(0, around.size()) == around &&
            (path.size() == around.size() || path[around.size()] == '/');
   }
-  /// A state starts: it is asked again where it, or a container around it, keeps a request.
+  /// Called before a state starts. A request that the state, or a container around it, keeps
+  /// becomes pending again; a pending one that another state has kept goes back to that state
+  /// (`settle`).
   [[gnu::cold, gnu::noinline]] void remind(const char *path) noexcept {
     const std::lock_guard<Mutex> hold(lock_);
     settle(path);
     ask_again([path](const char *each) { return within(path, each); });
   }
-  /// A machine ends: its last state keeps a request that waits for an answer.
+  /// Called when a state ends its machine: if a request is pending, the state keeps it.
   [[gnu::cold, gnu::noinline]] void keep(const char *path) noexcept {
     const std::lock_guard<Mutex> hold(lock_);
     settle(path);
@@ -426,15 +448,16 @@ private:
       put(path);
     }
   }
-  /// An iterator ends because of a request: states in it keep none.
+  /// Called when a request ends an iterator: removes the requests that the states in it keep.
   void forget(const char *path) {
     const std::lock_guard<Mutex> hold(lock_);
     take([path](const char *each) { return within(each, path); });
   }
 
-  // These are called under the lock.
+  // The callers of the following functions must hold `lock_`.
 
-  /// A request that a state had kept ends with that state: it keeps it again.
+  /// If the pending request is one that a state has kept, and `path` is not in that state: the
+  /// request is no longer pending, and that state keeps it again.
   void settle(const char *path) {
     if (asker_ == nullptr || within(path, asker_)) {
       return;
@@ -444,7 +467,8 @@ private:
     }
     asker_ = nullptr;
   }
-  /// Ask for some that keep a request, all of which are around one state.
+  /// Makes kept requests pending again: those of the paths for which `which` is true. All these
+  /// paths must be around one state. The outermost of them becomes `asker_`.
   template <class Which> void ask_again(Which which) {
     const char *outer = nullptr;
     take([&](const char *each) {
@@ -464,7 +488,7 @@ private:
     kept_.push_back(path);
     keeps_ = true;
   }
-  /// Take some paths out.
+  /// Removes the kept requests of the paths for which `which` is true.
   template <class Which> void take(Which which) {
     kept_.erase(std::remove_if(kept_.begin(), kept_.end(), which), kept_.end());
   }
@@ -473,25 +497,29 @@ private:
   std::atomic<std::uint64_t> requests_{0};
   Mutex lock_{};
   Condition wake_{};
-  // Whether a look at those that keep a request is worth it; only the thread of control does.
+  // False if no state keeps a request, so that `remind` need not be called. Only the thread of
+  // control uses it.
   bool keeps_ = false;
-  // Under the lock: the paths of the states that keep a request, and of the one whose own request
-  // `asked_` is; null where it is everybody's.
+  // Protected by `lock_`: the paths of the states that keep a request; and the path of the state
+  // whose kept request is now the pending one, null if the pending request is for all states.
   std::vector<const char *> kept_{};
   const char *asker_ = nullptr;
-  // Under the lock: the branches of the concurrence that runs, and what an observer is told of.
+  // Protected by `lock_`: the Stop of the first branch of the running concurrence, that of the next
+  // branch, whether the branch has ended, the observer, and the places of the running states.
   Stop *branches_ = nullptr;
   Stop *next_ = nullptr;
   bool ended_ = false;
   Observer *observer_ = nullptr;
   std::vector<Place> running_{};
-  // Under the lock: the requests that call observers now. A watched run waits for their end.
+  // Protected by `lock_`: the number of requests that are calling observers now. The destructor of
+  // a WatchedRun waits until it is zero.
   unsigned calls_ = 0;
   Condition uncalled_{};
 };
 
-/// The items of an iterator that are left, and requests to stop: it ends after the item that runs
-/// then, even if its state has answered. A request from before reaches the first item.
+/// The count of an iterator's remaining items, and the preempt requests to the iterator: it ends
+/// after the item that runs at the request, also if the state has served the request. A request
+/// that is pending before the iterator starts ends it after the first item.
 class Round {
 public:
   Round(Stop &stop, const Place &item, std::size_t items)
@@ -499,7 +527,8 @@ public:
     stop_.remind(item_.full());
     early_ = stop_.requested();
   }
-  /// An item is done: whether a request ends the iterator.
+  /// Called after each item. Returns whether a preempt request ends the iterator; that request is
+  /// served.
   bool over() {
     --left_;
     if (!early_ && stop_.requests() == before_) {
@@ -509,7 +538,7 @@ public:
     stop_.forget(item_.full());
     return true;
   }
-  /// Whether that was the last item.
+  /// Whether no items remain. Call it after `over`.
   bool last() const { return left_ == 0; }
 
 private:
@@ -520,7 +549,7 @@ private:
   bool early_ = false;
 };
 
-/// An output of a state, by its own name for it.
+/// An output of a state: its name in the state, and the key.
 template <class T> struct Output {
   const char *name;
   Key<T> &key;
@@ -528,8 +557,8 @@ template <class T> struct Output {
 template <class T> Output(const char *, Key<T> &) -> Output<T>;
 
 #if defined(__cpp_exceptions)
-/// What a state threw, with the path of the state and its place in the script. The cause is nested
-/// in it, see std::rethrow_if_nested.
+/// The error of a run that ends with an exception of a state: has the path of the state and its
+/// place in the script. The exception of the state is nested in it (std::rethrow_if_nested).
 class StateError : public std::runtime_error {
 public:
   StateError(const Place &state, const char *what)
@@ -541,7 +570,8 @@ public:
 
 namespace detail {
 
-/// The message of what is being thrown; empty for a StateError, which was told of before.
+/// The message of the current exception; empty for a StateError, because an error event for it has
+/// been sent already. The caller must be an exception handler.
 inline std::string message_of_current() {
 #if defined(__cpp_exceptions)
   try {
@@ -570,13 +600,14 @@ inline std::string message_of_current() {
 #endif
 }
 
-/// A state ended with an outcome that its container knows nothing of: the container's failure, so
-/// it is no outcome of the state.
+/// The error for an outcome of a state that its container does not expect. It is a failure of the
+/// container: it never becomes the outcome of the state, also where the script catches exceptions.
 struct Undeclared : Error {
   using Error::Error;
 };
 
-/// A state ended with a value that is no outcome at all: a number cast to one.
+/// The error for a value that is not an enumerator of the state's Outcome: a number cast to the
+/// type.
 struct NoOutcome : Undeclared {
   NoOutcome() : Undeclared("ended without an outcome") {}
 };
@@ -614,19 +645,21 @@ inline bool current_is_undeclared() {
 
 } // namespace detail
 
-/// Where no machine can come.
+/// Marks a place that no run reaches. A call is undefined behaviour.
 [[noreturn]] inline void never() { __builtin_unreachable(); }
 
-/// Prints a key as PrintUserdataState does.
+/// Prints a line `key: value` on stdout, as the state type PrintUserdataState does.
 template <class T> void print(const char *key, const T &value) {
   const std::string line = std::string(key) + ": " + py::text(value) + "\n";
   std::fwrite(line.data(), 1, line.size(), stdout);
 }
 
-/// Sleep so many seconds, whoever asks to stop.
+/// Sleeps for `seconds`. A preempt request does not end the sleep. Throws an Error if `seconds` is
+/// NaN.
 inline void sleep(double seconds) { Stop().wait(seconds); }
 
-/// What a machine runs with where nobody watches. `places` are those of a container's states.
+/// The context of a run without observer. The generated containers call its functions. `places` is
+/// the array of the places of the container's states; `state` is the index of a state in it.
 struct Run {
   Stop &stop;
 
@@ -639,7 +672,7 @@ struct Run {
   Outcome end(const Place *, State, const char *, Outcome outcome) {
     return outcome;
   }
-  /// The same, of a state that can be asked to stop.
+  /// As `end`, for a state that has a Stop: if a request is pending, the state keeps it.
   template <class State, class Outcome>
   Outcome end_asked(const Place *places, State state, const char *, Outcome outcome) {
     if (stop.requested()) {
@@ -647,7 +680,7 @@ struct Run {
     }
     return outcome;
   }
-  /// The requests, for a state that is about to run.
+  /// The Stop for a state that is about to run. A request that the state keeps is pending again.
   template <class State> Stop &stop_for(const Place *places, State state) {
     if (stop.keeps_) {
       stop.remind(places[static_cast<std::size_t>(state)].full());
@@ -662,34 +695,37 @@ struct Run {
   template <class T, class U> void write(const char *, Key<T> &key, U &&value) {
     key = convert<T>(std::forward<U>(value));
   }
-  /// To be called in SMACHAC_CATCH: what the state threw is its outcome.
+  /// Called in SMACHAC_CATCH where the script makes the exception of the state its outcome. An
+  /// outcome that the container does not expect is not caught: it leaves as a StateError.
   template <class State> void caught(const Place *places, State state) {
     if (detail::current_is_undeclared()) {
       failed(places, state);
     }
   }
-  /// The state ended as it should not: with an outcome that its container knows nothing of.
+  /// Throws the error for an outcome of the state that the container does not expect.
   template <class State> [[noreturn]] void undeclared(const Place *, State, const char *outcome) {
     detail::undeclared(outcome);
   }
-  /// The state ended with a value that is none of its outcomes.
+  /// Throws the error for a value that is not an outcome of the state.
   template <class State> [[noreturn]] void no_outcome(const Place *, State) {
     detail::no_outcome();
   }
-  /// To be called in SMACHAC_CATCH: what was thrown goes on as a StateError.
+  /// Called in SMACHAC_CATCH: throws a StateError with the current exception nested. A StateError
+  /// is rethrown unchanged.
   template <class State> [[noreturn]] void failed(const Place *places, State state) {
     give_up(stop, places[static_cast<std::size_t>(state)]);
   }
 
 private:
-  // Out of the way, so that machines are small enough to become one with those around them.
+  // Not inlined: the function of a container then stays small enough to be inlined into its caller.
   [[noreturn, gnu::cold, gnu::noinline]] static void give_up(Stop &stop, const Place &place) {
     stop.keep(place.full());
     detail::throw_on(place, detail::message_of_current());
   }
 };
 
-/// What a machine runs with where an observer hears of all that it does.
+/// The context of a run with an observer: sends all events of the run to it. The destructor returns
+/// after the last call of the observer by a preempt request from another thread.
 class WatchedRun {
 public:
   Stop &stop;
@@ -748,7 +784,8 @@ public:
     left(places[static_cast<std::size_t>(state)], outcome);
   }
 
-  /// A key that a state may write: what it writes there is told when it has ended.
+  /// An output key for a state that is about to run. `wrote` sends the event of the write after the
+  /// state has ended.
   template <class T> Key<T> &out(Key<T> &key) {
     key.fresh();
     return key;
@@ -836,7 +873,7 @@ private:
   template <class T> void wrote_one(Output<T> output) {
     if (output.key.fresh() && observer_.wants_writes()) {
       const std::string value = json(output.key.get());
-      const Place place = stop.running_.back(); // only this thread changes it
+      const Place place = stop.running_.back(); // only this thread changes `running_`
       observer_.tell({"write", place, nullptr, nullptr, output.name, value.c_str()});
     }
   }
@@ -847,7 +884,8 @@ private:
 #if SMACHAC_THREADS
 using Thread = std::thread;
 #else
-/// What stands for a thread where there is none: no concurrence compiles.
+/// The replacement for std::thread where the standard library has no threads: a concurrence does
+/// not compile.
 struct Thread {
   Thread() = default;
   template <class Function> explicit Thread(Function) {
@@ -859,7 +897,8 @@ struct Thread {
 };
 #endif
 
-/// The branches of a concurrence: a thread and a Stop for each of `N`.
+/// The `N` branches of a concurrence, each with its own Stop. The last branch runs in the thread of
+/// the container, every other branch in a thread of its own.
 template <class Run, std::size_t N> class Branches {
 public:
   Branches(Run &around, const Place *places) : around_(around), places_(places) {
@@ -878,8 +917,10 @@ public:
   Branches &operator=(const Branches &) = delete;
   ~Branches() { leave(); }
 
-  /// Run every branch, `branch(i, run)`, and wait for all. When the first ends (`any`), or one
-  /// fails, the others are asked to stop. What failed first goes on outwards.
+  /// Runs `branch(i, run)` for every branch `i` and returns when all have ended. The first
+  /// exception of a branch sends a preempt request to the other branches; if `any` is true, so does
+  /// the end of the first branch. No such request is sent if the concurrence has received one from
+  /// outside. The first exception is thrown again after all branches have ended.
   template <class Branch> void run(bool any, Branch branch) {
     {
       Threads threads;
@@ -890,7 +931,7 @@ public:
         one(N - 1, any, branch);
       }
       SMACHAC_CATCH {
-        // No thread was to be had.
+        // A thread could not be created.
         failure_.keep();
         ask_others();
       }
@@ -899,7 +940,8 @@ public:
     failure_.go_on();
   }
 
-  /// Whether there was a request to stop, from outside; it is served. To be called after `run`.
+  /// Whether the concurrence has received a preempt request from outside; the call serves it. Call
+  /// it after `run`.
   bool stopped() {
     if (stopped_) {
       around_.stop.service();
@@ -919,7 +961,7 @@ private:
     }
   };
 
-  /// The first failure of several threads.
+  /// The first exception that a branch has thrown.
   class Failure {
   public:
 #if defined(__cpp_exceptions)
@@ -967,15 +1009,17 @@ private:
       ask_others();
     }
   }
-  /// Whether every branch has a request already, which came from outside.
+  /// Whether the concurrence has received a preempt request from outside; then every branch has
+  /// received it too.
   bool asked_from_outside() const { return stopped_ || around_.stop.requests() != before_; }
   void ask_others() {
     for (Stop &each : stops_) {
       each.request();
     }
   }
-  /// A request to the concurrence is served unless a branch has left one open. What states of such
-  /// a branch keep is gone.
+  /// Detaches the branches from the Stop of the concurrence. A request to the concurrence is served
+  /// unless one is pending in a branch. The requests that the states of a branch keep move to the
+  /// Stop of the concurrence; those of a branch with a pending request are removed.
   void leave() {
     const std::lock_guard<Mutex> hold(around_.stop.lock_);
     if (around_.stop.branches_ == nullptr) {
@@ -995,7 +1039,8 @@ private:
       around_.stop.service();
     }
   }
-  /// What states of a branch keep, when it starts and when it has ended.
+  /// Moves the requests that the states of branch `i` keep from one Stop to another: to the branch
+  /// before it starts, from the branch after it has ended.
   void move_kept(std::size_t i, Stop &from, Stop &to) {
     from.take([&](const char *path) {
       const bool found = Stop::within(path, places_[i].full());
@@ -1015,16 +1060,17 @@ private:
   Failure failure_{};
 };
 
-/// Random numbers as Python draws them: the same seed gives the same row.
+/// A random number generator with the algorithm of Python's `random`: the same seed gives the same
+/// sequence as in Python.
 class Draws {
 public:
-  /// Seeded by the platform: each object, in each run, gives another row.
+  /// A generator with a seed from std::random_device: each object has another sequence in each run.
   Draws() : Draws({std::random_device{}(), std::random_device{}()}) {}
 
-  /// The seed in words of 32 bits, the lowest first.
+  /// A generator with a given seed: its words of 32 bits, the lowest first, at least one.
   Draws(std::initializer_list<std::uint32_t> seed) : words_(Words{seed}) {}
 
-  /// A whole number from 0 up to `count`, without it.
+  /// A random whole number from 0 to `count - 1`. `count` must be from 1 to 2**32 - 1.
   std::size_t below(std::size_t count) {
     unsigned bits = 0;
     for (std::size_t rest = count; rest != 0; rest >>= 1U) {
@@ -1038,8 +1084,8 @@ public:
   }
 
 private:
-  /// Fills the state of the generator as Python's `random.seed` does (`init_by_array` of the
-  /// authors of the Mersenne Twister, M. Matsumoto and T. Nishimura).
+  /// The seed sequence of the generator: fills its state as Python's `random.seed` does
+  /// (`init_by_array` of the authors of the Mersenne Twister, M. Matsumoto and T. Nishimura).
   struct Words {
     using result_type = std::uint32_t;
     std::initializer_list<std::uint32_t> seed;

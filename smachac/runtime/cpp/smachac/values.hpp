@@ -1,12 +1,14 @@
-// Made by smachac, as it is for every machine: do not edit.
+// Made by smachac. The file is the same for every machine. Do not edit.
 //
-// Values of userdata, and what Python computes with them, in C++17 without a dependency.
+// The values of userdata and the operations of Python on them, in C++17 without dependencies.
 //
-// `smachac` has the types and conversions, `smachac::py` the operations of Python: whole numbers
-// are checked where Python has no limit, `//` and `%` round down, texts are UTF-8 and counted in
-// code points. What Python raises an exception for, and what C++ cannot hold, is a smachac::Error.
-// Compile with -ffp-contract=off where the machine has fused multiply-add, and never with
-// -ffast-math: floats are those of Python to the last bit.
+// The namespace `smachac` has the types and conversions, `smachac::py` the operations of Python.
+// Whole numbers have 64 bits and every operation checks its result; Python has no limit. `//` and
+// `%` round down. Texts are UTF-8, and their length is the number of code points. A smachac::Error
+// is thrown where Python raises an exception, and where C++ cannot represent the result.
+//
+// Compile with -ffp-contract=off for processors with fused multiply-add, and never with
+// -ffast-math: then floats are equal to those of Python to the last bit.
 #ifndef SMACHAC_VALUES_HPP
 #define SMACHAC_VALUES_HPP
 
@@ -33,14 +35,14 @@
 namespace smachac {
 inline namespace v0_1_0 {
 
-/// An expression that has no value, and why.
+/// The error of an expression without a value, with the reason as message.
 struct Error : std::exception {
   explicit Error(std::string text) : message(std::move(text)) {}
   const char *what() const noexcept override { return message.c_str(); }
   std::string message;
 };
 
-/// Throws an Error; in a program without exceptions, prints the message and ends the program.
+/// Throws an Error. In a program without exceptions: prints the message and ends the program.
 [[noreturn]] inline void fail(const char *message) {
 #if defined(__cpp_exceptions)
   throw Error(message);
@@ -58,7 +60,7 @@ struct None {
   friend bool operator!=(None, None) { return false; }
 };
 
-/// A place in metres.
+/// A point; coordinates in metres.
 struct Point {
   double x = 0.0, y = 0.0, z = 0.0;
   friend bool operator==(const Point &a, const Point &b) {
@@ -67,7 +69,7 @@ struct Point {
   friend bool operator!=(const Point &a, const Point &b) { return !(a == b); }
 };
 
-/// A rotation.
+/// A rotation as a unit quaternion.
 struct Quaternion {
   double x = 0.0, y = 0.0, z = 0.0, w = 1.0;
   friend bool operator==(const Quaternion &a, const Quaternion &b) {
@@ -76,7 +78,7 @@ struct Quaternion {
   friend bool operator!=(const Quaternion &a, const Quaternion &b) { return !(a == b); }
 };
 
-/// Where a thing is, and how it is turned.
+/// A pose: position and orientation.
 struct Pose {
   Point position{};
   Quaternion orientation{};
@@ -86,7 +88,7 @@ struct Pose {
   friend bool operator!=(const Pose &a, const Pose &b) { return !(a == b); }
 };
 
-/// A pose in a named frame; the stamp is in seconds.
+/// A pose in the frame `frame_id`. The stamp is in seconds.
 struct PoseStamped {
   std::string frame_id{};
   double stamp = 0.0;
@@ -97,7 +99,7 @@ struct PoseStamped {
   friend bool operator!=(const PoseStamped &a, const PoseStamped &b) { return !(a == b); }
 };
 
-/// How one frame lies in another.
+/// The transform between two frames.
 struct Transform {
   Point translation{};
   Quaternion rotation{};
@@ -107,7 +109,8 @@ struct Transform {
   friend bool operator!=(const Transform &a, const Transform &b) { return !(a == b); }
 };
 
-/// Joints by name; lists that are not empty are as long as `name`.
+/// The state of joints. `name` has the names of the joints; each other list is empty or has the
+/// same length as `name`.
 struct JointState {
   std::vector<std::string> name{};
   std::vector<double> position{}, velocity{}, effort{};
@@ -130,18 +133,18 @@ template <class T> struct is_dict<std::map<std::string, T>> : std::true_type {};
 template <class T> struct is_optional : std::false_type {};
 template <class T> struct is_optional<std::optional<T>> : std::true_type {};
 
-/// The least whole number that is too large for 64 bits, as a float.
+/// 2**63 as a float: the least positive whole number that does not fit in 64 bits.
 constexpr double beyond_whole = 9223372036854775808.0;
 
 inline bool is_space(char c) { return c == ' ' || (c >= '\t' && c <= '\r'); }
 
 inline bool is_digit(char c) { return c >= '0' && c <= '9'; }
 
-/// Whether a byte starts a code point of UTF-8.
+/// Whether a byte is the first byte of a UTF-8 code point.
 inline bool is_start(char c) { return (static_cast<unsigned char>(c) & 0xC0U) != 0x80U; }
 
-/// The code point at a place of a text, and the place behind it. Bytes that are no UTF-8 stand for
-/// U+FFFD.
+/// The code point at the byte offset `place` of a text. The call moves `place` behind it. Bytes
+/// that are not UTF-8 give U+FFFD.
 inline std::uint32_t code_point(std::string_view text, std::size_t &place) {
   const auto first = static_cast<unsigned char>(text[place++]);
   if (first < 0x80U) {
@@ -167,10 +170,10 @@ template <class T> const T &present(const std::optional<T> &value) {
   return *value;
 }
 
-/// A whole number as a float, as arithmetic with floats takes it.
+/// A whole number as a float, rounded to the nearest one: the operand of float arithmetic.
 inline double real(std::int64_t value) { return static_cast<double>(value); }
 
-/// A whole number as a float that stands for the same number.
+/// A whole number as a float without rounding. Throws an Error if no float is equal to it.
 inline double widen(std::int64_t value) {
   const double result = real(value);
   if (result >= detail::beyond_whole || static_cast<std::int64_t>(result) != value) {
@@ -185,7 +188,9 @@ template <class To, class From> To convert(const From &from);
 
 namespace detail {
 
-/// A value as a std::any that holds it as scripts would say it: lists and mappings of anything.
+/// A value as a std::any with the types of script values: lists are std::vector<std::any>, mappings
+/// std::map<std::string, std::any>, whole numbers std::int64_t. None and an empty optional are an
+/// empty std::any.
 template <class From> std::any anything([[maybe_unused]] const From &from) {
   if constexpr (std::is_same_v<From, None>) {
     return std::any();
@@ -204,8 +209,10 @@ template <class From> std::any anything([[maybe_unused]] const From &from) {
 
 } // namespace detail
 
-/// A value as another type that holds it: whole numbers as floats, lists as arrays of their length,
-/// anything as an optional; an optional as what is in it, where there is something.
+/// The conversion of a value to another type: a whole number to a float, a list to an array of its
+/// length, a value to an optional, an optional to its value, any value to a std::any; items of
+/// lists and mappings likewise. Throws an Error if an optional is empty, if a list has another
+/// length than the array, or if no float is equal to a whole number.
 template <class To, class From> To convert([[maybe_unused]] const From &from) {
   if constexpr (std::is_same_v<To, From>) {
     return from;
@@ -252,14 +259,16 @@ template <class To, class From> To convert([[maybe_unused]] const From &from) {
   } else if constexpr (std::is_integral_v<To> && std::is_integral_v<From>) {
     return static_cast<To>(from);
   } else {
-    // The items of an empty list are taken for numbers, and wanted as anything.
+    // Here an empty list has items of a number type, while items of another type are expected. So
+    // this branch must compile; an empty list has no item to convert.
     fail("a value of another type");
   }
 }
 
 namespace py {
 
-/// The result of a function of a value that is computed once.
+/// The result of `function(value)`: computes `value` once where an expression uses it several
+/// times.
 template <class T, class F> auto with(const T &value, F function) { return function(value); }
 
 // Arithmetic
@@ -320,7 +329,7 @@ inline double divide(double a, double b) {
   return a / b;
 }
 
-/// The float next to the quotient of two whole numbers, rounded once.
+/// The quotient of two whole numbers as the nearest float, rounded once.
 inline double divide(std::int64_t a, std::int64_t b) {
   constexpr std::int64_t exact = std::int64_t{1} << 53U;
   if (b == 0) {
@@ -335,7 +344,8 @@ inline double divide(std::int64_t a, std::int64_t b) {
   std::uint64_t quotient = size(a) / size(b);
   std::uint64_t rest = size(a) % size(b);
   int exponent = 0;
-  // More binary digits than a float has; the last one stands for all that follow.
+  // The loop computes more binary digits than a float has. The last digit is then set to 1 if the
+  // rest of the quotient is not zero, so the conversion to double rounds correctly.
   while (quotient >> 55U == 0 && exponent > -128) {
     const bool carry = rest >= size(b) - rest;
     rest = carry ? rest - (size(b) - rest) : rest + rest;
@@ -373,7 +383,7 @@ inline double floor_divide(double a, double b) {
   return quotient - down > 0.5 ? down + 1.0 : down;
 }
 
-/// A whole number to a power that is not negative.
+/// A power of a whole number. Throws an Error if the exponent is negative.
 inline std::int64_t power(std::int64_t base, std::int64_t exponent) {
   if (exponent < 0) {
     fail("a negative power of a whole number");
@@ -406,7 +416,7 @@ inline double power(double base, double exponent) {
   return result;
 }
 
-/// A float without what is behind the point.
+/// A float without its fraction, as a whole number. Throws an Error if it does not fit in 64 bits.
 inline std::int64_t whole(double value) {
   if (!(value >= -detail::beyond_whole && value < detail::beyond_whole)) {
     fail("a float that is no whole number of 64 bits");
@@ -414,10 +424,11 @@ inline std::int64_t whole(double value) {
   return static_cast<std::int64_t>(value);
 }
 
-/// The next whole number; of two as near, the even one.
+/// The nearest whole number; if two are equally near, the even one. Throws an Error if it does not
+/// fit in 64 bits.
 inline std::int64_t round(double value) { return whole(std::nearbyint(value)); }
 
-/// The float next to the value with so many digits behind the point, not negative.
+/// A float rounded to a number of decimal places. `digits` must not be negative.
 inline double round(double value, int digits) {
   if (!std::isfinite(value) || digits > 323) {
     return value;
@@ -452,7 +463,7 @@ template <class T> Order plain_order(const T &a, const T &b) {
   return a < b ? Order::less : b < a ? Order::greater : a == b ? Order::equal : Order::none;
 }
 
-/// Exact, also where the whole number is no float.
+/// The order of a whole number and a float; exact, also if no float is equal to the whole number.
 inline Order mixed_order(std::int64_t a, double b) {
   if (std::isnan(b)) {
     return Order::none;
@@ -471,7 +482,7 @@ inline Order mixed_order(std::int64_t a, double b) {
 
 template <class A, class B> bool equal(const A &a, const B &b);
 
-/// How two values lie to each other; floats that are no numbers lie nowhere.
+/// The order of two values; Order::none if one of the floats that decide it is NaN.
 template <class A, class B> Order order(const A &a, const B &b) {
   if constexpr (std::is_arithmetic_v<A> && std::is_arithmetic_v<B>) {
     if constexpr (std::is_integral_v<A> && std::is_integral_v<B>) {
@@ -497,7 +508,7 @@ template <class A, class B> Order order(const A &a, const B &b) {
   }
 }
 
-/// `==`. Values of types that have nothing in common are not equal.
+/// `==` of Python. Values of types without a common value are not equal.
 template <class A, class B> bool equal(const A &a, const B &b) {
   if constexpr (std::is_arithmetic_v<A> && std::is_arithmetic_v<B>) {
     return order(a, b) == Order::equal;
@@ -536,7 +547,7 @@ template <class A, class B> bool at_most(const A &a, const B &b) {
 
 // Lists, mappings, texts
 
-/// Items and characters of the longest list and text that `range` and `*` make.
+/// The greatest length of a list (items) or text (code points) that `range` and `*` make.
 constexpr std::int64_t largest = 100'000;
 
 inline std::int64_t length(const std::string &text) {
@@ -549,7 +560,8 @@ template <class T> std::int64_t length(const T &items) {
 
 namespace inner {
 
-/// A place counted from the end where it is negative.
+/// The offset from the start for an index; a negative index counts from the end. Throws an Error if
+/// the index is out of range.
 inline std::size_t place(std::int64_t index, std::int64_t size) {
   const std::int64_t found = index < 0 ? index + size : index;
   if (found < 0 || found >= size) {
@@ -571,7 +583,7 @@ inline std::vector<std::string> characters(const std::string &text) {
   return found;
 }
 
-/// The keys of a mapping in their order, which is not that in which Python lists them.
+/// The keys of a mapping, sorted. Python lists them in the order of insertion.
 template <class T> std::vector<std::string> keys(const std::map<std::string, T> &entries) {
   std::vector<std::string> found;
   for (const auto &entry : entries) {
@@ -620,7 +632,7 @@ template <class T, class U> bool contains(const T &items, const U &value) {
   return found;
 }
 
-/// The items of two lists, one after the other.
+/// The concatenation of two lists.
 template <class T, class A, class B> std::vector<T> concat(const A &a, const B &b) {
   auto result = convert<std::vector<T>>(a);
   for (std::size_t i = 0; i < b.size(); ++i) {
@@ -677,7 +689,8 @@ inline std::vector<std::int64_t> range(std::int64_t from, std::int64_t to, std::
 
 inline std::vector<std::int64_t> range(std::int64_t to) { return range(0, to); }
 
-/// The sum of a start and all items; whole numbers as long as all are.
+/// The sum of `start` and all items: a whole number if all of them are whole numbers, otherwise a
+/// float.
 template <class T, class S> auto sum(const T &items, S start) {
   using Item = typename T::value_type;
   if constexpr (std::is_integral_v<Item> && std::is_integral_v<S>) {
@@ -703,7 +716,7 @@ struct itself {
   template <class T> const T &operator()(const T &value) const { return value; }
 };
 
-/// Fails where a value has no place in an order: some float in it is no number.
+/// Throws an Error if a value contains a NaN: such values have no order.
 template <class T> void check_order(const T &value) {
   if constexpr (std::is_floating_point_v<T>) {
     if (std::isnan(value)) {
@@ -718,7 +731,7 @@ template <class T> void check_order(const T &value) {
 
 } // namespace inner
 
-/// The first of the items whose keys are greatest.
+/// The first item with the greatest key. Throws an Error if there are no items.
 template <class T, class F = inner::itself>
 typename T::value_type max_of(const T &items, F key = {}) {
   std::size_t best = 0;
@@ -731,7 +744,7 @@ typename T::value_type max_of(const T &items, F key = {}) {
   return items[best];
 }
 
-/// The first of the items whose keys are least.
+/// The first item with the least key. Throws an Error if there are no items.
 template <class T, class F = inner::itself>
 typename T::value_type min_of(const T &items, F key = {}) {
   std::size_t best = 0;
@@ -744,7 +757,8 @@ typename T::value_type min_of(const T &items, F key = {}) {
   return items[best];
 }
 
-/// The items in the order of their keys; those with equal keys stay in theirs.
+/// The items sorted by their keys. The sort is stable: items with equal keys keep their order.
+/// Throws an Error if a key contains a NaN.
 template <class T, class F = inner::itself>
 auto sorted(const T &items, bool reverse = false, F key = {}) {
   using Item = typename T::value_type;
@@ -790,10 +804,10 @@ inline std::string text(double value) {
 
 namespace inner {
 
-/// How a value is written: as `repr` does, or as JSON.
+/// The notation of a written value: that of Python's `repr`, or JSON.
 enum class Style { python, json };
 
-/// `repr` of a text; letters beyond ASCII stand for themselves.
+/// Appends the `repr` of a text. Characters beyond ASCII are not escaped.
 inline void write_quoted(std::string &out, const std::string &value) {
   const bool twice = contains(value, "'") && !contains(value, "\"");
   const char quote = twice ? '"' : '\'';
@@ -820,7 +834,7 @@ inline void write_unit(std::string &out, std::uint32_t unit) {
   out += escape;
 }
 
-/// A text as JSON in ASCII.
+/// Appends a text as JSON. Characters beyond ASCII are escaped.
 inline void write_json(std::string &out, const std::string &value) {
   constexpr std::string_view special = "\"\\\n\r\t\b\f", letters = "\"\\nrtbf";
   out += '"';
@@ -842,17 +856,18 @@ inline void write_json(std::string &out, const std::string &value) {
   out += '"';
 }
 
-/// Writes the parts of a list one after the other, as `write` does.
+/// Appends a list of the parts. Returns as `write` does.
 template <Style style, class... Parts> bool write_parts(std::string &out, const Parts &...parts);
 
-/// Writes one entry of a mapping, as `write` does.
+/// Appends one entry of a mapping. Returns as `write` does.
 template <Style style, class T>
 bool write_entry(std::string &out, const char *before, const std::string &key, const T &value);
 
-/// Writes what is in a std::any, as `write` does; None where that is nothing a script can say.
+/// Appends the value in a std::any, or None if its type is not a type of script values. Returns as
+/// `write` does.
 template <Style style> bool write_any(std::string &out, const std::any &value);
 
-/// Writes a value; false where a float in it is no number of JSON.
+/// Appends a value. Returns false if it contains a NaN or an infinity, which JSON cannot represent.
 template <Style style, class T> bool write(std::string &out, const T &value) {
   constexpr bool python = style == Style::python;
   bool fine = true;
@@ -947,14 +962,14 @@ template <Style style> bool write_any(std::string &out, const std::any &value) {
 
 } // namespace inner
 
-/// `repr`, which `str` of anything but a text is.
+/// `repr` of Python. It is equal to `str` for every value except a text.
 template <class T> std::string repr(const T &value) {
   std::string out;
   inner::write<inner::Style::python>(out, value);
   return out;
 }
 
-/// `str`.
+/// `str` of Python.
 template <class T> std::string text(const T &value) {
   if constexpr (std::is_same_v<T, std::string>) {
     return value;
@@ -967,7 +982,7 @@ template <class T> std::string text(const T &value) {
 
 namespace inner {
 
-/// The text of a number without the space around it and the `_` between digits.
+/// The text of a number without the white space around it and without each `_` between two digits.
 inline std::string number(const std::string &given) {
   std::size_t from = 0, to = given.size();
   while (from < to && detail::is_space(given[from])) {
@@ -987,7 +1002,7 @@ inline std::string number(const std::string &given) {
   return result;
 }
 
-/// Steps over digits; how many there were.
+/// Moves `place` behind the digits that start there. Returns their number.
 inline std::size_t digits(std::string_view text, std::size_t &place) {
   const std::size_t from = place;
   while (place < text.size() && detail::is_digit(text[place])) {
@@ -996,7 +1011,8 @@ inline std::size_t digits(std::string_view text, std::size_t &place) {
   return place - from;
 }
 
-/// Whether a text is a decimal number without a sign, and whether it is one or greater.
+/// Whether a text is a decimal number without a sign. For a number out of the range of a float,
+/// `great` is true if the number is too large, false if it is too small.
 inline bool is_decimal(std::string_view text, bool &great) {
   std::size_t place = 0;
   std::size_t count = digits(text, place);
@@ -1028,7 +1044,8 @@ inline bool is_decimal(std::string_view text, bool &great) {
 
 } // namespace inner
 
-/// `int` of a text; digits beyond ASCII are not read.
+/// `int` of a text. Only the digits of ASCII are read. Throws an Error if the text is not a whole
+/// number or the number does not fit in 64 bits.
 inline std::int64_t whole(const std::string &given) {
   const std::string found = inner::number(given);
   std::size_t place = !found.empty() && (found[0] == '-' || found[0] == '+') ? 1 : 0;
@@ -1045,7 +1062,8 @@ inline std::int64_t whole(const std::string &given) {
   return result;
 }
 
-/// `float` of a text; digits beyond ASCII are not read.
+/// `float` of a text. Only the digits of ASCII are read. Throws an Error if the text is not a
+/// number.
 inline double real(const std::string &given) {
   std::string found = inner::number(given);
   const bool minus = !found.empty() && found[0] == '-';
@@ -1079,8 +1097,9 @@ inline double real(const std::string &given) {
 
 } // namespace py
 
-/// A value as a trace shows it: JSON as Python's `json.dumps` writes it, entries by their names. A
-/// list or mapping with a float that is no number is the text that Python prints for it.
+/// A value as JSON for a trace, as Python's `json.dumps` writes it, with the entries of mappings
+/// sorted by name. A value that contains a NaN or an infinity becomes a JSON string with its
+/// `repr`.
 template <class T> std::string json(const T &value) {
   std::string out;
   if (!py::inner::write<py::inner::Style::json>(out, value)) {

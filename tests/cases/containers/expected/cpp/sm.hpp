@@ -397,7 +397,7 @@ template <class Run>
   SMACHAC_CATCH { run.failed(places, state); }
 }
 
-/// Run the machine once. An observer hears of all that it does; there may be none.
+/// Runs the machine once. The observer receives all events of the run; it may be null.
 inline Outcome run(States &states, Userdata &ud, smachac::Observer *observer,
                    smachac::Stop &stop) {
   if (observer == nullptr) {

@@ -4,7 +4,7 @@
 #include "smachac/arm.hpp"
 #include "smachac/smachac.hpp"
 
-// A class with more outcomes than its interface is an error, whatever the warnings are.
+// A class with more outcomes than its interface is an error at every warning level.
 #if defined(__GNUC__)
 #pragma GCC diagnostic push
 #pragma GCC diagnostic error "-Wswitch"
@@ -1001,7 +1001,7 @@ inline Outcome execute(States &states, Userdata &ud, Run &run) {
   SMACHAC_CATCH { run.failed(places, state); }
 }
 
-/// Run the machine once. An observer hears of all that it does; there may be none.
+/// Runs the machine once. The observer receives all events of the run; it may be null.
 inline Outcome run(States &states, Userdata &ud, smachac::Observer *observer,
                    smachac::Stop &stop) {
   if (observer == nullptr) {
