@@ -68,7 +68,7 @@ class RandomOutcomeState(smach.State):
         )
         self.writes_outcome = "outcome" in output_keys
         self.choices = list(outcomes)
-        # Without a seed, each state has its own generator, seeded by the module `random`.
+        # Without a seed, each state has its own generator with a seed from `random`.
         self.random = random.Random(random.getrandbits(64) if seed is None else seed)
 
     def execute(self, userdata):
