@@ -34,7 +34,9 @@ def preempt_at_shutdown(machine):
         machine.request_preempt()
         while machine.is_running():
             if time.monotonic() > end:
-                smach.logwarn("the state machine did not end within 5 s: the node shuts down")
+                smach.logwarn(
+                    "the state machine did not end within 5 s: the node shuts down"
+                )
                 break
             time.sleep(0.02)
 

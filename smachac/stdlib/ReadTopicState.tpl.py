@@ -29,7 +29,9 @@ class ReadTopicState(smach.State):
             package, _, name = kind.partition("/")
             message_class = getattr(sys.modules.get(f"{package}.msg"), name, None)
         if message_class is None:
-            smach.logerr(f"message type {kind} of {topic} is not installed or not imported")
+            smach.logerr(
+                f"{topic}: type {kind} is not available; import it or set msg_type"
+            )
             return "aborted"
         message = message_class()
         message.deserialize(raw._buff)

@@ -6,7 +6,7 @@ framework: SMACH
 type: None
 {% endblock meta %}
 
-{#- Lists and mappings as arguments of calls. -#}
+{#- Macros that print lists and mappings as arguments of calls. -#}
 
 {%- macro _names(argument, values, indent) -%}
 {{ argument | indent(indent, true) }}{{ values | list | literal }}
@@ -93,13 +93,13 @@ def {{ function }}(userdata):
 
 {%- macro render_execute_callbacks() %}
         for cb in self._cbs:
-            view, function = userdata, getattr(cb, "_cb", cb)  # of smach.cb_interface
+            view, function = userdata, getattr(cb, "_cb", cb)  # function inside smach.cb_interface
             if smach.has_smach_interface(cb):
                 inputs, outputs = cb.get_registered_input_keys(), cb.get_registered_output_keys()
                 view = smach.Remapper(userdata, inputs, outputs, {})
             code = getattr(function, "__code__", None)
             if getattr(function, "__self__", None) is None and code and code.co_argcount == 2:
-                cb(self, view)  # a function (self, userdata)
+                cb(self, view)  # function (self, userdata)
             else:
                 cb(view)
 {%- endmacro %}
