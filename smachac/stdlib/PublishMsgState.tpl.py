@@ -40,8 +40,8 @@ class PublishMsgState(smach.State):
         callback = optional(userdata, "callback")
         outcome = self.publisher.start(message, topic, rate, frame, callback)
         outputs = self.get_registered_output_keys()
-        write_outputs(userdata, outputs, ["msg", "output_msg", "msg_output"], message)
-        write_outputs(userdata, outputs, ["topic", "output_topic", "topic_output"], topic)
+        write_keys(userdata, outputs, ["msg", "output_msg", "msg_output"], message)
+        write_keys(userdata, outputs, ["topic", "output_topic", "topic_output"], topic)
         return outcome
 {% do defined_headers.append("class_PublishMsgState") %}
 {% endif %}

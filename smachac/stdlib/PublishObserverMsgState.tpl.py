@@ -36,8 +36,8 @@ class PublishObserverMsgState(smach.State):
             return "aborted"
         outcome = self.observer.add(message, topic, optional(userdata, "frame_id", ""))
         outputs = self.get_registered_output_keys()
-        write_outputs(userdata, outputs, ["msg", "output_msg", "msg_output"], message)
-        write_outputs(userdata, outputs, ["topic", "output_topic", "topic_output"], topic)
+        write_keys(userdata, outputs, ["msg", "output_msg", "msg_output"], message)
+        write_keys(userdata, outputs, ["topic", "output_topic", "topic_output"], topic)
         return outcome
 {% do defined_headers.append("class_PublishObserverMsgState") %}
 {% endif %}

@@ -12,7 +12,7 @@ def optional(userdata, key, default=None):
     return userdata[key] if key in userdata else default
 
 
-def write_outputs(userdata, outputs, names, value):
+def write_keys(userdata, outputs, names, value):
     """Write a value to each of the names that is an output key."""
     for name in names:
         if name in outputs:

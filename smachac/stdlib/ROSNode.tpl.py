@@ -1,9 +1,9 @@
 def start_node(name):
     """Start a ROS node. The first signal shuts it down; the second ends the program.
 
-    A thread performs the shutdown. The signal handler of rospy can cause a deadlock if the
-    interrupted code holds a lock. The thread reads the signal number from a pipe, because
-    Python runs no handler while the main thread is blocked.
+    A thread performs the shutdown: the signal handler of rospy can cause a deadlock if
+    the interrupted code holds a lock. The thread reads the signal number from a pipe,
+    because Python runs no signal handler while the main thread is blocked.
     """
     rospy.init_node(name, disable_signals=True)
     read, write = os.pipe()

@@ -36,7 +36,8 @@ class ReadTopicState(smach.State):
         message = message_class()
         message.deserialize(raw._buff)
         outputs = self.get_registered_output_keys()
-        write_outputs(userdata, outputs, ["output", "msg", "output_msg", "msg_output"], message)
+        names = ["output", "msg", "output_msg", "msg_output"]
+        write_keys(userdata, outputs, names, message)
         return "succeeded"
 
     def read(self, topic, kind):

@@ -48,9 +48,9 @@ class TransformMsgState(smach.State):
             smach.logerr(f"the message cannot be transformed: {error}")
             return "aborted"
         outputs = self.get_registered_output_keys()
-        write_outputs(userdata, outputs, ["output_msg", "msg", "msg_output"], result)
+        write_keys(userdata, outputs, ["output_msg", "msg", "msg_output"], result)
         names = ["transform", "output_transform", "transform_output"]
-        write_outputs(userdata, outputs, names, transform)
+        write_keys(userdata, outputs, names, transform)
         return "succeeded"
 
     def transform(self, userdata, message):

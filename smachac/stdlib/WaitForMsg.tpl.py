@@ -35,7 +35,8 @@ class WaitForMsgState(smach.State):
         end = None if self.timeout is None else rospy.Time.now() + rospy.Duration(self.timeout)
         with self.arrived:
             while self.message is None:
-                if must_stop(state or self) or (end is not None and rospy.Time.now() > end):
+                timed_out = end is not None and rospy.Time.now() > end
+                if timed_out or must_stop(state or self):
                     return None
                 self.arrived.wait(0.1)
             message = self.message
