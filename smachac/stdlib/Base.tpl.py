@@ -14,7 +14,7 @@ try:
     import smach_ros
 {%- endif %}
 
-except ImportError:  # SMACH is not on this machine: the same names without it
+except ImportError:  # without SMACH: smachac.runtime has the same names
     from smachac.runtime import smach
 {%- if smach_ros or introspection %}
     from smachac.runtime import smach_ros
@@ -47,7 +47,7 @@ except ImportError:  # SMACH is not on this machine: the same names without it
 
 {% block main_def %}
 def {{ function_name | default("main") | lower }}():
-    """Build the state machine, run it once and tell its outcome."""
+    """Build the state machine, run it once and print its outcome."""
 {% block node %}
 {% if is_node %}
     start_node({{ node_name | default(name) | literal }})

@@ -1,7 +1,7 @@
 {% extends "SimSkill.tpl.py" %}
 {% block class_defs %}
 class CheckGraspState(smach.State):
-    """Looks whether the gripper holds something."""
+    """Checks that the gripper holds a body."""
 
     def __init__(self, limb=None, body=None):
         super().__init__(outcomes=["succeeded", "aborted"])

@@ -1,7 +1,7 @@
 {% extends "SimSkill.tpl.py" %}
 {% block class_defs %}
 class CheckPlacedState(smach.State):
-    """Looks whether a body lies at rest where it was to be placed."""
+    """Checks that a body lies upright and at rest at its goal pose."""
 
     def __init__(self, body, tolerance=0.002):
         super().__init__(

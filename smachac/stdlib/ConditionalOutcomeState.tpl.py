@@ -1,6 +1,6 @@
 {% block class_defs %}
 class ConditionalOutcomeState(smach.State):
-    """Ends with the first of its outcomes whose condition holds, else the default."""
+    """Ends with the first outcome whose condition is true, otherwise the default."""
 
     def __init__(
         self, outcomes, callbacks, default_outcome, input_keys=(), output_keys=()
@@ -10,16 +10,16 @@ class ConditionalOutcomeState(smach.State):
             input_keys=list(input_keys),
             output_keys=list(output_keys),
         )
-        self.tells = "outcome" in output_keys
+        self.writes_outcome = "outcome" in output_keys
         self.conditions = [
             (name, callbacks[name]) for name in outcomes if name in callbacks
         ]
         self.default_outcome = default_outcome
 
     def execute(self, userdata):
-        holding = (name for name, holds in self.conditions if holds(userdata))
-        outcome = next(holding, self.default_outcome)
-        if self.tells:
+        names = (name for name, condition in self.conditions if condition(userdata))
+        outcome = next(names, self.default_outcome)
+        if self.writes_outcome:
             userdata["outcome"] = outcome
         return outcome
 {% endblock %}

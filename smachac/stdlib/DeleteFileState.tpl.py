@@ -4,7 +4,7 @@ import os
 {% endblock %}
 {% block class_defs %}
 class DeleteFileState(smach.State):
-    """Deletes the files that a pattern stands for."""
+    """Deletes the files that match a path pattern."""
 
     def __init__(self, input_keys=("file",), output_keys=()):
         super().__init__(
@@ -16,7 +16,7 @@ class DeleteFileState(smach.State):
     def execute(self, userdata):
         paths = glob.glob(userdata["file"])
         if not paths:
-            smach.logwarn(f"there is no file {userdata['file']}")
+            smach.logwarn(f"no file matches {userdata['file']}")
             return "aborted"
         try:
             for path in sorted(paths):

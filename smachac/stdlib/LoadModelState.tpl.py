@@ -1,7 +1,7 @@
 {% extends "SimSkill.tpl.py" %}
 {% block class_defs %}
 class LoadModelState(smach.State):
-    """Puts a model into the simulated world."""
+    """Adds a model to the simulated world."""
 
     def __init__(
         self, model_name, model_path=None, body=None, spread=(0, 0, 0), apart=None

@@ -1,7 +1,7 @@
 {% extends "SimSkill.tpl.py" %}
 {% block class_defs %}
 class MoveToJointPositionsState(smach.State):
-    """Moves one arm to a joint configuration."""
+    """Moves one arm to joint positions along a straight line in joint space."""
 
     def __init__(self, limb=None, speed=1.0):
         super().__init__(

@@ -4,14 +4,14 @@ import rospy
 {% endblock %}
 {% block class_defs %}
 class MsgPublisher:
-    """Publishes messages again and again, each topic in a thread that ends with the program."""
+    """Publishes messages periodically. Each topic has a daemon thread."""
 
     def __init__(self):
         self._lock = threading.Lock()
         self._stops = {}
 
     def start(self, msg, topic, rate, frame_id="", callback=None):
-        """Publish a message at a rate (Hz), in place of what the topic had before."""
+        """Publish a message at a rate in Hz; replace the publication on the topic."""
         if frame_id and hasattr(msg, "header"):
             msg.header.frame_id = frame_id
         self.stop(topic)
@@ -24,7 +24,7 @@ class MsgPublisher:
         return "succeeded"
 
     def stop(self, topic):
-        """Stop what is published to a topic, if anything is."""
+        """Stop the publication on a topic; `aborted` if there is none."""
         with self._lock:
             stop = self._stops.pop(topic, None)
         if stop is None:
@@ -33,7 +33,7 @@ class MsgPublisher:
         return "succeeded"
 
     def stop_all(self):
-        """Stop all that is published."""
+        """Stop all publications."""
         with self._lock:
             topics = list(self._stops)
         for topic in topics:

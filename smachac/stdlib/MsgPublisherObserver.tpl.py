@@ -4,7 +4,7 @@ import rospy
 {% endblock %}
 {% block class_defs %}
 class MsgPublisherObserver:
-    """Publishes messages each time that one comes in on another topic."""
+    """Publishes messages whenever a message arrives on the observed topic."""
 
     def __init__(self, sub_topic="tf"):
         self._lock = threading.Lock()
@@ -13,7 +13,7 @@ class MsgPublisherObserver:
         self._subscriber = None
 
     def add(self, msg, topic, frame_id=""):
-        """Publish a message to a topic from now on."""
+        """Add a publication on a topic."""
         if frame_id and hasattr(msg, "header"):
             msg.header.frame_id = frame_id
         publisher = rospy.Publisher(topic, type(msg), queue_size=1)
@@ -26,7 +26,7 @@ class MsgPublisherObserver:
         return "succeeded"
 
     def remove(self, topic):
-        """Publish no more to a topic."""
+        """Remove the publication on a topic; `aborted` if there is none."""
         with self._lock:
             publisher, _ = self._messages.pop(topic, (None, None))
         if publisher is None:
@@ -35,7 +35,7 @@ class MsgPublisherObserver:
         return "succeeded"
 
     def remove_all(self):
-        """Publish no more."""
+        """Remove all publications."""
         with self._lock:
             topics = list(self._messages)
         for topic in topics:

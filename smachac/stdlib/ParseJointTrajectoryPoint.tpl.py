@@ -4,7 +4,7 @@ from trajectory_msgs.msg import JointTrajectoryPoint
 {% endblock %}
 {% block defs %}
 def parse_jointtrajectorypoint(data):
-    """A JointTrajectoryPoint of a list of positions, or one itself."""
+    """Convert a list of joint positions to a JointTrajectoryPoint."""
     if isinstance(data, JointTrajectoryPoint):
         return data
     return JointTrajectoryPoint(positions=[float(each) for each in data])

@@ -1,6 +1,6 @@
 {% block meta %}
 name: ParseMessages
-description: Lists of numbers as messages, for the Parse templates and the states that publish.
+description: Functions that convert lists of numbers to messages.
 type: None
 {% endblock meta %}
 {% block imports %}
@@ -10,7 +10,7 @@ from sensor_msgs.msg import PointCloud, PointCloud2, PointField
 {% endblock %}
 {% block defs %}
 def parse_point(data):
-    """A Point of `[x, y, z]`, a Point, a Point32 or a PointStamped."""
+    """Convert `[x, y, z]`, a Point, a Point32 or a PointStamped to a Point."""
     if isinstance(data, PointStamped):
         return data.point
     if isinstance(data, Point):
@@ -22,7 +22,7 @@ def parse_point(data):
 
 
 def parse_pose(data):
-    """A Pose of `[[x, y, z], [qx, qy, qz, qw]]`, a Pose or a PoseStamped."""
+    """Convert `[[x, y, z], [qx, qy, qz, qw]]`, a Pose or a PoseStamped to a Pose."""
     if isinstance(data, PoseStamped):
         return data.pose
     if isinstance(data, Pose):
@@ -32,7 +32,7 @@ def parse_pose(data):
 
 
 def stamped(kind, part, data, value):
-    """A stamped message; one that is stamped already keeps its frame."""
+    """`data` if its type is `kind`, else a message with the value and a time stamp."""
     if isinstance(data, kind):
         return data
     message = kind(**{part: value})
@@ -41,24 +41,24 @@ def stamped(kind, part, data, value):
 
 
 def parse_pointstamped(data):
-    """A PointStamped of whatever `parse_point` takes."""
+    """Convert a PointStamped, or an argument of `parse_point`, to a PointStamped."""
     return stamped(PointStamped, "point", data, parse_point(data))
 
 
 def parse_posestamped(data):
-    """A PoseStamped of whatever `parse_pose` takes."""
+    """Convert a PoseStamped, or an argument of `parse_pose`, to a PoseStamped."""
     return stamped(PoseStamped, "pose", data, parse_pose(data))
 
 
 def parse_posearray(data):
-    """A PoseArray of a list of poses."""
+    """Convert a list of poses or a PoseArray to a PoseArray."""
     if isinstance(data, PoseArray):
         return data
     return stamped(PoseArray, "poses", data, [parse_pose(each) for each in data])
 
 
 def parse_pointcloud(data):
-    """A PointCloud of a list of points."""
+    """Convert a list of points or a PointCloud to a PointCloud."""
     if isinstance(data, PointCloud):
         return data
     points = [Point32(*map(float, each)) for each in data]
@@ -66,7 +66,7 @@ def parse_pointcloud(data):
 
 
 def parse_pointcloud2(data):
-    """A PointCloud2 of a list of points."""
+    """Convert a list of points or a PointCloud2 to a PointCloud2."""
     if isinstance(data, PointCloud2):
         return data
     points = [tuple(map(float, each)) for each in data]
@@ -89,7 +89,10 @@ def parse_pointcloud2(data):
 
 
 def parse_transformstamped(data):
-    """A TransformStamped of `[[x, y, z], [qx, qy, qz, qw]]`, a Transform or one itself."""
+    """Convert a transform to a TransformStamped.
+
+    `data`: `[[x, y, z], [qx, qy, qz, qw]]`, a Transform or a TransformStamped.
+    """
     if isinstance(data, TransformStamped):
         return data
     if not isinstance(data, Transform):
@@ -112,8 +115,11 @@ PARSERS = {
 
 
 def parse_message(data, kind=None):
-    """A message: as it is, or made of lists of numbers; without a type by their shape, and with a
-    time stamp where there is a message of the kind that has one."""
+    """Convert lists of numbers to a message of type `kind`; a message stays as it is.
+
+    Without `kind`, the shape of the lists determines the message type, and a Point or a
+    Pose becomes a stamped message. Raises ValueError for an unknown `kind`.
+    """
     if kind is None and isinstance(data, (Point, Point32)):
         return parse_pointstamped(data)
     if kind is None and isinstance(data, Pose):
@@ -122,7 +128,7 @@ def parse_message(data, kind=None):
         return data
     if kind is not None:
         if kind not in PARSERS:
-            raise ValueError(f"no list of numbers is known to be a {kind}")
+            raise ValueError(f"lists of numbers cannot be converted to {kind}")
         return PARSERS[kind](data)
     if len(data) == 2 and len(data[0]) == 3 and len(data[1]) == 4:
         return parse_posestamped(data)

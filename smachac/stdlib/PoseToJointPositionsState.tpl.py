@@ -1,7 +1,7 @@
 {% extends "SimSkill.tpl.py" %}
 {% block class_defs %}
 class PoseToJointPositionsState(smach.State):
-    """Solves inverse kinematics: joint positions that bring the tool to a pose."""
+    """Computes the joint positions for a tool pose (inverse kinematics)."""
 
     def __init__(self, limb=None, grasp=False):
         super().__init__(

@@ -1,6 +1,6 @@
 {% block class_defs %}
 class PrintUserdataState(smach.State):
-    """Prints its input keys, one a line."""
+    """Prints the input keys and their values, one key per line."""
 
     def __init__(self, input_keys=()):
         super().__init__(outcomes=["succeeded"], input_keys=list(input_keys))

@@ -11,7 +11,7 @@ import struct
 {% block class_defs %}
 {% if "class_PublishMsgState" not in defined_headers %}
 class PublishMsgState(smach.State):
-    """Starts or stops publishing a message again and again."""
+    """Starts or stops the periodic publication of a message on a topic."""
 
     publisher = MsgPublisher()
 
@@ -33,15 +33,15 @@ class PublishMsgState(smach.State):
         try:
             message = parse_message(userdata["msg"], optional(userdata, "msg_type"))
         except (TypeError, ValueError) as error:
-            smach.logerr(f"this is no message: {error}")
+            smach.logerr(f"the message is invalid: {error}")
             return "aborted"
         frame = optional(userdata, "frame_id", "")
         rate = optional(userdata, "rate", 100.0)
         callback = optional(userdata, "callback")
         outcome = self.publisher.start(message, topic, rate, frame, callback)
         outputs = self.get_registered_output_keys()
-        give(userdata, outputs, ["msg", "output_msg", "msg_output"], message)
-        give(userdata, outputs, ["topic", "output_topic", "topic_output"], topic)
+        write_keys(userdata, outputs, ["msg", "output_msg", "msg_output"], message)
+        write_keys(userdata, outputs, ["topic", "output_topic", "topic_output"], topic)
         return outcome
 {% do defined_headers.append("class_PublishMsgState") %}
 {% endif %}

@@ -9,7 +9,7 @@ import struct
 {% block class_defs %}
 {% if "class_PublishObserverMsgState" not in defined_headers %}
 class PublishObserverMsgState(smach.State):
-    """Publishes a message each time that one comes in on another topic; or stops that."""
+    """Publishes a message whenever a message arrives on another topic."""
 
     observers = {}
 
@@ -32,12 +32,12 @@ class PublishObserverMsgState(smach.State):
         try:
             message = parse_message(userdata["msg"], optional(userdata, "msg_type"))
         except (TypeError, ValueError) as error:
-            smach.logerr(f"this is no message: {error}")
+            smach.logerr(f"the message is invalid: {error}")
             return "aborted"
         outcome = self.observer.add(message, topic, optional(userdata, "frame_id", ""))
         outputs = self.get_registered_output_keys()
-        give(userdata, outputs, ["msg", "output_msg", "msg_output"], message)
-        give(userdata, outputs, ["topic", "output_topic", "topic_output"], topic)
+        write_keys(userdata, outputs, ["msg", "output_msg", "msg_output"], message)
+        write_keys(userdata, outputs, ["topic", "output_topic", "topic_output"], topic)
         return outcome
 {% do defined_headers.append("class_PublishObserverMsgState") %}
 {% endif %}

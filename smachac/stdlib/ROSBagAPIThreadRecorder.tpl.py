@@ -7,13 +7,13 @@ import rostopic
 {% endblock %}
 {% block class_defs %}
 class ROSBagAPIThreadRecorder:
-    """Records topics to bags in this process."""
+    """Records topics to bags in the process of the program."""
 
     def __init__(self):
         self._recordings = {}
 
     def start(self, file, topics):
-        """Record topics to a file until it is stopped, or the node shuts down."""
+        """Start a recording; it ends with `stop` or with the shutdown of the node."""
         if file in self._recordings:
             return "aborted"
         if not self._recordings:
@@ -30,14 +30,14 @@ class ROSBagAPIThreadRecorder:
             topic = rospy.resolve_name(topic)
             kind, name, _ = rostopic.get_topic_class(topic, blocking=False)
             if kind is None:
-                smach.logwarn(f"nobody publishes {topic}: it is not recorded")
+                smach.logwarn(f"topic {topic} has no publisher and is not recorded")
                 continue
             subscribers.append(rospy.Subscriber(name, kind, write, callback_args=name))
         self._recordings[file] = (bag, lock, subscribers)
         return "succeeded"
 
     def stop(self, file):
-        """Stop a recording; its bag is whole when this returns."""
+        """Stop a recording and close its bag."""
         if file not in self._recordings:
             return "aborted"
         bag, lock, subscribers = self._recordings.pop(file)

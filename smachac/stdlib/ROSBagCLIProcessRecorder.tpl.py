@@ -7,13 +7,13 @@ import rospy
 {% endblock %}
 {% block class_defs %}
 class ROSBagCLIProcessRecorder:
-    """Records topics to bags with `rosbag record`, each bag by a process of its own."""
+    """Records topics to bags; each bag has a `rosbag record` process."""
 
     def __init__(self):
         self._processes = {}
 
     def start(self, file, topics):
-        """Record topics to a file until it is stopped, or the node shuts down."""
+        """Start a recording; it ends with `stop` or with the shutdown of the node."""
         if file in self._processes:
             return "aborted"
         if not self._processes:
@@ -22,16 +22,19 @@ class ROSBagCLIProcessRecorder:
         try:
             process = self._processes[file] = subprocess.Popen(command)
         except OSError as error:
-            smach.logerr(f"rosbag does not start: {error}")
+            smach.logerr(f"rosbag cannot start: {error}")
             return "aborted"
-        if self._comes_to(file, recording=True, process=process):
+        if self._wait_until(file, recording=True, process=process):
             return "succeeded"
         smach.logerr(f"rosbag does not record to {file}")
         self.stop(file)
         return "aborted"
 
-    def _comes_to(self, file, recording, process=None):
-        """Whether the recording begins, or ends; till then `.active` is added to its name."""
+    def _wait_until(self, file, recording, process=None):
+        """Wait up to 30 s for the start (`recording`) or the end of a recording.
+
+        During a recording, the name of the bag ends with `.active`.
+        """
         active = file if file.endswith(".bag") else f"{file}.bag"
         end = time.monotonic() + 30.0
         while process is None or process.poll() is None:
@@ -43,7 +46,7 @@ class ROSBagCLIProcessRecorder:
         return False
 
     def stop(self, file):
-        """Stop a recording; its bag is whole when this returns."""
+        """Stop a recording and wait until its bag is complete."""
         process = self._processes.pop(file, None)
         if process is None:
             return "aborted"
@@ -54,8 +57,8 @@ class ROSBagCLIProcessRecorder:
             process.kill()
             process.wait()
             return "aborted"
-        # `rosbag` ends before the recorder that it started.
-        return "succeeded" if self._comes_to(file, recording=False) else "aborted"
+        # The process `rosbag` ends before its child process, which writes the bag.
+        return "succeeded" if self._wait_until(file, recording=False) else "aborted"
 
     def stop_all(self):
         """Stop all recordings."""

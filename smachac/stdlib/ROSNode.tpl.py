@@ -1,15 +1,16 @@
 def start_node(name):
-    """Make the program a node that a signal shuts down, and a second one ends.
+    """Start a ROS node. The first signal shuts it down; the second ends the program.
 
-    A thread does it: rospy's own handler waits for ever when what it interrupts holds a lock. It
-    reads the signal from a pipe, for the main thread may go on waiting and run no handler.
+    A thread performs the shutdown: the signal handler of rospy can cause a deadlock if
+    the interrupted code holds a lock. The thread reads the signal number from a pipe,
+    because Python runs no signal handler while the main thread is blocked.
     """
     rospy.init_node(name, disable_signals=True)
     read, write = os.pipe()
     os.set_blocking(write, False)
     signal.set_wakeup_fd(write)
 
-    def note(number, frame):
+    def handle_signal(number, frame):
         signal.signal(signal.SIGINT, signal.default_int_handler)
         signal.signal(signal.SIGTERM, signal.SIG_DFL)
 
@@ -21,19 +22,21 @@ def start_node(name):
         threading.Thread(target=rospy.signal_shutdown, args=[reason], daemon=False).start()
 
     threading.Thread(target=shut_down, daemon=True).start()
-    signal.signal(signal.SIGINT, note)
-    signal.signal(signal.SIGTERM, note)
+    signal.signal(signal.SIGINT, handle_signal)
+    signal.signal(signal.SIGTERM, handle_signal)
 
 
 def preempt_at_shutdown(machine):
-    """Let a machine end by itself, for up to 5 s, before the node shuts down."""
+    """Preempt a state machine before the node shuts down and wait up to 5 s."""
 
     def preempt():
         end = time.monotonic() + 5.0
         machine.request_preempt()
         while machine.is_running():
             if time.monotonic() > end:
-                smach.logwarn("the machine goes on for 5 s: the node shuts down")
+                smach.logwarn(
+                    "the state machine did not end within 5 s: the node shuts down"
+                )
                 break
             time.sleep(0.02)
 

@@ -6,7 +6,7 @@ try:
 {%- if smach_ros or introspection %}
     import smach_ros
 {%- endif %}
-except ImportError:  # ROS without SMACH, as Debian has it
+except ImportError:  # without SMACH: smachac.runtime has the same names
     from smachac.runtime import smach
 {%- if smach_ros or introspection %}
     from smachac.runtime import smach_ros
@@ -16,7 +16,7 @@ except ImportError:  # ROS without SMACH, as Debian has it
 {% include "ROSNode.tpl.py" %}
 {%- endblock %}
 {%- block main %}
-    """Run the state machine once as a node and return its outcome."""
+    """Run the state machine once as a ROS node and return its outcome."""
     start_node({{ node_name | default(name) | literal }})
     {{ sm_name }} = build()
     preempt_at_shutdown({{ sm_name }})

@@ -6,7 +6,7 @@ import sys
 {% endblock %}
 {% block class_defs %}
 class ReadTopicState(smach.State):
-    """Reads one message from the topic that the userdata names."""
+    """Reads one message from the topic whose name is the input `topic`."""
 
     def __init__(self, timeout=None, input_keys=("topic",), output_keys=("output",), outcomes=("succeeded", "aborted", "preempted")):
         super().__init__(
@@ -21,24 +21,27 @@ class ReadTopicState(smach.State):
         kind = optional(userdata, "msg_type")
         raw = self.read(topic, rospy.AnyMsg)
         if raw is None:
-            return given_up(self)
+            return preempted_or_aborted(self)
         if kind:
             message_class = roslib.message.get_message_class(kind)
-        else:  # a publisher does not decide what is imported
+        else:  # security: only a module that the program imports is used
             kind = raw._connection_header["type"]
             package, _, name = kind.partition("/")
             message_class = getattr(sys.modules.get(f"{package}.msg"), name, None)
         if message_class is None:
-            smach.logerr(f"{kind} of {topic} is not installed, or neither imported nor in msg_type")
+            smach.logerr(
+                f"{topic}: type {kind} is not available; import it or set msg_type"
+            )
             return "aborted"
         message = message_class()
         message.deserialize(raw._buff)
         outputs = self.get_registered_output_keys()
-        give(userdata, outputs, ["output", "msg", "output_msg", "msg_output"], message)
+        names = ["output", "msg", "output_msg", "msg_output"]
+        write_keys(userdata, outputs, names, message)
         return "succeeded"
 
     def read(self, topic, kind):
-        """The next message on a topic, or None."""
+        """The next message on a topic, or None after a timeout or a preempt request."""
         with WaitForMsgState(topic, kind, latch=True, timeout=self.timeout) as reader:
             return reader.wait_for_message(self)
 {% endblock %}

@@ -6,7 +6,7 @@
 {% block class_defs %}
 {% if "class_RecordROSBagState" not in defined_headers %}
 class RecordROSBagState(smach.State):
-    """Starts or stops a recording of topics to a bag."""
+    """Starts or stops the recording of topics to a ROS bag."""
 
     recorders = {}
 
@@ -25,7 +25,7 @@ class RecordROSBagState(smach.State):
         file = optional(userdata, "file")
         topics = optional(userdata, "topics", [])
         if not isinstance(file, str) or not all(isinstance(each, str) for each in topics):
-            smach.logerr("`file` is the name of a bag, and `topics` are names")
+            smach.logerr("`file` must be a string and `topics` a list of strings")
             return "aborted"
         if self.action == "stop":
             return self.recorder.stop(file)

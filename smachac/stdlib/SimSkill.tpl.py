@@ -3,7 +3,7 @@ from smachac import sim
 {% endblock %}
 {% block defs %}
 def outcome_of(state, result):
-    """The outcome of a skill; the reason is logged when it did not succeed."""
+    """The outcome of a skill; unless it is `succeeded`, the reason is logged."""
     if result.outcome == "preempted":
         state.service_preempt()
     if result.outcome != "succeeded":
@@ -12,7 +12,7 @@ def outcome_of(state, result):
 
 
 def optional(userdata, key):
-    """The value under a key that may be absent, else None."""
+    """The value of a userdata key, or None if the key is absent."""
     if key in userdata:
         return userdata[key]
     return None

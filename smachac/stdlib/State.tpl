@@ -1,11 +1,11 @@
 {% block meta %}
 name: State
-description: What templates that print their states themselves have in common, but for the line that adds the state.
+description: Blocks and macros for templates in the style of SMACHA, without the line that adds the state.
 language: Python
 framework: SMACH
 type: None
 {% endblock meta %}
-{#- Templates that extend this one use the macros without an import of their own, as in SMACHA. -#}
+{#- Templates that extend this template use the macros without an import, as in SMACHA. -#}
 {% from "Utils.tpl.py" import render_input_keys, render_output_keys, render_outcomes, render_callbacks %}
 {% from "Utils.tpl.py" import render_transitions, render_remapping, render_def_lambda_callbacks, render_userdata %}
 {% block base_header %}{% endblock base_header %}

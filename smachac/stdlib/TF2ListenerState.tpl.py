@@ -2,7 +2,7 @@
 {% include "TF2ListenerSingleton.tpl.py" %}
 {% block class_defs %}
 class TF2ListenerState(smach.State):
-    """Waits for a transform of tf; a request to stop and a shutdown end the wait."""
+    """Waits for a tf2 transform; a preempt request or a shutdown ends the wait."""
 
     def __init__(self, timeout=10.0, outcomes=("succeeded", "aborted", "preempted")):
         super().__init__(
@@ -16,7 +16,7 @@ class TF2ListenerState(smach.State):
         target, source = userdata["target"], userdata["source"]
         transform = TF2ListenerSingleton.look_up(self, target, source, self.timeout)
         if transform is None:
-            return given_up(self)
+            return preempted_or_aborted(self)
         userdata["output"] = transform
         return "succeeded"
 {% endblock %}

@@ -9,7 +9,7 @@ from geometry_msgs.msg import Quaternion, Vector3
 {% endblock %}
 {% block defs %}
 def transformed(message, transform):
-    """A message in another frame. Raises TypeError for types that tf2 cannot transform."""
+    """Transform a message to another frame. Raises TypeError for unsupported types."""
     if isinstance(message, PointStamped):
         return tf2_geometry_msgs.do_transform_point(message, transform)
     if isinstance(message, PoseStamped):
@@ -22,11 +22,11 @@ def transformed(message, transform):
         part = "point" if isinstance(message, Point) else "pose"
         kind = PointStamped if part == "point" else PoseStamped
         return getattr(transformed(kind(**{part: message}), transform), part)
-    raise TypeError(f"a {type(message).__name__} cannot be transformed")
+    raise TypeError(f"the type {type(message).__name__} is not supported")
 {% endblock %}
 {% block class_defs %}
 class TransformMsgState(smach.State):
-    """Transforms a message from one frame to another."""
+    """Transforms a message to another frame."""
 
     def __init__(self, transform_type="transform", timeout=10.0, input_keys=("msg", "frame_id"), output_keys=("output_msg",), outcomes=("succeeded", "aborted", "preempted")):
         super().__init__(
@@ -42,19 +42,19 @@ class TransformMsgState(smach.State):
             message = parse_message(userdata["msg"], optional(userdata, "msg_type"))
             transform = self.transform(userdata, message)
             if transform is None:
-                return given_up(self)
+                return preempted_or_aborted(self)
             result = transformed(message, transform)
         except (TypeError, ValueError) as error:
             smach.logerr(f"the message cannot be transformed: {error}")
             return "aborted"
         outputs = self.get_registered_output_keys()
-        give(userdata, outputs, ["output_msg", "msg", "msg_output"], result)
+        write_keys(userdata, outputs, ["output_msg", "msg", "msg_output"], result)
         names = ["transform", "output_transform", "transform_output"]
-        give(userdata, outputs, names, transform)
+        write_keys(userdata, outputs, names, transform)
         return "succeeded"
 
     def transform(self, userdata, message):
-        """The part of the transform that is applied, or None: tf does not have it."""
+        """The applied part of the transform; None if tf2 does not provide it."""
         if "transform" in userdata:
             found = parse_transformstamped(userdata["transform"])
         else:
@@ -62,7 +62,7 @@ class TransformMsgState(smach.State):
             header = getattr(message, "header", None)
             source = optional(userdata, "source") or getattr(header, "frame_id", "")
             if not target or not source:
-                raise ValueError("it wants a frame to come from, and one to go to")
+                raise ValueError("the source frame or the target frame is missing")
             found = TF2ListenerSingleton.look_up(self, target, source, self.timeout)
         if found is not None:
             found = copy.deepcopy(found)

@@ -1,12 +1,12 @@
 {% block meta %}
 name: Utils
-description: Macros for templates that print their states themselves, under the names SMACHA had.
+description: Macros for templates in the style of SMACHA, with the names of SMACHA.
 language: Python
 framework: SMACH
 type: None
 {% endblock meta %}
 
-{#- Lists and mappings as arguments of calls. -#}
+{#- Macros that print lists and mappings as arguments of calls. -#}
 
 {%- macro _names(argument, values, indent) -%}
 {{ argument | indent(indent, true) }}{{ values | list | literal }}
@@ -32,7 +32,7 @@ type: None
 {%- macro render_remapping(remapping, indent=23) %}{{ _pairs("remapping=", remapping, indent) }}{% endmacro %}
 {%- macro render_outcome_map(outcome_map, indent=35) %}{{ _pairs("outcome_map=", outcome_map, indent) }}{% endmacro %}
 
-{#- Userdata of a container, one line a key. -#}
+{#- Userdata of a container, one line per key. -#}
 
 {%- macro render_userdata(namespace, userdata) -%}
 {% for key, value in userdata.items() | sort(attribute="0") %}
@@ -40,15 +40,15 @@ type: None
 {% endfor %}
 {%- endmacro %}
 
-{#- Callbacks: a lambda becomes a function that writes its key; a name is that of a function which
-    the template defines. Both run in the order of their names, on the keys that they declare. -#}
+{#- Callbacks: a lambda becomes a function that writes its output key; a name refers to a function
+    of the template. The functions run in alphabetical order and use the keys that they declare. -#}
 
 {%- macro _callback_name(key, state_name, uuid) -%}
 {{ key | lower | word }}_{{ state_name | lower | word }}_{{ uuid }}_lambda_cb
 {%- endmacro %}
 
-{#- Takes (defined_headers, class_name, state_name, uuid, input_keys, outcomes, callbacks), and what
-    older templates pass: without outcomes, without class_name, without uuid. -#}
+{#- Arguments: (defined_headers, class_name, state_name, uuid, input_keys, outcomes, callbacks);
+    calls of older templates omit outcomes, class_name or uuid. -#}
 {%- macro render_def_lambda_callbacks(defined_headers) -%}
 {% set callbacks = varargs[-1] %}
 {% set outcomes = varargs[4] if varargs | length > 5 and varargs[4] is defined and varargs[4] else ["succeeded"] %}
@@ -69,7 +69,7 @@ def {{ function }}(userdata):
 {% endfor %}
 {%- endmacro %}
 
-{#- Takes (state_name, uuid, callbacks), older templates (state_name, callbacks). -#}
+{#- Arguments: (state_name, uuid, callbacks), in older templates (state_name, callbacks). -#}
 {%- macro render_callbacks(state_name, uuid, callbacks, indent=51) -%}
 {% if callbacks is not mapping %}{% set callbacks, uuid = uuid, "" %}{% endif -%}
 {{ "callbacks=" | indent(indent, true) }}{
@@ -83,7 +83,7 @@ def {{ function }}(userdata):
         named = callbacks if isinstance(callbacks, dict) else {name: name for name in callbacks or ()}
         self._cbs = [named[name] for name in sorted(named)]
         for index, cb in enumerate(self._cbs):
-            if isinstance(cb, str):  # the name of a function, or of a method of this class
+            if isinstance(cb, str):  # name of a function or of a method of this class
                 self._cbs[index] = cb = globals()[cb] if cb in globals() else getattr(self, cb)
             if smach.has_smach_interface(cb):
                 self.register_input_keys(cb.get_registered_input_keys())
@@ -93,18 +93,18 @@ def {{ function }}(userdata):
 
 {%- macro render_execute_callbacks() %}
         for cb in self._cbs:
-            view, function = userdata, getattr(cb, "_cb", cb)  # of smach.cb_interface
+            view, function = userdata, getattr(cb, "_cb", cb)  # function inside smach.cb_interface
             if smach.has_smach_interface(cb):
                 inputs, outputs = cb.get_registered_input_keys(), cb.get_registered_output_keys()
                 view = smach.Remapper(userdata, inputs, outputs, {})
             code = getattr(function, "__code__", None)
             if getattr(function, "__self__", None) is None and code and code.co_argcount == 2:
-                cb(self, view)  # a function (self, userdata)
+                cb(self, view)  # function (self, userdata)
             else:
                 cb(view)
 {%- endmacro %}
 
-{#- Imports, each once. -#}
+{#- Imports; each import is printed once. -#}
 
 {%- macro _once(defined_headers, header, line) -%}
 {%- if header not in defined_headers -%}

@@ -3,7 +3,7 @@ import csv
 {% endblock %}
 {% block defs %}
 def columns(name, value, ignored):
-    """Pairs of a column's name and its value; a message has one for each field."""
+    """Pairs of column name and value; each field of a message is one column."""
     fields = getattr(value, "__slots__", None)
     if fields is None or isinstance(value, (str, int, float)):
         return [(name, value)]
@@ -15,7 +15,10 @@ def columns(name, value, ignored):
 {% endblock %}
 {% block class_defs %}
 class WriteCSVFileState(smach.State):
-    """Writes keys of the userdata to a CSV file: a row, or one for each item of a lone list."""
+    """Writes values of userdata keys to one row of a CSV file.
+
+    If the only value is a list, each item of the list is one row.
+    """
 
     def __init__(self, delimiter=",", input_keys=("file", "data_keys"), output_keys=()):
         super().__init__(
@@ -35,14 +38,14 @@ class WriteCSVFileState(smach.State):
                 writer.writerow(header)
                 writer.writerows([value for _, value in row] for row in rows)
         except (KeyError, OSError) as error:
-            smach.logwarn(f"the CSV file is not written: {error}")
+            smach.logwarn(f"the CSV file cannot be written: {error}")
             return "aborted"
         if "header" in self.get_registered_output_keys():
             userdata["header"] = header
         return "succeeded"
 
     def rows(self, userdata):
-        """The rows as pairs of name and value."""
+        """The rows as lists of pairs of column name and value."""
         ignored = userdata["ignore"] if "ignore" in userdata else ["header"]
         keys = userdata["data_keys"]
         values = [(key, userdata[key]) for key in keys]

@@ -187,10 +187,10 @@ def test_one_state_type(
     assert main(["states", "GripperState"]) == 0
     assert capsys.readouterr().out == (
         "GripperState: a state (built-in)\n\nOpens or closes a gripper.\n\nvariables:\n"
-        "  limb: str? = null                        The arm; the only one if left out.\n"
+        "  limb: str? = null                        Name of the arm; null means the only arm.\n"
         "  command: one_of[open, close] (required)\n\noutput keys:\n"
-        "  width: float<m>  Between the fingers.\n\noutcomes:\n  succeeded\n"
-        "  aborted    It did not open, or closed on nothing.\n  preempted\n\n"
+        "  width: float<m>  Distance between the fingers, in metres.\n\noutcomes:\n  succeeded\n"
+        "  aborted    The gripper did not open, or it closed but holds no body.\n  preempted\n\n"
         "It claims gripper.{limb} while it runs.\nIt waits for the outside world.\n"
         "It has code for: cpp, python.\n"
     )

@@ -101,7 +101,7 @@ def test_a_signal_in_a_state_that_looks_only_for_a_shutdown(
     program.expect("begins to listen")
     program.send(number)
     assert program.end() == 0
-    assert "the machine goes on for 5 s" in program.output
+    assert "the state machine did not end within 5 s" in program.output
     assert program.output.endswith("outcome: preempted\n")
 
 

@@ -3,12 +3,12 @@
 
 try:
     import smach
-except ImportError:  # no ROS on this machine: the same names without it
+except ImportError:  # without SMACH: smachac.runtime has the same names
     from smachac.runtime import smach
 
 
 class CallbacksState(smach.State):
-    """Calls functions of the userdata, keeps what each returns under its own name."""
+    """Calls functions of the userdata and writes each result to an output key."""
 
     def __init__(self, callbacks=(), input_keys=(), output_keys=()):
         super().__init__(
@@ -23,7 +23,7 @@ class CallbacksState(smach.State):
             function = self.callbacks[key]
             if not smach.has_smach_interface(function):
                 userdata[key] = function(userdata)
-            else:  # it writes its keys itself
+            else:  # the function writes its output keys
                 inputs = function.get_registered_input_keys()
                 outputs = function.get_registered_output_keys()
                 function(smach.Remapper(userdata, inputs, outputs, {}))
@@ -31,7 +31,7 @@ class CallbacksState(smach.State):
 
 
 class PrintUserdataState(smach.State):
-    """Prints its input keys, one a line."""
+    """Prints the input keys and their values, one key per line."""
 
     def __init__(self, input_keys=()):
         super().__init__(outcomes=["succeeded"], input_keys=list(input_keys))

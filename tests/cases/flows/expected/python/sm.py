@@ -5,12 +5,12 @@ from smachac import sim
 
 try:
     import smach
-except ImportError:  # no ROS on this machine: the same names without it
+except ImportError:  # without SMACH: smachac.runtime has the same names
     from smachac.runtime import smach
 
 
 def outcome_of(state, result):
-    """The outcome of a skill; the reason is logged when it did not succeed."""
+    """The outcome of a skill; unless it is `succeeded`, the reason is logged."""
     if result.outcome == "preempted":
         state.service_preempt()
     if result.outcome != "succeeded":
@@ -19,7 +19,7 @@ def outcome_of(state, result):
 
 
 def optional(userdata, key):
-    """The value under a key that may be absent, else None."""
+    """The value of a userdata key, or None if the key is absent."""
     if key in userdata:
         return userdata[key]
     return None
@@ -102,7 +102,7 @@ def stoppable_again(machine):
 
 
 class PoseToJointPositionsState(smach.State):
-    """Solves inverse kinematics: joint positions that bring the tool to a pose."""
+    """Computes the joint positions for a tool pose (inverse kinematics)."""
 
     def __init__(self, limb=None, grasp=False):
         super().__init__(
@@ -127,7 +127,7 @@ class PoseToJointPositionsState(smach.State):
 
 
 class MoveToJointPositionsState(smach.State):
-    """Moves one arm to a joint configuration."""
+    """Moves one arm to joint positions along a straight line in joint space."""
 
     def __init__(self, limb=None, speed=1.0):
         super().__init__(
@@ -145,7 +145,7 @@ class MoveToJointPositionsState(smach.State):
 
 
 class CallbacksState(smach.State):
-    """Calls functions of the userdata, keeps what each returns under its own name."""
+    """Calls functions of the userdata and writes each result to an output key."""
 
     def __init__(self, callbacks=(), input_keys=(), output_keys=()):
         super().__init__(
@@ -160,7 +160,7 @@ class CallbacksState(smach.State):
             function = self.callbacks[key]
             if not smach.has_smach_interface(function):
                 userdata[key] = function(userdata)
-            else:  # it writes its keys itself
+            else:  # the function writes its output keys
                 inputs = function.get_registered_input_keys()
                 outputs = function.get_registered_output_keys()
                 function(smach.Remapper(userdata, inputs, outputs, {}))
@@ -168,9 +168,9 @@ class CallbacksState(smach.State):
 
 
 class ScriptedState(smach.State):
-    """Ends as it is told: visit n does step n, the last step is repeated.
+    """Ends with scripted outcomes: visit n performs step n; the last step repeats.
 
-    Asked to stop, it ends as `preempted` where it has that outcome.
+    After a preempt request, the outcome is `preempted` if the state has that outcome.
     """
 
     def __init__(self, outcomes, steps=(), input_keys=(), output_keys=()):

@@ -5,7 +5,7 @@ import threading
 
 try:
     import smach
-except ImportError:  # no ROS on this machine: the same names without it
+except ImportError:  # without SMACH: smachac.runtime has the same names
     from smachac.runtime import smach
 
 
@@ -116,7 +116,10 @@ def ends_preempted(container):
 
 
 class SleepState(smach.State):
-    """Waits for `time` seconds, a number or a function of userdata; a preempt request ends it."""
+    """Waits for `time` seconds: a number, or a function of the userdata.
+
+    A preempt request ends the wait.
+    """
 
     def __init__(self, time, input_keys=(), outcomes=("succeeded", "preempted")):
         super().__init__(
@@ -124,15 +127,15 @@ class SleepState(smach.State):
             input_keys=list(input_keys),
         )
         self.time = time
-        self.woken = threading.Event()
+        self.end_of_wait = threading.Event()
 
     def request_preempt(self):
         super().request_preempt()
-        self.woken.set()
+        self.end_of_wait.set()
 
     def execute(self, userdata):
-        self.woken.wait(self.time(userdata) if callable(self.time) else self.time)
-        self.woken.clear()
+        self.end_of_wait.wait(self.time(userdata) if callable(self.time) else self.time)
+        self.end_of_wait.clear()
         if self.preempt_requested() and "preempted" in self.get_registered_outcomes():
             self.service_preempt()
             return "preempted"
@@ -140,9 +143,9 @@ class SleepState(smach.State):
 
 
 class ScriptedState(smach.State):
-    """Ends as it is told: visit n does step n, the last step is repeated.
+    """Ends with scripted outcomes: visit n performs step n; the last step repeats.
 
-    Asked to stop, it ends as `preempted` where it has that outcome.
+    After a preempt request, the outcome is `preempted` if the state has that outcome.
     """
 
     def __init__(self, outcomes, steps=(), input_keys=(), output_keys=()):
@@ -166,7 +169,7 @@ class ScriptedState(smach.State):
 
 
 class CallbacksState(smach.State):
-    """Calls functions of the userdata, keeps what each returns under its own name."""
+    """Calls functions of the userdata and writes each result to an output key."""
 
     def __init__(self, callbacks=(), input_keys=(), output_keys=()):
         super().__init__(
@@ -181,7 +184,7 @@ class CallbacksState(smach.State):
             function = self.callbacks[key]
             if not smach.has_smach_interface(function):
                 userdata[key] = function(userdata)
-            else:  # it writes its keys itself
+            else:  # the function writes its output keys
                 inputs = function.get_registered_input_keys()
                 outputs = function.get_registered_output_keys()
                 function(smach.Remapper(userdata, inputs, outputs, {}))
@@ -189,7 +192,7 @@ class CallbacksState(smach.State):
 
 
 class PrintUserdataState(smach.State):
-    """Prints its input keys, one a line."""
+    """Prints the input keys and their values, one key per line."""
 
     def __init__(self, input_keys=()):
         super().__init__(outcomes=["succeeded"], input_keys=list(input_keys))

@@ -5,7 +5,7 @@ import threading
 
 try:
     import smach
-except ImportError:  # no ROS on this machine: the same names without it
+except ImportError:  # without SMACH: smachac.runtime has the same names
     from smachac.runtime import smach
 
 
@@ -86,9 +86,9 @@ def stoppable_again(machine):
 
 
 class ScriptedState(smach.State):
-    """Ends as it is told: visit n does step n, the last step is repeated.
+    """Ends with scripted outcomes: visit n performs step n; the last step repeats.
 
-    Asked to stop, it ends as `preempted` where it has that outcome.
+    After a preempt request, the outcome is `preempted` if the state has that outcome.
     """
 
     def __init__(self, outcomes, steps=(), input_keys=(), output_keys=()):
@@ -112,7 +112,10 @@ class ScriptedState(smach.State):
 
 
 class SleepState(smach.State):
-    """Waits for `time` seconds, a number or a function of userdata; a preempt request ends it."""
+    """Waits for `time` seconds: a number, or a function of the userdata.
+
+    A preempt request ends the wait.
+    """
 
     def __init__(self, time, input_keys=(), outcomes=("succeeded", "preempted")):
         super().__init__(
@@ -120,15 +123,15 @@ class SleepState(smach.State):
             input_keys=list(input_keys),
         )
         self.time = time
-        self.woken = threading.Event()
+        self.end_of_wait = threading.Event()
 
     def request_preempt(self):
         super().request_preempt()
-        self.woken.set()
+        self.end_of_wait.set()
 
     def execute(self, userdata):
-        self.woken.wait(self.time(userdata) if callable(self.time) else self.time)
-        self.woken.clear()
+        self.end_of_wait.wait(self.time(userdata) if callable(self.time) else self.time)
+        self.end_of_wait.clear()
         if self.preempt_requested() and "preempted" in self.get_registered_outcomes():
             self.service_preempt()
             return "preempted"

@@ -3,14 +3,14 @@
 
 try:
     import smach
-except ImportError:  # no ROS on this machine: the same names without it
+except ImportError:  # without SMACH: smachac.runtime has the same names
     from smachac.runtime import smach
 
 
 class ScriptedState(smach.State):
-    """Ends as it is told: visit n does step n, the last step is repeated.
+    """Ends with scripted outcomes: visit n performs step n; the last step repeats.
 
-    Asked to stop, it ends as `preempted` where it has that outcome.
+    After a preempt request, the outcome is `preempted` if the state has that outcome.
     """
 
     def __init__(self, outcomes, steps=(), input_keys=(), output_keys=()):
@@ -34,7 +34,7 @@ class ScriptedState(smach.State):
 
 
 class CallbacksState(smach.State):
-    """Calls functions of the userdata, keeps what each returns under its own name."""
+    """Calls functions of the userdata and writes each result to an output key."""
 
     def __init__(self, callbacks=(), input_keys=(), output_keys=()):
         super().__init__(
@@ -49,7 +49,7 @@ class CallbacksState(smach.State):
             function = self.callbacks[key]
             if not smach.has_smach_interface(function):
                 userdata[key] = function(userdata)
-            else:  # it writes its keys itself
+            else:  # the function writes its output keys
                 inputs = function.get_registered_input_keys()
                 outputs = function.get_registered_output_keys()
                 function(smach.Remapper(userdata, inputs, outputs, {}))
@@ -57,7 +57,7 @@ class CallbacksState(smach.State):
 
 
 class ConditionalOutcomeState(smach.State):
-    """Ends with the first of its outcomes whose condition holds, else the default."""
+    """Ends with the first outcome whose condition is true, otherwise the default."""
 
     def __init__(
         self, outcomes, callbacks, default_outcome, input_keys=(), output_keys=()
@@ -67,16 +67,16 @@ class ConditionalOutcomeState(smach.State):
             input_keys=list(input_keys),
             output_keys=list(output_keys),
         )
-        self.tells = "outcome" in output_keys
+        self.writes_outcome = "outcome" in output_keys
         self.conditions = [
             (name, callbacks[name]) for name in outcomes if name in callbacks
         ]
         self.default_outcome = default_outcome
 
     def execute(self, userdata):
-        holding = (name for name, holds in self.conditions if holds(userdata))
-        outcome = next(holding, self.default_outcome)
-        if self.tells:
+        names = (name for name, condition in self.conditions if condition(userdata))
+        outcome = next(names, self.default_outcome)
+        if self.writes_outcome:
             userdata["outcome"] = outcome
         return outcome
 

@@ -3,7 +3,7 @@
 
 try:
     import smach
-except ImportError:  # no ROS on this machine: the same names without it
+except ImportError:  # without SMACH: smachac.runtime has the same names
     from smachac.runtime import smach
 
 
@@ -84,9 +84,9 @@ def stoppable_again(machine):
 
 
 class ScriptedState(smach.State):
-    """Ends as it is told: visit n does step n, the last step is repeated.
+    """Ends with scripted outcomes: visit n performs step n; the last step repeats.
 
-    Asked to stop, it ends as `preempted` where it has that outcome.
+    After a preempt request, the outcome is `preempted` if the state has that outcome.
     """
 
     def __init__(self, outcomes, steps=(), input_keys=(), output_keys=()):
@@ -110,7 +110,7 @@ class ScriptedState(smach.State):
 
 
 class PrintUserdataState(smach.State):
-    """Prints its input keys, one a line."""
+    """Prints the input keys and their values, one key per line."""
 
     def __init__(self, input_keys=()):
         super().__init__(outcomes=["succeeded"], input_keys=list(input_keys))

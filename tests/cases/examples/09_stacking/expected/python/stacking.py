@@ -5,12 +5,12 @@ from smachac import sim
 
 try:
     import smach
-except ImportError:  # no ROS on this machine: the same names without it
+except ImportError:  # without SMACH: smachac.runtime has the same names
     from smachac.runtime import smach
 
 
 def outcome_of(state, result):
-    """The outcome of a skill; the reason is logged when it did not succeed."""
+    """The outcome of a skill; unless it is `succeeded`, the reason is logged."""
     if result.outcome == "preempted":
         state.service_preempt()
     if result.outcome != "succeeded":
@@ -19,7 +19,7 @@ def outcome_of(state, result):
 
 
 def optional(userdata, key):
-    """The value under a key that may be absent, else None."""
+    """The value of a userdata key, or None if the key is absent."""
     if key in userdata:
         return userdata[key]
     return None
@@ -41,7 +41,7 @@ def stoppable_again(machine):
 
 
 class LoadModelState(smach.State):
-    """Puts a model into the simulated world."""
+    """Adds a model to the simulated world."""
 
     def __init__(
         self, model_name, model_path=None, body=None, spread=(0, 0, 0), apart=None
@@ -67,7 +67,7 @@ class LoadModelState(smach.State):
 
 
 class CallbacksState(smach.State):
-    """Calls functions of the userdata, keeps what each returns under its own name."""
+    """Calls functions of the userdata and writes each result to an output key."""
 
     def __init__(self, callbacks=(), input_keys=(), output_keys=()):
         super().__init__(
@@ -82,7 +82,7 @@ class CallbacksState(smach.State):
             function = self.callbacks[key]
             if not smach.has_smach_interface(function):
                 userdata[key] = function(userdata)
-            else:  # it writes its keys itself
+            else:  # the function writes its output keys
                 inputs = function.get_registered_input_keys()
                 outputs = function.get_registered_output_keys()
                 function(smach.Remapper(userdata, inputs, outputs, {}))
@@ -90,7 +90,7 @@ class CallbacksState(smach.State):
 
 
 class MoveToJointPositionsState(smach.State):
-    """Moves one arm to a joint configuration."""
+    """Moves one arm to joint positions along a straight line in joint space."""
 
     def __init__(self, limb=None, speed=1.0):
         super().__init__(
@@ -125,7 +125,7 @@ class GripperState(smach.State):
 
 
 class PoseToJointPositionsState(smach.State):
-    """Solves inverse kinematics: joint positions that bring the tool to a pose."""
+    """Computes the joint positions for a tool pose (inverse kinematics)."""
 
     def __init__(self, limb=None, grasp=False):
         super().__init__(
@@ -172,7 +172,7 @@ class MoveAlongState(smach.State):
 
 
 class CheckGraspState(smach.State):
-    """Looks whether the gripper holds something."""
+    """Checks that the gripper holds a body."""
 
     def __init__(self, limb=None, body=None):
         super().__init__(outcomes=["succeeded", "aborted"])
@@ -184,7 +184,7 @@ class CheckGraspState(smach.State):
 
 
 class CheckPlacedState(smach.State):
-    """Looks whether a body lies at rest where it was to be placed."""
+    """Checks that a body lies upright and at rest at its goal pose."""
 
     def __init__(self, body, tolerance=0.002):
         super().__init__(

@@ -8,7 +8,7 @@ import random
 
 try:
     import smach
-except ImportError:  # no ROS on this machine: the same names without it
+except ImportError:  # without SMACH: smachac.runtime has the same names
     from smachac.runtime import smach
 
 
@@ -31,7 +31,7 @@ def with_callbacks(state, callbacks):
 
 
 def columns(name, value, ignored):
-    """Pairs of a column's name and its value; a message has one for each field."""
+    """Pairs of column name and value; each field of a message is one column."""
     fields = getattr(value, "__slots__", None)
     if fields is None or isinstance(value, (str, int, float)):
         return [(name, value)]
@@ -43,7 +43,7 @@ def columns(name, value, ignored):
 
 
 class RandomOutcomeState(smach.State):
-    """Ends with one of its outcomes by chance; with a seed, in the same order in each run."""
+    """Ends with a random outcome; a seed makes the sequence the same in each run."""
 
     def __init__(self, outcomes, seed=None, input_keys=(), output_keys=()):
         super().__init__(
@@ -51,20 +51,23 @@ class RandomOutcomeState(smach.State):
             input_keys=list(input_keys),
             output_keys=list(output_keys),
         )
-        self.tells = "outcome" in output_keys
+        self.writes_outcome = "outcome" in output_keys
         self.choices = list(outcomes)
-        # Without a seed each state has random numbers of its own, which `random.seed` repeats.
+        # Without a seed, each state has its own generator with a seed from `random`.
         self.random = random.Random(random.getrandbits(64) if seed is None else seed)
 
     def execute(self, userdata):
         outcome = self.random.choice(self.choices)
-        if self.tells:
+        if self.writes_outcome:
             userdata["outcome"] = outcome
         return outcome
 
 
 class WriteCSVFileState(smach.State):
-    """Writes keys of the userdata to a CSV file: a row, or one for each item of a lone list."""
+    """Writes values of userdata keys to one row of a CSV file.
+
+    If the only value is a list, each item of the list is one row.
+    """
 
     def __init__(self, delimiter=",", input_keys=("file", "data_keys"), output_keys=()):
         super().__init__(
@@ -84,14 +87,14 @@ class WriteCSVFileState(smach.State):
                 writer.writerow(header)
                 writer.writerows([value for _, value in row] for row in rows)
         except (KeyError, OSError) as error:
-            smach.logwarn(f"the CSV file is not written: {error}")
+            smach.logwarn(f"the CSV file cannot be written: {error}")
             return "aborted"
         if "header" in self.get_registered_output_keys():
             userdata["header"] = header
         return "succeeded"
 
     def rows(self, userdata):
-        """The rows as pairs of name and value."""
+        """The rows as lists of pairs of column name and value."""
         ignored = userdata["ignore"] if "ignore" in userdata else ["header"]
         keys = userdata["data_keys"]
         values = [(key, userdata[key]) for key in keys]
@@ -102,7 +105,7 @@ class WriteCSVFileState(smach.State):
 
 
 class DeleteFileState(smach.State):
-    """Deletes the files that a pattern stands for."""
+    """Deletes the files that match a path pattern."""
 
     def __init__(self, input_keys=("file",), output_keys=()):
         super().__init__(
@@ -114,7 +117,7 @@ class DeleteFileState(smach.State):
     def execute(self, userdata):
         paths = glob.glob(userdata["file"])
         if not paths:
-            smach.logwarn(f"there is no file {userdata['file']}")
+            smach.logwarn(f"no file matches {userdata['file']}")
             return "aborted"
         try:
             for path in sorted(paths):

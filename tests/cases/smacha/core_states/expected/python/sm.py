@@ -5,12 +5,12 @@ import random
 
 try:
     import smach
-except ImportError:  # no ROS on this machine: the same names without it
+except ImportError:  # without SMACH: smachac.runtime has the same names
     from smachac.runtime import smach
 
 
 class CallbacksState(smach.State):
-    """Calls functions of the userdata, keeps what each returns under its own name."""
+    """Calls functions of the userdata and writes each result to an output key."""
 
     def __init__(self, callbacks=(), input_keys=(), output_keys=()):
         super().__init__(
@@ -25,7 +25,7 @@ class CallbacksState(smach.State):
             function = self.callbacks[key]
             if not smach.has_smach_interface(function):
                 userdata[key] = function(userdata)
-            else:  # it writes its keys itself
+            else:  # the function writes its output keys
                 inputs = function.get_registered_input_keys()
                 outputs = function.get_registered_output_keys()
                 function(smach.Remapper(userdata, inputs, outputs, {}))
@@ -33,7 +33,7 @@ class CallbacksState(smach.State):
 
 
 class ConditionalOutcomeState(smach.State):
-    """Ends with the first of its outcomes whose condition holds, else the default."""
+    """Ends with the first outcome whose condition is true, otherwise the default."""
 
     def __init__(
         self, outcomes, callbacks, default_outcome, input_keys=(), output_keys=()
@@ -43,22 +43,22 @@ class ConditionalOutcomeState(smach.State):
             input_keys=list(input_keys),
             output_keys=list(output_keys),
         )
-        self.tells = "outcome" in output_keys
+        self.writes_outcome = "outcome" in output_keys
         self.conditions = [
             (name, callbacks[name]) for name in outcomes if name in callbacks
         ]
         self.default_outcome = default_outcome
 
     def execute(self, userdata):
-        holding = (name for name, holds in self.conditions if holds(userdata))
-        outcome = next(holding, self.default_outcome)
-        if self.tells:
+        names = (name for name, condition in self.conditions if condition(userdata))
+        outcome = next(names, self.default_outcome)
+        if self.writes_outcome:
             userdata["outcome"] = outcome
         return outcome
 
 
 class RandomOutcomeState(smach.State):
-    """Ends with one of its outcomes by chance; with a seed, in the same order in each run."""
+    """Ends with a random outcome; a seed makes the sequence the same in each run."""
 
     def __init__(self, outcomes, seed=None, input_keys=(), output_keys=()):
         super().__init__(
@@ -66,20 +66,20 @@ class RandomOutcomeState(smach.State):
             input_keys=list(input_keys),
             output_keys=list(output_keys),
         )
-        self.tells = "outcome" in output_keys
+        self.writes_outcome = "outcome" in output_keys
         self.choices = list(outcomes)
-        # Without a seed each state has random numbers of its own, which `random.seed` repeats.
+        # Without a seed, each state has its own generator with a seed from `random`.
         self.random = random.Random(random.getrandbits(64) if seed is None else seed)
 
     def execute(self, userdata):
         outcome = self.random.choice(self.choices)
-        if self.tells:
+        if self.writes_outcome:
             userdata["outcome"] = outcome
         return outcome
 
 
 class PrintUserdataState(smach.State):
-    """Prints its input keys, one a line."""
+    """Prints the input keys and their values, one key per line."""
 
     def __init__(self, input_keys=()):
         super().__init__(outcomes=["succeeded"], input_keys=list(input_keys))

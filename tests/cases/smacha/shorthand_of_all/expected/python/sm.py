@@ -3,7 +3,7 @@
 
 try:
     import smach
-except ImportError:  # no ROS on this machine: the same names without it
+except ImportError:  # without SMACH: smachac.runtime has the same names
     from smachac.runtime import smach
 
 
@@ -84,7 +84,7 @@ def stoppable_again(machine):
 
 
 class CallbacksState(smach.State):
-    """Calls functions of the userdata, keeps what each returns under its own name."""
+    """Calls functions of the userdata and writes each result to an output key."""
 
     def __init__(self, callbacks=(), input_keys=(), output_keys=()):
         super().__init__(
@@ -99,7 +99,7 @@ class CallbacksState(smach.State):
             function = self.callbacks[key]
             if not smach.has_smach_interface(function):
                 userdata[key] = function(userdata)
-            else:  # it writes its keys itself
+            else:  # the function writes its output keys
                 inputs = function.get_registered_input_keys()
                 outputs = function.get_registered_output_keys()
                 function(smach.Remapper(userdata, inputs, outputs, {}))
@@ -107,9 +107,9 @@ class CallbacksState(smach.State):
 
 
 class ScriptedState(smach.State):
-    """Ends as it is told: visit n does step n, the last step is repeated.
+    """Ends with scripted outcomes: visit n performs step n; the last step repeats.
 
-    Asked to stop, it ends as `preempted` where it has that outcome.
+    After a preempt request, the outcome is `preempted` if the state has that outcome.
     """
 
     def __init__(self, outcomes, steps=(), input_keys=(), output_keys=()):

@@ -3,14 +3,14 @@
 
 try:
     import smach
-except ImportError:  # no ROS on this machine: the same names without it
+except ImportError:  # without SMACH: smachac.runtime has the same names
     from smachac.runtime import smach
 
 
 class ScriptedState(smach.State):
-    """Ends as it is told: visit n does step n, the last step is repeated.
+    """Ends with scripted outcomes: visit n performs step n; the last step repeats.
 
-    Asked to stop, it ends as `preempted` where it has that outcome.
+    After a preempt request, the outcome is `preempted` if the state has that outcome.
     """
 
     def __init__(self, outcomes, steps=(), input_keys=(), output_keys=()):
