@@ -111,6 +111,13 @@ class Host : public smachac::TraceWriter {
 public:
   explicit Host(smachac::Stop &root) : TraceWriter(stdout), root_(root) {}
 
+  /// Writes events with full paths, as those of the interpreter.
+  void on(const smachac::Event &event) override {
+    smachac::Event shown = event;
+    shown.place.path = event.place.full();
+    TraceWriter::on(shown);
+  }
+
   /// One visit of a leaf; the number of the outcome that it is to end with.
   int act(const char *path, smachac::Stop &stop, std::initializer_list<View> views) {
     const std::lock_guard<std::mutex> hold(asking_);

@@ -23,10 +23,8 @@ from smachac.frontend.loader import memory_library
 from smachac.interpreter.userdata import UserdataError
 from smachac.ir import nodes
 from smachac.ir.nodes import Checked, Key, Leaf, Machine, Node, Outcome, Preset, StateMachine
-from smachac.ir.script_paths import script_paths
 from smachac.ir.traversal import outcome_names, remapping
 from smachac.ir.types import ANY, Type
-from smachac.runtime.tracing.writer import with_shown_paths
 from smachac.targets.cpp import TARGET
 from smachac.targets.cpp.containers import results
 from smachac.targets.cpp.identifiers import identifier
@@ -47,11 +45,9 @@ BUILT_IN = disk_library(Path("main.yml"), [])
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Part:
     """A case as C++: the classes of its leaves, its header, and what runs it. `shared` are the keys
-    that containers share with those around them, by the path of the recording. `full` are the full
-    paths of the states whose path in the script differs, by that path."""
+    that containers share with those around them, by the path of the recording."""
 
     case: Json
-    full: Mapping[str, str]
     shared: Mapping[str, AbstractSet[str]]
     name: str
     classes: str
@@ -112,7 +108,6 @@ def _part(case: Json, name: str, typed: bool) -> Part | list[str]:
     }
     return Part(
         case=case,
-        full={shown: path for path, shown in script_paths(machine.root).items()},
         shared=shared,
         name=name,
         classes="\n".join(classes),
@@ -491,7 +486,7 @@ def replay(
                     runs.append(ran)
                     ran, remote.events = Ran(events=[], userdata={}), []
                 case _:
-                    event = with_shown_paths(json.loads(line), by_name[remote.name].full)
+                    event = json.loads(line)
                     event["path"] = event["path"].removeprefix(f"{remote.name}/root")
                     remote.events.append(event)
     assert process.returncode == 0, f"ended with {process.returncode}, after {list(found)[-1]}"
