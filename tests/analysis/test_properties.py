@@ -22,7 +22,6 @@ from tests.support.property_machines import (
     random_trace,
 )
 
-
 MOST_NOT_FOLLOWED = 3
 """Of 3,000 machines, the counterexamples of `always_ends` that a run does not follow exactly: seed
 1831 has a loop over three items, and its path leaves the loop after two. The verdict is right."""
