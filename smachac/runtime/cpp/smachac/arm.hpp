@@ -1,4 +1,4 @@
-// Made by smachac. The file is the same for every machine. Do not edit.
+// Made by smachac, as it is for every machine: do not edit.
 //
 // The state types of an arm (MoveAlongState, GripperState, ...) in C++, over your own robot: derive
 // from `smachac::Arm` and `smachac::World`, and pass an object of each to the States of the

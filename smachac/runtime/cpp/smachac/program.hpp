@@ -1,4 +1,4 @@
-// Made by smachac. The file is the same for every machine. Do not edit.
+// Made by smachac, as it is for every machine: do not edit.
 //
 // The program around a machine: reads the option `--trace FILE`, makes Ctrl-C a preempt request,
 // prints the outcome at the end. For POSIX.

@@ -1,4 +1,4 @@
-// Made by smachac. The file is the same for every machine. Do not edit.
+// Made by smachac, as it is for every machine: do not edit.
 //
 // The runtime of generated state machines. C++17, header only, without dependencies.
 //

@@ -1,4 +1,4 @@
-// Made by smachac. The file is the same for every machine. Do not edit.
+// Made by smachac, as it is for every machine: do not edit.
 //
 // The values of userdata and the operations of Python on them, in C++17 without dependencies.
 //
