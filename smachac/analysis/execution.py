@@ -49,8 +49,12 @@ class TooLargeError(Exception):
 
 
 class Config(NamedTuple):
-    """A configuration. `asked` are the states with an unserved request to stop, `used` the
-    iterators with the number of items that they have used."""
+    """A configuration of a run: the states that run, the preempt requests that are not served, and
+    the items that iterators have used.
+
+    `asked`: the states with an unserved preempt request. `used`: pairs of an iterator and the
+    number of its used items.
+    """
 
     control: Control
     asked: frozenset[int] = frozenset()

@@ -76,7 +76,7 @@ class AtMost:
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class AlwaysEnds:
-    """No run goes on for ever."""
+    """The property that every run ends."""
 
 
 Form: TypeAlias = Never | Before | After | AtMost | AlwaysEnds

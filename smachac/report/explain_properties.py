@@ -17,7 +17,7 @@ from smachac.report.terminal import on_one_line
 
 
 class NoScenarioError(Exception):
-    """A name is of no property that fails; the message says which are."""
+    """No failing property has the given name. The message lists the failing properties."""
 
 
 def render_properties(machine: Machine, found: Sequence[Judgement], form: str) -> str:

@@ -130,8 +130,10 @@ class ChildCall:
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class OutcomeCode:
-    """The statements for one outcome of a state. `jump` is the statement after them that goes on
-    with the next state or item; `label` is the label to which it jumps. `ends`: the container ends.
+    """The C++ statements for one outcome of a state.
+
+    `jump`: the last statement, which starts the next state or item. `label`: the target of `jump`.
+    `ends`: the outcome ends the container.
     """
 
     statements: Lines
