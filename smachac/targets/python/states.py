@@ -87,7 +87,7 @@ class EmittedContainer:
         return [line for name in KEYED for line in self.headers[name].get(self.node.name, ())]
 
     def value(self, path: str, name: str, data: Data) -> Doc:
-        """The code of a value: the name of its parameter if the function has one, else a literal."""
+        """The code of a value: the name of its parameter if there is one, else a literal."""
         return self.parameters.get((path, name)) or literal(data)
 
 
