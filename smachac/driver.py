@@ -134,7 +134,10 @@ def _analysis(
             if render and not has_errors(report):
                 report.extend(template_faults(machine, library))
         sources = script.sources if script is not None else (source,)
-        rest, given, unused = suppress(report, source, sources, CODES, library.parse)
+        complete = machine is not None
+        rest, given, unused = suppress(
+            report, source, sources, CODES, library.parse, complete=complete
+        )
         found = apply_severities(in_order(rest), library.policy)
     return Analysis(
         script=source.name,

@@ -139,15 +139,18 @@ def suppress(
     sources: Iterable[Source],
     codes: Mapping[str, Code],
     parse: Parser = parse,
+    *,
+    complete: bool = True,
 ) -> Suppressed:
     """Apply the suppressions of all texts of a script and of the texts that have findings.
 
-    SM021 for a suppression of the main script that suppressed nothing.
+    SM021 for a suppression of the main script that suppressed nothing, if the report is `complete`:
+    no rule judges a script that cannot be read.
     """
     texts = dict.fromkeys((*sources, *(item.span.source for item in report)))
     given = [fit for text in texts for fit in suppressions_in(text, report, codes, parse)]
     rest, used = apply_suppressions(report, given)
-    unused = [fit for fit in given if fit not in used]
+    unused = [fit for fit in given if complete and fit not in used]
     rest += unused_allowances(Word(fit.code, fit.span) for fit in unused if fit.span.source is main)
     others = tuple(fit for fit in unused if fit.span.source is not main)
     return Suppressed(rest, tuple(given), others)

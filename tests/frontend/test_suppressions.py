@@ -68,6 +68,11 @@ def test_comments(states: str, expected: list[str], tmp_path: Path) -> None:
     assert shown == expected
 
 
+def test_a_script_that_cannot_be_read_has_no_unused_suppressions(tmp_path: Path) -> None:
+    text = HEAD + PICK + "  # smachac: allow SM305 not judged\n  - [\n"
+    assert [item.code for item in judged(text, tmp_path).report] == ["SM001"]
+
+
 def test_a_comment_ends_with_its_line() -> None:
     report: Report = []
     assert suppressions_in(Source("main.yml", "#\nsmachac: allow SM201 x\n"), report, CODES) == []

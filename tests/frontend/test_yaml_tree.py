@@ -168,6 +168,17 @@ def test_a_script_has_a_limit_of_values_at_any_depth(monkeypatch: pytest.MonkeyP
     assert read("{a: [1, 2, 3], b: [1, 2], c: [1]}", ["SM006"]) is None
 
 
+@pytest.mark.parametrize("item", ["0,", "[],", "[[0]],", "{a: 0},"])
+def test_the_number_of_values_is_limited_by_the_length_of_the_text(
+    item: str, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """Memory stays in proportion to the text, however short its values are."""
+    monkeypatch.setattr(yaml_tree, "MAX_SMALL_NODES", 100)
+    assert read(f"[{item * 30}]") is not None
+    assert read(f"[{item * 1_000}]", ["SM006"]) is None
+    assert read(f"[{item.ljust(20) * 1_000}]") is not None
+
+
 def test_of_many_duplicate_keys_only_some_are_reported(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(yaml_tree, "MAX_DUPLICATES", 3)
     assert read("{a, a, a, a}", ["SM002"] * 3) is not None
