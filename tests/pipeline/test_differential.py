@@ -115,7 +115,7 @@ def test_examples(script: Path) -> None:
     assert difference is None, difference
 
 
-CHUNKS = [0, *(pytest.param(chunk, marks=pytest.mark.slow) for chunk in range(1, 4))]
+CHUNKS = [0, *(pytest.param(chunk, marks=pytest.mark.slow) for chunk in range(1, 8))]
 
 
 @pytest.mark.parametrize("chunk", CHUNKS)
@@ -123,7 +123,7 @@ def test_random_machines(chunk: int) -> None:
     """2,000 machines, in parts so that workers share them."""
 
     @seed(chunk)
-    @settings(max_examples=500, derandomize=False, database=None, suppress_health_check=SLOW)
+    @settings(max_examples=250, derandomize=False, database=None, suppress_health_check=SLOW)
     @given(busy_machines())
     def agree(drawn: tuple[Machine, tuple[str, int]]) -> None:
         machine, asked = drawn
