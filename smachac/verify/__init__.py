@@ -14,8 +14,8 @@ from contextlib import ExitStack
 
 from smachac.ir.nodes import Machine
 from smachac.ir.script_paths import script_paths
-from smachac.runtime.tracing.writer import shown_path, with_shown_paths
-from smachac.verify.coverage import CoverageItem, reasons
+from smachac.runtime.tracing.writer import with_shown_paths
+from smachac.verify.coverage import reasons
 from smachac.verify.generate import PathGenerator
 from smachac.verify.paths import Path
 from smachac.verify.result import Disagreement, Verdict
@@ -54,15 +54,10 @@ def verify(
         paths=Counter(path.kind for path in paths),
         taken=len(items) - len(missing),
         total=len(items),
-        missing=[(_in_script(item, shown), items[item], why[item]) for item in missing],
+        missing=[(item.renamed(shown), items[item], why[item]) for item in missing],
         left_out=generator.left_out,
         disagreements=[each for each in found if each is not None],
     )
-
-
-def _in_script(item: CoverageItem, shown: Mapping[str, str]) -> CoverageItem:
-    """An item with paths of the script."""
-    return item._replace(path=shown_path(item.path, shown), target=shown_path(item.target, shown))
 
 
 def _first_difference(

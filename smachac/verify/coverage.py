@@ -11,6 +11,7 @@ from smachac.interpreter.result import Event
 from smachac.ir import nodes
 from smachac.ir.nodes import Concurrence, Container, Leaf, Machine
 from smachac.ir.traversal import containers, leads_to_child, outcome_names
+from smachac.runtime.tracing.writer import shown_path
 from smachac.verify.guidance import Planner, item_count, matching_rule, possible_leaf_outcomes
 
 
@@ -27,6 +28,11 @@ class CoverageItem(NamedTuple):
     outcome: str
     target: str
     rule: int = 0
+
+    def renamed(self, paths: Mapping[str, str]) -> CoverageItem:
+        """This item with other paths, `paths` by the path of a state."""
+        target = shown_path(self.target, paths)
+        return self._replace(path=shown_path(self.path, paths), target=target)
 
 
 def coverage_items(machine: Machine) -> dict[CoverageItem, Span]:

@@ -68,7 +68,7 @@ def render_json(verdict: Verdict) -> str:
             "total": verdict.total,
             "missing": [
                 {"path": item.path, "outcome": item.outcome, "to": item.target, "kind": item.kind,
-                 "src": _place(span), "reason": why.text, "never": why.never}
+                 "src": place(span), "reason": why.text, "never": why.never}
                 for item, span, why in verdict.missing
             ],
         },
@@ -102,7 +102,7 @@ def render_text(verdict: Verdict) -> str:
     lines.append(f"{verdict.taken} of {can} transitions taken{percent}")
     lines += [f"{never} more cannot be taken"] if never else []
     for item, span, why in verdict.missing[:MOST_MISSING]:
-        lines.append(f"  not taken: {_item_text(item)}  ({_place(span)}): {why.text}")
+        lines.append(f"  not taken: {item_text(item)}  ({place(span)}): {why.text}")
     if (more := len(verdict.missing) - MOST_MISSING) > 0:
         lines.append(f"  and {more} more; --format json has them all")
     lines += [f"left out: {each}" for each in verdict.left_out]
@@ -112,7 +112,7 @@ def render_text(verdict: Verdict) -> str:
     return "\n".join(lines) + "\n"
 
 
-def _item_text(item: CoverageItem) -> str:
+def item_text(item: CoverageItem) -> str:
     if item.kind == "rule":
         which = "default" if item.rule < 0 else f"rule {item.rule + 1}"
         return f"{item.path}: {which} -> {item.outcome}"
@@ -120,7 +120,7 @@ def _item_text(item: CoverageItem) -> str:
     return f"{item.path}: {item.outcome} -> {to}"
 
 
-def _place(span: Span) -> str:
+def place(span: Span) -> str:
     name = span.source.name.replace("\\", "/").rpartition("/")[2]
     return f"{name}:{span.line}"
 

@@ -1,0 +1,160 @@
+"""The judgement of recorded traces by a machine: files of JSON lines, as text and as JSON."""
+
+from __future__ import annotations
+
+import json
+from collections.abc import Iterable, Iterator, Sequence
+from dataclasses import dataclass
+from typing import NamedTuple
+
+from smachac.diagnostics.source import Span
+from smachac.interpreter.result import Event
+from smachac.ir.nodes import Machine
+from smachac.ir.script_paths import script_paths
+from smachac.report.json import json_text
+from smachac.report.terminal import on_one_line
+from smachac.verify.coverage import Coverage, CoverageItem
+from smachac.verify.result import MOST_MISSING, item_text, place
+from smachac.verify.trace_conformance import Acceptor
+
+FIELDS = {
+    "start": (),
+    "enter": (),
+    "exit": ("outcome",),
+    "transition": ("outcome", "to"),
+    "write": ("key",),
+    "preempt": (),
+    "error": (),
+    "finish": ("outcome",),
+}
+"""By the kind of an event, the fields that it has beside `event` and `path`, all of them texts."""
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class JudgedTrace:
+    """One trace: its number of events, and the outcome of its last run, or None if that has not
+    ended. `fault` is the first line that is not allowed or not an event, counted from 1, with the
+    reason and the place of the state in the script."""
+
+    name: str
+    events: int
+    outcome: str | None
+    fault: tuple[int, str, Span | None] | None
+
+
+class _BadLineError(Exception):
+    """A line is no event of a trace; the message gives the reason."""
+
+
+def read_event(line: str) -> Event:
+    """The event in a line of a trace. Raises _BadLineError."""
+    try:
+        event = json.loads(line)
+    except (ValueError, RecursionError):
+        raise _BadLineError("this line is not JSON") from None
+    if not isinstance(event, dict) or not isinstance(event.get("event"), str):
+        raise _BadLineError("this line is not an event of a trace")
+    kind = event["event"]
+    if kind not in FIELDS:
+        raise _BadLineError(f"`{kind}` is not a kind of event: {', '.join(FIELDS)}")
+    for name in ("path", *FIELDS[kind]):
+        if not isinstance(event.get(name), str):
+            raise _BadLineError(f"the event `{kind}` has no text `{name}`")
+    return event
+
+
+def judge_trace(machine: Machine, name: str, lines: Iterable[str], taken: Coverage) -> JudgedTrace:
+    """Judge one trace; `taken` records the transitions of its allowed events.
+
+    A last line without a line break is the rest of a write that was interrupted; it may be torn.
+    """
+    acceptor = Acceptor(machine)
+    events = 0
+    fault: tuple[int, str, Span | None] | None = None
+    for number, line in enumerate(lines, 1):
+        if not line.strip():
+            continue
+        try:
+            event = acceptor.full(read_event(line))
+        except _BadLineError as error:
+            if line.endswith("\n"):
+                fault = number, str(error), None
+            break
+        violation = acceptor.accept(events, event)
+        if violation is not None:
+            fault = number, violation.message, violation.span
+            break
+        events += 1
+        taken.record(event)
+    return JudgedTrace(name=name, events=events, outcome=acceptor.outcome, fault=fault)
+
+
+class UntakenTransition(NamedTuple):
+    """A transition that no trace takes, with paths of the script, and its place."""
+
+    item: CoverageItem
+    span: Span
+
+
+def untaken(machine: Machine, taken: Coverage) -> list[UntakenTransition]:
+    """The transitions that no trace takes, in the order of the script."""
+    shown = script_paths(machine.root)
+    return [UntakenTransition(each.renamed(shown), taken.items[each]) for each in taken.missing()]
+
+
+def trace_text(
+    traces: Sequence[JudgedTrace], missing: Sequence[UntakenTransition], total: int
+) -> str:
+    """One line for each trace, then the missing ones of all `total` transitions."""
+    lines = [_trace_line(each) for each in traces]
+    bad = sum(each.fault is not None for each in traces)
+    count = f"{len(traces)} trace{'s' * (len(traces) != 1)}"
+    lines.append(f"{count}, {bad} not allowed" if bad else f"{count}, all allowed")
+    percent = f" ({100 * (total - len(missing)) // total} %)" if total else ""
+    lines.append(f"{total - len(missing)} of {total} transitions taken{percent}")
+    lines += [
+        f"  not taken: {item_text(item)}  ({place(span)})" for item, span in missing[:MOST_MISSING]
+    ]
+    if (more := len(missing) - MOST_MISSING) > 0:
+        lines.append(f"  ... and {more} more: --format json has all of them")
+    return "".join(f"{on_one_line(line)}\n" for line in lines)
+
+
+def _trace_line(trace: JudgedTrace) -> str:
+    if trace.fault is not None:
+        number, message, span = trace.fault
+        where = "" if span is None else f" ({place(span)})"
+        return f"{trace.name}:{number}: {message}{where}"
+    end = "has not ended" if trace.outcome is None else f"ended with `{trace.outcome}`"
+    return f"{trace.name}: {trace.events} events, {end}"
+
+
+def trace_json(
+    traces: Sequence[JudgedTrace], missing: Sequence[UntakenTransition], total: int
+) -> str:
+    """One JSON object with every trace and the missing ones of all `total` transitions."""
+    data = {
+        "traces": [dict(_fields(each)) for each in traces],
+        "coverage": {
+            "taken": total - len(missing),
+            "total": total,
+            "missing": [
+                {"path": item.path, "outcome": item.outcome, "to": item.target, "kind": item.kind,
+                 "src": place(span)}
+                for item, span in missing
+            ],
+        },
+    }  # fmt: skip
+    return json_text(data)
+
+
+def _fields(trace: JudgedTrace) -> Iterator[tuple[str, object]]:
+    yield "name", trace.name
+    yield "events", trace.events
+    yield "outcome", trace.outcome
+    yield "allowed", trace.fault is None
+    if trace.fault is not None:
+        number, message, span = trace.fault
+        yield "line", number
+        yield "message", message
+        yield "src", None if span is None else place(span)

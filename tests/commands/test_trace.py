@@ -1,0 +1,98 @@
+"""`smachac trace check`: what it prints, and its exit codes."""
+
+from __future__ import annotations
+
+import json
+from pathlib import Path
+
+import pytest
+
+from smachac.commands.cli import main
+
+SCRIPT = """\
+name: sm
+outcomes: [done, lost]
+states:
+  - A: {template: ScriptedState, outcomes: [ok, bad], transitions: {ok: B, bad: lost}}
+  - B:
+      template: ScriptedState
+      outcomes: [ok, bad]
+      retry: {on: [bad], max: 2}
+      transitions: {ok: done, exhausted: lost, preempted: lost}
+"""
+
+
+@pytest.fixture
+def recorded(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+) -> Path:
+    """The trace of a run of SCRIPT, in the current folder."""
+    monkeypatch.chdir(tmp_path)
+    (tmp_path / "main.yml").write_text(SCRIPT, "utf-8")
+    assert main(["run", "main.yml", "-q", "--trace", "run.jsonl"]) == 0
+    capsys.readouterr()
+    return tmp_path / "run.jsonl"
+
+
+def test_a_run_is_allowed(recorded: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    assert main(["trace", "check", "main.yml", "run.jsonl", "run.jsonl"]) == 0
+    count = len(recorded.read_text("utf-8").splitlines())
+    line = f"run.jsonl: {count} events, ended with `done`\n"
+    assert capsys.readouterr().out == line * 2 + (
+        "2 traces, all allowed\n3 of 8 transitions taken (37 %)\n"
+        "  not taken: sm/A: bad -> sm:lost  (main.yml:4)\n"
+        "  not taken: sm/B (retry): exhausted -> sm:lost  (main.yml:9)\n"
+        "  not taken: sm/B (retry): preempted -> sm:lost  (main.yml:9)\n"
+        "  not taken: sm/B: bad -> sm/B (loop)  (main.yml:5)\n"
+        "  not taken: sm/B: bad -> sm/B (retry):exhausted (exhausted)  (main.yml:5)\n"
+    )
+
+
+def test_a_changed_run_is_not(recorded: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    text = recorded.read_text("utf-8").replace('"to": "sm/B (retry)"', '"to": "sm:lost"')
+    recorded.write_text(text, "utf-8")
+    line = next(n for n, row in enumerate(text.splitlines(), 1) if '"to": "sm:lost"' in row)
+    assert main(["trace", "check", "main.yml", "run.jsonl"]) == 1
+    assert capsys.readouterr().out.startswith(
+        f"run.jsonl:{line}: `ok` of `sm/A` leads to `sm:lost`, in the script to `sm/B (retry)`"
+        " (main.yml:4)\n1 trace, 1 not allowed\n"
+    )
+    assert main(["trace", "check", "main.yml", "run.jsonl", "--format", "json"]) == 1
+    (trace,) = json.loads(capsys.readouterr().out)["traces"]
+    assert (trace["allowed"], trace["line"], trace["src"]) == (False, line, "main.yml:4")
+
+
+@pytest.mark.parametrize(
+    ("line", "message"),
+    [
+        ("no json", "this line is not JSON"),
+        ("[" * 100_000, "this line is not JSON"),
+        ("[1]", "this line is not an event of a trace"),
+        ('{"event": "jump", "path": "sm"}', "`jump` is not a kind of event"),
+        ('{"event": "exit", "path": "sm"}', "the event `exit` has no text `outcome`"),
+        ('{"event": "enter", "path": "sm/Ü"}', "the script has no state `sm/Ü`"),
+        ('{"event": "enter", "path": "sm/A"}', "`sm` is not running"),
+        ('{"event": "transition", "path": "sm", "outcome": "x", "to": "y"}', "`sm` is"),
+    ],
+)
+def test_other_lines(
+    line: str, message: str, recorded: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    recorded.write_text(line + "\n", "utf-8")
+    assert main(["trace", "check", "main.yml", "run.jsonl"]) == 1
+    assert capsys.readouterr().out.startswith(f"run.jsonl:1: {message}")
+
+
+def test_a_torn_last_line_is_no_fault(recorded: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    recorded.write_text(recorded.read_text("utf-8")[:-60], "utf-8")
+    assert main(["trace", "check", "main.yml", "run.jsonl"]) == 0
+    assert "has not ended" in capsys.readouterr().out
+
+
+@pytest.mark.parametrize("name", ["none.jsonl", "."])
+def test_files_that_cannot_be_read(
+    name: str, recorded: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    assert main(["trace", "check", "main.yml", name]) == 2
+    assert f"the trace {name} cannot be read" in capsys.readouterr().err
+    assert recorded.is_file()
