@@ -25,6 +25,7 @@ TYPE_CHECKING = False  # annotations only: `--help` imports none of this
 if TYPE_CHECKING:
     from collections.abc import Iterable
     from pathlib import Path
+    from typing import TextIO
 
     from smachac.batch import Batch
     from smachac.diagnostics.diagnostic import Report
@@ -134,7 +135,7 @@ def _check_once(arguments: Namespace, used: set[str]) -> int:
     changed = changed_since(arguments.changed_since) if arguments.changed_since else None
     found, notes = _select(whole, changed, arguments)
     if arguments.write_baseline:
-        return _write_baseline(arguments.baseline, found.report)
+        return _write_baseline(arguments, found.report)
     fixes = 0
     if arguments.fix or arguments.diff:
         from smachac.refactor.autofix import apply_fixes
@@ -215,15 +216,17 @@ def _put(found: Batch, failing: dict[str, Report], notes: list[str], arguments: 
     """Print the findings in the requested format."""
     report = found.report
     listed = report if arguments.notes else without_notes(report)
+    # A reader of several documents has a simple rule: each line is one.
+    on_one_line = bool(arguments.watch)
     match arguments.format:
         case "json":
             from smachac.report.json import render_json
 
-            sys.stdout.write(render_json(report))
+            sys.stdout.write(render_json(report, on_one_line=on_one_line))
         case "sarif":
             from smachac.report.sarif import render_sarif
 
-            sys.stdout.write(render_sarif(report))
+            sys.stdout.write(render_sarif(report, on_one_line=on_one_line))
         case "junit":
             from smachac.report.junit import render_junit
 
@@ -249,23 +252,34 @@ def _summary(report: Report, scripts: int, notes: list[str]) -> str:
     return f"{words} ({', '.join(notes)})" if notes else words
 
 
-def _write_baseline(path: Path, report: Report) -> int:
+def _write_baseline(arguments: Namespace, report: Report) -> int:
     """Write the findings to a baseline; the exit code. Only a baseline is overwritten."""
     from smachac.commands.files import write_files
     from smachac.commands.writing import PartlyWrittenError
     from smachac.diagnostics import baseline
     from smachac.frontend.files import read_source
 
+    path: Path = arguments.baseline
+    known = baseline.acceptable(report)
     if os.path.lexists(path):
         old = None if path.is_symlink() else read_source(path, [])
         if old is None or (old.text.strip() and not baseline.is_baseline(old.text)):
             return usage(f"--baseline {path} exists and is not a baseline: it was not overwritten")
     try:
-        write_files(path.parent, {path.name: baseline.render(report)})
+        write_files(path.parent, {path.name: baseline.render(known)})
     except (OSError, PartlyWrittenError) as error:
         return usage(f"cannot write {path}: {getattr(error, 'strerror', None) or error}")
-    print(f"wrote {shown(path)}: {len(report)} findings, which --baseline ignores from now on")
+    words = f"wrote {shown(path)}: {len(known)} findings, which --baseline ignores from now on"
+    if left := len(report) - len(known):
+        errors = "1 error is" if left == 1 else f"{left} errors are"
+        words += f"; {errors} not in it, because no program can be generated"
+    print(words, file=_notices(arguments))
     return OK
+
+
+def _notices(arguments: Namespace) -> TextIO:
+    """The stream for lines that are not part of a report that programs read."""
+    return sys.stdout if arguments.format == "text" else sys.stderr
 
 
 def _read_baseline(path: Path) -> Counter[str]:
@@ -300,13 +314,14 @@ def _watch(arguments: Namespace) -> int:
         known = used or known
         now = stamps(_watched(arguments, known))
         base = {**now, **{path: before[path] for path in now if path in before}}
-        print(f"watching {len(base)} files; Ctrl-C ends", flush=True)
+        sys.stdout.flush()
+        print(f"watching {len(base)} files; Ctrl-C ends", file=_notices(arguments), flush=True)
         if print_failure() is not None:
             return OK
         gc.collect()  # automatic collection is off
         while stamps(_watched(arguments, known)) == base:
             time.sleep(PAUSE)
-        print()
+        print(file=_notices(arguments))
 
 
 def _watched(arguments: Namespace, used: Iterable[str]) -> list[str]:

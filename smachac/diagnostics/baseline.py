@@ -7,6 +7,7 @@ from collections import Counter
 from pathlib import PurePath
 
 from smachac.diagnostics.diagnostic import Report, fingerprint
+from smachac.diagnostics.severities import is_firm
 
 VERSION = 2
 """The version of the fingerprints: it increases when they are computed in another way."""
@@ -14,6 +15,11 @@ VERSION = 2
 
 class BaselineError(Exception):
     """A text is not a baseline; the message has the reason."""
+
+
+def acceptable(report: Report) -> Report:
+    """The findings that a baseline may hold: all but firm errors."""
+    return [item for item in report if not is_firm(item)]
 
 
 def render(report: Report) -> str:
@@ -62,14 +68,15 @@ def compare(report: Report, known: Counter[str]) -> tuple[Report, int, int]:
     """The findings that are not in a baseline, the number that are, and the number of its entries
     that no longer occur.
 
-    Of several equal findings the first ones count as known.
+    Of several equal findings the first ones count as known. A firm error is always new.
     """
     left = Counter(known)
     new = []
     for item in report:
         mark = fingerprint(item)
-        if left[mark] > 0:
+        is_known = left[mark] > 0
+        if is_known:
             left[mark] -= 1
-        else:
+        if not is_known or is_firm(item):
             new.append(item)
     return new, len(report) - len(new), sum(left.values())

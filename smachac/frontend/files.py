@@ -4,9 +4,11 @@ from __future__ import annotations
 
 import contextlib
 import errno
+import glob
 import os
 import stat
-from collections.abc import Callable, Iterable, Mapping, Sequence
+import sys
+from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from dataclasses import replace
 from pathlib import Path
 
@@ -252,8 +254,8 @@ def disk_library(
     Scripts are searched in the folder of the calling file, then in `scripts`, then in the project's
     `scripts`; templates in `templates`, the project's `templates`, `templates/` beside the main
     script, and the built-in folders; modules and headers of the user in the project's `code`, the
-    folder of the main script and its `include/`. No file outside these folders is read.
-    `codes`: see `read_project`.
+    folder of the main script and its `include/`; message definitions of ROS as `definitions`
+    describes. No file outside these folders is read. `codes`: see `read_project`.
     """
     disk = disk or Disk()
     project = find_project(main, report, disk, codes)
@@ -291,6 +293,7 @@ def disk_library(
         own_template=lambda name: template(name, template_folders[: -len(BUILT_IN)]),
         code=lambda name: template(name, code_folders),
         code_names=lambda name: _names_in(name, code_folders),
+        definitions=lambda path: definitions(path, [*project.code, *_package_folders(main)], disk),
         script_folders=lambda caller: [str(folder) for folder in script_folders(caller)],
         template_folders=lambda: [str(folder) for folder in template_folders[: -len(BUILT_IN)]],
         script_names=lambda caller: _stems(script_folders(caller), (".yml", ".yaml")),
@@ -298,6 +301,58 @@ def disk_library(
         parse=disk.parse,
         policy=project.policy,
     )
+
+
+def definitions(path: str, folders: Sequence[Path], disk: Disk) -> list[Source]:
+    """All files with the definition of a message, `package/msg/Name.msg`.
+
+    They are searched in packages of the user, which are in `folders` or are one of them; then in
+    the packages that are installed (`installed_packages`).
+    """
+    package, _, inner = path.partition("/")
+    own = [
+        file
+        for folder in folders
+        for file in (folder / path, folder / inner)
+        if (file != folder / inner or _real_name(folder) == package) and lies_inside(file, folder)
+    ]
+    installed = [file / inner for file in installed_packages(package, os.environ)]
+    found: dict[str, Source] = {}
+    for file in (*own, *installed):
+        with contextlib.suppress(OSError, ValueError):
+            source = disk.read(file, []) if disk.is_file(file) else None
+            if source is not None:
+                found.setdefault(os.path.realpath(file), source)
+    return list(found.values())
+
+
+def installed_packages(name: str, environment: Mapping[str, str]) -> Iterator[Path]:
+    """The folders that an installed package of ROS can have: in the workspaces of ROS 2
+    (AMENT_PREFIX_PATH), in those of ROS 1 (ROS_PACKAGE_PATH), and beside this Python."""
+    for prefix in _paths(environment, "AMENT_PREFIX_PATH"):
+        yield prefix / "share" / name
+    for folder in _paths(environment, "ROS_PACKAGE_PATH"):
+        if folder.name == name:
+            yield folder
+        yield folder / name
+        yield from sorted(folder.glob(f"*/{glob.escape(name)}"))  # a repository in a workspace
+    yield Path(sys.prefix) / "share" / name
+
+
+def _paths(environment: Mapping[str, str], name: str) -> list[Path]:
+    return [Path(each) for each in environment.get(name, "").split(os.pathsep) if each]
+
+
+def _package_folders(main: Path) -> list[Path]:
+    """The folder of a script and those above it, up to the root of its git repository; without
+    one, the folder of the script and the one above it."""
+    folders = [main.parent, *_parents(main.parent)]
+    root = next((at for at, each in enumerate(folders) if (each / ".git").exists()), 1)
+    return folders[: root + 1]
+
+
+def _real_name(folder: Path) -> str:
+    return Path(os.path.realpath(folder)).name
 
 
 def _found(

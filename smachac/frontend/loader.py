@@ -21,8 +21,10 @@ class Library:
     `template(file)` an interface or a template by file name (`MoveTo.yml`, `MoveTo.tpl.py`);
     `own_template(file)` the same, but no built-in one; `code(file)` a module or header of the user
     by path (`my_robot/grasp.hpp`); `code_names(folder)` the names of files and folders in a folder
-    of such code. The lists of folders and names are for messages. `policy` has the severities of
-    the project. `parse` may return one tree for all scripts that share a text.
+    of such code; `definitions(path)` all message definitions of ROS with a path, such as
+    `std_srvs/srv/Trigger.srv`, in the order of the searched folders. The lists of folders and names
+    are for messages. `policy` has the severities of the project. `parse` may return one tree for
+    all scripts that share a text.
     """
 
     script: Callable[[str, str], Source | None]
@@ -30,6 +32,7 @@ class Library:
     own_template: Callable[[str], Source | None] = lambda file: None
     code: Callable[[str], Source | None] = lambda file: None
     code_names: Callable[[str], Sequence[str]] = lambda folder: ()
+    definitions: Callable[[str], Sequence[Source]] = lambda path: ()
     script_folders: Callable[[str], Sequence[str]] = lambda caller: ()
     template_folders: Callable[[], Sequence[str]] = lambda: ()
     script_names: Callable[[str], Sequence[str]] = lambda caller: ()
@@ -55,6 +58,7 @@ def memory_library(files: Mapping[str, str], built_in: Library) -> Library:
         own_template=own_template,
         code=lambda name: sources.get(name) or built_in.code(name),
         code_names=lambda folder: [*_inside(folder, sources), *built_in.code_names(folder)],
+        definitions=lambda path: [sources[path]] if path in sources else built_in.definitions(path),
         script_folders=lambda caller: ["."],
         template_folders=lambda: ["templates", *built_in.template_folders()],
         script_names=lambda caller: [name.removesuffix(".yml") for name in sources],

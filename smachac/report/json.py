@@ -13,18 +13,18 @@ VERSION = 2
 """The version of the schema; it increases with every change."""
 
 
-def render_json(report: Report) -> str:
+def render_json(report: Report, *, on_one_line: bool = False) -> str:
     """The findings in the order of the report, in ASCII. Equal reports give equal texts."""
     counts = {
         severity.value: sum(item.severity is severity for item in report) for severity in Severity
     }
     whole = {"version": VERSION, "diagnostics": list(map(_diagnostic, report)), "counts": counts}
-    return json_text(whole, sort_keys=True)
+    return json_text(whole, sort_keys=True, on_one_line=on_one_line)
 
 
-def json_text(data: object, *, sort_keys: bool = False) -> str:
+def json_text(data: object, *, sort_keys: bool = False, on_one_line: bool = False) -> str:
     """Data as JSON in ASCII, in which no line has the beginning of a command of a CI log."""
-    text = json.dumps(data, indent=2, sort_keys=sort_keys)
+    text = json.dumps(data, indent=None if on_one_line else 2, sort_keys=sort_keys)
     return text.replace(COMMAND, "##\\u005b") + "\n"
 
 

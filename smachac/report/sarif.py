@@ -28,7 +28,7 @@ FINGERPRINT = "smachac/v2"
 _LEVELS = {Severity.ERROR: "error", Severity.WARNING: "warning", Severity.INFO: "note"}
 
 
-def render_sarif(report: Report) -> str:
+def render_sarif(report: Report, *, on_one_line: bool = False) -> str:
     """One run with a result for each finding, and the rules they refer to. ASCII."""
     codes = {item.code: item.kind for item in report}
     rules = [codes[name] for name in sorted(codes)]
@@ -47,7 +47,7 @@ def render_sarif(report: Report) -> str:
         "results": results,
     }
     log = {"$schema": SCHEMA, "version": "2.1.0", "runs": [run]}
-    return json_text(log)
+    return json_text(log, on_one_line=on_one_line)
 
 
 def _rule(code: Code) -> dict[str, Any]:

@@ -11,7 +11,9 @@ from xml.etree import ElementTree as ET
 
 import pytest
 
+import smachac
 from smachac.commands.cli import main
+from smachac.diagnostics import baseline
 from smachac.diagnostics.diagnostic import Report
 from smachac.diagnostics.source import Source
 from smachac.frontend import files
@@ -162,6 +164,30 @@ def test_a_baseline_knows_what_was_there(folder: Path, capsys: pytest.CaptureFix
     assert capsys.readouterr().out == "no findings (1 of the baseline no longer found)\n"
 
 
+def test_a_baseline_holds_no_firm_error(folder: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    write(folder, {"main.yml": f"name: a\n{HEAD}{PICK}".replace("ok: done", "ok: don")})
+    assert main(["check", "main.yml", "--baseline", "b.json", "--write-baseline"]) == 0
+    told = capsys.readouterr().out
+    assert told.endswith("; 1 error is not in it, because no program can be generated\n")
+    known = json.loads((folder / "b.json").read_text())
+    assert "SM101" not in {each["code"] for each in known["findings"]}
+    assert main(["check", "main.yml", "--baseline", "b.json"]) == 1
+    assert "SM101" in {each.split()[0] for each in lines(capsys.readouterr().out)}
+
+
+def test_a_firm_error_in_a_baseline_is_reported(
+    folder: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    write(folder, {"main.yml": f"name: a\n{HEAD}{PICK}".replace("ok: done", "ok: don")})
+    report = [item for item in smachac.check("main.yml") if item.code == "SM101"]
+    assert report
+    (folder / "b.json").write_text(baseline.render(report))
+    assert main(["check", "main.yml", "--baseline", "b.json"]) == 1
+    shown = capsys.readouterr().out
+    assert "SM101" in {each.split()[0] for each in lines(shown)}
+    assert "no longer found" not in shown
+
+
 @pytest.mark.parametrize("text", [None, "{", "[]", '{"version": 1}', '{"version": 2}', "[" * 9999])
 def test_what_is_no_baseline_is_wrong_usage(
     text: str | None, folder: Path, capsys: pytest.CaptureFixture[str]
@@ -272,6 +298,38 @@ def test_watching_checks_at_every_change(folder: Path) -> None:
         told = process.communicate(timeout=60)[1]
     assert told.endswith("there is no script in `deep`\ninterrupted\n")
     assert process.returncode == 130
+
+
+@pytest.mark.parametrize("form", ["json", "sarif"])
+def test_watching_prints_one_document_a_line(folder: Path, form: str) -> None:
+    process = subprocess.Popen(
+        [sys.executable, "-m", "smachac", "check", "main.yml", "--watch", "--format", form],
+        stdout=subprocess.PIPE,
+        stderr=subprocess.PIPE,
+        text=True,
+    )
+    out, notices = process.stdout, process.stderr
+    assert out is not None
+    assert notices is not None
+
+    def document() -> dict[str, object]:
+        """What is printed in a round, after whose end the files are watched."""
+        while not notices.readline().startswith("watching"):
+            assert process.poll() is None
+        found = json.loads(out.readline())
+        assert isinstance(found, dict)
+        return found
+
+    try:
+        first = document()
+        write(folder, {"pick.yml": "- PICK: {template: ScriptedState, outcomes: [ok]}\n"})
+        second = document()
+    finally:
+        process.send_signal(signal.SIGINT)
+        rest = process.communicate(timeout=60)[0]
+    assert first != second
+    assert first.keys() == second.keys()
+    assert rest == ""
 
 
 def test_notes_are_shown_if_wanted(folder: Path, capsys: pytest.CaptureFixture[str]) -> None:

@@ -158,6 +158,68 @@ def test_junit_has_a_test_for_each_script() -> None:
     assert list(good) == []
 
 
+JENKINS = {
+    "testsuites": ({"name", "time", "tests", "failures", "errors"}, {"testsuite"}),
+    "testsuite": (
+        {"name", "tests", "failures", "errors", "group", "time", "skipped", "timestamp", "hostname",
+         "id", "package", "file", "log", "url"},
+        {"testsuite", "properties", "testcase", "system-out", "system-err"},
+    ),
+    "testcase": (
+        {"name", "time", "classname", "group"},
+        {"skipped", "error", "failure", "rerunFailure", "rerunError", "flakyFailure", "flakyError",
+         "system-out", "system-err"},
+    ),
+    "failure": ({"type", "message"}, set[str]()),
+    "system-out": (set[str](), set[str]()),
+}  # fmt: skip
+"""The attributes and the children that an element may have, of those that we write: the structure
+of junit-10.xsd in github.com/jenkinsci/xunit-plugin. No order of children is required."""
+
+REQUIRED = {"testsuite": {"name", "tests", "failures", "errors"}, "testcase": {"name"}}
+"""The attributes that an element must have."""
+
+WITH_TEXT = {"failure", "system-out"}
+
+
+def faults_for_jenkins(element: ET.Element) -> list[str]:
+    """What Jenkins' schema does not allow in an element."""
+    attributes, children = JENKINS[element.tag]
+    given = set(element.attrib)
+    found = [f"{element.tag}: attribute {name}" for name in sorted(given - attributes)]
+    found += [f"{element.tag}: no {name}" for name in REQUIRED.get(element.tag, set()) - given]
+    texts = [element.text, *(child.tail for child in element)]
+    if element.tag not in WITH_TEXT and any((text or "").strip() for text in texts):
+        found.append(f"{element.tag}: text")
+    for child in element:
+        if child.tag in children:
+            found += faults_for_jenkins(child)
+        else:
+            found.append(f"{element.tag}: {child.tag}")
+    return found
+
+
+def test_junit_is_valid_for_jenkins() -> None:
+    mild = diagnostic(Finding(span=NOWHERE, message="mild"), Severity.WARNING)
+    text = render_junit({"a.yml": [FULL, mild], "b.yml": []}, {"a.yml": [FULL], "b.yml": []})
+    assert faults_for_jenkins(ET.fromstring(text)) == []
+
+
+def test_what_jenkins_refuses_is_found() -> None:
+    text = (
+        "<testsuites skipped='0'><testsuite name='x'><testcase file='f'/>a</testsuite></testsuites>"
+    )
+    assert sorted(faults_for_jenkins(ET.fromstring(text))) == [
+        "testcase: attribute file",
+        "testcase: no name",
+        "testsuite: no errors",
+        "testsuite: no failures",
+        "testsuite: no tests",
+        "testsuite: text",
+        "testsuites: attribute skipped",
+    ]
+
+
 ANY = st.text(st.characters(), max_size=30)  # lone surrogates and controls as well
 
 

@@ -1,0 +1,205 @@
+"""Reader of message definitions of ROS: files `.msg`, `.srv` and `.action`, as data.
+
+The format is that of ROS 1 (wiki.ros.org/msg) with the extensions of ROS 2
+(docs.ros.org, Interfaces): bounds, default values, `wstring`. Nothing is imported. A file that is
+not valid gives no definition, because its package does not build either.
+"""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Iterator
+from typing import NamedTuple
+
+from smachac.diagnostics.source import Source, Span
+from smachac.frontend.loader import Library
+from smachac.ir.message_types import (
+    PARTS,
+    PRIMITIVES,
+    TEXTS,
+    Definition,
+    DefinitionKind,
+    FieldType,
+    Message,
+    MessageConstant,
+    MessageField,
+)
+
+LONGEST = 1_000_000
+"""The longest file that is read, in characters."""
+
+_NAME = re.compile(r"[A-Za-z]\w*", re.ASCII)
+_TYPE = re.compile(
+    r"(?P<name>[A-Za-z]\w*(?:/[A-Za-z]\w*){0,2})(?:<=(?P<longest>\d{1,9}))?"
+    r"(?P<array>\[(?:(?P<size>\d{1,9})|<=(?P<most>\d{1,9}))?\])?",
+    re.ASCII,
+)
+
+
+class TypeName(NamedTuple):
+    """The name of a definition: `std_srvs/Trigger`."""
+
+    package: str
+    name: str
+
+    def __str__(self) -> str:
+        return f"{self.package}/{self.name}"
+
+
+def type_name(text: str, kind: DefinitionKind) -> TypeName | None:
+    """The name that a text means: `std_srvs/Trigger`, `std_srvs/srv/Trigger` or
+    `std_srvs.srv.Trigger`; None for any other text."""
+    parts = re.split(r"[/.]", text.strip())
+    if not all(_NAME.fullmatch(part) for part in parts):
+        return None
+    match parts:
+        case [package, name]:
+            return TypeName(package, name)
+        case [package, folder, name] if folder == kind:
+            return TypeName(package, name)
+        case [package, "msg", name] if kind == "action":  # ROS 1: the message `TestAction`
+            return TypeName(package, name)
+    return None
+
+
+def find_definitions(text: str, kind: DefinitionKind, library: Library) -> tuple[Definition, ...]:
+    """All definitions of a name, in the order of the searched folders; none if the text is not a
+    name or a file of that name is not valid.
+
+    ROS 1 names an action after its message: `actionlib/TestAction` is in `Test.action`.
+    """
+    word = type_name(text, kind)
+    if word is None:
+        return ()
+    names = [word.name]
+    if kind == "action" and word.name.endswith("Action"):
+        names.append(word.name.removesuffix("Action"))
+    for name in names:
+        sources = library.definitions(f"{word.package}/{kind}/{name}.{kind}")
+        if sources:
+            read = [read_definition(each, TypeName(word.package, name), kind) for each in sources]
+            found = tuple(each for each in read if each is not None)
+            return found if len(found) == len(read) else ()
+    return ()
+
+
+def read_definition(source: Source, name: TypeName, kind: DefinitionKind) -> Definition | None:
+    """The definition in a text; None if the text is not valid."""
+    if len(source.text) > LONGEST:
+        return None
+    parts: list[list[tuple[str, Span]]] = [[]]
+    for line, span in _lines(source):
+        if line == "---":
+            parts.append([])
+        elif line and not line.startswith("#"):
+            parts[-1].append((line, span))
+    if len(parts) != len(PARTS[kind]):
+        return None
+    messages = []
+    for part, lines in zip(PARTS[kind], parts, strict=True):
+        message = _message(str(name) if kind == "msg" else f"{name}.{part}", name.package, lines)
+        if message is None:
+            return None
+        messages.append(message)
+    return Definition(
+        package=name.package,
+        name=name.name,
+        kind=kind,
+        messages=tuple(messages),
+        span=Span(source, 0, 0),
+    )
+
+
+def _lines(source: Source) -> Iterator[tuple[str, Span]]:
+    """The lines of a text without the space around them, and their spans."""
+    for start in source.line_starts:
+        end = source.text.find("\n", start)
+        line = source.text[start : end if end >= 0 else len(source.text)]
+        begin = start + len(line) - len(line.lstrip())
+        yield line.strip(), Span(source, begin, begin + len(line.strip()))
+
+
+def _message(name: str, package: str, lines: list[tuple[str, Span]]) -> Message | None:
+    fields: list[MessageField] = []
+    constants: list[MessageConstant] = []
+    for line, span in lines:
+        item = _declaration(line, span, package)
+        if item is None:
+            return None
+        if isinstance(item, MessageField):
+            fields.append(item)
+        else:
+            constants.append(item)
+    names = [each.name for each in fields] + [each.name for each in constants]
+    if len(set(names)) != len(names):
+        return None
+    return Message(name=name, fields=tuple(fields), constants=tuple(constants))
+
+
+def _declaration(line: str, span: Span, package: str) -> MessageField | MessageConstant | None:
+    """The field `type name [default]` or the constant `type NAME=value` of a line."""
+    word, _, rest = line.replace("\t", " ").partition(" ")
+    wanted = _field_type(word, package)
+    rest = rest.lstrip()
+    named = _NAME.match(rest)
+    if wanted is None or named is None:
+        return None
+    start = span.start + len(line) - len(rest)
+    place = Span(span.source, start, start + named.end())
+    after = rest[named.end() :]
+    if after.lstrip().startswith("=") and not wanted.array and wanted.name in PRIMITIVES:
+        value = after.lstrip()[1:].strip()
+        # In ROS 1 the value of a text is the rest of the line, also after a `#`.
+        if wanted.name not in TEXTS or value[:1] in ("'", '"'):
+            value = _without_comment(value)
+        return MessageConstant(name=named[0], type=wanted, value=value, span=place)
+    if after and after[0] not in " #":
+        return None
+    default = _without_comment(after)
+    return MessageField(name=named[0], type=wanted, default=default, span=place)
+
+
+def _without_comment(text: str) -> str:
+    """A text up to the first `#` outside of quotes."""
+    quote = ""
+    before = ""
+    for at, character in enumerate(text):
+        if quote:
+            if character == quote and before != "\\":
+                quote = ""
+        elif character in ("'", '"'):
+            quote = character
+        elif character == "#":
+            return text[:at].strip()
+        before = character
+    return text.strip()
+
+
+def _field_type(word: str, package: str) -> FieldType | None:
+    """The type of a text; the name of a message gets the package around it if it has none."""
+    found = _TYPE.fullmatch(word)
+    if found is None:
+        return None
+    name: str = found["name"]
+    if found["longest"] is not None and name not in TEXTS:
+        return None
+    parts = name.split("/")
+    if len(parts) == 3:
+        if parts[1] != "msg":
+            return None
+        name = f"{parts[0]}/{parts[2]}"
+    elif name == "Header":
+        name = "std_msgs/Header"  # ROS 1 needs no package before it
+    elif len(parts) == 1 and name not in PRIMITIVES:
+        name = f"{package}/{name}"
+    return FieldType(
+        name=name,
+        array=found["array"] is not None,
+        size=_number(found["size"]),
+        most=_number(found["most"]),
+        longest=_number(found["longest"]),
+    )
+
+
+def _number(text: str | None) -> int | None:
+    return int(text) if text is not None else None
