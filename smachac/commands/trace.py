@@ -1,4 +1,4 @@
-"""The command `trace`: compare recorded traces with a script."""
+"""The commands `trace` and `stats`: compare recorded traces with a script, and count in them."""
 
 from __future__ import annotations
 
@@ -6,65 +6,158 @@ import argparse
 import sys
 from argparse import Namespace
 
-from smachac.commands.arguments import FORMAT, SCRIPT, as_path, colour, search_folders
+from smachac.commands.arguments import FORMAT, SCRIPT, as_path, colour, names, search_folders
 from smachac.commands.output import FINDINGS, OK, print_report, usage, without_notes
 
 TYPE_CHECKING = False  # annotations only: `--help` imports none of this
 if TYPE_CHECKING:
     from pathlib import Path
 
-EXAMPLES = """\
+    from smachac.ir.nodes import Machine
+    from smachac.verify.coverage import Coverage
+    from smachac.verify.trace_report import JudgedTrace
+    from smachac.verify.trace_statistics import TraceStatistics
+
+TRACE_EXAMPLES = """\
 examples:
   smachac run main.yml --trace run.jsonl           record a run
   smachac trace check main.yml run.jsonl           is it a run that the script allows?
   smachac trace check main.yml runs/*.jsonl        many runs, and the transitions that none takes
-  smachac trace check main.yml run.jsonl --format json
+  smachac trace stats main.yml runs/*.jsonl        visits, durations and outcomes of each state
 
 exit codes: 0 every trace is a run that the script allows, 1 one is not, or the script has errors,
 2 wrong usage, 70 a bug in smachac, 130 interrupted
 """
 
+STATS_EXAMPLES = """\
+examples:
+  smachac stats main.yml runs/*.jsonl              outcomes, and the failures that cost most
+  smachac stats main.yml runs/*.jsonl --success done,skipped
+  smachac stats main.yml runs/*.jsonl --format json
+
+exit codes: 0 success, 1 a trace is not a run that the script allows, or the script has errors,
+2 wrong usage, 70 a bug in smachac, 130 interrupted
+"""
+
+TRACES = "file that `run --trace` or a robot has written"
+
+
+class UnreadableTraceError(Exception):
+    """A trace cannot be read."""
+
+    def __init__(self, path: Path, reason: str) -> None:
+        super().__init__(f"the trace {path} cannot be read: {reason}")
+
 
 def trace_arguments(parser: argparse.ArgumentParser) -> None:
-    parser.epilog = EXAMPLES
-    parser.add_argument("action", choices=("check",), help="what to do with the traces")
+    parser.epilog = TRACE_EXAMPLES
+    parser.add_argument("action", choices=("check", "stats"), help="what to do with the traces")
+    _files(parser)
+
+
+def stats_arguments(parser: argparse.ArgumentParser) -> None:
+    parser.epilog = STATS_EXAMPLES
+    parser.add_argument("--success", type=names, metavar="A,B,...",
+                        help="outcomes of the machine that count as success (default: those with"
+                        " names of success)")  # fmt: skip
+    _files(parser)
+
+
+def _files(parser: argparse.ArgumentParser) -> None:
     parser.add_argument("script", type=as_path, help=SCRIPT)
-    parser.add_argument("traces", type=as_path, nargs="+", metavar="TRACE",
-                        help="file that `run --trace` or a robot has written")  # fmt: skip
+    parser.add_argument("traces", type=as_path, nargs="+", metavar="TRACE", help=TRACES)
     parser.add_argument("--format", choices=("text", "json"), default="text", help=FORMAT)
     search_folders(parser)
     colour(parser)
 
 
 def trace_command(arguments: Namespace) -> int:
-    """Judge every trace; the exit code."""
+    """Judge every trace, or count in them; the exit code."""
+    from smachac.report.terminal import on_one_line
+    from smachac.verify.statistics_report import statistics_json, statistics_text
+    from smachac.verify.trace_report import refusals, trace_json, trace_text, untaken
+
+    machine = _machine(arguments)
+    if machine is None:
+        return FINDINGS
+    try:
+        judged, taken, statistics = _judged(arguments.traces, machine)
+    except UnreadableTraceError as error:
+        return usage(str(error))
+    never = untaken(machine, taken)
+    bad = refusals(judged)
+    if arguments.action == "check":
+        render = trace_json if arguments.format == "json" else trace_text
+        sys.stdout.write(render(judged, never, len(taken.items)))
+    elif not bad:
+        show = statistics_json if arguments.format == "json" else statistics_text
+        sys.stdout.write(show(machine, statistics, never))
+    else:
+        print(*map(on_one_line, bad), sep="\n", file=sys.stderr)
+    return FINDINGS if bad else OK
+
+
+def stats_command(arguments: Namespace) -> int:
+    """Predict the outcomes of a machine from its traces; the exit code."""
+    from smachac.ir.outcome_names import successes
+    from smachac.ir.traversal import outcome_names
+    from smachac.report.terminal import on_one_line
+    from smachac.verify.statistics_report import forecast, forecast_json, forecast_text
+    from smachac.verify.trace_report import refusals
+
+    machine = _machine(arguments)
+    if machine is None:
+        return FINDINGS
+    own = outcome_names(machine.root)
+    for name in arguments.success or ():
+        if name not in own:
+            return usage(f"the machine has no outcome `{name}`", name, own)
+    try:
+        judged, _, statistics = _judged(arguments.traces, machine)
+    except UnreadableTraceError as error:
+        return usage(str(error))
+    bad = refusals(judged)
+    if bad:
+        print(*map(on_one_line, bad), sep="\n", file=sys.stderr)
+        return FINDINGS
+    if machine.root.name not in statistics.states:
+        return usage("the traces have no run")
+    good = arguments.success or successes(own)
+    render = forecast_json if arguments.format == "json" else forecast_text
+    sys.stdout.write(render(machine, statistics, forecast(machine, statistics, good)))
+    return OK
+
+
+def _machine(arguments: Namespace) -> Machine | None:
+    """The checked machine of the script; its findings are printed."""
     from smachac.driver import analyse_script
-    from smachac.verify.coverage import Coverage
-    from smachac.verify.trace_report import judge_trace, trace_json, trace_text, untaken
 
     analysis = analyse_script(arguments.script, arguments.scripts, arguments.templates)
     print_report(without_notes(analysis.report), arguments, sys.stderr)
-    machine = analysis.checked
-    if machine is None:
-        return FINDINGS
-    taken = Coverage(machine)
-    judged = []
-    for path in arguments.traces:
-        name = _not_regular(path)
-        if name is not None:
-            return usage(f"the trace {path} cannot be read: {name}")
+    return analysis.checked
+
+
+def _judged(
+    paths: list[Path], machine: Machine
+) -> tuple[list[JudgedTrace], Coverage, TraceStatistics]:
+    """Every trace, with what all of them cover and count. Raises UnreadableTraceError."""
+    from smachac.verify.coverage import Coverage
+    from smachac.verify.trace_report import judge_trace
+    from smachac.verify.trace_statistics import TraceStatistics
+
+    taken, statistics, judged = Coverage(machine), TraceStatistics(), []
+
+    def record(event: dict[str, object]) -> None:
+        taken.record(event)
+        statistics.record(event)
+
+    for path in paths:
         try:
+            if not path.is_file() and path.exists():
+                raise UnreadableTraceError(path, "it is not a regular file")
             with path.open(encoding="utf-8", errors="replace", newline="\n") as lines:
-                judged.append(judge_trace(machine, str(path), lines, taken))
+                judged.append(judge_trace(machine, str(path), lines, record))
         except OSError as error:
-            return usage(f"the trace {path} cannot be read: {error.strerror or error}")
-    render = trace_json if arguments.format == "json" else trace_text
-    sys.stdout.write(render(judged, untaken(machine, taken), len(taken.items)))
-    return FINDINGS if any(each.fault is not None for each in judged) else OK
-
-
-def _not_regular(path: Path) -> str | None:
-    """The reason why a path is not read: a device or a pipe may have no end."""
-    if not path.exists():
-        return "no such file"
-    return None if path.is_file() else "it is not a regular file"
+            raise UnreadableTraceError(path, error.strerror or str(error)) from None
+        statistics.end_trace()
+    return judged, taken, statistics

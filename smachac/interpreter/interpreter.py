@@ -36,6 +36,7 @@ from smachac.interpreter.userdata import (
     trace_value,
 )
 from smachac.ir import nodes
+from smachac.ir.concurrence_rules import outcome_of
 from smachac.ir.nodes import (
     Concurrence,
     Container,
@@ -399,7 +400,7 @@ def _concurrence(
     if stopped:
         run.preemption.requested.discard(path)
         return PREEMPTED
-    return _outcome_of(node, ended)
+    return outcome_of(node, ended)
 
 
 def _branch(
@@ -440,17 +441,6 @@ def _choose(run: Interpreter, live: Mapping[str, _Branch]) -> str | None:
     """The branch that continues among those that can continue now; None if all of them wait."""
     ready = [path for path, branch in live.items() if branch.ready_at <= run.clock]
     return run.schedule.choose(ready) if len(ready) > 1 else next(iter(ready), None)
-
-
-def _outcome_of(node: Concurrence, ended: Mapping[str, str | RunFailure]) -> str:
-    """The outcome of the matching rule with most conditions; the last one if several have as
-    many."""
-    best, most = node.default_outcome, 0
-    for rule in node.rules:
-        holds = all(ended.get(one.child) == one.outcome for one in rule.when)
-        if holds and len(rule.when) >= most:
-            best, most = rule.outcome, len(rule.when)
-    return best
 
 
 def _iterator(run: Interpreter, node: Iterator, path: str, own: dict[str, object]) -> Coroutine:

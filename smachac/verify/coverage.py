@@ -9,10 +9,11 @@ from typing import Literal, NamedTuple
 from smachac.diagnostics.source import Span
 from smachac.interpreter.result import Event
 from smachac.ir import nodes
+from smachac.ir.concurrence_rules import matching_rule
 from smachac.ir.nodes import Concurrence, Container, Leaf, Machine
 from smachac.ir.traversal import containers, leads_to_child, outcome_names
 from smachac.runtime.tracing.writer import shown_path
-from smachac.verify.guidance import Planner, item_count, matching_rule, possible_leaf_outcomes
+from smachac.verify.guidance import Planner, item_count, possible_leaf_outcomes
 
 
 class CoverageItem(NamedTuple):

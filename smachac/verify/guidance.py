@@ -23,16 +23,6 @@ def possible_leaf_outcomes(leaf: Leaf) -> tuple[str, ...]:
     return tuple(dict.fromkeys((*declared, *led)))
 
 
-def matching_rule(node: Concurrence, ended: Mapping[str, str]) -> int:
-    """The number of the rule that determines the outcome of a concurrence; -1 for the default."""
-    best, most = -1, 0
-    for number, rule in enumerate(node.rules):
-        holds = all(ended.get(one.child) == one.outcome for one in rule.when)
-        if holds and len(rule.when) >= most:
-            best, most = number, len(rule.when)
-    return best
-
-
 def item_count(node: nodes.Iterator) -> int | None:
     """The number of items of an iterator, if the script lists them."""
     data = node.items.data if node.items is not None else None

@@ -15,11 +15,12 @@ from typing import NamedTuple
 from smachac.diagnostics.source import Span
 from smachac.interpreter.result import Event
 from smachac.ir import nodes
+from smachac.ir.concurrence_rules import outcome_of
 from smachac.ir.nodes import Concurrence, Container, Iterator, Leaf, Machine, Node, StateMachine
 from smachac.ir.script_paths import script_paths
 from smachac.ir.traversal import PREEMPTED, ends_preempted, leads_to_child, outcome_names, walk
 from smachac.runtime.tracing.writer import shown_path
-from smachac.verify.guidance import matching_rule, possible_leaf_outcomes
+from smachac.verify.guidance import possible_leaf_outcomes
 
 
 class Violation(NamedTuple):
@@ -54,7 +55,7 @@ class _NotAllowedError(Exception):
 def first_violation(machine: Machine, events: Iterable[Event]) -> Violation | None:
     """The first event of a trace that the machine does not allow, or None.
 
-    Paths in the events are those of the script or full ones (ir/script_paths.py).
+    Paths in the events are those that the script shows (ir/script_paths.py).
     """
     acceptor = Acceptor(machine)
     for at, event in enumerate(events):
@@ -203,9 +204,7 @@ class Acceptor:
                 if missing:
                     name = self._name(f"{path}/{missing[0]}")
                     raise _NotAllowedError(f"{self._name(path)} ends, but {name} has not ended")
-                rule = matching_rule(node, run.ended)
-                own = node.rules[rule].outcome if rule >= 0 else node.default_outcome
-                return frozenset(stopped or {own})
+                return frozenset(stopped or {outcome_of(node, run.ended)})
             case Iterator():
                 if run.previous is None:
                     exhausted = node.exhausted_outcome

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import json
-from collections.abc import Iterable, Iterator, Sequence
+from collections.abc import Callable, Iterable, Iterator, Sequence
 from dataclasses import dataclass
 from typing import NamedTuple
 
@@ -42,6 +42,10 @@ class JudgedTrace:
     fault: tuple[int, str, Span | None] | None
 
 
+MOST_TRACES = 20
+"""Limit on the traces in the text; JSON contains all of them."""
+
+
 class _BadLineError(Exception):
     """A line is no event of a trace; the message gives the reason."""
 
@@ -63,8 +67,10 @@ def read_event(line: str) -> Event:
     return event
 
 
-def judge_trace(machine: Machine, name: str, lines: Iterable[str], taken: Coverage) -> JudgedTrace:
-    """Judge one trace; `taken` records the transitions of its allowed events.
+def judge_trace(
+    machine: Machine, name: str, lines: Iterable[str], record: Callable[[Event], None]
+) -> JudgedTrace:
+    """Judge one trace; `record` receives its allowed events, with full paths.
 
     A last line without a line break is the rest of a write that was interrupted; it may be torn.
     """
@@ -85,7 +91,7 @@ def judge_trace(machine: Machine, name: str, lines: Iterable[str], taken: Covera
             fault = number, violation.message, violation.span
             break
         events += 1
-        taken.record(event)
+        record(event)
     return JudgedTrace(name=name, events=events, outcome=acceptor.outcome, fault=fault)
 
 
@@ -105,9 +111,14 @@ def untaken(machine: Machine, taken: Coverage) -> list[UntakenTransition]:
 def trace_text(
     traces: Sequence[JudgedTrace], missing: Sequence[UntakenTransition], total: int
 ) -> str:
-    """One line for each trace, then the missing ones of all `total` transitions."""
-    lines = [_trace_line(each) for each in traces]
+    """The traces, those that are not allowed first, then the missing ones of all `total`
+    transitions."""
+    lines = refusals(traces)
     bad = sum(each.fault is not None for each in traces)
+    allowed = [each for each in traces if each.fault is None]
+    lines += [_trace_line(each) for each in allowed[:MOST_TRACES]]
+    if (more := len(allowed) - MOST_TRACES) > 0:
+        lines.append(f"... and {more} more")
     count = f"{len(traces)} trace{'s' * (len(traces) != 1)}"
     lines.append(f"{count}, {bad} not allowed" if bad else f"{count}, all allowed")
     percent = f" ({100 * (total - len(missing)) // total} %)" if total else ""
@@ -118,6 +129,15 @@ def trace_text(
     if (more := len(missing) - MOST_MISSING) > 0:
         lines.append(f"  ... and {more} more: --format json has all of them")
     return "".join(f"{on_one_line(line)}\n" for line in lines)
+
+
+def refusals(traces: Sequence[JudgedTrace]) -> list[str]:
+    """A line for each trace that is not allowed."""
+    bad = [each for each in traces if each.fault is not None]
+    lines = [_trace_line(each) for each in bad[:MOST_TRACES]]
+    if (more := len(bad) - MOST_TRACES) > 0:
+        lines.append(f"... and {more} more that are not allowed")
+    return lines
 
 
 def _trace_line(trace: JudgedTrace) -> str:

@@ -96,3 +96,48 @@ def test_files_that_cannot_be_read(
     assert main(["trace", "check", "main.yml", name]) == 2
     assert f"the trace {name} cannot be read" in capsys.readouterr().err
     assert recorded.is_file()
+
+
+def test_statistics_of_states(recorded: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    assert main(["trace", "stats", "main.yml", "run.jsonl", "run.jsonl", "--format", "json"]) == 0
+    data = json.loads(capsys.readouterr().out)
+    assert [(state["path"], state["visits"], state["outcomes"]) for state in data["states"]] == [
+        ("sm", 2, {"done": 2}),
+        ("sm/A", 2, {"ok": 2}),
+        ("sm/B (retry)", 2, {"ok": 2}),
+        ("sm/B", 2, {"ok": 2}),
+    ]
+    assert {"path": "sm/A", "outcome": "bad", "to": "sm:lost"} in data["never_taken"]
+    assert main(["trace", "stats", "main.yml", "run.jsonl"]) == 0
+    shown = capsys.readouterr().out.splitlines()
+    assert shown[0].split() == ["state", "visits", "mean", "longest", "outcomes"]
+    assert shown[2].startswith("  A ")
+    assert shown[2].endswith("ok 100.0 %")
+    assert shown[5] == "never taken: sm/A: bad -> sm:lost"
+
+
+def test_a_prediction(recorded: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    assert main(["stats", "main.yml", "run.jsonl"]) == 0
+    shown = capsys.readouterr().out.splitlines()
+    assert shown[0] == "1 run"
+    assert shown[2].split() == ["done", "100.0", "%", "20.7", "%", "to", "100.0", "%", "100.0", "%"]
+    assert main(["stats", "main.yml", "run.jsonl", "--success", "dnoe"]) == 2
+    assert "did you mean `done`?" in capsys.readouterr().err
+
+
+@pytest.mark.parametrize("words", [["stats"], ["trace", "stats"]], ids=" ".join)
+def test_no_statistics_of_a_trace_that_is_not_allowed(
+    words: list[str], recorded: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    recorded.write_text("x\n", "utf-8")
+    assert main([*words, "main.yml", "run.jsonl"]) == 1
+    shown = capsys.readouterr()
+    assert shown.out == ""
+    assert shown.err.startswith("run.jsonl:1: this line is not JSON\n")
+
+
+def test_a_trace_without_a_run(recorded: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    recorded.write_text("", "utf-8")
+    assert main(["trace", "check", "main.yml", "run.jsonl"]) == 0
+    assert main(["stats", "main.yml", "run.jsonl"]) == 2
+    assert "the traces have no run" in capsys.readouterr().err
