@@ -186,6 +186,7 @@ def run(
     from pathlib import Path
 
     from smachac.driver import compile_script
+    from smachac.frontend.files import module_folders
     from smachac.targets.python import TARGET
     from smachac.targets.python.runner import execute
 
@@ -201,8 +202,8 @@ def run(
         if observe is not None:
             observe(event)
 
-    folder = Path(analysis.script).parent
-    result = execute(file, text, analysis.checked, note, folder=folder, seed=seed)
+    folders = module_folders(Path(analysis.script))
+    result = execute(file, text, analysis.checked, note, folders=folders, seed=seed)
     return replace(result, events=tuple(events))
 
 

@@ -223,8 +223,10 @@ def play(
 
     behaviour = scenario_behaviour(scenario, machine, builtin_behaviour(seed))
     paths = script_paths(machine.root)
+    full = {shown: path for path, shown in paths.items()}
+    turns = None if schedule is None else [full.get(turn, turn) for turn in schedule]
     try:
-        result = run(machine, behaviour, _shown(observe, paths), seed=seed, schedule=schedule)
+        result = run(machine, behaviour, _shown(observe, paths), seed=seed, schedule=turns)
     except ScheduleError as error:
         raise FailedError(f"--schedule: {error}") from None
     if result.error is not None:
@@ -292,7 +294,7 @@ def play_orders(machine: Machine, scenario: Scenario, seed: int, most: int) -> t
     which = "not all" if more else "all there are" if tried > 1 else "the only one"
     lines = [f"{tried} order{'s' * (tried > 1)} of branches tried, {which}:"]
     for end, results in ends.items():
-        turns = ",".join(_short_turns(results[0]))
+        turns = ",".join(_short_turns(results[0], paths))
         lines.append(
             f"{len(results):>6}  {end}" + (f"\n        --schedule {turns}" if turns else "")
         )
@@ -301,29 +303,32 @@ def play_orders(machine: Machine, scenario: Scenario, seed: int, most: int) -> t
     return "\n".join(lines), len(ends) == 1
 
 
-def _short_turns(result: InterpreterResult) -> Iterator[str]:
-    """The turns of a run in the form of `--schedule`: names, or paths where names are ambiguous."""
+def _short_turns(result: InterpreterResult, paths: Mapping[str, str]) -> Iterator[str]:
+    """The turns of a run in the form of `--schedule`: names, or paths of the script where names are
+    ambiguous."""
     for choice in result.choices:
         name = choice.taken.rpartition("/")[2]
         alike = [path for path in choice.ready if path.endswith(f"/{name}")]
-        yield name if len(alike) == 1 else choice.taken
+        yield name if len(alike) == 1 else paths.get(choice.taken, choice.taken)
 
 
 def perform(
     name: str, text: str, machine: Machine, arguments: Namespace, observe: Callable[[Event], None]
 ) -> str:
     """Run the generated module; the outcome. Raises FailedError."""
+    from smachac.frontend.files import module_folders
     from smachac.targets.python.runner import execute, failure_text
 
     gc.enable()  # from here on the user's program runs
-    folder = arguments.script.parent.resolve()  # the program may change the working folder
+    # The program may change the working folder.
+    folders = [folder.resolve() for folder in module_folders(arguments.script)]
     try:
         outcome = execute(
             name,
             text,
             machine,
             observe,
-            folder=folder,
+            folders=folders,
             seed=arguments.seed,
             gui=arguments.gui,
             record=arguments.record,

@@ -157,6 +157,7 @@ def _generated_player(
 ) -> Player:
     """A player of the program that smachac generates now."""
     from smachac.driver import build
+    from smachac.frontend.files import module_folders
     from smachac.targets.python import TARGET
     from smachac.verify.players import cpp, python
 
@@ -164,7 +165,7 @@ def _generated_player(
         return cpp.player(machine, report)
     files = build(machine, TARGET, library, report)
     ((file, text),) = files.items() or [("", "")]
-    return python.player(file, text, machine, folder=script.parent)
+    return python.player(file, text, machine, folders=module_folders(script))
 
 
 def _file_player(
@@ -173,10 +174,10 @@ def _file_player(
     """A player of a file on disk, which may use modules or headers beside it and of the project."""
     from pathlib import Path
 
-    from smachac.frontend.files import find_project
+    from smachac.frontend.files import module_folders
     from smachac.verify.players import cpp_file, python_file
 
-    homes = [Path(source.name).parent, script.parent, *find_project(script, []).code]
+    homes = [Path(source.name).parent, *module_folders(script)]
     if target == "cpp":
         return cpp_file.file_player(source, machine, report, folders=homes)
     return python_file.file_player(source, machine, folders=homes)

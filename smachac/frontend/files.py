@@ -178,6 +178,12 @@ def with_line_feeds(text: str) -> str:
     return text.replace("\r\n", "\n").replace("\r", "\n")
 
 
+def module_folders(main: Path) -> list[Path]:
+    """The folders from which a program may import modules of the user: that of the script, and the
+    `code` of its project."""
+    return list(dict.fromkeys([main.parent, *find_project(main, []).code]))
+
+
 def find_project(
     main: Path,
     report: Report,

@@ -117,3 +117,25 @@ def test_the_text_is_as_a_formatter_leaves_it(tmp_path: Path) -> None:
             cwd=tmp_path / "out", capture_output=True, text=True, timeout=120, check=False,
         )  # fmt: skip
         assert ended.returncode == 0, ended.stdout
+
+
+@pytest.mark.parametrize("words", [["run", "-q"], ["verify"]], ids=" ".join)
+def test_modules_in_the_code_folders_of_the_project_are_found(
+    words: list[str], tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    (tmp_path / "src").mkdir()
+    (tmp_path / "missions" / "templates").mkdir(parents=True)
+    (tmp_path / "smachac.toml").write_text('code = ["src"]\n', "utf-8")
+    (tmp_path / "src" / "own_states.py").write_text(
+        "import smach\n\n\nclass Look(smach.State):\n    def __init__(self):\n"
+        '        super().__init__(outcomes=["seen"])\n\n'
+        '    def execute(self, userdata):\n        return "seen"\n',
+        "utf-8",
+    )
+    (tmp_path / "missions" / "templates" / "Look.yml").write_text(
+        'name: Look\noutcomes: {seen: {}}\ncode: {python: "own_states:Look"}\n', "utf-8"
+    )
+    script = tmp_path / "missions" / "main.yml"
+    script.write_text("name: sm\noutcomes: [seen]\nstates:\n  - LOOK: {template: Look}\n", "utf-8")
+    monkeypatch.chdir(tmp_path)
+    assert main([words[0], str(script), *words[1:]]) == 0

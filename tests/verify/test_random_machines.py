@@ -32,7 +32,7 @@ def test_random_machines_agree(drawn: tuple[Machine, tuple[str, int]]) -> None:
     typed = with_state_types(machine, LIBRARY)
     report: list[Any] = []
     ((name, text),) = build(Checked(typed), TARGET, LIBRARY, report).items()
-    played = player(name, text, machine, folder=ROOT)
+    played = player(name, text, machine, folders=[ROOT])
     verdict = verify(machine, {"python": played}, script="main.yml", most=40)
     assert verdict.disagreements == []
     taken = Coverage(machine)

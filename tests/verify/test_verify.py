@@ -131,7 +131,7 @@ def program(script: Path) -> tuple[str, str]:
 
 def judged(script: Path, break_: Callable[[str], str] = lambda text: text, **how: Any) -> Verdict:
     machine, (name, text) = smachac.load(script), program(script)
-    played = player(name, break_(text), machine, folder=script.parent)
+    played = player(name, break_(text), machine, folders=[script.parent])
     return verify(machine, {"python": played}, script=script.name, **how)
 
 

@@ -4,13 +4,14 @@ from __future__ import annotations
 
 import json
 import math
-from collections.abc import Iterator
+from collections.abc import Iterator, Mapping
 from dataclasses import fields, is_dataclass
 from typing import Any
 
 from smachac.diagnostics.diagnostic import Report
 from smachac.diagnostics.source import NOWHERE, Span
 from smachac.ir.nodes import Checked, Expression, Machine, Node, Struct, Value
+from smachac.ir.script_paths import script_paths
 from smachac.ir.traversal import walk
 from smachac.ir.types import Type
 from smachac.targets import BuildContext, Files, Target, made_by, stem
@@ -35,6 +36,7 @@ def to_json(machine: Machine) -> dict[str, Any]:
 
     The list is flat, so that deep nesting is no problem for a reader.
     """
+    shown = script_paths(machine.root)
     return {
         "made_by": made_by(machine),
         "version": VERSION,
@@ -42,12 +44,15 @@ def to_json(machine: Machine) -> dict[str, Any]:
         "digest": machine.digest,
         "base": machine.base,
         "variables": _plain(machine.variables),
-        "states": [_node(path, node) for path, node in walk(machine.root)],
+        "states": [_node(path, node, shown) for path, node in walk(machine.root)],
     }
 
 
-def _node(path: str, node: Node) -> dict[str, Any]:
-    return {"kind": type(node).__name__, "path": path, **dict(_entries(node))}
+def _node(path: str, node: Node, shown: Mapping[str, str]) -> dict[str, Any]:
+    """A node; `script_path` is the path that the script shows, where it is another one."""
+    data = {"kind": type(node).__name__, "path": path}
+    script_path = {"script_path": shown[path]} if path in shown else {}
+    return {**data, **script_path, **dict(_entries(node))}
 
 
 def _entries(value: Any) -> Iterator[tuple[str, Any]]:

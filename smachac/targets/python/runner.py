@@ -51,7 +51,7 @@ def execute(
     machine: Machine,
     observe: Callable[[Event], None] | None,
     *,
-    folder: Path,
+    folders: Sequence[Path],
     seed: int = 0,
     gui: bool = False,
     record: Path | None = None,
@@ -60,15 +60,15 @@ def execute(
 ) -> RunResult:
     """Run the module `text`; the result has no events, which `observe` receives.
 
-    `folder` is where the program may import modules of the user from: that of the script.
-    `observe` gets every event of the trace, with paths of the script. Ctrl-C requests the machine
-    to preempt and calls `on_preempt`; a second one calls the signal handler `on_interrupt`.
-    Exceptions of the program are not caught.
+    `folders` are those from which the program may import modules of the user (`module_folders` of
+    frontend/files.py). `observe` gets every event of the trace, with paths of the script. Ctrl-C
+    requests the machine to preempt and calls `on_preempt`; a second one calls the signal handler
+    `on_interrupt`. Exceptions of the program are not caught.
     """
     from smachac.runtime.tracing import trace
 
     random.seed(seed)
-    with loaded(name, text, folder) as module:
+    with loaded(name, text, *folders) as module:
         if record is not None or gui or "smachac.sim" in sys.modules:
             from smachac import sim
 

@@ -16,8 +16,8 @@ from smachac.targets.python.runner import failure_text, hidden, loaded, places, 
 from smachac.verify.test_case import Event, Player, TestCase, UnplayableError, record_read
 
 
-def player(name: str, text: str, machine: Machine, *, folder: Path) -> Player:
-    """A player of the module `text`, which may import modules of the user from `folder`.
+def player(name: str, text: str, machine: Machine, *, folders: Sequence[Path]) -> Player:
+    """A player of the module `text`, which may import modules of the user from `folders`.
 
     The first trace loads the module; each trace creates the objects of its states. Raises
     UnplayableError if that fails.
@@ -27,7 +27,7 @@ def player(name: str, text: str, machine: Machine, *, folder: Path) -> Player:
     def play(cases: Sequence[TestCase]) -> Iterator[list[Event]]:
         with (
             _unplayable_errors(),
-            loaded(name, text, folder) as module,
+            loaded(name, text, *folders) as module,
             quiet(module["smach"], hidden),
         ):
             for case in cases:
