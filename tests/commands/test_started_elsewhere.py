@@ -126,16 +126,11 @@ def test_modules_in_the_code_folders_of_the_project_are_found(
     (tmp_path / "src").mkdir()
     (tmp_path / "missions" / "templates").mkdir(parents=True)
     (tmp_path / "smachac.toml").write_text('code = ["src"]\n', "utf-8")
-    (tmp_path / "src" / "own_states.py").write_text(
-        "import smach\n\n\nclass Look(smach.State):\n    def __init__(self):\n"
-        '        super().__init__(outcomes=["seen"])\n\n'
-        '    def execute(self, userdata):\n        return "seen"\n',
-        "utf-8",
-    )
+    (tmp_path / "src" / "own_states.py").write_text(CLASS.format(name="Look", imports=""), "utf-8")
     (tmp_path / "missions" / "templates" / "Look.yml").write_text(
-        'name: Look\noutcomes: {seen: {}}\ncode: {python: "own_states:Look"}\n', "utf-8"
+        'name: Look\noutcomes: {done: {}}\ncode: {python: "own_states:Look"}\n', "utf-8"
     )
     script = tmp_path / "missions" / "main.yml"
-    script.write_text("name: sm\noutcomes: [seen]\nstates:\n  - LOOK: {template: Look}\n", "utf-8")
+    script.write_text("name: sm\noutcomes: [done]\nstates:\n  - LOOK: {template: Look}\n", "utf-8")
     monkeypatch.chdir(tmp_path)
     assert main([words[0], str(script), *words[1:]]) == 0
