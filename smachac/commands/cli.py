@@ -41,6 +41,8 @@ COMMANDS = {
     "rename": ("refactor", "rename a state, an outcome or a key everywhere"),
     "migrate": ("migrate", "report what to change in SMACHA scripts and templates"),
     "targets": ("targets", "list the targets and their options"),
+    "completion": ("completion", "print the completion of commands for a shell"),
+    "doctor": ("doctor", "list what is installed and what is missing"),
 }
 """Command to its module and to what it does."""
 
@@ -117,15 +119,15 @@ def _guarded(words: Sequence[str]) -> int:
 
 def _run(words: Sequence[str]) -> int:
     command = next((word for word in words if word in COMMANDS), "")
-    given, unknown = _parser(command).parse_known_args(words)
+    given, unknown = command_line(command).parse_known_args(words)
     if unknown:
         given.parser.error(f"unrecognized arguments: {' '.join(unknown)}")
     code: int = _function(given.command, "command")(given)
     return code
 
 
-def _parser(command: str) -> argparse.ArgumentParser:
-    """The parser of all commands; only `command` has its arguments."""
+def command_line(*complete: str) -> argparse.ArgumentParser:
+    """The parser of all commands; only those of `complete` have their arguments."""
     import argparse
 
     class Parser(argparse.ArgumentParser):
@@ -148,7 +150,7 @@ def _parser(command: str) -> argparse.ArgumentParser:
         about = f"{text[0].upper()}{text[1:]}."
         inner = parsers.add_parser(name, help=text, description=about, formatter_class=_formatter)
         inner.set_defaults(parser=inner)
-        if name == command:
+        if name in complete:
             _function(name, "arguments")(inner)
     return parser
 
