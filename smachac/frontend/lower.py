@@ -62,6 +62,7 @@ def lower(script: Script) -> Machine:
         source=PurePath(script.sources[0].name).name,
         digest=digest.hexdigest(),
         robot=script.robot,
+        definitions=script.definitions,
         unused=script.unused,
         properties=script.properties,
         state_types=script.state_types,

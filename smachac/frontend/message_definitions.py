@@ -13,17 +13,21 @@ from typing import NamedTuple
 
 from smachac.diagnostics.source import Source, Span
 from smachac.frontend.loader import Library
+from smachac.frontend.script import State
+from smachac.ir.leaf import type_text
 from smachac.ir.message_types import (
     PARTS,
     PRIMITIVES,
     TEXTS,
     Definition,
     DefinitionKind,
+    Definitions,
     FieldType,
     Message,
     MessageConstant,
     MessageField,
 )
+from smachac.ir.nodes import DEFINITION_KINDS
 
 LONGEST = 1_000_000
 """The longest file that is read, in characters."""
@@ -81,6 +85,21 @@ def find_definitions(text: str, kind: DefinitionKind, library: Library) -> tuple
             found = tuple(each for each in read if each is not None)
             return found if len(found) == len(read) else ()
     return ()
+
+
+def definitions_of(base: State, library: Library) -> Definitions:
+    """The definitions of the services and actions that the states of a script name."""
+    found: dict[tuple[DefinitionKind, str], tuple[Definition, ...]] = {}
+    todo = [base]
+    while todo:
+        state = todo.pop()
+        todo += state.states
+        for held in state.variables:
+            kind = DEFINITION_KINDS.get(held.role)
+            if kind is not None and (kind, type_text(held)) not in found:
+                text = type_text(held)
+                found[kind, text] = find_definitions(text, kind, library)
+    return {key: each for key, each in found.items() if each}
 
 
 def read_definition(source: Source, name: TypeName, kind: DefinitionKind) -> Definition | None:

@@ -28,6 +28,7 @@ from smachac.frontend.errors.script import (
 )
 from smachac.frontend.fields import as_name, kind_of, pairs_of, wrong
 from smachac.frontend.loader import Library
+from smachac.frontend.message_definitions import definitions_of
 from smachac.frontend.params import (
     MAX_FILLED,
     MAX_FILLED_BY_STATE,
@@ -148,6 +149,7 @@ class _Resolver:
             base=base,
             sources=tuple(self.sources),
             robot=robot,
+            definitions=definitions_of(base, self.library),
             unused=self.uses.unused(self.report),
             properties=properties_of(entries.get("properties"), source, self.library, self.report),
             state_types={name: type_ for name, type_ in self.types.items() if type_ is not None},

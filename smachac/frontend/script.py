@@ -11,6 +11,7 @@ from typing import NamedTuple, TypeAlias
 
 from smachac.diagnostics.source import Source, Span, Word
 from smachac.frontend.schema import FieldOwner
+from smachac.ir.message_types import Definitions
 from smachac.ir.nodes import Preset, StateType, Unused, Value, Variable
 from smachac.ir.properties import Property
 from smachac.ir.robot import Robot
@@ -127,6 +128,7 @@ class Script:
     base: State
     sources: tuple[Source, ...]
     robot: Robot | None = None
+    definitions: Definitions = field(default_factory=dict)
     unused: tuple[Unused, ...] = ()
     properties: tuple[Property, ...] = ()
     state_types: Mapping[str, StateType] = field(default_factory=dict)

@@ -33,6 +33,12 @@ def variable_of(leaf: Leaf, role: VariableRole) -> Variable | None:
     return None
 
 
+def type_text(held: Variable) -> str:
+    """The name of a type of ROS in a variable; `std_srvs.srv.Trigger` is read as code."""
+    data = held.value.data
+    return data.text if isinstance(data, Expression) else str(data or "")
+
+
 def functions(leaf: Leaf, role: VariableRole) -> Mapping[str, Expression] | None:
     """The functions in the variable with a role, by name; None where they are not known."""
     for held in leaf.variables:

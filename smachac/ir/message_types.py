@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from dataclasses import dataclass, field
 from typing import Literal, TypeAlias
 
@@ -98,6 +99,11 @@ class Definition:
     def part(self, name: str) -> Message:
         """The message of a name in `PARTS`. Raises ValueError if the kind has no such part."""
         return self.messages[PARTS[self.kind].index(name)]
+
+
+Definitions: TypeAlias = "Mapping[tuple[DefinitionKind, str], tuple[Definition, ...]]"
+"""By kind and name as in the script all definitions that were found: those of several versions of
+ROS can differ."""
 
 
 def userdata_type(wanted: FieldType) -> Type:

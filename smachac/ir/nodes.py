@@ -13,6 +13,7 @@ from typing import ClassVar, Literal, NamedTuple, NewType, TypeAlias
 
 from smachac.diagnostics.source import NOWHERE, Span, Word
 from smachac.ir.class_facts import ClassFacts
+from smachac.ir.message_types import DefinitionKind, Definitions
 from smachac.ir.properties import Property
 from smachac.ir.robot import Robot
 from smachac.ir.types import ANY, Type
@@ -47,9 +48,15 @@ class Value:
 
 VariableRole = Literal[
     "", "callbacks", "conditions", "function", "duration", "steps", "limb", "grasp", "frame",
-    "output_function",
+    "output_function", "service_type", "action_type", "request", "response", "goal", "result",
 ]  # fmt: skip
 """The meaning of a variable's value for a state (docs/state_types.md, Facts)."""
+
+DEFINITION_KINDS: Mapping[VariableRole, DefinitionKind] = {
+    "service_type": "srv",
+    "action_type": "action",
+}
+"""The kinds of the definitions of ROS that variables name, by their roles."""
 
 KeyRole = Literal[
     "", "argument", "result", "listed", "joint_positions", "goal_pose", "goal_offset", "frame"
@@ -379,8 +386,9 @@ class Machine:
 
     `base` is the base template; `variables` are its variables (`node_name`, `function_name`,
     `manifest`, and those of its interface). `source` is the name of the script without its folder,
-    `digest` a SHA-256 over the texts of the script and its sub-scripts. `robot`, `unused` and
-    `properties` are for rules; of the targets only `dot` uses properties. `state_types` are the
+    `digest` a SHA-256 over the texts of the script and its sub-scripts. `robot`, `unused`,
+    `properties` and `definitions`, those of messages of ROS, are for rules; of the targets only
+    `dot` uses properties. `state_types` are the
     interfaces of its states and of its base, by name.
     """
 
@@ -392,6 +400,7 @@ class Machine:
     robot: Robot | None = field(default=None, compare=False, repr=False)
     unused: tuple[Unused, ...] = field(default=(), compare=False, repr=False)
     properties: tuple[Property, ...] = field(default=(), compare=False, repr=False)
+    definitions: Definitions = field(default_factory=dict, compare=False, repr=False)
     state_types: Mapping[str, StateType] = field(default_factory=dict, compare=False, repr=False)
 
 

@@ -1,0 +1,146 @@
+"""Fields of messages against their definitions; silence where a definition does not decide."""
+
+from __future__ import annotations
+
+import pytest
+
+from smachac.diagnostics.source import Source
+from smachac.driver import analyse
+from smachac.frontend.loader import memory_library
+from tests.support.typed_machines import BUILT_IN
+
+GRASP = "cell_msgs/srv/Grasp.srv"
+TIDY = "cell_msgs/action/Tidy.action"
+FILES = {
+    GRASP: "geometry_msgs/Pose pose\nfloat64 width\nint32[] fingers\nbool soft\nuint8[] data\n"
+    "---\nbool held\n",
+    TIDY: "string room\n---\nint32 count\n---\nfloat32 done\n",
+}
+
+SERVICE = """
+name: sm
+template: ROSBase
+outcomes: [done, failed]
+userdata: {{{data}}}
+states:
+  - GRASP:
+      template: ServiceState
+      service_namespace: gripper
+      service: {type}
+      {fields}
+      transitions: {{succeeded: done, aborted: failed, preempted: failed}}
+"""
+ACTION = """
+name: sm
+template: ROSBase
+outcomes: [done, failed]
+states:
+  - TIDY:
+      template: SimpleActionState
+      action_server_namespace: tidy
+      action: {type}
+      goal: {goal}
+      transitions: {{succeeded: done, aborted: failed, preempted: failed}}
+"""
+
+
+def faults(script: str, files: dict[str, str] = FILES) -> list[tuple[str, str, str | None]]:
+    """The marked text, the message and the help of each finding of SM512."""
+    report = analyse(Source("main.yml", script), memory_library(files, BUILT_IN), []).report
+    found = [each for each in report if each.code == "SM512"]
+    return [(each.span.text, each.finding.message, each.finding.help) for each in found]
+
+
+def service(fields: str, data: str = "", type: str = "cell_msgs/Grasp") -> str:
+    return SERVICE.format(fields=fields, data=data, type=type)
+
+
+@pytest.mark.parametrize("type", ["cell_msgs/Grasp", "cell_msgs/srv/Grasp", "cell_msgs.srv.Grasp"])
+def test_a_misspelt_slot_is_found_in_every_spelling_of_the_type(type: str) -> None:
+    slots = "request_slots: [widht]\n      input_keys: [widht]"
+    assert faults(service(slots, "widht: 0.1", type)) == [
+        (
+            "widht",
+            "the request of `cell_msgs/Grasp` has no field `widht`",
+            "did you mean `width`?",
+        )
+    ]
+
+
+def test_slots_of_the_response_are_those_of_the_second_part() -> None:
+    slots = "response_slots: [width]\n      output_keys: [width]"
+    assert faults(service(slots)) == [
+        (
+            "width",
+            "the response of `cell_msgs/Grasp` has no field `width`",
+            "its fields are `held`",
+        )
+    ]
+    assert faults(service("response_slots: [held]\n      output_keys: [held]")) == []
+
+
+@pytest.mark.parametrize(
+    ("goal", "marked"),
+    [
+        ("TidyGoal(room='hall')", []),
+        ("TidyGoal(rom='hall')", ["rom"]),
+        ("Tidy.Goal(rom='hall', room='rom')", ["rom"]),
+        ("msg.TidyGoal(rom = 1)", ["rom"]),
+        ("make_goal(rom='hall')", []),
+        ("TidyGoal('hall')", []),
+        ("TidyGoal(**rooms)", []),
+        ("goal", []),
+    ],
+)
+@pytest.mark.parametrize("type", ["cell_msgs/TidyAction", "cell_msgs/action/Tidy"])
+def test_arguments_of_the_class_of_a_message(goal: str, marked: list[str], type: str) -> None:
+    found = faults(ACTION.format(type=type, goal=goal))
+    assert [text for text, _, _ in found] == marked
+
+
+@pytest.mark.parametrize(
+    ("key", "value", "wrong"),
+    [
+        ("width", "'wide'", True),
+        ("width", "1", False),
+        ("width", "[1.0]", True),
+        ("fingers", "[1, 2]", False),
+        ("fingers", "[1.5]", True),
+        ("fingers", "3", True),
+        ("soft", "1", False),
+        ("data", "[1, 2]", False),
+        ("data", "abc", False),
+        ("pose", "[[0.0, 0.0, 0.1], [0.0, 0.0, 0.0, 1.0]]", False),
+        ("pose", "0.1", True),
+        ("pose", "{position: {x: 0.1}}", False),
+    ],
+)
+def test_types_of_values(key: str, value: str, wrong: bool) -> None:
+    slots = f"request_slots: [{key}]\n      input_keys: [{key}]"
+    assert bool(faults(service(slots, f"{key}: {value}"))) == wrong
+
+
+def test_a_type_that_is_not_known_is_not_judged() -> None:
+    slots = 'request_slots: [width]\n      input_keys: {width: "any"}\n      remapping: {width: w}'
+    assert faults(service(slots, "w: 0.1")) == []
+    slots = 'request_slots: [width]\n      input_keys: {width: "float?"}'
+    assert faults(service(slots, "width: 0.1")) == []
+
+
+@pytest.mark.parametrize("files", [{}, {GRASP: "not a definition\n"}])
+def test_without_a_valid_definition_nothing_is_checked(files: dict[str, str]) -> None:
+    slots = "request_slots: [widht]\n      input_keys: [widht]"
+    assert faults(service(slots, "widht: 0.1"), files) == []
+
+
+def test_of_several_definitions_one_may_have_the_field() -> None:
+    from dataclasses import replace
+
+    one = Source("one/Grasp.srv", "float64 width\n---\n")
+    two = Source("two/Grasp.srv", "float64 opening\n---\n")
+    library = replace(memory_library({}, BUILT_IN), definitions=lambda path: [one, two])
+    slots = "request_slots: [{key}]\n      input_keys: [{key}]"
+    for key, count in (("width", 0), ("opening", 0), ("force", 1)):
+        script = service(slots.format(key=key), f"{key}: 0.1")
+        report = analyse(Source("main.yml", script), library, []).report
+        assert [each.code for each in report].count("SM512") == count
