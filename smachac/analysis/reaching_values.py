@@ -2,14 +2,15 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable
+from collections.abc import Iterable, Iterator
 from dataclasses import replace
+from typing import NamedTuple
 
 from smachac.analysis.type_inference import Cell, Clash, TypeFlow
 from smachac.analysis.type_lattice import MisfitKind
 from smachac.ir import nodes
 from smachac.ir.graph import START, Vertex, edges
-from smachac.ir.nodes import Leaf, Node
+from smachac.ir.nodes import Leaf, Node, StateMachine
 from smachac.ir.traversal import remapping
 from smachac.ir.types import ANY
 
@@ -28,6 +29,24 @@ def reaching_clashes(clashes: Iterable[Clash]) -> dict[MisfitKind, list[Clash]]:
         if reaching is not None:
             found[clash.misfit.kind].append(reaching)
     return found
+
+
+class Read(NamedTuple):
+    """A child of the container at `path` reads a key of the container."""
+
+    path: str
+    container: StateMachine | nodes.Sequence
+    key: str
+    child: str
+
+
+def last_writers(reads: Iterable[Read]) -> Iterator[tuple[Read, tuple[Vertex, ...]]]:
+    """For each read the children that may have been the last to write the key before it; with the
+    start, if none of them need be."""
+    searches = _Searches()
+    for read in reads:
+        if searches.visits <= MOST_VISITS:
+            yield read, searches.search(read.container, read.path, read.key, read.child)
 
 
 class _Searches:

@@ -66,7 +66,7 @@ def wrong_length(context: Context) -> Iterator[Finding]:
     limbs = robot.limbs if robot is not None else ()
     lengths = sorted({len(limb) for limb in limbs})
     for flow in context.types.constants if lengths else ():
-        if moves_arm(flow) and _role(flow.cell) == "joint_positions":
+        if moves_arm(flow) and role_of(flow.cell) == "joint_positions":
             assert isinstance(flow.value, tuple)
             if len(flow.value) not in lengths:
                 have = " or ".join(map(str, lengths))
@@ -117,7 +117,7 @@ def joint_limit(context: Context) -> Iterator[Finding]:
         wrong = [
             (number, joint, angle)
             for number, (joint, angle) in enumerate(given, 1)
-            if _is_number(angle) and not _within(joint, _as_float(angle))
+            if is_number(angle) and not _within(joint, as_float(angle))
         ]
         for number, joint, angle in wrong:
             what = f"joint {number}" if isinstance(flow.value, tuple) else f"`{joint.name}`"
@@ -126,7 +126,7 @@ def joint_limit(context: Context) -> Iterator[Finding]:
                 f"{what} of `{flow.origin.cell.key}` is {angle} rad, outside its limits"
                 f" {joint.lower:g} to {joint.upper:g}",
                 "convert the angles from degrees to radians"
-                if abs(_as_float(angle)) > 2 * math.pi
+                if abs(as_float(angle)) > 2 * math.pi
                 else f"write an angle from {joint.lower:g} to {joint.upper:g}, in radians",
                 (str(number) if isinstance(flow.value, tuple) else joint.name,),
                 other_place(joint.span, f"the limits of `{joint.name}`"),
@@ -150,7 +150,7 @@ def _angles(value: Data, robot: Robot) -> list[tuple[Joint, Data]]:
 
 
 def _misses(pairs: list[tuple[Joint, Data]]) -> int:
-    return sum(not _within(joint, _as_float(angle)) for joint, angle in pairs)
+    return sum(not _within(joint, as_float(angle)) for joint, angle in pairs)
 
 
 def moves_arm(flow: TypeFlow) -> bool:
@@ -199,7 +199,7 @@ def not_a_rotation(context: Context) -> Iterator[Finding]:
     """
     for flow in context.types.constants:
         for rotation in _rotations(flow.value, flow.cell.declared):
-            numbers = [_as_float(each) for each in rotation if _is_number(each)]
+            numbers = [as_float(each) for each in rotation if is_number(each)]
             if len(numbers) != 4:
                 continue
             length = math.hypot(*numbers)
@@ -269,11 +269,11 @@ def unit_mismatch(context: Context) -> Iterator[Finding]:
     yield from mixed_units(context)
 
 
-def _is_number(data: Data) -> bool:
+def is_number(data: Data) -> bool:
     return isinstance(data, int | float) and not isinstance(data, bool)
 
 
-def _as_float(data: Data) -> float:
+def as_float(data: Data) -> float:
     """A number as a float; one that is too large for it is infinite."""
     try:
         return float(data) if isinstance(data, int | float) else math.nan
@@ -416,13 +416,19 @@ def _frames_in(flow: TypeFlow) -> Iterator[str]:
     cell, wanted = flow.cell, present(flow.cell.declared)
     if wanted.name == "str" and isinstance(flow.value, str) and _holds_frame(flow):
         yield flow.value
-    elif wanted.name in STAMPED and isinstance(flow.value, Struct):
-        held = dict(flow.value.entries)
-        header = held.get("header")
-        inner = dict(header.entries) if isinstance(header, Struct) else held
-        name = inner.get("frame_id")
-        if isinstance(name, str) and cell.role == "input":
+    elif wanted.name in STAMPED and cell.role == "input":
+        name = frame_of(flow.value)
+        if name is not None:
             yield name
+
+
+def frame_of(pose: Data) -> str | None:
+    """The frame in a literal that is read as a PoseStamped."""
+    held = dict(pose.entries) if isinstance(pose, Struct) else {}
+    header = held.get("header")
+    inner = dict(header.entries) if isinstance(header, Struct) else held
+    name = inner.get("frame_id")
+    return name if isinstance(name, str) else None
 
 
 def _holds_frame(flow: TypeFlow) -> bool:
@@ -430,10 +436,10 @@ def _holds_frame(flow: TypeFlow) -> bool:
     if cell.role not in ("input", "variable"):
         return False
     last = cell.key.removesuffix("_id").rpartition("_")[2]
-    return last == "frame" or _role(cell) == "frame"
+    return last == "frame" or role_of(cell) == "frame"
 
 
-def _role(cell: Cell) -> str:
+def role_of(cell: Cell) -> str:
     """The role of the key or variable of a cell."""
     if not isinstance(cell.node, Leaf):
         return ""

@@ -88,6 +88,7 @@ def _keys(
             type=type_ or (declared.type if declared else ANY),
             doc=declared.doc if declared else "",
             role=declared.role if declared else roles.get(word.text, roles.get("*", "")),
+            frame=declared.frame if declared else "",
             span=word.span,
         )
     return tuple(keys.values())

@@ -345,6 +345,7 @@ def _keys(section: Section, report: Report) -> tuple[Key, ...]:
             type=_type(value, report),
             doc=_doc(value),
             role=_role(value, _KEY_ROLES, report),
+            frame=_text(value, "frame"),
             span=value.span,
         )
         for key, value in _declared(section)

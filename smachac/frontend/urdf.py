@@ -177,7 +177,7 @@ def _limited(link: _Link) -> Joint:
     """The joint with its limits; a missing attribute of `<limit>` is 0, by the URDF standard."""
     joint = link.joint
     if link.kind != "revolute":
-        return joint
+        return replace(joint, velocity=_speed(link))
     if not link.limits:
         message = f"the revolute joint `{joint.name}` has no `<limit>`"
         raise UrdfError(
@@ -200,7 +200,16 @@ def _limited(link: _Link) -> Joint:
     if low > high:
         message = f"the lower limit {low} of joint `{joint.name}` is above its upper limit {high}"
         raise UrdfError(message, joint.span)
-    return replace(joint, lower=low, upper=high)
+    return replace(joint, lower=low, upper=high, velocity=_speed(link))
+
+
+def _speed(link: _Link) -> float:
+    """The largest speed of a joint; infinite where the file has no positive number."""
+    try:
+        speed = float(link.limits.get("velocity", "0"))
+    except ValueError:
+        return math.inf
+    return speed if speed > 0 else math.inf
 
 
 def _limbs(joints: Mapping[str, _Link], links: Iterable[str]) -> tuple[tuple[Joint, ...], ...]:

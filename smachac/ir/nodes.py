@@ -49,6 +49,7 @@ class Value:
 VariableRole = Literal[
     "", "callbacks", "conditions", "function", "duration", "steps", "limb", "grasp", "frame",
     "output_function", "service_type", "action_type", "request", "response", "goal", "result",
+    "joint_speed",
 ]  # fmt: skip
 """The meaning of a variable's value for a state (docs/state_types.md, Facts)."""
 
@@ -78,12 +79,16 @@ class Variable:
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Key:
-    """A typed userdata key that a state or container declares, and its role in the interface."""
+    """A typed userdata key that a state or container declares, and its role in the interface.
+
+    `frame` is the frame of its poses, if the interface names one.
+    """
 
     name: str
     type: Type = ANY
     doc: str = ""
     role: KeyRole = field(default="", compare=False, repr=False)
+    frame: str = field(default="", compare=False, repr=False)
     span: Span = field(compare=False, repr=False)
 
 

@@ -13,12 +13,14 @@ from smachac.diagnostics.source import NOWHERE, Span
 class Joint:
     """A revolute joint and its limits (rad); the limits of a continuous joint are infinite.
 
-    `span` is its place in the robot's file, if there is one.
+    `velocity` is its largest speed (rad/s); infinite if it is not known. `span` is its place in the
+    robot's file, if there is one.
     """
 
     name: str
     lower: float = -math.inf
     upper: float = math.inf
+    velocity: float = math.inf
     span: Span = field(default=NOWHERE, compare=False, repr=False)
 
 
@@ -39,9 +41,14 @@ class Robot:
     span: Span = field(default=NOWHERE, compare=False, repr=False)
 
 
-def _limb(names: list[str], limits: tuple[tuple[float, float], ...]) -> tuple[Joint, ...]:
-    pairs = zip(names, limits, strict=True)
-    return tuple(Joint(name=name, lower=low, upper=high) for name, (low, high) in pairs)
+def _limb(
+    names: list[str], limits: tuple[tuple[float, float], ...], speeds: tuple[float, ...] = ()
+) -> tuple[Joint, ...]:
+    known = speeds or (math.inf,) * len(names)
+    return tuple(
+        Joint(name=name, lower=low, upper=high, velocity=speed)
+        for name, (low, high), speed in zip(names, limits, known, strict=True)
+    )
 
 
 _BAXTER = (
@@ -66,13 +73,16 @@ _PANDA = (
 )
 """Limits of the joints, from franka_panda/panda.urdf of PyBullet's data."""
 
+_PANDA_SPEEDS = (2.175, 2.175, 2.175, 2.175, 2.61, 2.61, 2.61)
+"""Largest speeds of the joints, from the same file."""
+
 _PANDA_LINKS = (*(f"link{k}" for k in range(9)), "hand", "leftfinger", "rightfinger", "grasptarget")
 
 _LEFT, _RIGHT = (
     _limb([f"{side}_{joint}" for joint in ("s0", "s1", "e0", "e1", "w0", "w1", "w2")], _BAXTER)
     for side in ("left", "right")
 )
-_ARM = _limb([f"panda_joint{k}" for k in range(1, 8)], _PANDA)
+_ARM = _limb([f"panda_joint{k}" for k in range(1, 8)], _PANDA, _PANDA_SPEEDS)
 
 BUILT_IN: Mapping[str, Robot] = {
     "baxter": Robot(name="baxter", joints=(*_LEFT, *_RIGHT), limbs=(_LEFT, _RIGHT)),

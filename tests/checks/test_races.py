@@ -167,6 +167,19 @@ def test_claims_clash_where_one_covers_the_other(one: Node, other: Node, clash: 
     assert all(item.finding.node == "sm/BOTH/B" for item in items)
 
 
+@pytest.mark.parametrize("held", ["arm.left", "arm"])
+def test_a_claim_deep_in_a_branch_clashes_with_a_sibling(held: str) -> None:
+    deep = concurrence("IN", "x", claiming("DEEP", "arm.left"), leaf("WAIT", outcomes="x"),
+                       default="x", to={"x": "x"})  # fmt: skip
+    loop = iterator("LOOP", "exhausted", part("PART", deep), items=[1], loop="x")
+    for branch in (deep, part("A", part("B", deep)), loop):
+        sibling = replace(claiming("SIBLING", held), transitions=())
+        root = beside(replace(branch, transitions=()), sibling)
+        assert found(root, "SM406") == ["SM406 sm/BOTH/SIBLING"]
+    apart = replace(claiming("SIBLING", "arm.right"), transitions=())
+    assert found(beside(replace(deep, transitions=()), apart), "SM406") == []
+
+
 def limbs(one: Any, other: Any, *, held: Any, **options: Any) -> list[str]:
     """What is found of two branches whose claim depends on the key `limb`."""
     branches = []
