@@ -88,7 +88,7 @@ LAST = """\
         template: ScriptedState
         outcomes: [ok, aborted]
         retry: {on: [aborted], max: 3}
-        transitions: {ok: ok, exhausted: bad}
+        transitions: {ok: ok, exhausted: bad, preempted: bad}
 """
 
 CALL = """\

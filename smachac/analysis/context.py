@@ -6,7 +6,7 @@ from functools import cached_property
 from typing import TYPE_CHECKING
 
 from smachac.analysis.accesses import Accesses, accesses
-from smachac.analysis.control_flow import Linear, endless_states
+from smachac.analysis.control_flow import Linear, endless_states, mended
 from smachac.analysis.definite_assignment import DataFlow, data_flow
 from smachac.analysis.error_recovery import mended_machine
 from smachac.analysis.expression_errors import Fault
@@ -58,6 +58,11 @@ class Context:
             for path, container in self.containers
             if isinstance(container, StateMachine | nodes.Sequence)
         )
+
+    @cached_property
+    def mended(self) -> tuple[Linear, ...]:
+        """The containers of `linear`, with misspelt names corrected."""
+        return tuple(mended(container) for _, container in self.linear)
 
     @cached_property
     def spans(self) -> dict[str, Span]:

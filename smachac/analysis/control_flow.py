@@ -101,10 +101,13 @@ def mended(container: Linear) -> Linear:
     return replace(container, children=children)
 
 
-def outline(path: str, container: Linear, endless: AbstractSet[str]) -> Linear:
+def outline(
+    path: str, container: Linear, endless: AbstractSet[str], known: Linear | None = None
+) -> Linear:
     """A mended container in which open leaves lead out of it and endless states lead nowhere.
 
     An open leaf can have any outcome, also one that its container has and no transition handles.
+    `known` is the mended container, if it has been computed.
     """
     exits = outcome_names(container)
 
@@ -121,8 +124,10 @@ def outline(path: str, container: Linear, endless: AbstractSet[str]) -> Linear:
         more = Transition(outcome=way, target=way, origin="implicit", span=node.span)
         return replace(node, transitions=(*node.transitions, more))
 
-    outlined = replace(container, children=tuple(map(child, container.children)))
-    return mended(outlined)
+    children = tuple(map(child, container.children))
+    if all(new is old for new, old in zip(children, container.children, strict=True)):
+        return known if known is not None else mended(container)
+    return mended(replace(container, children=children))
 
 
 def endless_states(states: Sequence[tuple[str, Node]]) -> frozenset[str]:

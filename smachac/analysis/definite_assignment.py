@@ -221,9 +221,9 @@ def child_writes(
     if not isinstance(child, Leaf):
         return scope.endings.get(outcome) if scope else NOTHING
     writes = leaf_writes(child, outcome, raw=raw)
-    names = remapping(child)
-    if not names:
+    if writes is NOTHING or not child.remaps:
         return writes
+    names = remapping(child)
     sure, trusted, perhaps = (frozenset(names.get(key, key) for key in keys) for keys in writes[:3])
     return Writes(sure, trusted, perhaps, writes.anything)
 
@@ -233,14 +233,10 @@ def _steps(path: str, container: Container, inner: Mapping[str, UserdataScope]) 
     each of its outcomes."""
     children = {child.name: child for child in reversed(container.children)}
     raw = isinstance(container, nodes.Iterator)
-    known: dict[tuple[str, str], Writes | None] = {}
+    scopes = {name: inner.get(f"{path}/{name}") for name in children}
 
     def writes(name: str, outcome: str) -> Writes | None:
-        key = (name, outcome)
-        if key not in known:
-            scope = inner.get(f"{path}/{name}")
-            known[key] = child_writes(children[name], scope, outcome, raw=raw)
-        return known[key]
+        return child_writes(children[name], scopes[name], outcome, raw=raw)
 
     found: dict[Vertex, list[KeyStep]] = {}
     if isinstance(container, Concurrence):

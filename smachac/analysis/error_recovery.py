@@ -40,6 +40,8 @@ def unknown_remaps(node: Node) -> list[UnknownRemap]:
 
 def undeclared_writes(leaf: Leaf) -> tuple[str, ...]:
     """The keys that the script makes a leaf write although they are not among its outputs."""
+    if not leaf.variables:
+        return ()
     written = sorted(functions(leaf, "callbacks") or ())
     written += [key for _, keys in scripted_steps(leaf) for key in keys]
     outputs = {key.name for key in leaf.outputs}
@@ -48,6 +50,8 @@ def undeclared_writes(leaf: Leaf) -> tuple[str, ...]:
 
 def undeclared_reads(leaf: Leaf) -> Iterator[tuple[str, nodes.Expression]]:
     """The keys that code of the script reads although they are not among the leaf's inputs."""
+    if not leaf.variables:
+        return
     called = sorted((functions(leaf, "callbacks") or {}).items())
     conditions = functions(leaf, "conditions")
     if conditions:

@@ -68,10 +68,10 @@ def trap(context: Context) -> Iterator[Finding]:
           - APPROACH: {template: ScriptedState, outcomes: [near], transitions: {near: PICK}}
     """
     endless = context.endless
-    for path, container in context.linear:
+    for (path, container), mended in zip(context.linear, context.mended, strict=True):
         if isinstance(container, StateMachine) and container.forever:
             continue
-        flow = outline(path, container, endless)
+        flow = outline(path, container, endless, mended)
         stuck = stuck_states(flow)
         if not stuck:
             continue
@@ -359,8 +359,8 @@ def unchanging_condition(context: Context) -> Iterator[Finding]:
               transitions: {again: PICK, enough: lost}
     """
     for path, container in context.linear:
-        deciding = list(filter(_is_condition, container.children))
-        if not deciding or not _goes_back(container):
+        deciding = list(filter(_is_condition, container.children)) if _goes_back(container) else []
+        if not deciding:
             continue
         flow = _unpreempted(container)
         steps = steps_of(flow)

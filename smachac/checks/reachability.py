@@ -10,7 +10,6 @@ from smachac.analysis.control_flow import (
     children_names,
     is_open,
     leads_somewhere,
-    mended,
 )
 from smachac.checks.messages import calls, did_you_mean, own_name
 from smachac.checks.outcomes import endings, unhandled
@@ -62,8 +61,7 @@ def unreachable_state(context: Context) -> Iterator[Finding]:
               outcomes: [done]
               transitions: {done: lost}
     """
-    for path, container in context.linear:
-        whole = mended(container)
+    for (path, container), whole in zip(context.linear, context.mended, strict=True):
         seen = reachable(whole)
         hidden = [child for child in container.children if child.name not in seen]
         before = _before(whole, frozenset(child.name for child in hidden)) if hidden else {}
@@ -126,8 +124,10 @@ def impossible_outcome(context: Context) -> Iterator[Finding]:
               outcomes: [done, slipped]
               transitions: {done: picked, slipped: lost}
     """
+    linear = iter(context.mended)
     for path, container in context.containers:
-        possible = _possible_outcomes(container)
+        whole = next(linear) if isinstance(container, StateMachine | Sequence) else container
+        possible = _possible_outcomes(whole)
         known = {container.catches, PREEMPTED if ends_preempted(container) else ""}
         for outcome in container.outcomes:
             if possible is not None and outcome.name not in possible | known:
@@ -135,7 +135,8 @@ def impossible_outcome(context: Context) -> Iterator[Finding]:
 
 
 def _possible_outcomes(container: Container) -> frozenset[str] | None:
-    """The outcomes with which a container can end; None where another fault makes that unknown."""
+    """The outcomes with which a mended container can end; None where another fault makes that
+    unknown."""
     if not container.children:
         return None
     match container:
@@ -156,11 +157,10 @@ def _if_declared(container: Container, results: set[str]) -> frozenset[str] | No
 
 
 def _linear_outcomes(container: Linear) -> frozenset[str] | None:
-    whole = mended(container)
-    names = children_names(whole)
-    exits = frozenset(outcome_names(whole))
+    names = children_names(container)
+    exits = frozenset(outcome_names(container))
     found: set[str] = set()
-    for child in whole.children:
+    for child in container.children:
         if any(not leads_somewhere(step, names, exits) for step in child.transitions):
             return None
         if unhandled(child):
@@ -168,7 +168,7 @@ def _linear_outcomes(container: Linear) -> frozenset[str] | None:
         found.update(step.target for step in child.transitions)
     handled = [
         frozenset(step.outcome for step in child.transitions)
-        for child in whole.children
+        for child in container.children
         if is_open(child)
     ]
     if handled:

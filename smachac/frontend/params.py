@@ -31,11 +31,11 @@ MAX_LEVELS = 100
 
 def is_flat(tree: Tree) -> bool:
     """Whether a value has no look-ups and no nested collections, as most values."""
+    if isinstance(tree, Scalar):
+        return True
     if isinstance(tree, Map):
         return all(isinstance(entry.value, Scalar) for entry in tree.entries)
-    if isinstance(tree, Seq):
-        return all(isinstance(item, Scalar) for item in tree.items) and look_up_word(tree) is None
-    return True
+    return all(isinstance(item, Scalar) for item in tree.items) and look_up_word(tree) is None
 
 
 def is_too_deep(tree: Tree) -> bool:

@@ -193,14 +193,15 @@ class _Resolver:
             own["params"] = self.limit_depth(own["params"])
         params = own.get("params")
         begin = begin or self.uses.mark(self.report)
-        for key, entry in own.items():
-            if key != "states":
-                self.uses.value(key, entry.value)
         scope = child_scope(around.scope, params.value if params else None, self.report)
-        entries = {
-            key: entry if key in ("params", "states") else self.fill(key, entry, scope)
-            for key, entry in own.items()
-        }
+        entries: dict[str, Entry] = {}
+        for key, entry in own.items():
+            if key == "states":
+                entries[key] = entry
+                continue
+            flat = is_flat(entry.value)
+            self.uses.value(key, entry.value, flat=flat)
+            entries[key] = entry if key == "params" else self.fill(key, entry, scope, flat=flat)
         type_, owner = self.type_of(name, entries, role, around)
         self.uses.type(type_)
         if role != "base":
@@ -229,9 +230,10 @@ class _Resolver:
             self.report.append(_remapping_in_iterator(entries["remapping"].key.span))
         return State(owner=owner, type=type_, via=around.via, states=children, **fields)
 
-    def fill(self, key: str, entry: Entry, scope: Scope) -> Entry:
-        """The field with values in place of its look-ups and aliases of types."""
-        if is_flat(entry.value):
+    def fill(self, key: str, entry: Entry, scope: Scope, *, flat: bool) -> Entry:
+        """The field with values in place of its look-ups and aliases of types. `flat`: see
+        `is_flat`."""
+        if flat:
             return typed(key, entry, self.aliases, self.report)
         row = schema.VARIABLES.get(key)
         names = row is not None and row.shape in ("names", "keys")
@@ -332,7 +334,7 @@ class _Resolver:
             entry = own.pop("script")
             params = own["params"].value if "params" in own else None
             scope = child_scope(around.scope, params, [])
-            self.uses.value("script", entry.value)
+            self.uses.value("script", entry.value, flat=is_flat(entry.value))
             word = as_name(fill_in(entry.value, scope, self.report), self.report)
             found = self.sub_script(word, around) if word is not None and word.text else None
             if found is None:

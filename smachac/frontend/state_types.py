@@ -69,8 +69,9 @@ def _find(name: str, library: Library, report: Report, below: frozenset[str]) ->
     for find in (library.own_template, library.template):
         interface = find(f"{name}.yml")
         if interface is not None:
-            found = _read_interface(name, interface, library, report)
-            return replace(found, built_in=name if find is library.template else "")
+            built_in = find is library.template
+            found = _read_interface(name, interface, library, report, built_in=built_in)
+            return replace(found, built_in=name if built_in else "")
         for pattern in TEMPLATE_FILES:
             template = find(pattern.format(name))
             if template is not None:
@@ -79,7 +80,11 @@ def _find(name: str, library: Library, report: Report, below: frozenset[str]) ->
     return None
 
 
-def _read_interface(name: str, source: Source, library: Library, report: Report) -> StateType:
+def _read_interface(
+    name: str, source: Source, library: Library, report: Report, *, built_in: bool
+) -> StateType:
+    """The state type in an interface. The classes of built-in types are not read: their interfaces
+    state all that a check needs (tests/frontend/test_class_reader.py compares them)."""
     tree = library.parse(source, report)
     if not isinstance(tree, Map):
         span = tree.span if tree is not None else Span(source, 0, 0)
@@ -129,7 +134,9 @@ def _read_interface(name: str, source: Source, library: Library, report: Report)
         listed_outputs=_listed_roles(sections["output_keys"], report),
         code=code,
         classes=_classes(sections["code"], report),
-        class_facts=_class_facts(
+        class_facts=None
+        if built_in
+        else _class_facts(
             name, sections["code"], given | ({"optional"} if optional else set()), library
         ),
         prints_itself=_prints_itself(code.get("python", ""), library),

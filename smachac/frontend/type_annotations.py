@@ -15,6 +15,9 @@ from smachac.ir.types import WORDS, Type, parse_type, unknown_words
 Aliases = Mapping[str, str]
 """The type of each alias, itself without aliases."""
 
+TYPED = ("input_keys", "output_keys", "userdata")
+"""The fields that have types."""
+
 _WORD = re.compile(r"[A-Za-z_]\w*")
 
 
@@ -43,7 +46,7 @@ def read_type(text: str, place: Word, report: Report) -> Type | None:
 def typed(key: str, entry: Entry, aliases: Aliases, report: Report) -> Entry:
     """A field with the aliases in its types replaced; any other field as it is."""
     value = entry.value
-    if not isinstance(value, Map) or key not in ("input_keys", "output_keys", "userdata"):
+    if key not in TYPED or not isinstance(value, Map):
         return entry
     items = tuple(
         Entry(
@@ -59,7 +62,7 @@ def typed(key: str, entry: Entry, aliases: Aliases, report: Report) -> Entry:
 
 def type_words(key: str, tree: Tree) -> Iterator[str]:
     """The words in the types of a field."""
-    if not isinstance(tree, Map) or key not in ("input_keys", "output_keys", "userdata"):
+    if key not in TYPED or not isinstance(tree, Map):
         return
     for item in tree.entries:
         value = item.value

@@ -8,8 +8,8 @@ from typing import TypeAlias
 
 from smachac.diagnostics.diagnostic import Report, has_errors
 from smachac.diagnostics.source import Span, Word
-from smachac.frontend.params import is_flat, look_up_word
-from smachac.frontend.type_annotations import type_words, words_of
+from smachac.frontend.params import look_up_word
+from smachac.frontend.type_annotations import TYPED, type_words, words_of
 from smachac.frontend.yaml_tree import Entry, Map, Scalar, Tree
 from smachac.ir.nodes import StateType, Unused
 
@@ -30,11 +30,12 @@ class Uses:
     unknown: int = 0
     found: list[Unused] = field(default_factory=list)
 
-    def value(self, key: str, tree: Tree) -> None:
-        """Collect the uses in a field of a state."""
-        if not is_flat(tree):
+    def value(self, key: str, tree: Tree, *, flat: bool) -> None:
+        """Collect the uses in a field of a state. `flat`: see `is_flat`."""
+        if not flat:
             self.looked_up += _names(tree)
-        self.types.update(type_words(key, tree))
+        if key in TYPED:
+            self.types.update(type_words(key, tree))
 
     def type(self, type_: StateType) -> None:
         """Count a state whose type may use any param."""

@@ -91,4 +91,4 @@ def expressions_in(data: Data) -> Iterator[Expression]:
 
 def remapping(node: Node) -> dict[str, str]:
     """The remapped keys of a node: from its own name of the key to the name in its container."""
-    return {remap.key: remap.to for remap in node.remaps}
+    return {remap.key: remap.to for remap in node.remaps} if node.remaps else {}

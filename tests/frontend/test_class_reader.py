@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
 from pathlib import Path
 from textwrap import indent
 
@@ -9,9 +10,12 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
+import smachac.stdlib
+from smachac.diagnostics.diagnostic import Report
 from smachac.diagnostics.source import Source
 from smachac.frontend.class_reader import read_template
 from smachac.frontend.files import disk_library
+from smachac.frontend.state_types import find_state_type
 from smachac.ir.class_facts import ClassFacts
 
 TEMPLATE = """{{% block class_defs %}}
@@ -180,3 +184,37 @@ def test_our_own_state_types_are_read() -> None:
     }
     assert len(found) > 10
     assert None not in found.values()
+
+
+def _built_in_types() -> list[str]:
+    folder = Path(smachac.stdlib.__path__[0])
+    return sorted(path.stem for path in folder.glob("*.yml"))
+
+
+@pytest.mark.parametrize("name", _built_in_types())
+def test_the_classes_of_built_in_types_do_what_their_interfaces_state(name: str) -> None:
+    """A check does not read these classes, so this test does: the interface is made one of the
+    user."""
+    unread = find_state_type(name, LIBRARY, [])
+    assert unread is not None
+    assert unread.class_facts is None
+    own = replace(LIBRARY, own_template=lambda file: LIBRARY.template(file))
+    report: Report = []
+    found = find_state_type(name, own, report)
+    assert found is not None
+    assert report == []
+    facts = found.class_facts
+    if facts is None:
+        return
+    assert facts.faults == ()
+    outcomes = {each.name for each in found.outcomes} | found.optional
+    if "outcomes" not in found.given:
+        assert {word.text for word in facts.returns} <= outcomes
+    if "output_keys" not in found.given:
+        assert {word.text for word in facts.writes} <= {key.name for key in found.output_keys}
+
+
+def test_the_classes_of_most_built_in_types_can_be_read() -> None:
+    own = replace(LIBRARY, own_template=lambda file: LIBRARY.template(file))
+    types = [find_state_type(name, own, []) for name in _built_in_types()]
+    assert sum(each is not None and each.class_facts is not None for each in types) >= 10
