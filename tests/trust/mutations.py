@@ -8,6 +8,7 @@ from tests.trust import (
     mutate_data,
     mutate_graph,
     mutate_names,
+    mutate_properties,
     mutate_stops,
 )
 from tests.trust.mutants import MUTATIONS
@@ -19,5 +20,6 @@ __all__ = [
     "mutate_data",
     "mutate_graph",
     "mutate_names",
+    "mutate_properties",
     "mutate_stops",
 ]
