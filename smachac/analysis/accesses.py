@@ -14,7 +14,7 @@ from typing import NamedTuple
 from smachac.ir import nodes
 from smachac.ir.leaf import default_outcome, functions, key_names, variable_of
 from smachac.ir.nodes import Leaf, Node, Struct
-from smachac.ir.outcome_names import is_failure
+from smachac.ir.outcome_names import fails
 from smachac.ir.traversal import PREEMPTED, remapping
 
 NONE: frozenset[str] = frozenset()
@@ -106,7 +106,7 @@ def leaf_writes(leaf: Leaf, outcome: str, *, raw: bool = False) -> Writes:
     if outcome != PREEMPTED:
         sure |= unlisted - _never_set(leaf, outcome) if not raw else unlisted
     perhaps = unlisted | sure | trusted
-    if outcome == PREEMPTED or is_failure(outcome):
+    if outcome == PREEMPTED or fails(leaf, outcome):
         trusted = NONE
     return Writes(sure, sure | trusted, perhaps)
 

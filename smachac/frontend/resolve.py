@@ -232,7 +232,7 @@ class _Resolver:
         if is_flat(entry.value):
             return typed(key, entry, self.aliases, self.report)
         row = schema.VARIABLES.get(key)
-        names = row is not None and row.shape in ("names", "keys")
+        names = row is not None and row.shape in ("names", "outcomes", "keys")
         entry = self.limit_depth(entry)
         new = fill_in(entry.value, scope, self.report, names=names)
         filled = entry if new is entry.value else self.limit_depth(self.limit_size(entry, new))

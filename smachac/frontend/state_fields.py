@@ -135,10 +135,12 @@ def _check_interface(read: Mapping[str, Any], type_: StateType, report: Report) 
         if part in type_.given or part not in read:
             continue
         known = [each.name for each in own]
-        words: tuple[Word, ...] = read[part]
-        if part != "outcomes":
+        if part == "outcomes":
+            outcomes: tuple[Outcome, ...] = read[part]
+            words = [Word(each.name, each.span) for each in outcomes]
+        else:
             keys: Keys = read[part]
-            words = tuple(word for word, _ in keys)
+            words = [word for word, _ in keys]
         for word in words:
             if word.text not in known:
                 what = part.replace("_", " ").removesuffix("s")

@@ -17,7 +17,7 @@ from smachac.frontend.fields import as_name, as_names, wrong
 from smachac.frontend.script import ERROR, EXHAUSTED, TIMEOUT, ForEach, Retry, Sugar, Timeout
 from smachac.frontend.values import as_value
 from smachac.frontend.yaml_tree import Entry, Map, Scalar, Tree
-from smachac.ir.nodes import StateType
+from smachac.ir.nodes import Outcome, StateType
 from smachac.ir.outcome_names import GOOD_OUTCOMES
 
 NAMES = frozenset(["timeout", "retry", "for_each"])
@@ -38,7 +38,7 @@ def is_own(name: str, type_: StateType) -> bool:
 
 
 def read_sugar(
-    entries: Mapping[str, Entry], type_: StateType, outcomes: tuple[Word, ...], report: Report
+    entries: Mapping[str, Entry], type_: StateType, outcomes: tuple[Outcome, ...], report: Report
 ) -> Sugar:
     """The sugar among the fields of a state, which declares these outcomes.
 
@@ -54,7 +54,7 @@ def read_sugar(
     )
     own = tuple(outcome.name for outcome in type_.outcomes)
     if type_.kind != "state" or "outcomes" in type_.given:
-        own += tuple(word.text for word in outcomes)
+        own += tuple(outcome.name for outcome in outcomes)
     _check_outcomes(sugar, own, report)
     return sugar
 
