@@ -187,7 +187,8 @@ def implicit_exit(context: Context) -> Iterator[Finding]:
     This is often intended. If the transition was forgotten, the robot stops without a recovery.
 
     Exactly: it is a warning for an outcome of failure of a state that has a transition for an
-    outcome of success, and a note otherwise.
+    outcome of success, and a note otherwise. The states of one container that end it with one
+    outcome are one finding.
 
     Wrong:
         name: sm
@@ -250,4 +251,5 @@ def _implicit(
             related=calls(child, step.span),
             severity=Severity.WARNING if forgotten else None,
             node=f"{path}/{child.name}",
+            group=(own_name(container, step.span), step.outcome),
         )
