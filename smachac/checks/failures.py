@@ -94,8 +94,9 @@ def masked_failure(context: Context) -> Iterator[Finding]:
     """
     containers = dict(context.containers)
     for each in context.judged:
+        around = containers.get(each.path.rpartition("/")[0], each.read.node)
         try:
-            yield from _masked(context, each, containers[each.path.rpartition("/")[0]])
+            yield from _masked(context, each, around)
         except UndecidedError:
             continue
     for path, container in context.containers:
