@@ -65,7 +65,8 @@ def code_faults(machine: Machine, library: Library, load: Load) -> Iterator[Diag
             if language not in targets:
                 targets[language] = load(language)
             target = targets[language]
-            for item in type_faults(leaf, type_, target, library) if target is not None else ():
+            found = type_faults(leaf, type_, target, library, checked=True) if target else ()
+            for item in found:
                 yield replace(item, severity=Severity.WARNING)
 
 
@@ -94,9 +95,10 @@ def own_types(machine: Machine, library: Library) -> Iterator[tuple[Leaf, StateT
 
 
 def type_faults(
-    leaf: Leaf, type_: StateType, target: Language, library: Library
+    leaf: Leaf, type_: StateType, target: Language, library: Library, *, checked: bool = False
 ) -> Iterator[Diagnostic]:
-    """The faults of the code of one state type in one language."""
+    """The faults of the code of one state type in one language. `checked`: the rules report what
+    the code of its Python class does beyond its interface."""
     found = target.declared(type_, library)
     if found is None:
         return
@@ -109,24 +111,32 @@ def type_faults(
             used = ()
         judge = code_not_found if fault.kind in NOT_FOUND else bad_class
         yield judge(fault, target.name, type_.name, found.name, used)
-    differences = [*_differences(type_, found)]
+    facts = type_.class_facts if checked and target.name == "python" else None
+    used_words = (facts.returns, facts.reads, facts.writes) if facts is not None else ((), (), ())
+    differences = [*_differences(type_, found, used_words)]
     if found.stale is not None:
         yield stale_code(leaf.span, type_.name, found.name, found.stale, differences)
     elif differences:
         yield interfaces_differ(leaf.span, target.name, type_.name, found.name, differences)
 
 
-def _differences(type_: StateType, found: Declared) -> Iterator[Word]:
+def _differences(
+    type_: StateType, found: Declared, reported: tuple[Words, Words, Words]
+) -> Iterator[Word]:
+    """The differences between a class and its interface. `reported` are outcomes, input keys and
+    output keys that other findings are about if the interface lacks them."""
     parts = (
-        ("outcome", found.outcomes, type_.outcomes),
-        ("input key", found.inputs, type_.input_keys),
-        ("output key", found.outputs, type_.output_keys),
+        ("outcome", found.outcomes, [each.name for each in type_.outcomes]),
+        ("input key", found.inputs, [each.name for each in type_.input_keys]),
+        ("output key", found.outputs, [each.name for each in type_.output_keys]),
     )
-    for what, words, wanted in parts:
+    for (what, words, wanted), others in zip(parts, reported, strict=True):
         left_to_the_script = f"{what.replace(' ', '_')}s" in type_.given
         if words is None or left_to_the_script or (what == "outcome" and type_.optional):
             continue
-        yield from _unlike(what, words, [each.name for each in wanted], found.span)
+        names = {word.text for word in others}.difference(wanted)
+        kept = tuple(word for word in words if word.text not in names)
+        yield from _unlike(what, kept, wanted, found.span)
     yield from found.others
 
 

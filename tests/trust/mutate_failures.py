@@ -34,9 +34,9 @@ def continue_an_iterator_after_a_failure(subject: Subject) -> Mutant | None:
         leads = site.pairs("transitions").get("all")
         if inside and "aborted" in inside[0].keys("outcomes") and leads not in (None, "aborted"):
             found.append(site)
-    site = subject.pick(found)
-    if site is None:
+    if not found:
         return None
+    site = subject.draw.choice(found)
     site.body["loop_outcomes"] = [*site.keys("loop_outcomes"), "aborted"]
     site.body["exhausted_outcome"] = "done"
     for names in (site.body["outcomes"], site.body["transitions"]):
