@@ -112,31 +112,30 @@ def type_faults(
         judge = code_not_found if fault.kind in NOT_FOUND else bad_class
         yield judge(fault, target.name, type_.name, found.name, used)
     facts = type_.class_facts if checked and target.name == "python" else None
-    used_words = (facts.returns, facts.reads, facts.writes) if facts is not None else ((), (), ())
-    differences = [*_differences(type_, found, used_words)]
+    if found.stale is None and facts is not None and found.outcomes is not None:
+        # A returned outcome that the interface lacks is SM309.
+        known = {each.name for each in type_.outcomes}
+        returned = {word.text for word in facts.returns}.difference(known)
+        kept = tuple(word for word in found.outcomes if word.text not in returned)
+        found = replace(found, outcomes=kept)
+    differences = [*_differences(type_, found)]
     if found.stale is not None:
         yield stale_code(leaf.span, type_.name, found.name, found.stale, differences)
     elif differences:
         yield interfaces_differ(leaf.span, target.name, type_.name, found.name, differences)
 
 
-def _differences(
-    type_: StateType, found: Declared, reported: tuple[Words, Words, Words]
-) -> Iterator[Word]:
-    """The differences between a class and its interface. `reported` are outcomes, input keys and
-    output keys that other findings are about if the interface lacks them."""
+def _differences(type_: StateType, found: Declared) -> Iterator[Word]:
     parts = (
-        ("outcome", found.outcomes, [each.name for each in type_.outcomes]),
-        ("input key", found.inputs, [each.name for each in type_.input_keys]),
-        ("output key", found.outputs, [each.name for each in type_.output_keys]),
+        ("outcome", found.outcomes, type_.outcomes),
+        ("input key", found.inputs, type_.input_keys),
+        ("output key", found.outputs, type_.output_keys),
     )
-    for (what, words, wanted), others in zip(parts, reported, strict=True):
+    for what, words, wanted in parts:
         left_to_the_script = f"{what.replace(' ', '_')}s" in type_.given
         if words is None or left_to_the_script or (what == "outcome" and type_.optional):
             continue
-        names = {word.text for word in others}.difference(wanted)
-        kept = tuple(word for word in words if word.text not in names)
-        yield from _unlike(what, kept, wanted, found.span)
+        yield from _unlike(what, words, [each.name for each in wanted], found.span)
     yield from found.others
 
 

@@ -74,6 +74,13 @@ def declare_a_failure_that_ends_as_a_success(subject: Subject) -> Mutant | None:
     return Mutant(codes=("SM206",), places=((site.file, (*site.path, "transitions", outcome)),))
 
 
+def can_fail(child: Site) -> bool:
+    """Whether a leaf can end with `aborted` by itself."""
+    if child.template == "ConditionalOutcomeState":
+        return child.body.get("default_outcome") == "aborted"
+    return child.template == "ScriptedState" and "aborted" in child.keys("outcomes")
+
+
 @mutation
 def hide_the_failure_of_a_branch(subject: Subject) -> Mutant | None:
     """The rule for the success no longer lists a branch that can fail."""
@@ -87,8 +94,7 @@ def hide_the_failure_of_a_branch(subject: Subject) -> Mutant | None:
                 found += [
                     (site, good, child)
                     for child in inside
-                    if child.name in listed and "aborted" in child.keys("outcomes")
-                    if child.template == "ScriptedState"
+                    if child.name in listed and can_fail(child)
                     if len(rules) == 1 and site.body.get("default_outcome") != good
                 ]
     if not found:
