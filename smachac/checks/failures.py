@@ -34,7 +34,6 @@ from smachac.ir.outcome_names import (
     SUCCESSES,
     TIMEOUTS,
     fails,
-    is_failure,
     successes,
 )
 from smachac.ir.traversal import leads_to_child, outcome_names
@@ -101,7 +100,8 @@ def masked_failure(context: Context) -> Iterator[Finding]:
             continue
     for path, container in context.containers:
         if isinstance(container, nodes.Iterator) and container.sugar != "retry":
-            yield from _masked_in_loop(context, path, container)
+            around = containers.get(path.rpartition("/")[0], container)
+            yield from _masked_in_loop(context, path, container, around)
 
 
 def _masked(context: Context, each: Judged, around: Container) -> Iterator[Finding]:
@@ -249,11 +249,13 @@ def _exit_steps(context: Context, path: str, node: Node, step: Transition) -> tu
     return entered(node.name, path), ended(step.outcome), entered(step.target, beside)
 
 
-def _masked_in_loop(context: Context, path: str, loop: nodes.Iterator) -> Iterator[Finding]:
+def _masked_in_loop(
+    context: Context, path: str, loop: nodes.Iterator, around: Container
+) -> Iterator[Finding]:
     """SM404 for the failures of an item after which a loop continues."""
     end = dict(loop.final_map).get(loop.exhausted_outcome, loop.exhausted_outcome)
     step = next((step for step in loop.transitions if step.outcome == end), None)
-    if end.lower() not in SUCCESSES | GOOD or (step is not None and is_failure(step.target)):
+    if end.lower() not in SUCCESSES | GOOD or (step is not None and fails(around, step.target)):
         return
     for child in loop.children:
         for number, outcome in enumerate(loop.loop_outcomes):
