@@ -154,10 +154,11 @@ def _check_interface(read: Mapping[str, Any], type_: StateType, report: Report) 
         "output_keys": type_.output_keys,
         "outcomes": type_.outcomes,
     }
+    optional = {"input_keys": type_.listed_inputs, "output_keys": type_.listed_outputs}
     for part, own in declared.items():
         if part in type_.given or part not in read:
             continue
-        known = [each.name for each in own]
+        known = [*(each.name for each in own), *optional.get(part, ())]
         if part == "outcomes":
             outcomes: tuple[Outcome, ...] = read[part]
             words = [Word(each.name, each.span) for each in outcomes]
