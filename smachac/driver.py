@@ -13,7 +13,7 @@ from typing import NamedTuple, TypeAlias
 
 from smachac import checks
 from smachac.checks import check_machine
-from smachac.diagnostics.diagnostic import Code, Diagnostic, Report, has_errors, in_order
+from smachac.diagnostics.diagnostic import Code, Diagnostic, Report, grouped, has_errors, in_order
 from smachac.diagnostics.severities import apply_severities
 from smachac.diagnostics.source import Source, Span
 from smachac.frontend.errors import references, suppressions
@@ -138,7 +138,7 @@ def _analysis(
         rest, given, unused = suppress(
             report, source, sources, CODES, library.parse, complete=complete
         )
-        found = apply_severities(in_order(rest), library.policy)
+        found = grouped(apply_severities(in_order(rest), library.policy))
     return Analysis(
         script=source.name,
         machine=machine,

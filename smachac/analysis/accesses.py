@@ -14,7 +14,7 @@ from typing import NamedTuple
 from smachac.ir import nodes
 from smachac.ir.leaf import default_outcome, functions, key_names, variable_of
 from smachac.ir.nodes import Leaf, Node, Struct
-from smachac.ir.outcome_names import is_failure
+from smachac.ir.outcome_names import fails
 from smachac.ir.traversal import PREEMPTED, remapping
 
 NONE: frozenset[str] = frozenset()
@@ -106,7 +106,7 @@ def leaf_writes(leaf: Leaf, outcome: str, *, raw: bool = False) -> Writes:
     if outcome != PREEMPTED:
         sure |= unlisted - _never_set(leaf, outcome) if not raw else unlisted
     perhaps = unlisted | sure | trusted
-    if outcome == PREEMPTED or is_failure(outcome):
+    if outcome == PREEMPTED or fails(leaf, outcome):
         trusted = NONE
     return Writes(sure, sure | trusted, perhaps)
 
@@ -180,22 +180,28 @@ def userdata_fields(text: str) -> Fields | None:
 
     They are not known where the code passes userdata on, or is the name of a function.
     """
+    found = function_body(text)
+    return None if found is None else _fields(*found)
+
+
+def function_body(text: str) -> tuple[ast.expr, frozenset[str]] | None:
+    """The value of a lambda over userdata, or of an expression over `ud`, and the names that the
+    userdata has in it; None if the code is neither."""
     try:
         with warnings.catch_warnings():
             warnings.simplefilter("ignore", SyntaxWarning)
             body: ast.expr = ast.parse(text.strip(), mode="eval").body
     except (SyntaxError, ValueError, RecursionError, MemoryError):
         return None
-    names = {"ud", "userdata"}
     if isinstance(body, ast.Lambda):
-        names = {each.arg for each in [*body.args.posonlyargs, *body.args.args][:1]}
-        body = body.body
-    elif not any(isinstance(node, ast.Name) and node.id in names for node in ast.walk(body)):
-        return None
-    return _fields(body, names)
+        arguments = [*body.args.posonlyargs, *body.args.args][:1]
+        return body.body, frozenset(each.arg for each in arguments)
+    names = frozenset(["ud", "userdata"])
+    used = any(isinstance(node, ast.Name) and node.id in names for node in ast.walk(body))
+    return (body, names) if used else None
 
 
-def _fields(body: ast.expr, names: set[str]) -> Fields | None:
+def _fields(body: ast.expr, names: frozenset[str]) -> Fields | None:
     def is_userdata(node: ast.expr) -> bool:
         return isinstance(node, ast.Name) and node.id in names
 

@@ -24,7 +24,7 @@ from smachac.ir.nodes import (
     StateMachine,
     Transition,
 )
-from smachac.ir.outcome_names import PREEMPTED, is_failure
+from smachac.ir.outcome_names import PREEMPTED
 from smachac.ir.traversal import leads_to_child, outcome_names
 
 if TYPE_CHECKING:
@@ -36,13 +36,6 @@ Linear: TypeAlias = "StateMachine | nodes.Sequence"
 
 def is_open(node: Node) -> bool:
     return isinstance(node, Leaf) and node.open
-
-
-def fails(node: Node, outcome: str) -> bool:
-    """Whether an outcome of a state is a failure; the exhausted outcome of `retry:` is one."""
-    if isinstance(node, nodes.Iterator) and node.sugar == "retry":
-        return outcome == node.exhausted_outcome or is_failure(outcome)
-    return is_failure(outcome)
 
 
 def children_names(container: nodes.Container) -> frozenset[str]:

@@ -20,9 +20,9 @@ KeyState = Literal["unset", "reported", "set"]
 """Whether the key is set on a path. `reported`: unset and already reported, because a container on
 the path needs it."""
 
-Status = Literal["always", "sometimes", "never", "unreachable"]
-"""Whether a key is set when a state is entered: on every path to it, on some, on none; or there is
-no path to it."""
+Status = Literal["always", "given", "sometimes", "never", "unreachable"]
+"""Whether a key is set when a state is entered: on every path to it; on every path if the caller of
+the machine sets its input key; on some, on none; or there is no path to it."""
 
 
 class Reached(NamedTuple):
@@ -150,11 +150,20 @@ def source_of(flow: DataFlow, path: str, key: str) -> list[tuple[str, str]]:
 
 def key_status(flow: DataFlow, path: str, key: str) -> Status:
     """Whether a key of its container is set when the state at a path is entered."""
-    return _status(_states(_searches(flow, path, key), path))
+    status = _status(_states(_searches(flow, path, key), path))
+    if (
+        status == "always"
+        and _status(_states(_searches(flow, path, key, caller=False), path)) != "always"
+    ):
+        return "given"
+    return status
 
 
-def _searches(flow: DataFlow, path: str, key: str) -> list[tuple[str, Search]]:
-    """The search in each container that the key is passed in through, outermost first."""
+def _searches(
+    flow: DataFlow, path: str, key: str, *, caller: bool = True
+) -> list[tuple[str, Search]]:
+    """The search in each container that the key is passed in through, outermost first.
+    `caller`: the caller of the machine sets its input keys."""
     outer = around(flow, path)
     if outer is None or path not in flow.entered:
         return []
@@ -164,7 +173,8 @@ def _searches(flow: DataFlow, path: str, key: str) -> list[tuple[str, Search]]:
         scope = flow.scopes[where]
         if found:
             states = _states(found, where)
-        if name in scope.held:
+        presets = {preset.key for preset in scope.container.userdata}
+        if name in (scope.held if caller else presets):
             states = {"set"}
         found.append((where, search(flow, scope, name, sorted(states))))
     return found

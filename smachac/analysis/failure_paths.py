@@ -11,7 +11,7 @@ from smachac.diagnostics.source import Span
 from smachac.ir import nodes
 from smachac.ir.graph import Event, is_unread
 from smachac.ir.nodes import Concurrence, Leaf, Node
-from smachac.ir.outcome_names import PREEMPTED, is_failure, successes
+from smachac.ir.outcome_names import PREEMPTED, fails, successes
 from smachac.ir.script_paths import Step, steps_in_script
 from smachac.ir.traversal import outcome_names
 
@@ -44,11 +44,11 @@ class Failure:
 
 def starts_failure(node: Node, outcome: str) -> bool:
     """Whether an outcome begins a failure: that of a leaf, of exhausted tries or a time limit."""
-    if node.catches == outcome:
+    if outcome and outcome == node.catches:
         return True
     match node:
         case Leaf():
-            return is_failure(outcome)
+            return fails(node, outcome)
         case nodes.Iterator(sugar="retry"):
             return outcome == node.exhausted_outcome
         case Concurrence(sugar="timeout"):
@@ -62,7 +62,7 @@ def failures(
     """Every failure that can begin, in the order of the script; one for each way that it takes.
     `plain` are the plain paths.
 
-    A failure begins where a leaf ends with an outcome of failure (`is_failure`), tries are used
+    A failure begins where a leaf ends with an outcome of failure (`fails`), tries are used
     up, or a time limit is over. Linear in the states, but for the depth of containers.
     """
     ends = _possible_ends(routes)
@@ -86,7 +86,7 @@ def _failures(
 ) -> Iterator[Failure]:
     root = routes.root
     order = outcome_names(root)
-    good = successes(order)
+    good = successes(root)
     span = next((step.span for step in node.transitions if step.outcome == name), node.span)
     arrivals = routes.arrivals(path, name)
     good_ways = _after_success(routes, path, node)
@@ -99,7 +99,7 @@ def _failures(
         yield Failure(
             path=path,
             outcome=name,
-            answer=_answer(arrival, path, alike),
+            answer=_answer(root, arrival, path, alike),
             way=_way(path, name, arrival, plain),
             next=arrival.target,
             ends=tuple(final),
@@ -111,11 +111,11 @@ def _failures(
         yield Failure(path=path, outcome=name, answer="lost", way=way, span=span)
 
 
-def _answer(arrival: Arrival, path: str, alike: set[tuple[str, str]]) -> Answer:
+def _answer(root: Node, arrival: Arrival, path: str, alike: set[tuple[str, str]]) -> Answer:
     if arrival.target and f"{path}/".startswith(f"{arrival.target}/"):
         return "repeated"
     final = _final(arrival)
-    if (arrival.target, final) in alike and not is_failure(final):
+    if (arrival.target, final) in alike and not fails(root, final):
         return "ignored"
     return "caught" if arrival.target else "not caught"
 
@@ -127,8 +127,7 @@ def _final(arrival: Arrival) -> str:
 
 def _after_success(routes: Routes, path: str, node: Node) -> set[tuple[str, str]]:
     """Where the successes of a state lead."""
-    names = [name for name in successes(outcome_names(node)) if not is_failure(name)]
-    arrivals = (arrival for name in names for arrival in routes.arrivals(path, name))
+    arrivals = (arrival for name in successes(node) for arrival in routes.arrivals(path, name))
     return {(arrival.target, _final(arrival)) for arrival in arrivals}
 
 

@@ -20,7 +20,7 @@ from smachac.diagnostics.source import assert_never
 from smachac.ir import nodes
 from smachac.ir.concurrence_rules import outcome_of
 from smachac.ir.nodes import Concurrence, Container, Leaf, Machine, Node, StateMachine
-from smachac.ir.outcome_names import PREEMPTED, is_failure
+from smachac.ir.outcome_names import PREEMPTED, fails
 from smachac.ir.traversal import leads_to_child, walk
 
 Probabilities = Mapping[str, float]
@@ -105,7 +105,7 @@ class MarkovModel:
             if not isinstance(node, Leaf) or path not in self.measured or path.startswith(hidden):
                 continue
             for outcome, probability in self.measured[path].outcomes.items():
-                if is_failure(outcome) and 0 < probability < 1:
+                if fails(node, outcome) and 0 < probability < 1:
                     gain = _share(self._without(path, outcome), successes) - base
                     found.append(Sensitivity(path, outcome, probability, gain))
         return sorted(found, key=lambda each: -each.gain)

@@ -12,10 +12,10 @@ from __future__ import annotations
 from collections.abc import Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
 
-from smachac.analysis.control_flow import fails, is_open
+from smachac.analysis.control_flow import is_open
 from smachac.diagnostics.spelling import guesser
 from smachac.ir.nodes import Concurrence, Node, OutcomeRule
-from smachac.ir.outcome_names import PREEMPTED, good_first
+from smachac.ir.outcome_names import PREEMPTED, fails, good_first
 from smachac.ir.traversal import outcome_names
 
 Combination = dict[str, str]
@@ -263,10 +263,12 @@ def space(read: Study, known: OutcomesByPath) -> Space:
     for child in read.node.children:
         names = known[f"{read.path}/{child.name}"]
         if is_open(child):
-            names = tuple(dict.fromkeys([*good_first(names), *asked.get(child.name, ()), OTHER]))
+            names = tuple(
+                dict.fromkeys([*good_first(child, names), *asked.get(child.name, ()), OTHER])
+            )
         elif not names and read.node.join == "any":
             names = (OTHER,)
-        found[child.name] = good_first(names)
+        found[child.name] = good_first(child, names)
     return found
 
 

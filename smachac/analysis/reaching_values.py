@@ -6,6 +6,7 @@ from collections.abc import Iterable, Iterator
 from dataclasses import replace
 from typing import NamedTuple
 
+from smachac.analysis.null_guards import excludes_null
 from smachac.analysis.type_inference import Cell, Clash, TypeFlow
 from smachac.analysis.type_lattice import MisfitKind
 from smachac.ir import nodes
@@ -58,9 +59,11 @@ class _Searches:
         self.children: dict[str, dict[str, Node]] = {}
         self.found: dict[tuple[str, str, str | None], tuple[Vertex, ...] | None] = {}
         self.flows: dict[tuple[Cell, object], dict[Vertex, TypeFlow]] = {}
+        self.guarded: dict[tuple[str, str, str | None], bool] = {}
 
     def reaching(self, clash: Clash) -> Clash | None:
         """The clash, with flows that can happen; None where the value cannot arrive."""
+        nullable = _is_nullable(clash)
         seen: set[TypeFlow] = set()
         todo: list[tuple[TypeFlow, tuple[TypeFlow, ...]]] = [(clash.flow, ())]
         while todo:
@@ -68,6 +71,8 @@ class _Searches:
             if flow in seen:
                 continue
             seen.add(flow)
+            if nullable and after and self.is_guarded(flow.cell, after[0].cell):
+                continue
             sources = self.sources(flow.cell, after)
             alike = self.alike(flow)
             coming = [alike[vertex] for vertex in sources if vertex in alike] if sources else []
@@ -123,6 +128,44 @@ class _Searches:
                     todo.append(before)
         return tuple(sources)
 
+    def is_guarded(self, cell: Cell, reader: Cell) -> bool:
+        """Whether a null in a key of a container cannot arrive at a child: on every path the value
+        has been compared with None, or replaced by one that cannot be null."""
+        container = cell.node
+        if cell.role != "scope" or not isinstance(container, nodes.StateMachine | nodes.Sequence):
+            return False
+        which = cell.path, cell.key, _child(cell, reader)
+        if which not in self.guarded:
+            spent = self.visits > MOST_VISITS
+            self.guarded[which] = not spent and self.search_guards(container, *which)
+        return self.guarded[which]
+
+    def search_guards(
+        self, container: nodes.Container, path: str, key: str, goal: str | None
+    ) -> bool:
+        """Whether every path from the start to a child excludes a null, and there is a path."""
+        steps = self.steps_back(path, container)
+        children = self.children[path]
+        todo: list[Vertex] = [goal] if goal is not None else []
+        seen: set[Vertex] = set(todo)
+        guarded = False
+        while todo:
+            self.visits += 1
+            for before, outcome in steps.get(todo.pop(), ()):
+                if before == START:
+                    return False
+                child = children[str(before)]
+                if replaces(child, key, outcome):
+                    if _may_write_null(child, key):
+                        return False
+                    guarded = True
+                elif excludes_null(child, key, outcome):
+                    guarded = True
+                elif before not in seen:
+                    seen.add(before)
+                    todo.append(before)
+        return guarded
+
     def steps_back(
         self, path: str, container: nodes.Container
     ) -> dict[Vertex, list[tuple[Vertex, str]]]:
@@ -141,6 +184,21 @@ def _stop(flow: TypeFlow) -> Vertex:
     if flow.before is None:
         return START
     return _child(flow.cell, flow.before.cell) or START
+
+
+def _is_nullable(clash: Clash) -> bool:
+    """Whether a value clashes because it may be null where the reader needs one that is not."""
+    return clash.misfit.given.name in ("optional", "none") and clash.flow.type.name in (
+        "optional",
+        "none",
+    )
+
+
+def _may_write_null(child: Node, key: str) -> bool:
+    """Whether an output of a state that is the key of its container is declared as nullable."""
+    names = remapping(child)
+    own = [each for each in child.outputs if names.get(each.name, each.name) == key]
+    return any(each.type.name == "optional" for each in own)
 
 
 def _linked(flow: TypeFlow, after: tuple[TypeFlow, ...]) -> TypeFlow:

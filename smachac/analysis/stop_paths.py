@@ -16,7 +16,6 @@ from smachac.analysis.control_flow import (
     MOST_STEPS,
     Linear,
     children_names,
-    fails,
     outline,
     regions,
     stuck_states,
@@ -36,7 +35,7 @@ from smachac.diagnostics.source import assert_never
 from smachac.ir import nodes
 from smachac.ir.graph import START, edges, stopped_endings
 from smachac.ir.nodes import Concurrence, Container, Leaf, Node, StateMachine, Transition
-from smachac.ir.outcome_names import GOOD, PREEMPTED, is_failure, successes
+from smachac.ir.outcome_names import GOOD, PREEMPTED, fails, successes
 from smachac.ir.traversal import leads_to_child, outcome_names
 
 MOST_VISITS = 1_000_000
@@ -168,13 +167,13 @@ def _linear(
             found.praised.append(Resumed(stop, end=stop.step.target))
         elif stop.step.target in exits:
             ends.setdefault(stop.step.target, stop.origin)
-    _keep(found, path, ends, calm)
+    _keep(found, path, container, ends, calm)
 
 
-def _keep(found: StopPaths, path: str, ends: Answers, calm: AbstractSet[str]) -> None:
+def _keep(found: StopPaths, path: str, node: Node, ends: Answers, calm: AbstractSet[str]) -> None:
     """Keep the outcomes that a container can have after a stop. An outcome that it also has when
     nothing fails is left out: then the stop has been taken for a step of the task inside."""
-    kept = {name: origin for name, origin in ends.items() if name not in calm or is_failure(name)}
+    kept = {name: origin for name, origin in ends.items() if name not in calm or fails(node, name)}
     if kept:
         found.answers[path] = kept
         found.only[path] = frozenset(kept) - calm
@@ -188,7 +187,7 @@ def task_successes(node: Node) -> frozenset[str]:
     """The outcomes of a container that mean success: `done` and the like also where the container
     has the outcome `preempted`."""
     names = outcome_names(node)
-    found = successes(names)
+    found = successes(node)
     if PREEMPTED in names:
         found |= {name for name in names if name.lower() in GOOD}
     return found
@@ -293,11 +292,11 @@ def _iterator(path: str, container: nodes.Iterator, found: StopPaths) -> None:
     }
     if not ends:
         looping = stopped_endings(container).items()
-        ends = {end: container for name, end in looping if not is_failure(name)}
+        ends = {end: container for name, end in looping if not fails(child, name)}
     calm = found.calm_outcomes(here, child)
     ways = [edge for edge in edges(container) if edge.source == START or edge.outcome in calm]
     also = {edge.target[1] for edge in ways if isinstance(edge.target, tuple)}
-    _keep(found, path, {name: ends[name] for name in declared if name in ends}, also)
+    _keep(found, path, container, {name: ends[name] for name in declared if name in ends}, also)
 
 
 def _concurrence(path: str, each: Judged, found: StopPaths) -> None:
@@ -310,7 +309,7 @@ def _concurrence(path: str, each: Judged, found: StopPaths) -> None:
     child = node.children[0]
     origin = next(iter(found.answers_of(f"{path}/{child.name}", child).values()))
     names = (name for name in outcome_names(node) if name in ends)
-    _keep(found, path, dict.fromkeys(names, origin), calm)
+    _keep(found, path, node, dict.fromkeys(names, origin), calm)
 
 
 def stopped_space(each: Judged, found: StopPaths) -> Space:

@@ -14,10 +14,10 @@ from collections.abc import Set as AbstractSet
 from dataclasses import dataclass
 from typing import NamedTuple, TypeAlias
 
-from smachac.analysis.control_flow import Linear, children_names, fails
+from smachac.analysis.control_flow import Linear, children_names
 from smachac.ir.nodes import Node, Transition
-from smachac.ir.outcome_names import successes
-from smachac.ir.traversal import leads_to_child, outcome_names
+from smachac.ir.outcome_names import fails, successes
+from smachac.ir.traversal import leads_to_child
 
 CalmOutcomes = Callable[[Node], AbstractSet[str]]
 """The outcomes with which a child can end without a request to stop."""
@@ -51,7 +51,7 @@ def task_flow(container: Linear, calm_outcomes: CalmOutcomes) -> TaskFlow:
         possible = calm_outcomes(child)
         taken = [step for step in child.transitions if step.outcome in possible]
         every[child.name], leaving[child.name] = _parted(taken, names)
-        if not successes(outcome_names(child)).isdisjoint(possible):
+        if not successes(child).isdisjoint(possible):
             taken = [step for step in taken if not fails(child, step.outcome)]
         steps[child.name], exits[child.name] = _parted(taken, names)
     ordinary = reached([container.initial], steps)

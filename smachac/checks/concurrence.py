@@ -91,6 +91,16 @@ def _dead_rules(path: str, container: Concurrence) -> Iterator[Finding]:
     guess = guesser(children)
     states = f"its states are {listed(children)}" if children else "the concurrence has no states"
     for entry in container.rules:
+        for word in entry.ignored:
+            if word.text not in children:
+                yield Finding(
+                    span=word.span,
+                    message=f"`{word.text}` is not a state of `{container.name}`",
+                    arguments=(entry.outcome, word.text),
+                    help=did_you_mean(guess(word.text)) or states,
+                    related=calls(container, word.span),
+                    node=path,
+                )
         if not entry.when:
             yield Finding(
                 span=entry.span,

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping
+from collections.abc import Collection, Iterator, Mapping
 from typing import NamedTuple, TypeAlias
 
 from smachac.analysis.context import Context
@@ -15,27 +15,49 @@ from smachac.checks.messages import calls, other_place, own_name
 from smachac.checks.rule import rule
 from smachac.diagnostics.diagnostic import Finding, PathStep, Severity, ended, entered
 from smachac.diagnostics.source import Span
+from smachac.diagnostics.spelling import guesser
 from smachac.diagnostics.wording import listed
 from smachac.ir import nodes
-from smachac.ir.nodes import Concurrence, Container, Leaf, Node, Sequence, StateMachine, Transition
-from smachac.ir.outcome_names import GOOD, PREEMPTED, SUCCESSES, is_failure, successes
+from smachac.ir.nodes import (
+    Concurrence,
+    Container,
+    Leaf,
+    Node,
+    OutcomeRule,
+    Sequence,
+    StateMachine,
+    Transition,
+)
+from smachac.ir.outcome_names import (
+    GOOD,
+    PREEMPTED,
+    SUCCESSES,
+    TIMEOUTS,
+    fails,
+    successes,
+)
 from smachac.ir.traversal import leads_to_child, outcome_names
 
 
 @rule("SM404", "masked-failure", Severity.WARNING)
 def masked_failure(context: Context) -> Iterator[Finding]:
-    """A branch fails, and the concurrence ends with a success.
+    """A branch or an item fails, and the concurrence or the loop ends with a success.
 
     The robot continues with a part that it did not grasp, or at a place that it did not inspect.
-    Often the default outcome is a success, or a rule does not list all branches.
+    Often the default outcome is a success, a rule does not list all branches, or a loop continues
+    after a failure.
 
-    Exactly: an outcome of failure is `aborted`, `failed`, `error`, `timeout` or similar. A success
-    is the outcome `succeeded` (or `done`, `ok` or similar if the concurrence also has an outcome of
-    failure), and an outcome with which the concurrence always ends when no branch fails; an outcome
-    whose transition leads to an outcome of failure is no success. A rule that lists the branch with
-    its failure is intended, and not reported. No preempt request comes from outside. With
-    `join: any` only a failure of the branch that ends first counts, because the concurrence
-    preempts the others.
+    Exactly: an outcome of failure is declared so (`failure: true`), or named `aborted`, `failed`,
+    `error`, `timeout` or similar. A success of a concurrence is the outcome `succeeded` (or `done`,
+    `ok` or similar if it also has an outcome of failure), and an outcome with which it always ends
+    when no branch fails; an outcome whose transition leads to an outcome of failure is no success.
+    A rule that lists the branch with its failure, or with `any`, is intended, and not reported. No
+    preempt request comes from outside. With `join: any` only a failure of the branch that ends
+    first counts, because the concurrence preempts the others. A loop (`for_each` or an Iterator) is
+    reported if it continues after a failure and ends with `succeeded`, `done`, `ok` or similar
+    after the last item; an exception after which it continues is intended. If other failures are
+    intended, `outcomes: {aborted: {failure: false}}` at the state declares it, or the loop ends
+    with a neutral outcome, such as `all_visited`.
 
     Wrong:
         name: sm
@@ -69,20 +91,26 @@ def masked_failure(context: Context) -> Iterator[Finding]:
                 - RIGHT: {template: ScriptedState, outcomes: [done, aborted]}
               transitions: {ready: ready, failed: failed}
     """
+    containers = dict(context.containers)
     for each in context.judged:
+        around = containers.get(each.path.rpartition("/")[0], each.read.node)
         try:
-            yield from _masked(context, each)
+            yield from _masked(context, each, around)
         except UndecidedError:
             continue
+    for path, container in context.containers:
+        if isinstance(container, nodes.Iterator) and container.sugar != "retry":
+            around = containers.get(path.rpartition("/")[0], container)
+            yield from _masked_in_loop(context, path, container, around)
 
 
-def _masked(context: Context, each: Judged) -> Iterator[Finding]:
+def _masked(context: Context, each: Judged, around: Container) -> Iterator[Finding]:
     """The failures that the default outcome hides, and those that each rule for a success hides."""
     read, node = each.read, each.read.node
     spaces = each.calm
     if not any(read.failures(*ends) for space, _ in spaces for ends in space.items()):
         return
-    good = _good_results(read, [space for space, _ in spaces])
+    good = _good_results(read, around, [space for space, _ in spaces])
     if node.default_outcome in good:
         hidden = _hidden_failures(read, spaces, {}, read.rules.all)
         help = "use an outcome of failure as default outcome, and write a rule for each success"
@@ -93,17 +121,26 @@ def _masked(context: Context, each: Judged) -> Iterator[Finding]:
         if entry.outcome in good:
             given = read.rules.conditions[number]
             rivals = read.rules.larger_than(len(given) - 1) & ~(1 << number)
-            hidden = _hidden_failures(read, spaces, given, rivals)
-            help = f"list every branch in the rule for `{entry.outcome}`"
+            named = {*given, *_ignored(entry, read.children)}
+            hidden = _hidden_failures(read, spaces, given, rivals, named)
+            shown = next(iter(hidden), "")
+            help = f"list every branch in the rule for `{entry.outcome}`; `{shown}: any`, if its"
+            help += " failures do not matter"
             yield from _masked_finding(
                 context, each, entry.outcome, entry.span, given, hidden, help
             )
 
 
-def _good_results(read: Study, spaces: list[Space]) -> frozenset[str]:
-    """The outcomes of a concurrence that are successes, as SM404 defines them."""
+def _ignored(entry: OutcomeRule, children: Collection[str]) -> Iterator[str]:
+    """The children that a rule lists with `any`; a misspelt name is corrected."""
+    for word in entry.ignored:
+        yield word.text if word.text in children else guesser(children)(word.text) or word.text
+
+
+def _good_results(read: Study, around: Container, spaces: list[Space]) -> frozenset[str]:
+    """The outcomes of a concurrence in a container that are successes, as SM404 defines them."""
     node = read.node
-    found = set(successes(outcome_names(node)))
+    found = set(successes(node))
     results: set[str] = set()
     for space in (_unfailed_outcomes(read, each) for each in spaces):
         if read.rules.find(space, {}, read.rules.all) is not None:
@@ -115,12 +152,16 @@ def _good_results(read: Study, spaces: list[Space]) -> frozenset[str]:
     if len(results) == 1:
         found |= results
     leads = {step.outcome: step.target for step in node.transitions}
-    return frozenset(name for name in found if not (_is_bad(name) or _is_bad(leads.get(name, ""))))
+    return frozenset(
+        name
+        for name in found
+        if not (_is_bad(node, name) or (name in leads and _is_bad(around, leads[name])))
+    )
 
 
-def _is_bad(name: str) -> bool:
+def _is_bad(node: Node, name: str) -> bool:
     """Whether an outcome is one of failure, or `preempted`."""
-    return is_failure(name) or name == PREEMPTED
+    return fails(node, name) or name == PREEMPTED
 
 
 def _unfailed_outcomes(read: Study, space: Space) -> Space:
@@ -136,18 +177,22 @@ def _unfailed_outcomes(read: Study, space: Space) -> Space:
 
 
 def _hidden_failures(
-    read: Study, spaces: list[tuple[Space, str]], given: Combination, avoided: int
+    read: Study,
+    spaces: list[tuple[Space, str]],
+    given: Combination,
+    avoided: int,
+    named: Collection[str] = (),
 ) -> dict[str, Combination]:
     """The children that can have failed although a rule without them decides the outcome, each with
     a combination of outcomes in which that rule decides.
 
     `given` are the conditions of the rule, none for the default outcome; `avoided` are the rules,
-    as bits, that must not match because they would win.
+    as bits, that must not match because they would win. `named` are the children in the rule.
     """
     found: dict[str, Combination] = {}
     for space, first in spaces:
         for child in [first] if first else space:
-            if child in given or child in found:
+            if child in named or child in found:
                 continue
             for end in read.failures(child, space[child]):
                 fixed = {**given, child: end}
@@ -204,6 +249,32 @@ def _exit_steps(context: Context, path: str, node: Node, step: Transition) -> tu
     return entered(node.name, path), ended(step.outcome), entered(step.target, beside)
 
 
+def _masked_in_loop(
+    context: Context, path: str, loop: nodes.Iterator, around: Container
+) -> Iterator[Finding]:
+    """SM404 for the failures of an item after which a loop continues."""
+    end = dict(loop.final_map).get(loop.exhausted_outcome, loop.exhausted_outcome)
+    step = next((step for step in loop.transitions if step.outcome == end), None)
+    if end.lower() not in SUCCESSES | GOOD or (step is not None and fails(around, step.target)):
+        return
+    for child in loop.children:
+        for number, outcome in enumerate(loop.loop_outcomes):
+            if outcome == child.catches or not fails(child, outcome):
+                continue
+            span = loop.loop_spans[number] if loop.loop_spans else loop.span
+            yield Finding(
+                span=span,
+                message=f"`{child.name}` fails with `{outcome}`, but the loop continues and ends"
+                f" with `{end}`",
+                arguments=(own_name(loop, span), outcome, end),
+                help=f"end the loop with `{outcome}`; if the failure of an item does not matter,"
+                f" write `outcomes: {{{outcome}: {{failure: false}}}}` at `{child.name}`",
+                related=calls(loop, span),
+                path=_exit_steps(context, path, loop, step) if step else (),
+                node=path,
+            )
+
+
 _Ending: TypeAlias = "tuple[str, str]"
 """The path of a state, and an outcome of it."""
 
@@ -228,10 +299,11 @@ def unhandled_failure(context: Context) -> Iterator[Finding]:
 
     The machine reports that the robot has done its task, although a part of the task failed.
 
-    Exactly: an outcome of failure of a state (`aborted`, `failed`, `error`, `timeout` or similar)
-    leads out of all containers around the state until the machine ends with `succeeded`, or with
-    `done`, `ok` or similar if the machine also has an outcome of failure. SM404 reports failures of
-    the branches of a concurrence.
+    Exactly: an outcome of failure of a state (declared with `failure: true`, or named `aborted`,
+    `failed`, `error` or similar) leads out of all containers around the state until the machine
+    ends with `succeeded`, or with `done`, `ok` or similar if the machine also has an outcome of
+    failure. A transition from `timeout` or `timed_out` is not reported: a wait may have a limit on
+    purpose. SM404 reports failures of the branches of a concurrence and of the items of a loop.
 
     Wrong:
         name: sm
@@ -244,8 +316,8 @@ def unhandled_failure(context: Context) -> Iterator[Finding]:
               transitions: {done: PLACE, lost: failed}
           - PLACE:
               template: ScriptedState
-              outcomes: [done, timeout]
-              transitions: {done: succeeded, timeout: succeeded}
+              outcomes: [done, aborted]
+              transitions: {done: succeeded, aborted: succeeded}
 
     Right:
         name: sm
@@ -258,11 +330,11 @@ def unhandled_failure(context: Context) -> Iterator[Finding]:
               transitions: {done: PLACE, lost: failed}
           - PLACE:
               template: ScriptedState
-              outcomes: [done, timeout]
-              transitions: {done: succeeded, timeout: failed}
+              outcomes: [done, aborted]
+              transitions: {done: succeeded, aborted: failed}
     """
     root = context.machine.root
-    good = successes(outcome_names(root))
+    good = successes(root)
     if not good:
         return
     propagated: dict[_Ending, _Propagation | None] = {(root.name, name): None for name in good}
@@ -273,11 +345,18 @@ def unhandled_failure(context: Context) -> Iterator[Finding]:
             for each in _propagations(path, container, names, child, propagated):
                 if not isinstance(child, Leaf):
                     propagated.setdefault((each.path, each.outcome), each)
-                if starts_failure(child, each.outcome):
+                if starts_failure(child, each.outcome) and not _is_limit(each):
                     masking = each.masking or each
                     maskings.setdefault((masking.path, masking.outcome), []).append(each)
     for found in maskings.values():
         yield _unhandled_failure(root, found)
+
+
+def _is_limit(each: _Propagation) -> bool:
+    """Whether the end of a time limit, under a name that means it, leads to a success."""
+    masking = each.masking or each
+    declared = {one.name for one in each.node.outcomes if one.failure}
+    return {each.outcome, masking.outcome} <= TIMEOUTS and each.outcome not in declared
 
 
 def _propagations(

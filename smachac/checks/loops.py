@@ -12,7 +12,6 @@ from smachac.analysis.control_flow import (
     SiblingSteps,
     circle,
     dead_ends,
-    fails,
     outline,
     regions,
     shortest_paths,
@@ -29,7 +28,7 @@ from smachac.ir.expressions import Lambda, Name, parse_expression, parts
 from smachac.ir.graph import can_end, reachable
 from smachac.ir.leaf import functions, variable_of
 from smachac.ir.nodes import Leaf, Node, StateMachine, Transition
-from smachac.ir.outcome_names import PREEMPTED, is_failure, successes
+from smachac.ir.outcome_names import PREEMPTED, fails, successes
 from smachac.ir.traversal import leads_to_child, outcome_names, remapping, walk
 
 PURE = frozenset(["abs", "bool", "float", "int", "len", "max", "min", "round", "str"])
@@ -220,8 +219,8 @@ def _unpreempted(container: Linear) -> Linear:
 def _failing(node: Node) -> Node:
     """A state that fails each time; the undeclared outcomes of an open leaf stay."""
     declared = frozenset(outcome_names(node))
-    steps = [s for s in node.transitions if is_failure(s.outcome) or s.outcome not in declared]
-    outcomes = [one for one in node.outcomes if is_failure(one.name)]
+    steps = [s for s in node.transitions if fails(node, s.outcome) or s.outcome not in declared]
+    outcomes = [one for one in node.outcomes if fails(node, one.name)]
     return replace(node, outcomes=tuple(outcomes), transitions=tuple(steps))
 
 
@@ -229,9 +228,12 @@ def _unbounded(flow: Linear, entered: frozenset[str], steps: SiblingSteps) -> It
     """The loops that do not end while every state that retries fails."""
     part = {name: part for part, names in enumerate(regions(steps, steps)) for name in names}
     retrying = {
-        name
-        for name in steps
-        if any(is_failure(outcome) and part[to] == part[name] for outcome, to in steps[name])
+        child.name
+        for child in flow.children
+        if any(
+            fails(child, outcome) and part[to] == part[child.name]
+            for outcome, to in steps[child.name]
+        )
     }
     children = tuple(
         _failing(child) if child.name in retrying else child for child in flow.children
@@ -249,15 +251,16 @@ def _unbounded(flow: Linear, entered: frozenset[str], steps: SiblingSteps) -> It
 
 def _could_leave(child: Node, inside: frozenset[str]) -> bool:
     return any(
-        not is_failure(step.outcome) and not leads_to_child(step, inside)
+        not fails(child, step.outcome) and not leads_to_child(step, inside)
         for step in child.transitions
     )
 
 
 def _closing_step(child: Node | None, inside: frozenset[str]) -> Transition | None:
-    steps = child.transitions if child is not None else ()
-    closing = (s for s in steps if is_failure(s.outcome) and leads_to_child(s, inside))
-    return next(closing, None)
+    if child is None:
+        return None
+    steps = (step for step in child.transitions if fails(child, step.outcome))
+    return next((step for step in steps if leads_to_child(step, inside)), None)
 
 
 def _retries(
@@ -441,7 +444,7 @@ def _written_in(region: Iterable[Node]) -> frozenset[str] | None:
 
 def _leaves(child: Node, names: frozenset[str]) -> bool:
     """Whether a state leads out of a region; by a failure, only if it has no success."""
-    succeeds = bool(successes(outcome_names(child)))
+    succeeds = bool(successes(child))
     return any(
         not leads_to_child(step, names) and not (succeeds and fails(child, step.outcome))
         for step in child.transitions

@@ -93,9 +93,14 @@ def _lost(path: str, container: Linear) -> Iterator[_Lost]:
     guess = places_of(container)
     for child in container.children:
         for step in child.transitions:
-            if not leads_somewhere(step, names, exits):
+            if not leads_somewhere(step, names, exits) and not _was_reported(step):
                 meant, sure = guess(step.target), guess.sure(step.target)
                 yield _Lost(path, container, child, step, meant, sure)
+
+
+def _was_reported(step: Transition) -> bool:
+    """Whether a transition has no target because its look-up failed (SM015)."""
+    return not step.target and step.target_span.text not in ("''", '""', "")
 
 
 def _nowhere(fault: _Lost, elsewhere: str | None) -> Finding:

@@ -11,7 +11,7 @@ from smachac.checks.rule import rule
 from smachac.diagnostics.diagnostic import Finding, Severity
 from smachac.ir import nodes
 from smachac.ir.nodes import Concurrence, Node, Outcome, Transition
-from smachac.ir.outcome_names import PREEMPTED, is_failure
+from smachac.ir.outcome_names import PREEMPTED, fails
 from smachac.ir.traversal import outcome_names
 
 
@@ -187,7 +187,8 @@ def implicit_exit(context: Context) -> Iterator[Finding]:
     This is often intended. If the transition was forgotten, the robot stops without a recovery.
 
     Exactly: it is a warning for an outcome of failure of a state that has a transition for an
-    outcome of success, and a note otherwise.
+    outcome of success, and a note otherwise. The states of one container that end it with one
+    outcome are one finding.
 
     Wrong:
         name: sm
@@ -231,13 +232,13 @@ def _implicit(
 ) -> Iterator[Finding]:
     misspelt = {meant for _, meant in unknown_outcomes(child)}
     beside = any(
-        step.origin == "written" and not is_failure(step.outcome) and step.outcome != PREEMPTED
+        step.origin == "written" and not fails(child, step.outcome) and step.outcome != PREEMPTED
         for step in child.transitions
     )
     for step in steps:
         if step.outcome in misspelt:
             continue
-        forgotten = beside and is_failure(step.outcome)
+        forgotten = beside and fails(child, step.outcome)
         yield Finding(
             span=step.span,
             message=f"outcome `{step.outcome}` of `{child.name}` has no transition, so"
@@ -250,4 +251,5 @@ def _implicit(
             related=calls(child, step.span),
             severity=Severity.WARNING if forgotten else None,
             node=f"{path}/{child.name}",
+            group=(own_name(container, step.span), step.outcome),
         )

@@ -125,10 +125,13 @@ def impossible_outcome(context: Context) -> Iterator[Finding]:
               transitions: {done: picked, slipped: lost}
     """
     linear = iter(context.mended)
+    again = {found.stop.path for found in context.stop_paths.again}
     for path, container in context.containers:
         whole = next(linear) if isinstance(container, StateMachine | Sequence) else container
         possible = _possible_outcomes(whole)
-        known = {container.catches, PREEMPTED if ends_preempted(container) else ""}
+        # Where SM209 is reported, a state does not lead `preempted` out of the container.
+        stops = path in again or ends_preempted(container)
+        known = {container.catches, PREEMPTED if stops else ""}
         for outcome in container.outcomes:
             if possible is not None and outcome.name not in possible | known:
                 yield _impossible(path, container, outcome)

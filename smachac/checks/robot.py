@@ -21,8 +21,9 @@ from smachac.ir.nodes import Data, Leaf, Struct
 from smachac.ir.robot import Joint, Robot
 from smachac.ir.types import Type
 
-ROTATION_TOLERANCE = 1e-3
-"""Tolerance for the length of a quaternion: enough for numbers with three decimals."""
+ROTATION_TOLERANCE = 10e-3
+"""Tolerance for the squared length of a quaternion, with which tf2 accepts transforms (geometry2,
+tf2/src/buffer_core.cpp, QUATERNION_NORMALIZATION_TOLERANCE)."""
 
 JOINT_TOLERANCE = 1e-4
 """Tolerance for joint limits in rad: they are given with four decimals."""
@@ -173,6 +174,8 @@ def not_a_rotation(context: Context) -> Iterator[Finding]:
     Some programs use the nearest rotation, others stop with an error, and others distort the pose:
     the hand moves to an unexpected place. The simulation reads four zeros as no rotation.
 
+    Exactly: the squared length differs from 1 by more than 0.01, the tolerance of tf2.
+
     Wrong:
         name: sm
         template: Base
@@ -203,7 +206,7 @@ def not_a_rotation(context: Context) -> Iterator[Finding]:
             if len(numbers) != 4:
                 continue
             length = math.hypot(*numbers)
-            if abs(length - 1.0) <= ROTATION_TOLERANCE:
+            if abs(length * length - 1.0) <= ROTATION_TOLERANCE:
                 continue
             help = "write `[0.0, 0.0, 0.0, 1.0]` for no rotation"
             if length > 0.0 and math.isfinite(length):

@@ -122,7 +122,7 @@ def stats_command(arguments: Namespace) -> int:
         return FINDINGS
     if machine.root.name not in statistics.states:
         return usage("the traces have no run")
-    good = arguments.success or successes(own)
+    good = arguments.success or successes(machine.root)
     render = forecast_json if arguments.format == "json" else forecast_text
     sys.stdout.write(render(machine, statistics, forecast(machine, statistics, good)))
     return OK

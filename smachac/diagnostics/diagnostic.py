@@ -10,13 +10,14 @@ from __future__ import annotations
 import difflib
 import hashlib
 from collections.abc import Callable, Iterable
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from enum import Enum
 from functools import lru_cache
 from pathlib import PurePath
 from typing import Generic, ParamSpec
 
 from smachac.diagnostics.source import Source, Span
+from smachac.diagnostics.wording import listed
 
 P = ParamSpec("P")
 
@@ -91,6 +92,7 @@ class Finding:
     `path` is a witness: the states that are entered, in order, and the outcomes between them.
     `severity` overrides that of the code. `node` is the path of the state that it is about.
     `edits` correct the fault, all of them together; empty if the correction is not certain.
+    Findings of one code with the same `group` in one container are shown as one (`grouped`).
     """
 
     span: Span
@@ -102,6 +104,7 @@ class Finding:
     severity: Severity | None = None
     node: str | None = None
     edits: tuple[Edit, ...] = ()
+    group: tuple[str, ...] = ()
 
     @property
     def path_labels(self) -> tuple[str, ...]:
@@ -213,6 +216,37 @@ def in_order(report: Iterable[Diagnostic]) -> Report:
             item.finding.arguments,
         ),
     )
+
+
+MOST_RELATED = 5
+"""The most places of a group that are shown beside the first one."""
+
+
+def grouped(report: Report) -> Report:
+    """A report in order, in which the findings of a group are one at the place of the first, with
+    the group as arguments. Suppressions apply before, each to its own state."""
+    groups: dict[tuple[object, ...], Report] = {}
+    for at, item in enumerate(report):
+        found = item.finding
+        around = (found.node or "").rpartition("/")[0]
+        key = (item.code, item.severity, item.span.source, around, found.group)
+        groups.setdefault(key if found.group else (at,), []).append(item)
+    return [items[0] if len(items) == 1 else _as_one(items) for items in groups.values()]
+
+
+def _as_one(items: Report) -> Diagnostic:
+    first, others = items[0].finding, [item.finding for item in items[1:]]
+    around, _, _ = (first.node or "").rpartition("/")
+    names = listed((each.node or "").rpartition("/")[2] for each in others)
+    shown = (Related(span=each.span, message="the same here") for each in others[:MOST_RELATED])
+    finding = replace(
+        first,
+        message=f"{first.message}; the same holds for {names}",
+        arguments=first.group,
+        related=(*first.related, *shown),
+        node=around,
+    )
+    return replace(items[0], finding=finding)
 
 
 def fingerprint(item: Diagnostic) -> str:

@@ -225,6 +225,7 @@ def _repeated(node: Node, loop: ForEach) -> Iterator:
         item_key=item,
         exhausted_outcome=exhausted,
         loop_outcomes=on,
+        loop_spans=tuple(word.span for word in loop.on),
         final_map=((exhausted, on[0]), *((name, PREEMPTED) for name in on)) if on else (),
     )
 

@@ -9,11 +9,11 @@ from collections.abc import Callable
 
 from smachac.diagnostics.diagnostic import Report
 from smachac.diagnostics.source import Word
-from smachac.frontend.errors.script import duplicate_key, wrong_shape
+from smachac.frontend.errors.script import Owner, duplicate_key, unknown_variable, wrong_shape
 from smachac.frontend.script import Keys, Pairs, Rules
 from smachac.frontend.values import as_value
 from smachac.frontend.yaml_tree import Entry, Map, Scalar, Seq, Tree, is_known_wrong
-from smachac.ir.nodes import Preset
+from smachac.ir.nodes import Outcome, Preset
 from smachac.ir.types import ANY, parse_type
 
 _YAML_1_1_BOOLEANS = frozenset(
@@ -42,6 +42,7 @@ def kind_of(tree: Tree) -> str:
 SHAPES = {
     "name": ("a name", None),
     "names": ("a list of names", "write it as `[a, b]`"),
+    "outcomes": ("a list of outcomes", "write it as `[a, b]` or `{a: {}, b: {failure: true}}`"),
     "keys": ("a list of keys", "write it as `[a, b]` or `{a: float}`"),
     "items": ("a list or the name of a key", "write it as `[a, b]`, or name a key with a list"),
     "map": ("a mapping", "write it as `{name: value}`"),
@@ -98,10 +99,10 @@ def as_name(tree: Tree, report: Report) -> Word | None:
     return Word(tree.span.text, tree.span)
 
 
-def as_names(tree: Tree, report: Report) -> tuple[Word, ...]:
-    """A list of names, each once."""
+def as_names(tree: Tree, report: Report, shape: str = "names") -> tuple[Word, ...]:
+    """A list of names, each once. `shape` is that of a tree that is no list, for the message."""
     if not isinstance(tree, Seq):
-        wrong(tree, "names", report)
+        wrong(tree, shape, report)
         # A single name stands for a list of it, so that its uses are not reported too.
         word = name_of(tree)
         return (word,) if word is not None and word.text else ()
@@ -114,6 +115,32 @@ def as_names(tree: Tree, report: Report) -> tuple[Word, ...]:
         if first is not word:
             report.append(duplicate_key(word, first.span))
     return tuple(found.values())
+
+
+def as_outcomes(tree: Tree, report: Report) -> tuple[Outcome, ...]:
+    """Outcomes, each once: `[a, b]`, or with what they mean, `{a: {}, b: {failure: true}}`."""
+    if not isinstance(tree, Map):
+        return tuple(
+            [Outcome(name=word.text, span=word.span) for word in as_names(tree, report, "outcomes")]
+        )
+    words = ((as_name(entry.key, report), entry.value) for entry in tree.entries)
+    return tuple([as_outcome(word, value, report) for word, value in words if word is not None])
+
+
+def as_outcome(word: Word, tree: Tree, report: Report, *more: str) -> Outcome:
+    """An outcome with what is written below its name: `doc`, `failure`, and what `more` names."""
+    parts: dict[str, Tree] = {}
+    for entry in as_map(tree, report):
+        part = Word(str(entry.key.value), entry.key.span)
+        if part.text not in (known := ("doc", "failure", *more)):
+            report.append(unknown_variable(part, Owner("outcome", "an outcome"), known))
+        parts[part.text] = entry.value
+    return Outcome(
+        name=word.text,
+        doc=as_text(parts["doc"], report) if "doc" in parts else "",
+        failure=as_flag(parts["failure"], report) if "failure" in parts else None,
+        span=word.span,
+    )
 
 
 def as_map(tree: Tree, report: Report) -> tuple[Entry, ...]:
@@ -228,6 +255,7 @@ def as_flag(tree: Tree, report: Report) -> bool:
 READERS: dict[str, Callable[[Tree, Report], object]] = {
     "name": as_name,
     "names": as_names,
+    "outcomes": as_outcomes,
     "keys": as_keys,
     "map": as_map,
     "userdata": as_presets,

@@ -12,7 +12,7 @@ from typing import Any
 from smachac.diagnostics.source import Span, Word, assert_never
 from smachac.frontend import schema
 from smachac.frontend.desugar import desugared
-from smachac.frontend.script import ERROR, Keys, Script, State
+from smachac.frontend.script import ANY_OUTCOME, ERROR, Keys, Pairs, Script, State
 from smachac.ir import nodes
 from smachac.ir.graph import is_unread
 from smachac.ir.nodes import (
@@ -157,8 +157,10 @@ def _part(state: State, found: re.Match[str]) -> str:
 def _leaf(state: State) -> Leaf:
     type_ = state.type
     outcomes = {outcome.name: outcome for outcome in type_.outcomes}
-    for word in _given_outcomes(state):
-        outcomes.setdefault(word.text, Outcome(name=word.text, span=word.span))
+    for given in _given_outcomes(state):
+        declared = outcomes.setdefault(given.name, given)
+        if given.failure is not None:
+            outcomes[given.name] = replace(declared, failure=given.failure)
     leaf = Leaf(
         **_interface(state),
         outcomes=tuple(outcomes.values()),
@@ -177,16 +179,16 @@ def _leaf(state: State) -> Leaf:
     return leaf
 
 
-def _given_outcomes(state: State) -> list[Word]:
-    """The outcomes that a script adds to those of the state type."""
-    type_, led = state.type, [key for key, _ in state.transitions]
+def _given_outcomes(state: State) -> list[Outcome]:
+    """The outcomes that a script lists: those that it adds to the state type, or declares again."""
+    type_, led = state.type, [_outcome(key) for key, _ in state.transitions]
     if not type_.open and "outcomes" not in type_.given:
         # An outcome that the type lacks was reported; its transition is no second fault.
-        names = {word.text for word in led}
-        return [word for word in state.outcomes if word.text in names]
+        names = {each.name for each in (*led, *type_.outcomes)}
+        return [each for each in state.outcomes if each.name in names]
     given = [*state.outcomes]
     if state.default_outcome is not None:
-        given.append(state.default_outcome)
+        given.append(_outcome(state.default_outcome))
     else:
         default = type_.variables.get("default_outcome")
         if default is not None and default.default is not None:
@@ -194,8 +196,12 @@ def _given_outcomes(state: State) -> list[Word]:
                 case tuple() | Struct() | Expression():
                     pass
                 case data:
-                    given.append(Word(str(data), state.name.span))
+                    given.append(Outcome(name=str(data), span=state.name.span))
     return led if type_.open and not given else given
+
+
+def _outcome(word: Word) -> Outcome:
+    return Outcome(name=word.text, span=word.span)
 
 
 def _defaults(state: State) -> Iterable[Variable]:
@@ -226,7 +232,7 @@ def _without_optional(child: Node, state: State, outcomes: frozenset[str]) -> No
 def _container(state: State, owner: ContainerKind) -> Container:
     children = tuple([_node(child) for child in state.states])
     fields = _interface(state)
-    fields["outcomes"] = tuple(Outcome(name=word.text, span=word.span) for word in state.outcomes)
+    fields["outcomes"] = state.outcomes
     fields["userdata"] = presets(state)
     match owner:
         case "Concurrence":
@@ -245,7 +251,7 @@ def _container(state: State, owner: ContainerKind) -> Container:
 def _linear(state: State, children: tuple[Node, ...]) -> dict[str, Any]:
     """The children of a state machine or sequence, with their implied edges, and its initial
     state."""
-    outcomes = frozenset(word.text for word in state.outcomes)
+    outcomes = frozenset(outcome.name for outcome in state.outcomes)
     if state.on_error is not None:
         target = state.on_error
         children = tuple([_with_error_transition(child, target) for child in children])
@@ -319,17 +325,29 @@ def _concurrence(state: State, fields: dict[str, Any], children: tuple[Node, ...
         default_outcome=default.text,
         default_span=default.span,
         rules=tuple(
-            OutcomeRule(
-                outcome=outcome.text,
-                span=outcome.span,
-                when=tuple(
-                    Condition(child=child.text, outcome=ending.text, span=child.span)
-                    for child, ending in conditions
-                ),
-            )
+            _outcome_rule(outcome, conditions, children)
             for outcome, conditions in state.outcome_map
         ),
         join="any" if _text(state.join) == "any" else "all",
+    )
+
+
+def _outcome_rule(outcome: Word, conditions: Pairs, children: tuple[Node, ...]) -> OutcomeRule:
+    """A rule of an outcome map. A state with `any` is no condition, unless it has an outcome of
+    that name."""
+    ignored = [child for child, ending in conditions if ending.text == ANY_OUTCOME]
+    if ignored:
+        own = {child.name for child in children if ANY_OUTCOME in outcome_names(child)}
+        ignored = [child for child in ignored if child.text not in own]
+    return OutcomeRule(
+        outcome=outcome.text,
+        span=outcome.span,
+        when=tuple(
+            Condition(child=child.text, outcome=ending.text, span=child.span)
+            for child, ending in conditions
+            if child not in ignored
+        ),
+        ignored=tuple(ignored),
     )
 
 
@@ -367,6 +385,7 @@ def _iterator(state: State, fields: dict[str, Any], children: tuple[Node, ...]) 
         item_key=_text(state.it_label, "it_data"),
         exhausted_outcome=exhausted.text,
         loop_outcomes=tuple(loops),
+        loop_spans=() if breaks else tuple(word.span for word in state.loop_outcomes),
         final_map=tuple(final.items()),
     )
 

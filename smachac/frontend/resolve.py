@@ -12,6 +12,7 @@ from typing import Literal
 
 from smachac.diagnostics.diagnostic import Diagnostic, Related, Report
 from smachac.diagnostics.source import Source, Span, Word
+from smachac.diagnostics.spelling import guesser_of
 from smachac.frontend import schema
 from smachac.frontend.errors.references import (
     bad_sub_script,
@@ -26,7 +27,7 @@ from smachac.frontend.errors.script import (
     too_big,
     wrong_shape,
 )
-from smachac.frontend.fields import as_name, kind_of, pairs_of, wrong
+from smachac.frontend.fields import as_name, kind_of, name_of, pairs_of, wrong
 from smachac.frontend.loader import Library
 from smachac.frontend.message_definitions import definitions_of
 from smachac.frontend.params import (
@@ -44,7 +45,7 @@ from smachac.frontend.properties import properties_of
 from smachac.frontend.robots import robot_of
 from smachac.frontend.schema import FieldOwner
 from smachac.frontend.script import TIMER, Pairs, Script, State, Sugar
-from smachac.frontend.state_fields import Entries, read_fields
+from smachac.frontend.state_fields import Entries, accepts, read_fields, with_meant_fields
 from smachac.frontend.state_types import find_state_type
 from smachac.frontend.type_annotations import Aliases, read_aliases, typed
 from smachac.frontend.unused import Mark, Uses
@@ -65,6 +66,8 @@ CALLED_HERE = "in the sub-script called here"
 
 SCRIPT_HELP = "write a mapping with `name:`, `outcomes:` and `states:`"
 SUB_SCRIPT_HELP = "write one state: `- NAME: {template: ...}`"
+
+_FIELDS_OF_STATES = tuple(schema.names_for("state"))
 
 
 @dataclass(frozen=True, slots=True)
@@ -203,6 +206,7 @@ class _Resolver:
             self.uses.value(key, entry.value, flat=flat)
             entries[key] = entry if key == "params" else self.fill(key, entry, scope, flat=flat)
         type_, owner = self.type_of(name, entries, role, around)
+        entries = with_meant_fields(entries, owner, type_)
         self.uses.type(type_)
         if role != "base":
             self.count += 1
@@ -236,7 +240,7 @@ class _Resolver:
         if flat:
             return typed(key, entry, self.aliases, self.report)
         row = schema.VARIABLES.get(key)
-        names = row is not None and row.shape in ("names", "keys")
+        names = row is not None and row.shape in ("names", "outcomes", "keys")
         entry = self.limit_depth(entry)
         new = fill_in(entry.value, scope, self.report, names=names)
         filled = entry if new is entry.value else self.limit_depth(self.limit_size(entry, new))
@@ -394,11 +398,25 @@ class _Resolver:
             self.types[name] = find_state_type(name, self.library, self.report)
         return self.types[name]
 
+    def meant_template(self, entries: Entries) -> Entry | None:
+        """The field with a misspelt name that is meant for `template`, if it names a type that does
+        not have the field: then the name is reported as unknown."""
+        for key, entry in entries.items():
+            if key in schema.VARIABLES or guesser_of(_FIELDS_OF_STATES).sure(key) != "template":
+                continue
+            word = name_of(entry.value)
+            found = self.state_type(word.text) if word is not None and word.text else None
+            if found is not None and not found.open and not accepts(found, key):
+                return entry
+        return None
+
     def type_of(
         self, name: Word, entries: Entries, role: Literal["", "base"], around: _Environment
     ) -> tuple[StateType, FieldOwner]:
         """The state type of a state, and its owner in the schema."""
         entry = entries.get("template")
+        if entry is None and role != "base":
+            entry = self.meant_template(entries)
         word = as_name(entry.value, self.report) if entry else None
         if entry is None and role == "base":
             word = Word("Base", name.span)

@@ -55,7 +55,7 @@ VARIABLES: dict[str, Field] = {
         _row("userdata", "ud", "userdata", _ALL),
         _row("input_keys", "ik", "keys", _ALL),
         _row("output_keys", "ok", "keys", _ALL),
-        _row("outcomes", "o", "names", _ALL),
+        _row("outcomes", "o", "outcomes", _ALL),
         _row("states", "s", "value", f"base {_CONTAINERS}"),
         _row("remapping", "r", "pairs", f"{_CONTAINERS} state"),
         _row("transitions", "t", "pairs", f"{_CONTAINERS} state"),

@@ -12,7 +12,7 @@ from typing import NamedTuple, TypeAlias
 from smachac.diagnostics.source import Source, Span, Word
 from smachac.frontend.schema import FieldOwner
 from smachac.ir.message_types import Definitions
-from smachac.ir.nodes import Preset, StateType, Unused, Value, Variable
+from smachac.ir.nodes import Outcome, Preset, StateType, Unused, Value, Variable
 from smachac.ir.properties import Property
 from smachac.ir.robot import Robot
 from smachac.ir.types import Type
@@ -31,6 +31,9 @@ TIMEOUT, EXHAUSTED = "timeout", "exhausted"
 
 ERROR = "error"
 """The name by which a script refers to the exceptions of a state without an outcome `error`."""
+
+ANY_OUTCOME = "any"
+"""The word for every outcome of a state, in a rule of an outcome map."""
 
 TIMER = "SleepState"
 """The state type that sugar uses to let time pass."""
@@ -92,7 +95,7 @@ class State(NamedTuple):
     written: tuple[Variable, ...] = ()
     sugar: Sugar = Sugar()
     doc: str = ""
-    outcomes: tuple[Word, ...] = ()
+    outcomes: tuple[Outcome, ...] = ()
     input_keys: Keys = ()
     output_keys: Keys = ()
     userdata: tuple[Preset, ...] = ()

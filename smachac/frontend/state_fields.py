@@ -71,6 +71,29 @@ def read_fields(
     return read
 
 
+def accepts(type_: StateType, name: str) -> bool:
+    """Whether a state type has a variable, or accepts any."""
+    return name in type_.variables or type_.open or "variables" in type_.given
+
+
+def with_meant_fields(
+    entries: dict[str, Entry], owner: FieldOwner, type_: StateType
+) -> dict[str, Entry]:
+    """The fields, with those of unknown names also under the names that are meant, where
+    that is certain: then one misspelt name is one finding."""
+    unknown = [
+        key
+        for key in entries
+        if not accepts(type_, key)
+        and ((row := schema.VARIABLES.get(key)) is None or owner not in row.owners)
+    ]
+    if not unknown:
+        return entries
+    guess = guesser_of((*schema.names_for(owner), *type_.variables))
+    meant = {guess.sure(str(entries[key].key.value)): entries[key] for key in reversed(unknown)}
+    return {name: entry for name, entry in meant.items() if name is not None} | entries
+
+
 def _known_fields(
     entries: Entries, owner: FieldOwner, type_: StateType, report: Report
 ) -> tuple[dict[str, Any], set[str | None]]:
@@ -131,14 +154,17 @@ def _check_interface(read: Mapping[str, Any], type_: StateType, report: Report) 
         "output_keys": type_.output_keys,
         "outcomes": type_.outcomes,
     }
+    optional = {"input_keys": type_.listed_inputs, "output_keys": type_.listed_outputs}
     for part, own in declared.items():
         if part in type_.given or part not in read:
             continue
-        known = [each.name for each in own]
-        words: tuple[Word, ...] = read[part]
-        if part != "outcomes":
+        known = [*(each.name for each in own), *optional.get(part, ())]
+        if part == "outcomes":
+            outcomes: tuple[Outcome, ...] = read[part]
+            words = [Word(each.name, each.span) for each in outcomes]
+        else:
             keys: Keys = read[part]
-            words = tuple(word for word, _ in keys)
+            words = [word for word, _ in keys]
         for word in words:
             if word.text not in known:
                 what = part.replace("_", " ").removesuffix("s")

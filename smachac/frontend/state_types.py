@@ -15,7 +15,7 @@ from smachac.diagnostics.source import Source, Span, Word
 from smachac.frontend import smacha_meta
 from smachac.frontend.class_reader import read_module, read_template
 from smachac.frontend.errors.script import Owner, unknown_variable, wrong_shape
-from smachac.frontend.fields import as_flag, as_map, as_name, as_names, as_text
+from smachac.frontend.fields import as_flag, as_map, as_name, as_names, as_outcome, as_text
 from smachac.frontend.loader import Library
 from smachac.frontend.type_annotations import read_type
 from smachac.frontend.unquoted import VARIABLE_SHAPES, check_name, check_unquoted, is_name
@@ -25,7 +25,6 @@ from smachac.ir.class_facts import ClassFacts
 from smachac.ir.nodes import (
     Key,
     KeyRole,
-    Outcome,
     StateKind,
     StateType,
     VariableRole,
@@ -120,7 +119,7 @@ def _read_interface(
         input_keys=_keys(sections["input_keys"], report),
         output_keys=_keys(sections["output_keys"], report),
         outcomes=tuple(
-            Outcome(name=key, doc=_doc(value), span=value.span)
+            as_outcome(Word(key, value.span), value, report, "optional")
             for key, value in _declared(sections["outcomes"])
         ),
         writes=_writes(sections, report),

@@ -7,17 +7,19 @@ are read here; desugar.py makes containers of them.
 from __future__ import annotations
 
 import re
-from collections.abc import Mapping
+from collections.abc import Collection, Mapping
+from dataclasses import replace
 
 from smachac.diagnostics.diagnostic import Report, did_you_mean
 from smachac.diagnostics.source import Word
+from smachac.diagnostics.spelling import guesser
 from smachac.diagnostics.wording import listed
 from smachac.frontend.errors.script import Owner, missing_variable, unknown_variable, wrong_shape
-from smachac.frontend.fields import as_name, as_names, wrong
+from smachac.frontend.fields import as_name, as_names, pairs_of, wrong
 from smachac.frontend.script import ERROR, EXHAUSTED, TIMEOUT, ForEach, Retry, Sugar, Timeout
 from smachac.frontend.values import as_value
 from smachac.frontend.yaml_tree import Entry, Map, Scalar, Tree
-from smachac.ir.nodes import StateType
+from smachac.ir.nodes import Outcome, StateType
 from smachac.ir.outcome_names import GOOD_OUTCOMES
 
 NAMES = frozenset(["timeout", "retry", "for_each"])
@@ -38,11 +40,12 @@ def is_own(name: str, type_: StateType) -> bool:
 
 
 def read_sugar(
-    entries: Mapping[str, Entry], type_: StateType, outcomes: tuple[Word, ...], report: Report
+    entries: Mapping[str, Entry], type_: StateType, outcomes: tuple[Outcome, ...], report: Report
 ) -> Sugar:
     """The sugar among the fields of a state, which declares these outcomes.
 
-    Errors in it are reported (SM004), also outcomes that the state does not have.
+    Errors in it are reported (SM004), also outcomes that the state does not have; they are
+    corrected then, so that nothing follows from them.
     """
     fields = {name: entries[name] for name in NAMES if name in entries and not is_own(name, type_)}
     if not fields:
@@ -54,27 +57,50 @@ def read_sugar(
     )
     own = tuple(outcome.name for outcome in type_.outcomes)
     if type_.kind != "state" or "outcomes" in type_.given:
-        own += tuple(word.text for word in outcomes)
-    _check_outcomes(sugar, own, report)
-    return sugar
+        own += tuple(outcome.name for outcome in outcomes)
+    led = pairs_of(entries["transitions"].value) if "transitions" in entries else ()
+    return _with_known_outcomes(sugar, own, {word.text for word, _ in led}, report)
 
 
-def _check_outcomes(sugar: Sugar, own: tuple[str, ...], report: Report) -> None:
-    """The outcomes that retries and loops name, against those of the state and its sugar."""
+def _with_known_outcomes(
+    sugar: Sugar, own: tuple[str, ...], led: Collection[str], report: Report
+) -> Sugar:
+    """The sugar, in which retries and loops name only outcomes of the state and its sugar. `led`
+    are those that have transitions."""
     first = (*own, TIMEOUT) if sugar.timeout else own
     second = (*first, EXHAUSTED) if sugar.retry else first
-    for part, outcomes in ((sugar.retry, first), (sugar.for_each, second)):
-        for word in part.on if part is not None else ():
-            if word.text not in (*outcomes, ERROR):
-                message = f"this state has no outcome `{word.text}`"
-                known = f"use one of its outcomes: {listed(outcomes)}" if outcomes else NO_OUTCOMES
-                help = did_you_mean(word.text, outcomes) or known
-                arguments = ("outcome", word.text)
-                report.append(wrong_shape(word.span, message, help, arguments=arguments))
+    if sugar.retry is not None:
+        on = _known(sugar.retry.on, first, led, report)
+        sugar = replace(sugar, retry=replace(sugar.retry, on=on))
+    if sugar.for_each is not None:
+        on = _known(sugar.for_each.on, second, led, report)
+        sugar = replace(sugar, for_each=replace(sugar.for_each, on=on))
     if sugar.for_each and not sugar.for_each.on and not set(second) & set(GOOD_OUTCOMES):
         message = "`for_each` needs `on` here: no outcome of this state has the name of a success"
         help = f"add `on: [...]` with one or more of {listed(second)}" if second else NO_OUTCOMES
         report.append(wrong_shape(sugar.for_each.span, message, help, arguments=("on",)))
+    return sugar
+
+
+def _known(
+    on: tuple[Word, ...], outcomes: tuple[str, ...], led: Collection[str], report: Report
+) -> tuple[Word, ...]:
+    """The words that name outcomes. One that does not is reported, and stands for the nearest
+    outcome, or else for one without a transition."""
+    found: list[Word] = []
+    for word in on:
+        if word.text in (*outcomes, ERROR):
+            found.append(word)
+            continue
+        message = f"this state has no outcome `{word.text}`"
+        known = f"use one of its outcomes: {listed(outcomes)}" if outcomes else NO_OUTCOMES
+        help = did_you_mean(word.text, outcomes) or known
+        arguments = ("outcome", word.text)
+        report.append(wrong_shape(word.span, message, help, arguments=arguments))
+        others = (name for name in outcomes if name not in led)
+        meant = guesser(outcomes)(word.text) or next(others, "")
+        found += [Word(meant, word.span)] if meant else []
+    return tuple(found)
 
 
 def duration(tree: Tree, report: Report) -> float | None:

@@ -4,9 +4,12 @@ from __future__ import annotations
 
 import ast
 
-from smachac.frontend.yaml_tree import Scalar, Seq, Tree
+from smachac.frontend.yaml_tree import Scalar, Seq, Tree, is_known_wrong
 from smachac.ir.expressions import looks_like_expression, parse_expression
 from smachac.ir.nodes import Data, Expression, Struct, Value
+
+UNKNOWN = "..."
+"""The code in place of a value that was reported: it has no type, so no rule judges it."""
 
 
 def as_value(tree: Tree, *, code: bool = False) -> Value:
@@ -52,6 +55,8 @@ def _scalar(tree: Scalar, code: bool) -> Data:
     value = tree.value
     if not isinstance(value, str):
         return value
+    if is_known_wrong(tree):
+        return Expression(text=UNKNOWN, span=tree.span)
     text = value.strip()
     if len(text) > 2 and text[0] == text[-1] == "`":
         return Expression(text=text[1:-1].strip(), span=tree.span)

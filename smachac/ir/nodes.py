@@ -118,10 +118,12 @@ class Preset:
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Outcome:
-    """A declared outcome of a state or container."""
+    """A declared outcome of a state or container. `failure`: whether it is declared to be one of
+    failure; None: its name decides."""
 
     name: str
     doc: str = ""
+    failure: bool | None = field(default=None, compare=False, repr=False)
     span: Span = field(compare=False, repr=False)
 
 
@@ -169,10 +171,14 @@ class Condition:
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class OutcomeRule:
-    """A concurrence ends with `outcome` if all conditions hold."""
+    """A concurrence ends with `outcome` if all conditions hold.
+
+    `ignored` are the children that the rule lists with `any`: it holds for all outcomes of them.
+    """
 
     outcome: str
     when: tuple[Condition, ...]
+    ignored: tuple[Word, ...] = field(default=(), compare=False, repr=False)
     span: Span = field(compare=False, repr=False)
 
 
@@ -286,7 +292,8 @@ class Iterator(_Container):
 
     The items are the value `items`, or the userdata of the container in `items_key`. Outcomes in
     `loop_outcomes` continue with the next item; other outcomes end the iteration. The last outcome,
-    or `exhausted_outcome`, is mapped by `final_map` (pairs from, to).
+    or `exhausted_outcome`, is mapped by `final_map` (pairs from, to). `loop_spans` are the places
+    of `loop_outcomes` in the script; empty if it does not name them.
     """
 
     keyword: ClassVar[str] = "iterator"
@@ -295,6 +302,7 @@ class Iterator(_Container):
     item_key: str = "it_data"
     exhausted_outcome: str = "exhausted"
     loop_outcomes: tuple[str, ...] = ()
+    loop_spans: tuple[Span, ...] = field(default=(), compare=False, repr=False)
     final_map: tuple[tuple[str, str], ...] = ()
 
 

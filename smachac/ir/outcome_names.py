@@ -1,17 +1,29 @@
-"""Meaning of outcome names: success, failure, preemption."""
+"""Meaning of outcomes: success, failure, preemption.
+
+An interface or a script declares it (`failure: true`); otherwise the words of the name decide.
+"""
 
 from __future__ import annotations
 
+import re
 from collections.abc import Iterable
+
+from smachac.ir import nodes
+from smachac.ir.nodes import Node
 
 GOOD_OUTCOMES = ("succeeded", "success", "done", "ok", "true")
 """Names of outcomes with which a state usually ends."""
 
 
-FAILURES = frozenset(
-    ["abort", "aborted", "error", "fail", "failed", "failure", "timed_out", "timeout"]
-)
+TIMEOUTS = frozenset(["timed_out", "timeout"])
+"""Outcomes after a time limit. They are failures, but a script may lead them to a success: many
+waits have a limit on purpose."""
+
+FAILURES = TIMEOUTS | {"abort", "aborted", "error", "fail", "failed", "failure"}
 """The last words of outcomes of failure: `aborted`, `grasp_failed`."""
+
+NEGATIONS = frozenset(["never", "no", "non", "not", "without", "zero"])
+"""Words that deny the word of failure behind them: `no_error`, `not_failed`."""
 
 SUCCESSES = frozenset(["succeed", "succeeded", "success", "successful"])
 """Outcomes that always mean success."""
@@ -24,27 +36,48 @@ GOOD = frozenset(
 PREEMPTED = "preempted"
 """The outcome of a preempted state; without a request to stop it does not occur."""
 
+_WORDS = re.compile(r"[A-Z]?[a-z]+|[A-Z]+(?![a-z])")
+
 
 def is_failure(outcome: str) -> bool:
-    """Whether an outcome means failure."""
+    """Whether the name of an outcome means failure."""
     name = outcome.lower()
-    return name in FAILURES or name.rpartition("_")[2] in FAILURES
+    if name in FAILURES:
+        return True
+    *before, last = [word.lower() for word in _WORDS.findall(outcome)] or [""]
+    if before[-1:] == ["timed"] and last == "out":
+        before, last = before[:-1], "timed_out"
+    return last in FAILURES and not NEGATIONS.intersection(before[-1:])
 
 
-def successes(outcomes: Iterable[str]) -> frozenset[str]:
-    """The outcomes of one state that certainly mean success."""
-    names = [*outcomes]
-    words = SUCCESSES | GOOD if any(map(is_failure, names)) else SUCCESSES
-    return frozenset(name for name in names if name.lower() in words)
+def fails(node: Node, outcome: str) -> bool:
+    """Whether an outcome of a state is a failure: declared, an exception, used up tries, or by its
+    name."""
+    for each in node.outcomes:
+        if each.name == outcome and each.failure is not None:
+            return each.failure
+    if outcome and outcome == node.catches:
+        return True
+    if isinstance(node, nodes.Iterator) and node.sugar == "retry":
+        return outcome == node.exhausted_outcome or is_failure(outcome)
+    return is_failure(outcome)
 
 
-def good_first(outcomes: Iterable[str]) -> tuple[str, ...]:
-    """Outcomes sorted: success first, failure and preemption last."""
+def successes(node: Node) -> frozenset[str]:
+    """The outcomes of a state that certainly mean success."""
+    names = [outcome.name for outcome in node.outcomes]
+    failures = [name for name in names if fails(node, name)]
+    words = SUCCESSES | GOOD if failures else SUCCESSES
+    return frozenset([name for name in names if name.lower() in words]).difference(failures)
+
+
+def good_first(node: Node, outcomes: Iterable[str]) -> tuple[str, ...]:
+    """Outcomes of a state sorted: success first, failure and preemption last."""
 
     def rank(name: str) -> int:
         word = name.lower()
         if word in SUCCESSES or word in GOOD:
             return 0
-        return 3 if name == PREEMPTED else 2 if is_failure(name) else 1
+        return 3 if name == PREEMPTED else 2 if fails(node, name) else 1
 
     return tuple(sorted(outcomes, key=rank))

@@ -163,6 +163,9 @@ def rename_state(renaming: Renaming, machine: Machine, declared: Span) -> None:
                     for each in rule.when:
                         if each.child == renaming.old:
                             renaming.replace_word(each.span)
+                    for word in rule.ignored:
+                        if word.text == renaming.old:
+                            renaming.replace_word(word.span)
             case nodes.StateMachine() | nodes.Sequence():
                 if not same_place(container.initial_span, container.span):
                     renaming.replace_word(container.initial_span)

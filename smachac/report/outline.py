@@ -11,6 +11,7 @@ from smachac.report.text import shortened
 
 STATUS: dict[Status, str] = {
     "always": "always set",
+    "given": "always set, if the caller of the machine sets it",
     "sometimes": "set on some paths, not on all",
     "never": "never set",
     "unreachable": "never read, because no path leads to this state",

@@ -65,7 +65,8 @@ def code_faults(machine: Machine, library: Library, load: Load) -> Iterator[Diag
             if language not in targets:
                 targets[language] = load(language)
             target = targets[language]
-            for item in type_faults(leaf, type_, target, library) if target is not None else ():
+            found = type_faults(leaf, type_, target, library, checked=True) if target else ()
+            for item in found:
                 yield replace(item, severity=Severity.WARNING)
 
 
@@ -94,9 +95,10 @@ def own_types(machine: Machine, library: Library) -> Iterator[tuple[Leaf, StateT
 
 
 def type_faults(
-    leaf: Leaf, type_: StateType, target: Language, library: Library
+    leaf: Leaf, type_: StateType, target: Language, library: Library, *, checked: bool = False
 ) -> Iterator[Diagnostic]:
-    """The faults of the code of one state type in one language."""
+    """The faults of the code of one state type in one language. `checked`: the rules report what
+    the code of its Python class does beyond its interface."""
     found = target.declared(type_, library)
     if found is None:
         return
@@ -109,6 +111,13 @@ def type_faults(
             used = ()
         judge = code_not_found if fault.kind in NOT_FOUND else bad_class
         yield judge(fault, target.name, type_.name, found.name, used)
+    facts = type_.class_facts if checked and target.name == "python" else None
+    if found.stale is None and facts is not None and found.outcomes is not None:
+        # A returned outcome that the interface lacks is SM309.
+        known = {each.name for each in type_.outcomes}
+        returned = {word.text for word in facts.returns}.difference(known)
+        kept = tuple(word for word in found.outcomes if word.text not in returned)
+        found = replace(found, outcomes=kept)
     differences = [*_differences(type_, found)]
     if found.stale is not None:
         yield stale_code(leaf.span, type_.name, found.name, found.stale, differences)

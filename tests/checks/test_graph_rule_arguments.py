@@ -25,7 +25,7 @@ ARGUMENTS = {
     "SM203": ("sm", "lost"),
     "SM204": ("PICK", "failed"),
     "SM205": ("sm", "PIKC"),
-    "SM206": ("PLACE", "timeout", "PLACE"),
+    "SM206": ("PLACE", "aborted", "PLACE"),
     "SM207": ("WAIT",),
     "SM208": ("EACH", "done"),
     "SM209": ("WAIT", "preempted"),

@@ -68,7 +68,8 @@ def test_typed_fields_keep_their_spans() -> None:
     base, (work, both) = script.base, script.base.states
     pairs = [*work.transitions, *work.remapping]
     words = [word for pair in pairs for word in pair]
-    words += [base.name, work.name, *base.outcomes, *work.outcomes, *work.claims]
+    words += [base.name, work.name, *work.claims]
+    words += [Word(each.name, each.span) for each in (*base.outcomes, *work.outcomes)]
     words += [word for word, _ in (*base.input_keys, *work.output_keys)]
     for outcome, conditions in both.outcome_map:
         words += [outcome, *(word for pair in conditions for word in pair)]

@@ -127,3 +127,36 @@ def test_every_name_of_any_machine_can_be_asked_for(machine: Machine, data: st.D
         assert found["states"] or found["keys"]
     for table in ("text", "json", "md", "csv"):
         assert render_failures("sm", Context(machine).failures, table)
+
+
+CALLED = """\
+name: sm
+template: Base
+outcomes: [done]
+input_keys: [goal, limit]
+userdata: {limit: 3}
+states:
+  - A: {template: ScriptedState, outcomes: [ok], input_keys: [goal, limit], transitions: {ok: B}}
+  - B:
+      template: CallbacksState
+      output_keys: [goal]
+      callbacks: {goal: '3'}
+      transitions: {succeeded: C}
+  - C: {template: ScriptedState, outcomes: [ok], input_keys: [goal], transitions: {ok: done}}
+"""
+
+
+def test_an_input_key_of_the_machine_is_a_promise_of_its_caller(
+    tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    (tmp_path / "main.yml").write_text(CALLED, "utf-8")
+    for key, reads in (
+        ("goal", ["by A: always set, if the caller of the machine sets it", "by C: always set"]),
+        ("limit", ["by A: always set"]),
+    ):
+        assert main(["explain", str(tmp_path / "main.yml"), key]) == 0
+        lines = capsys.readouterr().out.replace("read ", "     ").splitlines()
+        found = [
+            line.strip().partition(" (")[0] for line in lines if " set (" in line or "it (" in line
+        ]
+        assert found == reads

@@ -66,7 +66,8 @@ def drop_a_transition(subject: Subject) -> Mutant | None:
     if linked and site.name == list(around.states())[-1].name:
         linked = False
     implicit = outcome in around.keys("outcomes") or linked
-    return Mutant(codes=("SM105",) if implicit else ("SM104",), owners=(site,))
+    codes = ("SM105",) if implicit else ("SM104",)
+    return Mutant(codes=codes, owners=(site,), ends=implicit)
 
 
 @mutation
