@@ -169,6 +169,9 @@ class Fields(NamedTuple):
     tested: frozenset[str]
 
 
+USERDATA = ("ud", "userdata")
+"""The usual names of userdata."""
+
 _METHODS = frozenset(["keys", "update", "extract", "merge"])
 
 
@@ -178,7 +181,8 @@ _METHODS = frozenset(["keys", "update", "extract", "merge"])
 def userdata_fields(text: str) -> Fields | None:
     """The keys that a lambda over userdata, or an expression over `ud`, reads; None if not known.
 
-    They are not known where the code passes userdata on, or is the name of a function.
+    They are not known where the code passes userdata on, has another name for it than its argument,
+    does not accept it alone, or is the name of a function.
     """
     try:
         with warnings.catch_warnings():
@@ -186,13 +190,23 @@ def userdata_fields(text: str) -> Fields | None:
             body: ast.expr = ast.parse(text.strip(), mode="eval").body
     except (SyntaxError, ValueError, RecursionError, MemoryError):
         return None
-    names = {"ud", "userdata"}
+    names = {*USERDATA}
     if isinstance(body, ast.Lambda):
         names = {each.arg for each in [*body.args.posonlyargs, *body.args.args][:1]}
+        required = len(body.args.posonlyargs) + len(body.args.args) - len(body.args.defaults)
+        if required != 1 or _reads_another(body, names):
+            return None  # SM317, SM019
         body = body.body
     elif not any(isinstance(node, ast.Name) and node.id in names for node in ast.walk(body)):
         return None
     return _fields(body, names)
+
+
+def _reads_another(tree: ast.Lambda, names: set[str]) -> bool:
+    """Whether a lambda reads userdata by a name that is not its argument."""
+    bound = names.union(each.arg for each in ast.walk(tree) if isinstance(each, ast.arg))
+    others = [name for name in USERDATA if name not in bound]
+    return any(isinstance(node, ast.Name) and node.id in others for node in ast.walk(tree.body))
 
 
 def _fields(body: ast.expr, names: set[str]) -> Fields | None:

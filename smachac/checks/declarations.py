@@ -6,6 +6,7 @@ from collections.abc import Iterable, Iterator
 from typing import Literal
 
 from smachac.analysis.accesses import callback_names, userdata_fields
+from smachac.analysis.code_slots import free_in
 from smachac.analysis.context import Context
 from smachac.analysis.control_flow import is_open
 from smachac.analysis.def_use import place_of
@@ -18,9 +19,10 @@ from smachac.checks.expressions import unknown_endings
 from smachac.checks.messages import CALLED_HERE, calls, did_you_mean
 from smachac.checks.rule import rule
 from smachac.diagnostics.diagnostic import Finding, Related, Severity
-from smachac.diagnostics.source import Span
-from smachac.diagnostics.spelling import guesser
+from smachac.diagnostics.source import Span, Word
+from smachac.diagnostics.spelling import guesser, respelt
 from smachac.ir import nodes
+from smachac.ir.code_places import key_place
 from smachac.ir.graph import START
 from smachac.ir.leaf import functions, variable, variable_of
 from smachac.ir.nodes import Key, Leaf, Machine, Node
@@ -240,6 +242,7 @@ def _unused_by_code(path: str, leaf: Leaf) -> Iterator[Finding]:
     if len(fields) == len(known):
         used = {key for each in fields for key in (*each.read, *each.tested)}
         used |= _meant_keys((key for key, _ in undeclared_reads(leaf)), leaf.inputs)
+        used |= {name for code in called for name in free_in(code.text)}  # SM019
         arguments = [key for key in leaf.inputs if key.role == "argument"]
         yield from _unused_keys(path, leaf, arguments, used, "input")
     if chooses and not [*unknown_endings(path, leaf)]:
@@ -389,15 +392,18 @@ def undeclared_access(context: Context) -> Iterator[Finding]:
               transitions: {low: low, high: high}
     """
     for path, leaf in _leaves_with_code(context):
+        guess = guesser(each.name for each in leaf.inputs)
         for key, code in undeclared_reads(leaf):
+            span = key_place(code, key)
             yield Finding(
-                span=code.span,
+                span=span,
                 message=f"the code of `{leaf.name}` reads `{key}`, which is not one of its"
                 " input keys",
                 arguments=(key,),
-                help=_meant(key, leaf.inputs)
+                help=did_you_mean(guess(key))
                 or f"add `{key}` to the `input_keys` of `{leaf.name}`",
                 related=calls(leaf, code.span),
                 node=path,
+                edits=respelt(Word(key, span), guess.sure(key)),
             )
     yield from unknown_reads(context)

@@ -306,12 +306,19 @@ StateKind = Literal["base", "container", "state"]
 """What a state type describes: a script's base, a container or a state."""
 
 
+FunctionResult = Literal["", "value", "outcome"]
+"""What a function in a variable must return: anything; something other than None; an outcome of the
+state or None."""
+
+
 @dataclass(frozen=True, slots=True, kw_only=True)
 class VariableType:
     """A variable of a state type. `keys`: it lists userdata keys, "input" or "output" ones.
 
     `called_first`: generated programs call its functions before the state, whose class does not
     receive the variable. `unquoted`: the shape of a text that programs contain without quotes.
+    `arguments`: the arguments with which the state calls its functions; None: not known. `returns`:
+    what they must return.
     """
 
     name: str
@@ -323,6 +330,8 @@ class VariableType:
     keys: str = ""
     called_first: bool = False
     unquoted: str = ""
+    arguments: tuple[str, ...] | None = None
+    returns: FunctionResult = ""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)

@@ -9,6 +9,7 @@ from tests.trust import (
     mutate_graph,
     mutate_names,
     mutate_stops,
+    mutate_written_code,
 )
 from tests.trust.mutants import MUTATIONS
 
@@ -20,4 +21,5 @@ __all__ = [
     "mutate_graph",
     "mutate_names",
     "mutate_stops",
+    "mutate_written_code",
 ]

@@ -9,6 +9,7 @@ from collections.abc import Iterable
 from typing import NamedTuple
 
 from smachac.diagnostics.diagnostic import (
+    Edit,
     Finding,
     Problem,
     Related,
@@ -359,8 +360,19 @@ def unreadable_file(
     )
 
 
+class NameFix(NamedTuple):
+    """The cure of an undefined name. `why` is the fault, if it is known; `edits` correct it, if
+    that is certain."""
+
+    help: str
+    why: str = ""
+    edits: tuple[Edit, ...] = ()
+
+
 @problem("SM019", "undefined-name", Severity.ERROR)
-def undefined_name(span: Span, name: str, code: str, by_look: bool) -> Finding:
+def undefined_name(
+    span: Span, name: str, code: str, by_look: bool, fix: NameFix | None = None
+) -> Finding:
     """An expression of the script uses a name that the generated program does not define.
 
     The program would stop with a NameError when it builds its machine, or at the first visit of
@@ -388,6 +400,9 @@ def undefined_name(span: Span, name: str, code: str, by_look: bool) -> Finding:
         states:
           - LOOK: {template: PrintUserdataState, input_keys: [side]}
     """
+    if fix is not None:
+        what = fix.why or f"`{name}` is used here but is not defined"
+        return Finding(span=span, message=what, arguments=(name,), help=fix.help, edits=fix.edits)
     if not by_look:
         help = "import or define it in a template of the script, such as that of the base"
         message = f"`{name}` is used here but is not defined"
