@@ -6,12 +6,12 @@ The accesses of a leaf follow from its interface and from the functions and step
 from __future__ import annotations
 
 import ast
-import warnings
 from collections.abc import Iterable, Mapping, Sequence
 from functools import lru_cache
 from typing import NamedTuple
 
 from smachac.ir import nodes
+from smachac.ir.code_places import python_tree
 from smachac.ir.leaf import default_outcome, functions, key_names, variable_of
 from smachac.ir.nodes import Leaf, Node, Struct
 from smachac.ir.outcome_names import is_failure
@@ -184,11 +184,8 @@ def userdata_fields(text: str) -> Fields | None:
     They are not known where the code passes userdata on, has another name for it than its argument,
     does not accept it alone, or is the name of a function.
     """
-    try:
-        with warnings.catch_warnings():
-            warnings.simplefilter("ignore", SyntaxWarning)
-            body: ast.expr = ast.parse(text.strip(), mode="eval").body
-    except (SyntaxError, ValueError, RecursionError, MemoryError):
+    body = python_tree(text.strip())
+    if body is None:
         return None
     names = {*USERDATA}
     if isinstance(body, ast.Lambda):

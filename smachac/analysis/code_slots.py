@@ -45,14 +45,7 @@ class CodeSlot:
 
     @property
     def tree(self) -> ast.expr | None:
-        return code_tree(self.code.text)
-
-
-# Cached, because several rules read each text: a call costs 0.1 us instead of 9 us.
-@lru_cache(maxsize=10_000)
-def code_tree(text: str) -> ast.expr | None:
-    """The tree of code as Python reads it; nobody may change it."""
-    return python_tree(text)
+        return python_tree(self.code.text)
 
 
 def code_slots(node: Node, types: Mapping[str, StateType]) -> Iterator[CodeSlot]:
@@ -67,7 +60,7 @@ def code_slots(node: Node, types: Mapping[str, StateType]) -> Iterator[CodeSlot]
     elif isinstance(node, nodes.Iterator) and node.items is not None:
         data = node.items.data
         if isinstance(data, Expression):
-            tree = code_tree(data.text)
+            tree = python_tree(data.text)
             alone = isinstance(tree, ast.Lambda) and accepts(tree, 0)  # as SMACH calls it
             yield CodeSlot(
                 name="it",
@@ -86,7 +79,7 @@ def _slots(value: Value, fact: nodes.VariableType) -> Iterator[CodeSlot]:
     for name, each in entries if mapping == isinstance(data, Struct) else ():
         quoted = isinstance(each, str) and fact.unquoted != "function"
         code = _code(each, value)
-        if code is not None and not (quoted and not isinstance(code_tree(code.text), ast.Lambda)):
+        if code is not None and not (quoted and not isinstance(python_tree(code.text), ast.Lambda)):
             yield CodeSlot(
                 name=name,
                 code=code,
@@ -133,10 +126,13 @@ def free_names(tree: ast.AST) -> list[ast.Name]:
     return sorted(found, key=lambda name: (name.lineno, name.col_offset))
 
 
-def free_in(text: str) -> list[str]:
-    """The free names in the text of code."""
-    tree = code_tree(text)
-    return [name.id for name in free_names(tree)] if tree is not None else []
+# Cached, because functions are repeated: a call costs 0.1 us instead of 15 us, 5 % of a check of
+# 1,000 states with a callback each.
+@lru_cache(maxsize=10_000)
+def free_in(text: str) -> tuple[ast.Name, ...]:
+    """The free names in the text of code; empty if it is not valid."""
+    tree = python_tree(text)
+    return tuple(free_names(tree)) if tree is not None else ()
 
 
 def _stored(node: ast.AST) -> set[str]:
@@ -195,7 +191,7 @@ def accepts(tree: ast.Lambda, count: int) -> bool:
 
 def called_with_userdata(text: str) -> bool:
     """Whether code is a lambda that needs one argument."""
-    tree = code_tree(text)
+    tree = python_tree(text)
     return isinstance(tree, ast.Lambda) and accepts(tree, 1) and not accepts(tree, 0)
 
 

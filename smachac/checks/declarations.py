@@ -242,8 +242,9 @@ def _unused_by_code(path: str, leaf: Leaf) -> Iterator[Finding]:
     if len(fields) == len(known):
         used = {key for each in fields for key in (*each.read, *each.tested)}
         used |= _meant_keys((key for key, _ in undeclared_reads(leaf)), leaf.inputs)
-        used |= {name for code in called for name in free_in(code.text)}  # SM019
         arguments = [key for key in leaf.inputs if key.role == "argument"]
+        if any(key.name not in used for key in arguments):
+            used |= {name.id for code in called for name in free_in(code.text)}  # SM019
         yield from _unused_keys(path, leaf, arguments, used, "input")
     if chooses and not [*unknown_endings(path, leaf)]:
         yield from _unused_outcomes(path, leaf, conditions)

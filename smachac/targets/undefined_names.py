@@ -14,13 +14,13 @@ from collections.abc import Iterator, Mapping
 from typing import NamedTuple
 
 from smachac.analysis.accesses import USERDATA
-from smachac.analysis.code_slots import code_slots, code_tree, free_names, parameters
+from smachac.analysis.code_slots import code_slots, free_in, parameters
 from smachac.diagnostics.diagnostic import Diagnostic, Edit
 from smachac.diagnostics.source import Span
 from smachac.diagnostics.spelling import guesser
 from smachac.frontend.errors.script import NameFix, undefined_name
 from smachac.frontend.loader import Library
-from smachac.ir.code_places import node_place
+from smachac.ir.code_places import node_place, python_tree
 from smachac.ir.code_slips import CONSTANTS
 from smachac.ir.expressions import looks_like_expression
 from smachac.ir.nodes import Data, Expression, Leaf, Machine, Node, StateType, Struct
@@ -74,11 +74,11 @@ def _codes(node: Node, types: Mapping[str, StateType]) -> Iterator[Expression]:
 
 def _uses(node: Node, code: Expression) -> Iterator[_Use]:
     """The names that code uses from its module, except names that every module has."""
-    tree = code_tree(code.text)  # SM016 if there is none
+    tree = python_tree(code.text)  # SM016 if there is none
     function = tree if isinstance(tree, ast.Lambda) else None
     keys = {key.name for key in node.inputs}
     found: set[str] = set()
-    for name in free_names(tree) if tree is not None else ():
+    for name in free_in(code.text):
         word = name.id
         if word in found or hasattr(builtins, word) or word in sys.stdlib_module_names:
             continue
@@ -123,9 +123,8 @@ def _is_called(use: _Use) -> bool:
 
 def _edits(use: _Use, text: str) -> tuple[Edit, ...]:
     """The edit that replaces all uses of a name in its code."""
-    tree = code_tree(use.code.text)
-    names = free_names(tree) if tree is not None else []
-    spans = [node_place(use.code, name) for name in names if name.id == use.name.id]
+    names = [name for name in free_in(use.code.text) if name.id == use.name.id]
+    spans = [node_place(use.code, name) for name in names]
     if any(span.text != use.name.id for span in spans):
         return ()
     return tuple(Edit(span=span, text=text) for span in spans)
