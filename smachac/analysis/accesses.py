@@ -196,7 +196,7 @@ def userdata_fields(text: str) -> Fields | None:
         body = body.body
     elif not any(isinstance(node, ast.Name) and node.id in names for node in ast.walk(body)):
         return None
-    return _fields(body, names)
+    return fields_of(body, names)
 
 
 def _reads_another(tree: ast.Lambda, names: set[str]) -> bool:
@@ -206,7 +206,9 @@ def _reads_another(tree: ast.Lambda, names: set[str]) -> bool:
     return any(isinstance(node, ast.Name) and node.id in others for node in ast.walk(tree.body))
 
 
-def _fields(body: ast.expr, names: set[str]) -> Fields | None:
+def fields_of(body: ast.expr, names: set[str]) -> Fields | None:
+    """The keys that code reads of userdata, which has these names; None if not known."""
+
     def is_userdata(node: ast.expr) -> bool:
         return isinstance(node, ast.Name) and node.id in names
 

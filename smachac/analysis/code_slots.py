@@ -10,7 +10,7 @@ from collections.abc import Iterator, Mapping
 from dataclasses import dataclass
 from functools import lru_cache
 
-from smachac.analysis.accesses import USERDATA
+from smachac.analysis.accesses import USERDATA, fields_of
 from smachac.analysis.expression_types import RESULTS
 from smachac.ir import nodes
 from smachac.ir.code_places import python_tree
@@ -204,6 +204,24 @@ def userdata_parameter(slot: CodeSlot) -> str | None:
         return None
     at, names = slot.arguments.index("userdata"), parameters(tree)
     return names[at].arg if at < len(names) else None
+
+
+def undeclared_slot_reads(
+    leaf: Leaf, types: Mapping[str, StateType]
+) -> Iterator[tuple[str, Expression]]:
+    """The keys that functions of a leaf, other than callbacks and conditions, read although they
+    are not among its inputs."""
+    inputs = {key.name for key in leaf.inputs}
+    for slot in code_slots(leaf, types):
+        name, tree = userdata_parameter(slot), slot.tree
+        if slot.role in ("callbacks", "conditions", "output_function") or slot.quoted:
+            continue
+        if name is not None and isinstance(tree, ast.Lambda):
+            fields = fields_of(tree.body, {name})
+            for key in fields.read if fields is not None else ():
+                if key not in inputs:
+                    inputs.add(key)
+                    yield key, slot.code
 
 
 def results(tree: ast.Lambda) -> list[ast.expr]:

@@ -6,7 +6,7 @@ from collections.abc import Iterable, Iterator
 from typing import Literal
 
 from smachac.analysis.accesses import callback_names, userdata_fields
-from smachac.analysis.code_slots import free_in
+from smachac.analysis.code_slots import free_in, undeclared_slot_reads
 from smachac.analysis.context import Context
 from smachac.analysis.control_flow import is_open
 from smachac.analysis.def_use import place_of
@@ -394,7 +394,8 @@ def undeclared_access(context: Context) -> Iterator[Finding]:
     """
     for path, leaf in _leaves_with_code(context):
         guess = guesser(each.name for each in leaf.inputs)
-        for key, code in undeclared_reads(leaf):
+        read = [*undeclared_reads(leaf), *undeclared_slot_reads(leaf, context.machine.state_types)]
+        for key, code in read:
             span = key_place(code, key)
             yield Finding(
                 span=span,

@@ -16,7 +16,7 @@ from typing import NamedTuple
 from smachac.analysis.accesses import USERDATA
 from smachac.analysis.code_slots import code_slots, free_in, parameters
 from smachac.diagnostics.diagnostic import Diagnostic, Edit
-from smachac.diagnostics.source import Span
+from smachac.diagnostics.source import Span, Word
 from smachac.diagnostics.spelling import guesser
 from smachac.frontend.errors.script import NameFix, undefined_name
 from smachac.frontend.loader import Library
@@ -47,29 +47,72 @@ class _Use(NamedTuple):
 
 def undefined_names(machine: Machine, library: Library) -> Iterator[Diagnostic]:
     """The undefined names, each at the place that uses it."""
-    used = [
-        use
-        for _, node in walk(machine.root)
-        for code in _codes(node, machine.state_types)
-        for use in _uses(node, code)
+    types = machine.state_types
+    nodes = [node for _, node in walk(machine.root)]
+    used = [use for node in nodes for code in _codes(node, types) for use in _uses(node, code)]
+    classes = [
+        word
+        for node in nodes
+        for word in _message_types(node, types)
+        if word.text.isidentifier() and not hasattr(builtins, word.text)
     ]
-    known = _known(machine, library) if used else None
+    known = _known(machine, library) if used or classes else None
     for use in used:
         if use.name.id in USERDATA or (known is not None and use.name.id not in known):
-            by_look = _by_look(use.node, use.code)
-            fix = _fix(use)
-            yield undefined_name(use.span, use.name.id, use.code.text, by_look, fix)
+            imported = _imported(use.node, types)
+            if use.name.id not in imported:
+                fix = _fix(use, imported)
+                by_look = _by_look(use.node, use.code)
+                yield undefined_name(use.span, use.name.id, use.code.text, by_look, fix)
+    for word in classes:
+        if known is not None and word.text not in known:
+            package = _PACKAGES.get(word.text, "my_messages")
+            why = f"`{word.text}` is used here but nothing imports it"
+            help = f"write its package as well, as in `{package}/{word.text}`"
+            yield undefined_name(word.span, word.text, word.text, False, NameFix(help, why))
+
+
+_PACKAGES: Mapping[str, str] = {
+    **dict.fromkeys(("Empty", "SetBool", "Trigger"), "std_srvs"),
+    **dict.fromkeys(("TestAction", "TwoIntsAction", "TestRequestAction"), "actionlib"),
+}
+"""The packages of common types of services and actions."""
+
+
+def _message_types(node: Node, types: Mapping[str, StateType]) -> Iterator[Word]:
+    """The types of messages, services and actions that a built-in state type imports, if the script
+    gives their package."""
+    known = types.get(node.type)
+    if known is None or not known.built_in or not isinstance(node, Leaf):
+        return
+    for held in node.variables:
+        fact, data = known.variables.get(held.name), held.value.data
+        if fact is not None and fact.unquoted == "type":
+            text = data.text if isinstance(data, Expression) else data
+            if isinstance(text, str):
+                yield Word(text, held.value.span)
+
+
+def _imported(node: Node, types: Mapping[str, StateType]) -> list[str]:
+    """The classes that a program imports for a state."""
+    found: list[str] = []
+    for word in _message_types(node, types):
+        *package, name = re.split(r"[/.]", word.text)
+        found += [name] if package else []  # without it, the class itself is reported
+        found += [f"{name.removesuffix('Action')}Goal", f"{name}Request"]
+    return found
 
 
 def _codes(node: Node, types: Mapping[str, StateType]) -> Iterator[Expression]:
     """The code of a state that a program contains as it is written."""
-    slots = [slot.code for slot in code_slots(node, types) if not slot.quoted]
-    if isinstance(node, Leaf) and node.written:
-        yield from slots if node.built_in else ()  # its template decides how the rest is printed
-        return
-    yield from expressions(node)
-    found = {code.span for code in expressions(node)}
-    yield from (code for code in slots if code.span not in found)
+    if isinstance(node, Leaf) and node.written and not node.built_in:
+        return  # its template decides how it is printed
+    classes = {word.span for word in _message_types(node, types)}
+    found = {code.span: code for code in expressions(node) if code.span not in classes}
+    for slot in code_slots(node, types):
+        if not slot.quoted:
+            found.setdefault(slot.code.span, slot.code)
+    yield from found.values()
 
 
 def _uses(node: Node, code: Expression) -> Iterator[_Use]:
@@ -94,8 +137,9 @@ def _is_operation(tree: ast.expr | None) -> bool:
     return not isinstance(tree, ast.Name | ast.Attribute | ast.Call | ast.Subscript)
 
 
-def _fix(use: _Use) -> NameFix | None:
-    """The cure of an undefined name, if what it means is known."""
+def _fix(use: _Use, imported: list[str]) -> NameFix | None:
+    """The cure of an undefined name, if what it means is known. `imported` are the classes that a
+    program imports for the state."""
     word = use.name.id
     own = [each.arg for each in parameters(use.lambda_)] if use.lambda_ is not None else []
     if word in USERDATA and own:
@@ -109,6 +153,10 @@ def _fix(use: _Use) -> NameFix | None:
         return NameFix(f"did you mean `{meant}`?", edits=_edits(use, meant))
     if word in keys:
         return NameFix(f"`{word}` is a key: read it as `ud.{word}` in a function, `lambda ud: ...`")
+    ending = re.search("Goal$|Request$", word)
+    near = next((each for each in imported if ending and each.endswith(ending[0])), None)
+    if near is not None:
+        return NameFix(f"did you mean `{near}`?")
     near = guesser([*own, *keys])(word) if own and not _is_called(use) else None
     if near is not None:
         return NameFix(f"did you mean `{near if near in own else f'{own[0]}.{near}'}`?")

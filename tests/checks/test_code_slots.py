@@ -69,6 +69,32 @@ SLOTS = {
       response_cb: CODE
       transitions: {succeeded: done, aborted: aborted, preempted: preempted}
 """,
+    "request": """
+      template: ServiceState
+      service_namespace: /x
+      service: std_srvs/Trigger
+      request: CODE
+      transitions: {succeeded: done, aborted: aborted, preempted: preempted}
+""",
+    "service": """
+      template: ServiceState
+      service_namespace: /x
+      service: CODE
+      transitions: {succeeded: done, aborted: aborted, preempted: preempted}
+""",
+    "goal": """
+      template: SimpleActionState
+      action_server_namespace: /x
+      action: actionlib/TestAction
+      goal: CODE
+      transitions: {succeeded: done, aborted: aborted, preempted: preempted}
+""",
+    "msg_type": """
+      template: WaitForMsgState
+      topic: /x
+      msg_type: CODE
+      transitions: {succeeded: done, aborted: aborted, preempted: preempted}
+""",
     "goal_cb": """
       template: SimpleActionState
       action_server_namespace: /x
@@ -147,7 +173,14 @@ def shown(slot: str, code: str) -> list[tuple[str, str]]:
         ("callback", "'lambda ud: n + 1'", ("SM019", "n")),
         ("callback", "'lambda ud: ud.n + true'", ("SM019", "true")),
         ("request_cb", "'lambda ud, request: fill(request)'", ("SM019", "fill")),
+        ("service", "Trigger", ("SM019", "Trigger")),
+        ("msg_type", "Strin", ("SM019", "Strin")),
+        ("request", "SetBoolRequest(True)", ("SM019", "SetBoolRequest")),
+        ("goal", "FooGoal(goal=1)", ("SM019", "FooGoal")),
         ("callback", "'lambda ud: ud.m'", ("SM310", "m")),
+        ("goal_cb", "'lambda ud, goal: ud.m'", ("SM310", "m")),
+        ("response_cb", "'lambda u, response: u.m'", ("SM310", "m")),
+        ("time", "'`lambda ud: ud.m`'", ("SM310", "m")),
         ("callback", "'lambda ud: ud[\"m\"]'", ("SM310", '"m"')),
         ("callback", "'lambda ud: ud.pose.positon'", ("SM311", "positon")),
         ("callback", "'lambda ud: ud.n.x + 1'", ("SM311", "x")),
@@ -195,7 +228,12 @@ def test_a_fault_in_code_is_marked_at_its_token(
         ("it", "range(3)"),
         ("it", "'`lambda ud: ud.seen`'"),
         ("it", "'`lambda: [1]`'"),
+        ("service", "std_srvs.srv.Trigger"),
+        ("msg_type", "String"),
+        ("request", "TriggerRequest()"),
+        ("goal", "TestGoal(goal=1)"),
         ("request_cb", "'lambda ud, request: None'"),
+        ("goal_cb", "'lambda ud, goal: fill(ud, goal) if ud.n else None'".replace("fill", "print")),
         ("request_cb", "'lambda _, r: r'"),
         ("response_cb", '\'lambda ud, r: "succeeded" if r.success else "aborted"\''),
         ("response_cb", "'lambda ud, r: None'"),

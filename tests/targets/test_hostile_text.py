@@ -200,7 +200,7 @@ def test_shapes_that_programs_have_are_accepted(tmp_path: Path) -> None:
     given: dict[str, dict[str, object]] = {
         "ServiceState": {"service": "std_srvs.srv.Trigger", "request_cb": "`lambda u, r: r`"},
         "SimpleActionState": {
-            "action": "TestAction",
+            "action": "actionlib.TestAction",
             "goal_cb": "ast.dump",
             "result_cb": "print(1)",
         },
