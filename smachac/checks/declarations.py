@@ -96,11 +96,14 @@ def _sees_everything(scope: UserdataScope) -> bool:
 
 
 def _read_in(scope: UserdataScope) -> set[str]:
-    """The keys that a state in a container declares as inputs, or over which it iterates."""
+    """The keys that a state in a container declares as inputs, that its class reads, or over which
+    it iterates."""
     found = set(scope.reads.get(START, ()))
     for child in scope.container.children:
         names = remapping(child)
         found.update(names.get(key.name, key.name) for key in child.inputs)
+        if isinstance(child, Leaf) and child.class_facts is not None:
+            found.update(word.text for word in child.class_facts.reads)  # SM310
     return found
 
 

@@ -248,6 +248,7 @@ class Sequence(_Container):
 
     keyword: ClassVar[str] = "sequence"
     connector_outcome: str = ""
+    connector_span: Span = field(default=NOWHERE, compare=False, repr=False)
     initial: str = ""
     initial_span: Span = field(default=NOWHERE, compare=False, repr=False)
 
@@ -272,14 +273,15 @@ class Concurrence(_Container):
 class Iterator(_Container):
     """A container that runs its child once for each item; the item is in the key `item_key`.
 
-    The items are the value `items`, or the userdata of the container in `items_key`. Outcomes in
-    `loop_outcomes` continue with the next item; other outcomes end the iteration. The last outcome,
-    or `exhausted_outcome`, is mapped by `final_map` (pairs from, to).
+    The items are the value `items`, or the userdata of the container in `items_key`; `items_span`
+    is their place. Outcomes in `loop_outcomes` continue with the next item; other outcomes end the
+    iteration. The last outcome, or `exhausted_outcome`, is mapped by `final_map` (pairs from, to).
     """
 
     keyword: ClassVar[str] = "iterator"
     items: Value | None = None
     items_key: str = ""
+    items_span: Span = field(default=NOWHERE, compare=False, repr=False)
     item_key: str = "it_data"
     exhausted_outcome: str = "exhausted"
     loop_outcomes: tuple[str, ...] = ()
