@@ -6,12 +6,12 @@ The accesses of a leaf follow from its interface and from the functions and step
 from __future__ import annotations
 
 import ast
-import warnings
-from collections.abc import Iterable, Mapping, Sequence
+from collections.abc import Collection, Iterable, Mapping, Sequence
 from functools import lru_cache
 from typing import NamedTuple
 
 from smachac.ir import nodes
+from smachac.ir.code_places import python_tree
 from smachac.ir.leaf import default_outcome, functions, key_names, variable_of
 from smachac.ir.nodes import Leaf, Node, Struct
 from smachac.ir.outcome_names import fails
@@ -169,6 +169,9 @@ class Fields(NamedTuple):
     tested: frozenset[str]
 
 
+USERDATA = ("ud", "userdata")
+"""The usual names of userdata."""
+
 _METHODS = frozenset(["keys", "update", "extract", "merge"])
 
 
@@ -178,30 +181,40 @@ _METHODS = frozenset(["keys", "update", "extract", "merge"])
 def userdata_fields(text: str) -> Fields | None:
     """The keys that a lambda over userdata, or an expression over `ud`, reads; None if not known.
 
-    They are not known where the code passes userdata on, or is the name of a function.
+    They are not known where the code passes userdata on, has another name for it than its argument,
+    does not accept it alone, or is the name of a function.
     """
     found = function_body(text)
-    return None if found is None else _fields(*found)
+    return None if found is None else fields_of(*found)
 
 
 def function_body(text: str) -> tuple[ast.expr, frozenset[str]] | None:
     """The value of a lambda over userdata, or of an expression over `ud`, and the names that the
-    userdata has in it; None if the code is neither."""
-    try:
-        with warnings.catch_warnings():
-            warnings.simplefilter("ignore", SyntaxWarning)
-            body: ast.expr = ast.parse(text.strip(), mode="eval").body
-    except (SyntaxError, ValueError, RecursionError, MemoryError):
-        return None
+    userdata has in it; None if the code is neither, or cannot be called with userdata alone."""
+    body = python_tree(text.strip())
     if isinstance(body, ast.Lambda):
-        arguments = [*body.args.posonlyargs, *body.args.args][:1]
-        return body.body, frozenset(each.arg for each in arguments)
-    names = frozenset(["ud", "userdata"])
+        names = frozenset(each.arg for each in [*body.args.posonlyargs, *body.args.args][:1])
+        required = len(body.args.posonlyargs) + len(body.args.args) - len(body.args.defaults)
+        if required != 1 or _reads_another(body, names):
+            return None  # SM317, SM019
+        return body.body, names
+    names = frozenset(USERDATA)
+    if body is None:
+        return None
     used = any(isinstance(node, ast.Name) and node.id in names for node in ast.walk(body))
     return (body, names) if used else None
 
 
-def _fields(body: ast.expr, names: frozenset[str]) -> Fields | None:
+def _reads_another(tree: ast.Lambda, names: frozenset[str]) -> bool:
+    """Whether a lambda reads userdata by a name that is not its argument."""
+    bound = names.union(each.arg for each in ast.walk(tree) if isinstance(each, ast.arg))
+    others = [name for name in USERDATA if name not in bound]
+    return any(isinstance(node, ast.Name) and node.id in others for node in ast.walk(tree.body))
+
+
+def fields_of(body: ast.expr, names: Collection[str]) -> Fields | None:
+    """The keys that code reads of userdata, which has these names; None if not known."""
+
     def is_userdata(node: ast.expr) -> bool:
         return isinstance(node, ast.Name) and node.id in names
 

@@ -236,7 +236,9 @@ class _Judge:
 
     def binary(self, expr: Expr, word: str, left: Expr, right: Expr) -> Iterator[Fault]:
         one, other = self.type(left), self.type(right)
-        if fails(word, one, other):
+        if word in ("/", "//", "%") and _is_zero(right) and "text" not in kinds(one):
+            yield self.fault(expr, "divides by zero", left, help="divide by another number")
+        elif fails(word, one, other):
             does = _DOES[word].format(type_text(one), type_text(other))
             yield self.fault(expr, does, left, right, help=_cure(word, one, other))
         elif word in ("+", "-", "%"):
@@ -339,6 +341,10 @@ _DOES: Mapping[str, str] = {
 def type_text(type_: Type) -> str:
     """A type as part of a message."""
     return str(widened(type_))
+
+
+def _is_zero(expr: Expr) -> bool:
+    return isinstance(expr, Constant) and expr.value == 0 and not isinstance(expr.value, bool)
 
 
 def _size(type_: Type) -> int | None:

@@ -11,7 +11,7 @@ from typing import Literal, NamedTuple
 from smachac.analysis.def_use import Reached, Search, around, place_of, search, way_to
 from smachac.analysis.definite_assignment import DataFlow, UserdataScope, child_writes
 from smachac.diagnostics.diagnostic import PathStep
-from smachac.diagnostics.source import Span
+from smachac.diagnostics.source import NOWHERE, Span
 from smachac.ir import nodes
 from smachac.ir.graph import Vertex
 from smachac.ir.nodes import Concurrence, Node
@@ -278,7 +278,9 @@ def reader_at(scope: UserdataScope, vertex: Vertex, key: str) -> Reader:
     """The state at a vertex of a container; the container itself where that is its start."""
     node: Node = scope.container
     if not isinstance(vertex, str):
-        return Reader(scope.path, node, key, node.span, f"`{node.name}` iterates over `{key}`")
+        span = node.items_span if isinstance(node, nodes.Iterator) else node.span
+        span = node.span if span.source is NOWHERE.source else span
+        return Reader(scope.path, node, key, span, f"`{node.name}` iterates over `{key}`")
     node = scope.children[vertex]
     names = remapping(node)
     own = next((each for each in node.inputs if names.get(each.name, each.name) == key), None)

@@ -8,6 +8,7 @@ from dataclasses import replace
 from smachac.analysis.context import Context
 from smachac.checks import (
     class_code,
+    code_slots,
     concurrence,
     declarations,
     expressions,
@@ -71,6 +72,9 @@ RULES: tuple[Rule, ...] = (
     initial_values.overruled_value,
     class_code.unwritten_output,
     class_code.never_returned,
+    code_slots.not_a_function,
+    code_slots.wrong_arguments,
+    code_slots.wrong_result,
     concurrence.uncovered_combination,
     concurrence.overlapping_rules,
     concurrence.dead_rule,

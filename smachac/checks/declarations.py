@@ -6,6 +6,7 @@ from collections.abc import Iterable, Iterator
 from typing import Literal
 
 from smachac.analysis.accesses import callback_names, userdata_fields
+from smachac.analysis.code_slots import free_in, undeclared_slot_reads
 from smachac.analysis.context import Context
 from smachac.analysis.control_flow import is_open
 from smachac.analysis.def_use import place_of
@@ -18,9 +19,10 @@ from smachac.checks.expressions import unknown_endings
 from smachac.checks.messages import CALLED_HERE, calls, did_you_mean
 from smachac.checks.rule import rule
 from smachac.diagnostics.diagnostic import Finding, Related, Severity
-from smachac.diagnostics.source import Span
-from smachac.diagnostics.spelling import guesser
+from smachac.diagnostics.source import Span, Word
+from smachac.diagnostics.spelling import guesser, respelt
 from smachac.ir import nodes
+from smachac.ir.code_places import key_place
 from smachac.ir.graph import START
 from smachac.ir.leaf import functions, variable, variable_of
 from smachac.ir.nodes import Key, Leaf, Machine, Node
@@ -94,11 +96,14 @@ def _sees_everything(scope: UserdataScope) -> bool:
 
 
 def _read_in(scope: UserdataScope) -> set[str]:
-    """The keys that a state in a container declares as inputs, or over which it iterates."""
+    """The keys that a state in a container declares as inputs, that its class reads, or over which
+    it iterates."""
     found = set(scope.reads.get(START, ()))
     for child in scope.container.children:
         names = remapping(child)
         found.update(names.get(key.name, key.name) for key in child.inputs)
+        if isinstance(child, Leaf) and child.class_facts is not None:
+            found.update(word.text for word in child.class_facts.reads)  # SM310
     return found
 
 
@@ -241,6 +246,8 @@ def _unused_by_code(path: str, leaf: Leaf) -> Iterator[Finding]:
         used = {key for each in fields for key in (*each.read, *each.tested)}
         used |= _meant_keys((key for key, _ in undeclared_reads(leaf)), leaf.inputs)
         arguments = [key for key in leaf.inputs if key.role == "argument"]
+        if any(key.name not in used for key in arguments):
+            used |= {name.id for code in called for name in free_in(code.text)}  # SM019
         yield from _unused_keys(path, leaf, arguments, used, "input")
     if chooses and not [*unknown_endings(path, leaf)]:
         yield from _unused_outcomes(path, leaf, conditions)
@@ -389,15 +396,19 @@ def undeclared_access(context: Context) -> Iterator[Finding]:
               transitions: {low: low, high: high}
     """
     for path, leaf in _leaves_with_code(context):
-        for key, code in undeclared_reads(leaf):
+        guess = guesser(each.name for each in leaf.inputs)
+        read = [*undeclared_reads(leaf), *undeclared_slot_reads(leaf, context.machine.state_types)]
+        for key, code in read:
+            span = key_place(code, key)
             yield Finding(
-                span=code.span,
+                span=span,
                 message=f"the code of `{leaf.name}` reads `{key}`, which is not one of its"
                 " input keys",
                 arguments=(key,),
-                help=_meant(key, leaf.inputs)
+                help=did_you_mean(guess(key))
                 or f"add `{key}` to the `input_keys` of `{leaf.name}`",
                 related=calls(leaf, code.span),
                 node=path,
+                edits=respelt(Word(key, span), guess.sure(key)),
             )
     yield from unknown_reads(context)

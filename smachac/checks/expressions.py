@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import ast
-import warnings
 from collections.abc import Iterator
 
 from smachac.analysis.context import Context
@@ -12,10 +11,18 @@ from smachac.analysis.expression_sites import ExpressionSite
 from smachac.checks.messages import calls, did_you_mean, other_place
 from smachac.checks.rule import rule
 from smachac.checks.types import written
-from smachac.diagnostics.diagnostic import Finding, Related, Severity
-from smachac.diagnostics.source import Word
-from smachac.diagnostics.spelling import guesser
+from smachac.diagnostics.diagnostic import Edit, Finding, Related, Severity
+from smachac.diagnostics.source import Span, Word
+from smachac.diagnostics.spelling import guesser, respelt
 from smachac.diagnostics.wording import listed
+from smachac.ir.code_places import (
+    attribute_place,
+    node_place,
+    node_range,
+    place_in,
+    python_tree,
+)
+from smachac.ir.code_slips import Slip, corrected, slips
 from smachac.ir.expressions import print_expression
 from smachac.ir.leaf import functions, variable_of
 from smachac.ir.nodes import Expression, Leaf, Struct
@@ -59,38 +66,49 @@ def bad_expression(context: Context) -> Iterator[Finding]:
               transitions: {succeeded: succeeded}
     """
     for path, node in context.states:
+        conditions = functions(node, "conditions") if isinstance(node, Leaf) else None
+        compared = {code.span for code in (conditions or {}).values()}
         for expression in expressions(node):
-            fault = _fault(expression.text)
-            if fault:
+            found = _slips(expression.text, expression.span in compared)
+            for slip in found[:1]:
                 yield Finding(
-                    span=expression.span,
-                    message=f"`{expression.text}` is not a valid expression: {fault}",
+                    span=place_in(expression, slip.start, slip.end),
+                    message=f"`{expression.text}` is not a valid expression: {slip.what}",
                     arguments=(expression.text,),
-                    help="write a value, or a function such as `lambda ud: ud.n + 1`",
+                    help=slip.help,
+                    related=calls(node, expression.span),
                     node=path,
+                    edits=_cures(expression, found),
                 )
         if isinstance(node, Leaf):
             yield from _missing_code(node, path)
 
 
-def _fault(text: str) -> str:
-    """The reason why Python rejects an expression; empty if it is valid."""
-    try:
-        with warnings.catch_warnings():
-            warnings.simplefilter("ignore", SyntaxWarning)
-            tree = ast.parse(text, mode="eval")
-    except SyntaxError as error:
-        return (error.msg or "invalid syntax").lower()
-    except (ValueError, RecursionError, MemoryError):
-        return "it is nested too deeply, or contains a character that is not allowed"
+def _slips(text: str, compares: bool) -> list[Slip]:
+    """The reasons why code cannot be an expression of a script; none if it can."""
+    tree = python_tree(text)
+    if tree is None:
+        return slips(text, compares=compares)
+    whole = Slip(0, len(text), f"it is nested deeper than {MAX_LEVELS} levels")
     if "yield" in text or "await" in text:
-        kinds = ast.Yield | ast.YieldFrom | ast.Await
-        if any(isinstance(node, kinds) for node in ast.walk(tree)):
-            return "`yield` and `await` are allowed only in functions of a module"
+        for node in ast.walk(tree):
+            if isinstance(node, ast.Yield | ast.YieldFrom | ast.Await):
+                what = "`yield` and `await` are allowed only in functions of a module"
+                return [Slip(*node_range(text, node), what)]
     # Every level takes a character or more.
-    if len(text) > MAX_LEVELS and _is_deeper(tree):
-        return f"it is nested deeper than {MAX_LEVELS} levels"
-    return ""
+    return [whole] if len(text) > MAX_LEVELS and _is_deeper(tree) else []
+
+
+def _cures(code: Expression, found: list[Slip]) -> tuple[Edit, ...]:
+    """The edits that correct the slips in code, if they are certain."""
+    if corrected(code.text, found) is None:
+        return ()
+    places = [(place_in(code, slip.start, slip.end), slip.cure) for slip in found]
+    return tuple(
+        Edit(span=span, text=cure)
+        for span, cure in places
+        if span != code.span and cure is not None
+    )
 
 
 def _is_deeper(tree: ast.AST) -> bool:
@@ -256,15 +274,29 @@ def _finding(
     guess = did_you_mean(guesser(fault.choices)(fault.word)) if fault.choices else None
     choices = f"use one of {', '.join(f'`{each}`' for each in fault.choices)}"
     span = site.expression.span
+    place = _place(site.expression, fault)
     return Finding(
-        span=span,
+        span=place,
         message=message,
         arguments=(print_expression(fault.expr),),
         help=guess or (choices if fault.choices else fault.help),
         related=(*_sources(site, fault), *calls(site.node, span)),
         node=site.path,
         severity=severity,
+        edits=respelt(Word(fault.word, place), guesser(fault.choices).sure(fault.word)),
     )
+
+
+def _place(code: Expression, fault: Fault) -> Span:
+    """The place of a fault: of the name of an attribute, or of the part of the expression."""
+    tree, part = python_tree(code.text), python_tree(print_expression(fault.expr))
+    text = ast.dump(part) if part is not None else ""
+    for node in ast.walk(tree) if tree is not None else ():
+        if isinstance(node, ast.expr) and type(node) is type(part) and ast.dump(node) == text:
+            if isinstance(node, ast.Attribute) and node.attr == fault.word:
+                return attribute_place(code, node)
+            return node_place(code, node)
+    return code.span
 
 
 def _sources(site: ExpressionSite, fault: Fault) -> Iterator[Related]:

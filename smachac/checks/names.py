@@ -207,11 +207,16 @@ def _unknown_steps(path: str, child: Node) -> Iterator[Finding]:
     known = _known_outcomes(child)
     guess = guesser(outcome_names(child))
     for step, meant in unknown:
+        retried = _retried(child, step.outcome)
+        message = f"`{child.name}` has no outcome `{step.outcome}`"
+        if retried is not None:
+            message = f"`retry` consumes `{step.outcome}`: `{child.name}` is tried again, and never"
+            message += " ends with it"
         yield Finding(
             span=step.span,
-            message=f"`{child.name}` has no outcome `{step.outcome}`",
+            message=message,
             arguments=(own_name(child, step.span), step.outcome),
-            help=_retried(child, step.outcome) or did_you_mean(meant) or known,
+            help=retried or did_you_mean(meant) or known,
             related=calls(child, step.span),
             node=f"{path}/{child.name}",
             edits=respelt(Word(step.outcome, step.span), guess.sure(step.outcome)),

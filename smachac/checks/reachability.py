@@ -16,7 +16,8 @@ from smachac.checks.outcomes import endings, unhandled
 from smachac.checks.rule import rule
 from smachac.checks.timeouts import undeclared_stops
 from smachac.diagnostics.diagnostic import Finding, Severity
-from smachac.diagnostics.spelling import guesser
+from smachac.diagnostics.source import NOWHERE, Word
+from smachac.diagnostics.spelling import guesser, respelt
 from smachac.diagnostics.wording import listed
 from smachac.ir import nodes
 from smachac.ir.graph import edges, reachable, stopped_endings
@@ -64,6 +65,9 @@ def unreachable_state(context: Context) -> Iterator[Finding]:
     for (path, container), whole in zip(context.linear, context.mended, strict=True):
         seen = reachable(whole)
         hidden = [child for child in container.children if child.name not in seen]
+        if hidden and isinstance(container, Sequence) and _never_continues(container):
+            yield _wrong_connector(path, container)
+            continue
         before = _before(whole, frozenset(child.name for child in hidden)) if hidden else {}
         for child in hidden:
             yield Finding(
@@ -75,6 +79,33 @@ def unreachable_state(context: Context) -> Iterator[Finding]:
                 related=calls(child, child.span),
                 node=f"{path}/{child.name}",
             )
+
+
+def _never_continues(container: Sequence) -> bool:
+    """Whether no state of a sequence has the connector outcome that the script gives."""
+    if container.connector_span.source is NOWHERE.source:
+        return False
+    return all(
+        container.connector_outcome not in outcome_names(child) and not is_open(child)
+        for child in container.children
+    )
+
+
+def _wrong_connector(path: str, container: Sequence) -> Finding:
+    outcomes = [name for child in container.children for name in outcome_names(child)]
+    word = Word(container.connector_outcome, container.connector_span)
+    guess = guesser(outcomes)
+    known = f"use an outcome of its states: {listed(outcomes)}"
+    return Finding(
+        span=word.span,
+        message=f"no state of `{container.name}` ends with `{word.text}`, so the sequence never"
+        " continues after its first state",
+        arguments=(word.text,),
+        help=did_you_mean(guess(word.text)) or known,
+        related=calls(container, word.span),
+        node=path,
+        edits=respelt(word, guess.sure(word.text)),
+    )
 
 
 def _before(container: Linear, hidden: frozenset[str]) -> dict[str, list[str]]:

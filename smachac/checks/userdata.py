@@ -24,7 +24,7 @@ from smachac.diagnostics.source import Word
 from smachac.diagnostics.spelling import Guesser, guesser, respelt
 from smachac.diagnostics.wording import listed
 from smachac.ir import nodes
-from smachac.ir.nodes import Node
+from smachac.ir.nodes import Container, Node
 from smachac.ir.script_paths import name_in_script
 
 MOST_RELATED = 3
@@ -85,6 +85,18 @@ def read_before_write(context: Context) -> Iterator[Finding]:
             yield _unset(missing, witness, users, guesses)
 
 
+def _item_help(container: Container, reader: Node) -> str | None:
+    """The help for a key that nothing sets in a loop, whose item has another name."""
+    if not isinstance(container, nodes.Iterator) or reader is container:
+        return None
+    match container.sugar:
+        case "":
+            return f"the loop calls its item `{container.item_key}` (`it_label`)"
+        case "for_each":
+            return f"`for_each` calls its item `{container.item_key}`"
+    return None
+
+
 class _Guesses:
     """The guessers for the keys of containers, by the path of the container."""
 
@@ -106,9 +118,10 @@ def _unset(missing: Missing, witness: Witness, users: list[Use], guesses: _Guess
         why = f"which nothing in {container_name(scope, reader.span)} sets"
         guess = guesses.of(scope)(missing.key)
         node = reader.node
-        # The item of an iterator is no list of items, although `item` resembles `items`.
-        is_item = isinstance(node, nodes.Iterator) and guess == node.item_key
-        help = did_you_mean(None if is_item else guess) or help
+        if isinstance(node, nodes.Iterator) and guess == node.item_key:
+            # The item of an iterator is no list of items, although `item` resembles `items`.
+            guess = guesser(sorted(_keys_of(scope) - {node.item_key}))(missing.key)
+        help = did_you_mean(guess) or _item_help(scope.container, node) or help
     return Finding(
         span=reader.span,
         message=f"{reader.words}, {why}",
@@ -287,12 +300,17 @@ def undeclared_container_key(context: Context) -> Iterator[Finding]:
         holder = flow.scopes[missing.other].container
         between = _between(flow, scope.path, missing.other)
         others = tuple(reader_at(scope, vertex, key) for vertex in missing.vertices[1:])
+        held = name_in_script(holder)
+        why = f"which is a key of `{held}` but not an input of {listed(between)}"
+        help = f"add `{key}` to the `input_keys` of {listed(between)}"
+        if isinstance(holder, nodes.Iterator) and holder.item_key == key:
+            why = f"which the loop `{held}` provides, but which is not an input of"
+            why += " its state" if list(between) == [held] else f" {listed(between)}"
         yield Finding(
             span=reader.span,
-            message=f"{reader.words}, which is a key of `{name_in_script(holder)}` but not an input"
-            f" of {listed(between)}",
+            message=f"{reader.words}, {why}",
             arguments=(reader.key,),
-            help=f"add `{key}` to the `input_keys` of {listed(between)}",
+            help=help,
             related=(
                 *other_place(scope.container.span, f"`{between[-1]}` is defined here"),
                 *(

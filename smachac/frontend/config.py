@@ -2,12 +2,13 @@
 
 from __future__ import annotations
 
+import re
 from collections.abc import Iterable, Mapping
 from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Any
 
-from smachac.diagnostics.diagnostic import Code, Report, Severity, did_you_mean
+from smachac.diagnostics.diagnostic import Code, Diagnostic, Report, Severity, did_you_mean
 from smachac.diagnostics.severities import Policy
 from smachac.diagnostics.source import Source, Span
 from smachac.diagnostics.wording import listed
@@ -64,9 +65,7 @@ def read_project(
     try:
         data = toml.loads(source.text)
     except (ValueError, RecursionError) as error:  # also a number or an array that is too long
-        message = f"the project file is not valid TOML: {error}"
-        help = "correct the syntax: strings have quotes, lists have brackets"
-        report.append(unreadable_file(Span(source, 0, 0), message, help, arguments=("toml",)))
+        report.append(_not_toml(source, str(error)))
         return Project()
     settings = data if path.name == "smachac.toml" else _tool(data)
     if not isinstance(settings, dict):
@@ -97,6 +96,30 @@ def read_project(
         exclude=texts.get("exclude", ()),
         policy=policy,
     )
+
+
+_YAML_LINE = re.compile(r"[ \t]*([\w-]+)[ \t]*(:)(?=[ \t]|$)")
+_POSITION = re.compile(r" \(at line (\d+), column (\d+)\)$")
+
+
+def _not_toml(source: Source, error: str) -> Diagnostic:
+    """SM007 at the character that TOML does not allow: its parser states the place in its
+    message only."""
+    position = _POSITION.search(error)
+    message, help = error, "correct the syntax: strings have quotes, lists have brackets"
+    span = Span(source, 0, 0)
+    if position is not None:
+        line, column = int(position[1]), int(position[2])
+        start = source.line_starts[min(line, len(source.line_starts)) - 1]
+        at = min(start + column - 1, max(len(source.text) - 1, 0))
+        span = Span(source, at, min(at + 1, len(source.text)))
+        message = error[: position.start()]
+        found = _YAML_LINE.match(source.line(line))
+        if found is not None:
+            span = Span(source, start + found.start(2), start + found.end(2))
+            message, help = f"`:` follows `{found[1]}`", f"TOML writes `{found[1]} = [...]`"
+    message = f"the project file is not valid TOML: {message}"
+    return unreadable_file(span, message, help, arguments=("toml",))
 
 
 def _tool(data: dict[str, Any]) -> object:

@@ -213,7 +213,7 @@ def _repeated(node: Node, loop: ForEach) -> Iterator:
     exhausted = _fresh(EXHAUSTED, own)
     items_key = ""
     if isinstance(items.data, str):
-        items_key = _with_input(fields, items.data, loop.span)
+        items_key = _with_input(fields, items.data, items.span)
     return Iterator(
         **fields,
         type="Iterator",
@@ -222,6 +222,7 @@ def _repeated(node: Node, loop: ForEach) -> Iterator:
         children=(_inside(node),),
         items=None if items_key else items,
         items_key=items_key,
+        items_span=items.span,
         item_key=item,
         exhausted_outcome=exhausted,
         loop_outcomes=on,

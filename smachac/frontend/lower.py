@@ -9,7 +9,7 @@ from dataclasses import replace
 from pathlib import PurePath
 from typing import Any
 
-from smachac.diagnostics.source import Span, Word, assert_never
+from smachac.diagnostics.source import NOWHERE, Span, Word, assert_never
 from smachac.frontend import schema
 from smachac.frontend.desugar import desugared
 from smachac.frontend.script import ANY_OUTCOME, ERROR, Keys, Pairs, Script, State
@@ -244,7 +244,13 @@ def _container(state: State, owner: ContainerKind) -> Container:
         case "Sequence":
             connector = _text(state.connector_outcome)
             linear = _linear(state, _linked(children, connector))
-            return Sequence(**fields, **linear, connector_outcome=connector)
+            word = state.connector_outcome
+            return Sequence(
+                **fields,
+                **linear,
+                connector_outcome=connector,
+                connector_span=word.span if word is not None else NOWHERE,
+            )
     return assert_never(owner)
 
 
@@ -382,6 +388,7 @@ def _iterator(state: State, fields: dict[str, Any], children: tuple[Node, ...]) 
         children=children,
         items=items,
         items_key=items_key,
+        items_span=state.it.span if state.it is not None else NOWHERE,
         item_key=_text(state.it_label, "it_data"),
         exhausted_outcome=exhausted.text,
         loop_outcomes=tuple(loops),

@@ -118,11 +118,12 @@ def _known_fields(
                 template = Owner(type_.name, f"`{type_.name}`")
                 report.append(unknown_variable(word, template, words, anything=True))
         else:
-            known = [*schema.names_for(owner), *type_.variables]
+            known = schema.names_for(owner)
             word = Word(str(entry.key.value), entry.key.span)
             whose = _owner_of(owner, type_, of_type=owner == "state")
-            report.append(unknown_variable(word, whose, known))
-            meant.add(guesser_of(tuple(known))(word.text))
+            own = [name for name in type_.variables if name not in known]
+            report.append(unknown_variable(word, whose, known, own=own))
+            meant.add(guesser_of((*known, *own))(word.text))
     return read, meant
 
 

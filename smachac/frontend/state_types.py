@@ -23,6 +23,7 @@ from smachac.frontend.values import as_value
 from smachac.frontend.yaml_tree import Entry, Map, Scalar, Tree
 from smachac.ir.class_facts import ClassFacts
 from smachac.ir.nodes import (
+    FunctionResult,
     Key,
     KeyRole,
     StateKind,
@@ -49,6 +50,9 @@ _FIELDS = ("name", "doc", "kind", *_SECTIONS[:5], "claims", "blocking", "stand_i
 
 _VARIABLE_ROLES: tuple[VariableRole, ...] = get_args(VariableRole)
 _KEY_ROLES: tuple[KeyRole, ...] = get_args(KeyRole)
+_RESULTS: tuple[FunctionResult, ...] = get_args(FunctionResult)
+_CALLED_WITH_USERDATA = ("callbacks", "conditions", "function", "duration")
+"""The roles whose functions a state calls with its userdata alone."""
 
 Section: TypeAlias = tuple[Entry, ...]
 
@@ -321,17 +325,43 @@ def _variable(name: str, tree: Tree, report: Report) -> VariableType:
     if default is not None and isinstance(default.value, Scalar) and default.value.value is None:
         # A variable that may be left out may also be `null`.
         type_ = optional(type_)
+    role = _role(tree, _VARIABLE_ROLES, report)
     return VariableType(
         name=name,
         type=type_,
-        role=_role(tree, _VARIABLE_ROLES, report),
+        role=role,
         required=default is None,
         doc=_doc(tree),
         default=as_value(default.value) if default is not None else None,
         keys=_text(tree, "keys"),
         called_first=_is_set(tree, "called_first"),
         unquoted=_unquoted(tree, report),
+        arguments=_arguments(tree, role, report),
+        returns=_returns(tree, role, report),
     )
+
+
+def _arguments(tree: Tree, role: VariableRole, report: Report) -> tuple[str, ...] | None:
+    """The arguments that the interface gives for functions in a variable; those of most roles are
+    known."""
+    entry = tree.get("arguments") if isinstance(tree, Map) else None
+    if entry is not None:
+        return tuple(word.text for word in as_names(entry.value, report))
+    return ("userdata",) if role in _CALLED_WITH_USERDATA else None
+
+
+def _returns(tree: Tree, role: VariableRole, report: Report) -> FunctionResult:
+    """What the functions in a variable must return."""
+    entry = tree.get("returns") if isinstance(tree, Map) else None
+    word = as_name(entry.value, report) if entry is not None else None
+    if word is None:
+        return "value" if role in ("callbacks", "conditions", "duration") else ""
+    for result in _RESULTS:
+        if result == word.text:
+            return result
+    message, help = "`returns` is one of `value`, `outcome`", did_you_mean(word.text, _RESULTS)
+    report.append(wrong_shape(word.span, message, help, arguments=("returns", word.text)))
+    return ""
 
 
 def _unquoted(tree: Tree, report: Report) -> str:

@@ -266,6 +266,7 @@ class Sequence(_Container):
 
     keyword: ClassVar[str] = "sequence"
     connector_outcome: str = ""
+    connector_span: Span = field(default=NOWHERE, compare=False, repr=False)
     initial: str = ""
     initial_span: Span = field(default=NOWHERE, compare=False, repr=False)
 
@@ -290,15 +291,16 @@ class Concurrence(_Container):
 class Iterator(_Container):
     """A container that runs its child once for each item; the item is in the key `item_key`.
 
-    The items are the value `items`, or the userdata of the container in `items_key`. Outcomes in
-    `loop_outcomes` continue with the next item; other outcomes end the iteration. The last outcome,
-    or `exhausted_outcome`, is mapped by `final_map` (pairs from, to). `loop_spans` are the places
-    of `loop_outcomes` in the script; empty if it does not name them.
+    The items are the value `items`, or the userdata of the container in `items_key`; `items_span`
+    is their place. Outcomes in `loop_outcomes` continue with the next item; other outcomes end the
+    iteration. The last outcome, or `exhausted_outcome`, is mapped by `final_map` (pairs from, to).
+    `loop_spans` are the places of `loop_outcomes` in the script; empty if it does not name them.
     """
 
     keyword: ClassVar[str] = "iterator"
     items: Value | None = None
     items_key: str = ""
+    items_span: Span = field(default=NOWHERE, compare=False, repr=False)
     item_key: str = "it_data"
     exhausted_outcome: str = "exhausted"
     loop_outcomes: tuple[str, ...] = ()
@@ -326,12 +328,19 @@ StateKind = Literal["base", "container", "state"]
 """What a state type describes: a script's base, a container or a state."""
 
 
+FunctionResult = Literal["", "value", "outcome"]
+"""What a function in a variable must return: anything; something other than None; an outcome of the
+state or None."""
+
+
 @dataclass(frozen=True, slots=True, kw_only=True)
 class VariableType:
     """A variable of a state type. `keys`: it lists userdata keys, "input" or "output" ones.
 
     `called_first`: generated programs call its functions before the state, whose class does not
     receive the variable. `unquoted`: the shape of a text that programs contain without quotes.
+    `arguments`: the arguments with which the state calls its functions; None: not known. `returns`:
+    what they must return.
     """
 
     name: str
@@ -343,6 +352,8 @@ class VariableType:
     keys: str = ""
     called_first: bool = False
     unquoted: str = ""
+    arguments: tuple[str, ...] | None = None
+    returns: FunctionResult = ""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)

@@ -10,18 +10,21 @@ import ast
 import builtins
 import re
 import sys
-import warnings
-from collections.abc import Iterator
+from collections.abc import Iterator, Mapping
+from typing import NamedTuple
 
-from smachac.diagnostics.diagnostic import Diagnostic
-from smachac.frontend.errors.script import undefined_name
+from smachac.analysis.accesses import USERDATA
+from smachac.analysis.code_slots import code_slots, free_in, parameters
+from smachac.diagnostics.diagnostic import Diagnostic, Edit
+from smachac.diagnostics.source import Span, Word
+from smachac.diagnostics.spelling import guesser
+from smachac.frontend.errors.script import NameFix, undefined_name
 from smachac.frontend.loader import Library
+from smachac.ir.code_places import node_place, python_tree
+from smachac.ir.code_slips import CONSTANTS
 from smachac.ir.expressions import looks_like_expression
-from smachac.ir.nodes import Data, Expression, Leaf, Machine, Node, Struct
+from smachac.ir.nodes import Data, Expression, Leaf, Machine, Node, StateType, Struct
 from smachac.ir.traversal import expressions, walk
-
-USERDATA = ("ud", "userdata")
-"""The names of the userdata in code that is no function."""
 
 _MAKES_NAMES = re.compile(r"import \*|[\"']\*[\"']|\w\{\{|\}\}\w")
 _BLOCK = re.compile(r"\{%[-+]?\s*(?:end)?block\b[^%]*%\}")
@@ -29,20 +32,150 @@ _WORDS = re.compile(r"[^\W\d]\w*")
 _DEFINED = re.compile(r"^[ \t]*(?:def|class|import|from \S+ import)\s+(\w+)|^[ \t]*(\w+) = ", re.M)
 
 
+class _Use(NamedTuple):
+    """A name that code uses. `lambda_` is the function around it, if the code is one."""
+
+    node: Node
+    code: Expression
+    name: ast.Name
+    lambda_: ast.Lambda | None
+
+    @property
+    def span(self) -> Span:
+        return node_place(self.code, self.name)
+
+
 def undefined_names(machine: Machine, library: Library) -> Iterator[Diagnostic]:
-    """The undefined names, each at the code that uses it."""
-    used = [
-        (node, expression, name)
-        for _, node in walk(machine.root)
-        if not (isinstance(node, Leaf) and node.written)  # its template decides how it is printed
-        for expression in expressions(node)
-        for name in _free(expression.text)
+    """The undefined names, each at the place that uses it."""
+    types = machine.state_types
+    nodes = [node for _, node in walk(machine.root)]
+    used = [use for node in nodes for code in _codes(node, types) for use in _uses(node, code)]
+    classes = [
+        word
+        for node in nodes
+        for word in _message_types(node, types)
+        if word.text.isidentifier() and not hasattr(builtins, word.text)
     ]
-    known = _known(machine, library) if used else None
-    for node, expression, name in used:
-        if known is not None and name not in known:
-            by_look = _by_look(node, expression)
-            yield undefined_name(expression.span, name, expression.text, by_look)
+    known = _known(machine, library) if used or classes else None
+    for use in used:
+        if use.name.id in USERDATA or (known is not None and use.name.id not in known):
+            imported = _imported(use.node, types)
+            if use.name.id not in imported:
+                fix = _fix(use, imported)
+                by_look = _by_look(use.node, use.code)
+                yield undefined_name(use.span, use.name.id, use.code.text, by_look, fix)
+    for word in classes:
+        if known is not None and word.text not in known:
+            package = _PACKAGES.get(word.text, "my_messages")
+            why = f"`{word.text}` is used here but nothing imports it"
+            help = f"write its package as well, as in `{package}/{word.text}`"
+            yield undefined_name(word.span, word.text, word.text, False, NameFix(help, why))
+
+
+_PACKAGES: Mapping[str, str] = {
+    **dict.fromkeys(("Empty", "SetBool", "Trigger"), "std_srvs"),
+    **dict.fromkeys(("TestAction", "TwoIntsAction", "TestRequestAction"), "actionlib"),
+}
+"""The packages of common types of services and actions."""
+
+
+def _message_types(node: Node, types: Mapping[str, StateType]) -> Iterator[Word]:
+    """The types of messages, services and actions that a built-in state type imports, if the script
+    gives their package."""
+    known = types.get(node.type)
+    if known is None or not known.built_in or not isinstance(node, Leaf):
+        return
+    for held in node.variables:
+        fact, data = known.variables.get(held.name), held.value.data
+        if fact is not None and fact.unquoted == "type":
+            text = data.text if isinstance(data, Expression) else data
+            if isinstance(text, str):
+                yield Word(text, held.value.span)
+
+
+def _imported(node: Node, types: Mapping[str, StateType]) -> list[str]:
+    """The classes that a program imports for a state."""
+    found: list[str] = []
+    for word in _message_types(node, types):
+        *package, name = re.split(r"[/.]", word.text)
+        found += [name] if package else []  # without it, the class itself is reported
+        found += [f"{name.removesuffix('Action')}Goal", f"{name}Request"]
+    return found
+
+
+def _codes(node: Node, types: Mapping[str, StateType]) -> Iterator[Expression]:
+    """The code of a state that a program contains as it is written."""
+    if isinstance(node, Leaf) and node.written and not node.built_in:
+        return  # its template decides how it is printed
+    classes = {word.span for word in _message_types(node, types)}
+    found = {code.span: code for code in expressions(node) if code.span not in classes}
+    for slot in code_slots(node, types):
+        if not slot.quoted:
+            found.setdefault(slot.code.span, slot.code)
+    yield from found.values()
+
+
+def _uses(node: Node, code: Expression) -> Iterator[_Use]:
+    """The names that code uses from its module, except names that every module has."""
+    tree = python_tree(code.text)  # SM016 if there is none
+    function = tree if isinstance(tree, ast.Lambda) else None
+    keys = {key.name for key in node.inputs}
+    found: set[str] = set()
+    for name in free_in(code.text):
+        word = name.id
+        if word in found or hasattr(builtins, word) or word in sys.stdlib_module_names:
+            continue
+        if function is None and (word in USERDATA or (word in keys and _is_operation(tree))):
+            continue  # SM316
+        if word in USERDATA and function is not None and not parameters(function):
+            continue  # SM317
+        found.add(word)
+        yield _Use(node, code, name, function)
+
+
+def _is_operation(tree: ast.expr | None) -> bool:
+    return not isinstance(tree, ast.Name | ast.Attribute | ast.Call | ast.Subscript)
+
+
+def _fix(use: _Use, imported: list[str]) -> NameFix | None:
+    """The cure of an undefined name, if what it means is known. `imported` are the classes that a
+    program imports for the state."""
+    word = use.name.id
+    own = [each.arg for each in parameters(use.lambda_)] if use.lambda_ is not None else []
+    if word in USERDATA and own:
+        why = f"`{word}` is not this function's argument (`{own[0]}`)"
+        return NameFix(f"write `{own[0]}`", why, _edits(use, own[0]))
+    if word in CONSTANTS:
+        return NameFix(f"write `{CONSTANTS[word]}`", edits=_edits(use, CONSTANTS[word]))
+    keys = [key.name for key in use.node.inputs]
+    if own and word in keys:
+        meant = f"{own[0]}.{word}"
+        return NameFix(f"did you mean `{meant}`?", edits=_edits(use, meant))
+    if word in keys:
+        return NameFix(f"`{word}` is a key: read it as `ud.{word}` in a function, `lambda ud: ...`")
+    ending = re.search("Goal$|Request$", word)
+    near = next((each for each in imported if ending and each.endswith(ending[0])), None)
+    if near is not None:
+        return NameFix(f"did you mean `{near}`?")
+    near = guesser([*own, *keys])(word) if own and not _is_called(use) else None
+    if near is not None:
+        return NameFix(f"did you mean `{near if near in own else f'{own[0]}.{near}'}`?")
+    return None
+
+
+def _is_called(use: _Use) -> bool:
+    tree = use.lambda_
+    calls = ast.walk(tree) if tree is not None else ()
+    return any(isinstance(each, ast.Call) and each.func is use.name for each in calls)
+
+
+def _edits(use: _Use, text: str) -> tuple[Edit, ...]:
+    """The edit that replaces all uses of a name in its code."""
+    names = [name for name in free_in(use.code.text) if name.id == use.name.id]
+    spans = [node_place(use.code, name) for name in names]
+    if any(span.text != use.name.id for span in spans):
+        return ()
+    return tuple(Edit(span=span, text=text) for span in spans)
 
 
 def _by_look(node: Node, expression: Expression) -> bool:
@@ -60,26 +193,6 @@ def _functions(leaf: Leaf) -> Iterator[Data]:
         if held.name == "callbacks" or held.role in ("callbacks", "conditions"):
             entries = held.value.data.entries if isinstance(held.value.data, Struct) else ()
             yield from (value for _, value in entries)
-
-
-def _free(text: str) -> list[str]:
-    """The names that code uses from its module, except names that every module has."""
-    try:
-        with warnings.catch_warnings():
-            warnings.simplefilter("ignore", SyntaxWarning)
-            nodes = [*ast.walk(ast.parse(text.strip(), mode="eval"))]
-    except (SyntaxError, ValueError, RecursionError, MemoryError):
-        return []  # SM016
-    bound = {node.arg for node in nodes if isinstance(node, ast.arg)}
-    names = [node for node in nodes if isinstance(node, ast.Name)]
-    bound |= {name.id for name in names if not isinstance(name.ctx, ast.Load)}
-    found = dict.fromkeys(name.id for name in names if name.id not in bound)
-    return [
-        name
-        for name in found
-        if name not in USERDATA and not hasattr(builtins, name)
-        if name not in sys.stdlib_module_names
-    ]
 
 
 def _known(machine: Machine, library: Library) -> set[str] | None:

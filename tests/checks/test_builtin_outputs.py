@@ -39,8 +39,12 @@ BUILT_IN = disk_library(Path("main.yml"), [])
         ("template: RandomOutcomeState\n      output_keys: [KEY]\n"
          "      callbacks: {drawn: 'lambda ud: 1'}", "drawn", ""),
         ("template: WaitForMsgState\n      output_keys: [KEY]", "message", "every"),
-        ("template: WaitForMsgState\n      output_keys: [KEY]\n      msg_cb: keep", "message", ""),
-        ("template: WaitForMsgState\n      output_keys: [KEY]\n      msg_cb: keep", "AB", "some"),
+        ("template: WaitForMsgState\n      output_keys: [KEY]\n"
+         "      msg_cb: 'lambda message, ud: 1'",
+         "message", ""),
+        ("template: WaitForMsgState\n      output_keys: [KEY]\n"
+         "      msg_cb: 'lambda message, ud: 1'",
+         "AB", "some"),
         ("template: ReadTopicState\n      output_keys: [KEY]", "output", ""),
         ("template: ReadTopicState\n      output_keys: [KEY]", "output_msg", ""),
         ("template: ReadTopicState\n      output_keys: [KEY]", "AB", "every"),

@@ -85,7 +85,7 @@ states:
       template: ConditionalOutcomeState
       input_keys: [stop]
       outcomes: [standing, going]
-      callbacks: {standing: ud.stop}
+      callbacks: {standing: 'lambda ud: ud.stop'}
       default_outcome: going
 """
 

@@ -32,19 +32,19 @@ states:
             template: CallbacksState
             input_keys: [n]
             output_keys: [n]
-            callbacks: {n: ud.n + 1}
+            callbacks: {n: 'lambda ud: ud.n + 1'}
             transitions: {succeeded: USE}
         - USE:
             template: CallbacksState
             input_keys: [n, zero]
             output_keys: [n]
-            callbacks: {n: ud.n // (ud.zero + 1)}
+            callbacks: {n: 'lambda ud: ud.n // (ud.zero + 1)'}
             transitions: {succeeded: done}
   - CHECK:
       template: ConditionalOutcomeState
       input_keys: [n]
       outcomes: [old, new]
-      callbacks: {old: ud.n == 1}
+      callbacks: {old: 'lambda ud: ud.n == 1'}
       default_outcome: new
 """
 

@@ -10,6 +10,7 @@ from typing import Any
 import pytest
 from hypothesis import HealthCheck, given, seed, settings
 
+from smachac.diagnostics.source import Source
 from smachac.driver import build, check, read_machine
 from smachac.frontend.files import disk_library, read_source
 from smachac.frontend.loader import Library
@@ -113,6 +114,44 @@ def test_examples(script: Path) -> None:
     assert ours is not None
     difference = differ(ours, of_generated(machine, library))
     assert difference is None, difference
+
+
+ITEMS = """
+name: sm
+template: Base
+outcomes: [done]
+userdata: {parts: [1, 2, 3], seen: []}
+output_keys: [seen]
+states:
+  - EACH:
+      template: Iterator
+      it: CODE
+      it_label: part
+      input_keys: [parts, seen]
+      output_keys: [seen]
+      outcomes: [done]
+      exhausted_outcome: done
+      loop_outcomes: [succeeded]
+      states:
+        - NOTE:
+            template: CallbacksState
+            input_keys: [part, seen]
+            output_keys: [seen]
+            callbacks: {seen: 'lambda ud: ud.seen + [ud.part]'}
+      transitions: {done: done}
+"""
+
+
+@pytest.mark.parametrize("code", ["parts", "'`lambda ud: ud.parts + [4]`'", "'`lambda: [1, 2]`'"])
+def test_items_from_functions(code: str) -> None:
+    """SMACH calls the function without arguments."""
+    report: list[Any] = []
+    machine = read_machine(Source("main.yml", ITEMS.replace("CODE", code)), LIBRARY, report)
+    assert machine is not None
+    ours = of_interpreter(machine)
+    assert ours is not None
+    assert sum(event["path"].endswith("NOTE") for event in ours if event["event"] == "enter") > 1
+    assert differ(ours, of_generated(machine)) is None
 
 
 CHUNKS = [0, *(pytest.param(chunk, marks=pytest.mark.slow) for chunk in range(1, 8))]

@@ -199,7 +199,11 @@ def test_an_interface_that_would_print_code_is_refused(line: str, tmp_path: Path
 def test_shapes_that_programs_have_are_accepted(tmp_path: Path) -> None:
     given: dict[str, dict[str, object]] = {
         "ServiceState": {"service": "std_srvs.srv.Trigger", "request_cb": "`lambda u, r: r`"},
-        "SimpleActionState": {"action": "TestAction", "goal_cb": "my.goal", "result_cb": "make(1)"},
+        "SimpleActionState": {
+            "action": "actionlib.TestAction",
+            "goal_cb": "ast.dump",
+            "result_cb": "print(1)",
+        },
         "WaitForMsgState": {"msg_type": "std_msgs/msg/String", "msg_cb": None},
         "Base": {"function_name": "run_robot"},
     }

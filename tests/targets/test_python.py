@@ -86,7 +86,7 @@ def test_code_nested_too_deeply_for_a_call_is_an_error_of_the_build(
     levels: int, tmp_path: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:
     script = tmp_path / "main.yml"
-    value = "[" * levels + "]" * levels
+    value = "lambda ud: " + "[" * levels + "]" * levels
     script.write_text(
         "name: sm\ntemplate: Base\noutcomes: [succeeded]\nstates:\n  - A:\n"
         "      template: CallbacksState\n      output_keys: [x]\n"

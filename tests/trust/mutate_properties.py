@@ -48,7 +48,7 @@ def planted(subject: Subject, form: Data) -> tuple[int, bool]:
 def at_property(number: int, form: Data, *codes: str) -> Mutant:
     """The mutant with a finding at the property with a number, on any of its lines."""
     whole = ("properties", number)
-    inner = [(*whole, key) for key in form]
+    inner: list[tuple[str | int, ...]] = [(*whole, key) for key in form]
     inner += [(*whole, key, part) for key, value in form.items() for part in _parts(value)]
     return Mutant(codes=codes, places=tuple((MAIN, place) for place in (whole, *inner)))
 
@@ -62,7 +62,7 @@ def full(subject: Subject, name: str) -> str:
 
 
 def violated(subject: Subject, form: Data, site: Site, outcome: str, target: str) -> Mutant | None:
-    """The mutant in which a transition leads elsewhere; None if the property does not hold before."""
+    """The mutant in which a transition leads elsewhere; None if the property was violated before."""
     number, holds = planted(subject, form)
     if not holds:
         return None

@@ -11,6 +11,7 @@ from tests.trust import (
     mutate_names,
     mutate_properties,
     mutate_stops,
+    mutate_written_code,
 )
 from tests.trust.mutants import MUTATIONS
 
@@ -24,4 +25,5 @@ __all__ = [
     "mutate_names",
     "mutate_properties",
     "mutate_stops",
+    "mutate_written_code",
 ]

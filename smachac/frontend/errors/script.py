@@ -6,9 +6,12 @@ The arguments of a code with several faults begin with a word for the fault, whi
 from __future__ import annotations
 
 from collections.abc import Iterable
+from difflib import SequenceMatcher
 from typing import NamedTuple
 
 from smachac.diagnostics.diagnostic import (
+    LONGEST_WORD,
+    Edit,
     Finding,
     Problem,
     Related,
@@ -107,7 +110,12 @@ def duplicate_key(key: Word, first: Span) -> Finding:
 
 @problem("SM003", "unknown-variable", Severity.ERROR)
 def unknown_variable(
-    word: Word, owner: Owner, known: Iterable[str], *, anything: bool = False
+    word: Word,
+    owner: Owner,
+    known: Iterable[str],
+    *,
+    own: Iterable[str] = (),
+    anything: bool = False,
 ) -> Finding:
     """A script sets a variable that neither the language nor the state type has.
 
@@ -128,7 +136,8 @@ def unknown_variable(
         states:
           - PICK: {template: ScriptedState, outcomes: [done], transitions: {done: done}}
     """
-    names = sorted(known)
+    own = sorted(own)
+    names = sorted([*known, *own])
     owned = f"use one of its variables: {listed(names)}"
     variables = owned if names else f"remove it: {owner.text} has no variables"
     sure = Guesser(names).sure(word.text)
@@ -144,9 +153,32 @@ def unknown_variable(
         span=word.span,
         message=f"`{word.text}` is not a variable of {owner.text}",
         arguments=(word.text, owner.name),
-        help=did_you_mean(word.text, [sure] if sure else names) or variables,
+        help=_variable_help(word.text, sure, names, own) or variables,
         edits=respelt(word, sure),
     )
+
+
+def _variable_help(word: str, sure: str | None, names: list[str], own: list[str]) -> str | None:
+    """The help for an unknown variable: `own` are those of the state type, which come before the
+    others among `names`."""
+    if sure is not None or not own:
+        return did_you_mean(word, [sure] if sure else names)
+    others = [name for name in names if name not in own]
+    near = SequenceMatcher(a=word)
+    for name in others:
+        near.set_seq2(name)
+        if len(word) <= LONGEST_WORD and near.quick_ratio() > NEAR and near.ratio() > NEAR:
+            return did_you_mean(word, names)
+    is_one = len(own) == 1
+    return (
+        did_you_mean(word, own)
+        or f"its variable{'' if is_one else 's'} {'is' if is_one else 'are'} {listed(own)}"
+    )
+
+
+NEAR = 0.75
+"""How similar a name must be to a variable of the language that is meant, if the state type has
+variables of its own."""
 
 
 @problem("SM004", "wrong-shape", Severity.ERROR)
@@ -359,8 +391,19 @@ def unreadable_file(
     )
 
 
+class NameFix(NamedTuple):
+    """The cure of an undefined name. `why` is the fault, if it is known; `edits` correct it, if
+    that is certain."""
+
+    help: str
+    why: str = ""
+    edits: tuple[Edit, ...] = ()
+
+
 @problem("SM019", "undefined-name", Severity.ERROR)
-def undefined_name(span: Span, name: str, code: str, by_look: bool) -> Finding:
+def undefined_name(
+    span: Span, name: str, code: str, by_look: bool, fix: NameFix | None = None
+) -> Finding:
     """An expression of the script uses a name that the generated program does not define.
 
     The program would stop with a NameError when it builds its machine, or at the first visit of
@@ -388,6 +431,9 @@ def undefined_name(span: Span, name: str, code: str, by_look: bool) -> Finding:
         states:
           - LOOK: {template: PrintUserdataState, input_keys: [side]}
     """
+    if fix is not None:
+        what = fix.why or f"`{name}` is used here but is not defined"
+        return Finding(span=span, message=what, arguments=(name,), help=fix.help, edits=fix.edits)
     if not by_look:
         help = "import or define it in a template of the script, such as that of the base"
         message = f"`{name}` is used here but is not defined"

@@ -9,10 +9,11 @@ from dataclasses import dataclass, field
 from itertools import chain, count
 from textwrap import indent
 
+from smachac.analysis.code_slots import called_with_userdata
 from smachac.frontend import schema
 from smachac.frontend.errors.references import template_error
 from smachac.ir.leaf import variable_of
-from smachac.ir.nodes import Container, Data, Iterator, Leaf, Node, StateType, Variable
+from smachac.ir.nodes import Container, Data, Expression, Iterator, Leaf, Node, StateType, Variable
 from smachac.ir.traversal import own_outcomes
 from smachac.targets.python import structure
 from smachac.targets.python.add_call import NotAddedError, adapted
@@ -31,6 +32,7 @@ from smachac.targets.python.formatter import (
     Group,
     call,
     docstring_lines,
+    flat,
     laid_out,
     literal,
     names,
@@ -142,7 +144,12 @@ def _items(inside: EmittedContainer) -> Doc | None:
     """The items of an Iterator; None if they are userdata, and for other containers."""
     if not isinstance(inside.node, Iterator) or inside.node.items is None:
         return None
-    return inside.value(inside.path, ITEMS, inside.node.items.data)
+    data = inside.node.items.data
+    items = inside.value(inside.path, ITEMS, data)
+    if isinstance(data, Expression) and called_with_userdata(data.text):
+        # SMACH calls a function without arguments for the items.
+        return f"lambda: ({flat(items)})({inside.variable}.userdata)"
+    return items
 
 
 def _presets(inside: EmittedContainer) -> list[tuple[str, Doc]]:

@@ -1,0 +1,410 @@
+"""Rules on functions in a script: whether they can be called, with which arguments, and results."""
+
+from __future__ import annotations
+
+import ast
+from collections.abc import Iterable, Iterator
+
+from smachac.analysis.accesses import USERDATA
+from smachac.analysis.code_slots import (
+    CodeSlot,
+    accepts,
+    code_slots,
+    free_names,
+    is_value,
+    parameters,
+    results,
+    userdata_outside,
+    userdata_parameter,
+)
+from smachac.analysis.context import Context
+from smachac.analysis.expression_errors import kinds, type_text
+from smachac.analysis.expression_types import parsed, type_of
+from smachac.analysis.type_lattice import record
+from smachac.checks.messages import calls, did_you_mean
+from smachac.checks.rule import rule
+from smachac.diagnostics.diagnostic import Edit, Finding, Severity
+from smachac.diagnostics.source import Span
+from smachac.diagnostics.spelling import guesser
+from smachac.diagnostics.wording import listed
+from smachac.ir.code_places import node_place, node_range, place_in
+from smachac.ir.nodes import Leaf, Node
+from smachac.ir.traversal import outcome_names
+from smachac.ir.types import ANY, Type
+
+
+def _slots(context: Context) -> Iterator[tuple[str, Node, CodeSlot, ast.expr]]:
+    """The code slots of a machine whose code Python can read."""
+    types = context.machine.state_types
+    for path, node in context.states:
+        for slot in code_slots(node, types):
+            tree = slot.tree
+            if tree is not None:
+                yield path, node, slot, tree
+
+
+@rule("SM316", "not-a-function", Severity.ERROR)
+def not_a_function(context: Context) -> Iterator[Finding]:
+    """Code of the script gives a value where the state calls a function.
+
+    A Python program evaluates the code once, when it builds the machine: there is no userdata then,
+    so the program does not start. A function is evaluated at each visit of the state.
+
+    Exactly: in a variable that must be a function by the interface of the state type, code that
+    certainly gives something else; in a variable that may be a function, code that reads userdata
+    outside a function, and a function that is written as text.
+
+    Wrong:
+        name: sm
+        template: Base
+        outcomes: [low, high]
+        userdata: {level: 7}
+        states:
+          - JUDGE:
+              template: ConditionalOutcomeState
+              input_keys: [level]
+              outcomes: [low]
+              callbacks: {low: 'ud.level < 10'}
+              default_outcome: high
+              transitions: {low: low, high: high}
+
+    Right:
+        name: sm
+        template: Base
+        outcomes: [low, high]
+        userdata: {level: 7}
+        states:
+          - JUDGE:
+              template: ConditionalOutcomeState
+              input_keys: [level]
+              outcomes: [low]
+              callbacks: {low: 'lambda ud: ud.level < 10'}
+              default_outcome: high
+              transitions: {low: low, high: high}
+    """
+    for path, node, slot, tree in _slots(context):
+        text = slot.code.text
+        if slot.quoted:
+            yield Finding(
+                span=slot.code.span,
+                message=f"`{slot.name}` of `{node.name}` is text, not a function",
+                arguments=(slot.name, text),
+                help=f"write the function in backticks: '`{text}`'",
+                related=calls(node, slot.code.span),
+                node=path,
+                edits=_backticks(slot),
+            )
+            continue
+        read = userdata_outside(tree)
+        if read is None and not (slot.must_be_called and is_value(tree)):
+            continue
+        name = read.id if read is not None else USERDATA[0]
+        what = "is not a function"
+        if read is not None:
+            what = f"reads `{read.id}` outside a function; it has no value before the machine runs"
+        function = f"lambda {name}: {_with_keys(slot, tree, name, node)}"
+        yield Finding(
+            span=node_place(slot.code, read) if read is not None else slot.code.span,
+            message=f"{_owner(slot, node)} {what}",
+            arguments=(slot.name, text),
+            help=_as_key(slot) or f"write `{function}`" + _in_backticks(slot),
+            related=calls(node, slot.code.span),
+            node=path,
+            edits=_as_function(slot, name) if read is not None else (),
+        )
+
+
+def _with_keys(slot: CodeSlot, tree: ast.expr, name: str, node: Node) -> str:
+    """Code in which the names of input keys stand for the keys of userdata."""
+    text, keys = slot.code.text, {key.name for key in node.inputs}
+    for each in reversed(free_names(tree)):
+        if each.id in keys:
+            start, _ = node_range(text, each)
+            text = f"{text[:start]}{name}.{text[start:]}"
+    return text
+
+
+def _in_backticks(slot: CodeSlot) -> str:
+    """The end of a help line where code without quotes is no function."""
+    plain = not slot.must_be_called and "`" not in slot.code.span.text
+    return ", in backticks and quotes" if plain else ""
+
+
+def _as_key(slot: CodeSlot) -> str | None:
+    """The help for an iterator over the key that its code reads."""
+    match slot.name, slot.tree:
+        case "it", ast.Attribute(value=ast.Name(), attr=key):
+            return f"write the name of the key: `{key}`"
+    return None
+
+
+def _owner(slot: CodeSlot, node: Node) -> str:
+    """The place of a slot, as part of a message."""
+    match slot.role:
+        case "callbacks":
+            return f"the callback `{slot.name}` of `{node.name}`"
+        case "conditions":
+            return f"the condition `{slot.name}` of `{node.name}`"
+    return f"`{slot.name}` of `{node.name}`"
+
+
+def _backticks(slot: CodeSlot) -> tuple[Edit, ...]:
+    span = slot.code.span
+    written = span.text
+    if written[:1] not in ("'", '"') or written[1:-1] != slot.code.text:
+        return ()
+    quote = written[0]
+    return (Edit(span=span, text=f"{quote}`{slot.code.text}`{quote}"),)
+
+
+def _as_function(slot: CodeSlot, name: str) -> tuple[Edit, ...]:
+    """The edit that makes a lambda of code; a plain scalar gets quotes."""
+    text, span = slot.code.text, slot.code.span
+    head = f"lambda {name}: "
+    key = _as_key(slot)
+    if key is not None and span.text == text:
+        return (Edit(span=span, text=text.partition(".")[2]),)
+    if slot.must_be_called and span.text == text and not {"'", "\n"} & set(text):
+        return (Edit(span=span, text=f"'{head}{text}'"),)
+    if span.text[:1] not in ("'", '"'):
+        return ()
+    start = place_in(slot.code, 0, 1)
+    return (Edit(span=Span(start.source, start.start, start.start), text=head),)
+
+
+@rule("SM317", "wrong-arguments", Severity.ERROR)
+def wrong_arguments(context: Context) -> Iterator[Finding]:
+    """A function of the script has other arguments than the state passes to it.
+
+    The call fails at the first visit of the state, with the robot in the middle of its task.
+
+    Exactly: the interface of the state type lists the arguments; only lambdas are checked.
+    Arguments in another order are found by their names.
+
+    Wrong:
+        name: sm
+        template: Base
+        outcomes: [succeeded]
+        userdata: {n: 0}
+        output_keys: [n]
+        states:
+          - COUNT:
+              template: CallbacksState
+              input_keys: [n]
+              output_keys: [n]
+              callbacks: {n: 'lambda ud, n: n + 1'}
+              transitions: {succeeded: succeeded}
+
+    Right:
+        name: sm
+        template: Base
+        outcomes: [succeeded]
+        userdata: {n: 0}
+        output_keys: [n]
+        states:
+          - COUNT:
+              template: CallbacksState
+              input_keys: [n]
+              output_keys: [n]
+              callbacks: {n: 'lambda ud: ud.n + 1'}
+              transitions: {succeeded: succeeded}
+    """
+    for path, node, slot, tree in _slots(context):
+        if not isinstance(tree, ast.Lambda) or slot.arguments is None or slot.quoted:
+            continue
+        due = slot.arguments
+        if accepts(tree, len(due)):
+            found = _swapped(tree, due)
+            what = f"has the arguments {_names(found)}, but the state passes {_names(due)}"
+            if not found:
+                continue
+        else:
+            own = len(parameters(tree))
+            what = f"has {own or 'no'} argument{'s' * (own != 1)}, but the state passes {len(due)}"
+            what += f": {_names(due)}"
+        yield Finding(
+            span=_head(slot, tree),
+            message=f"the function of {_owner(slot, node)} {what}",
+            arguments=(slot.name, slot.code.text),
+            help=f"begin it with `lambda {', '.join(map(_short, due))}:`",
+            related=calls(node, slot.code.span),
+            node=path,
+        )
+
+
+def _names(names: Iterable[str]) -> str:
+    """Names in their order."""
+    return ", ".join(f"`{name}`" for name in names)
+
+
+def _short(argument: str) -> str:
+    return USERDATA[0] if argument == "userdata" else argument
+
+
+def _head(slot: CodeSlot, tree: ast.Lambda) -> Span:
+    """The span of the arguments of a lambda, or of the word `lambda`."""
+    found = [each for each in ast.walk(tree.args) if isinstance(each, ast.arg)]
+    if not found:
+        return place_in(slot.code, 0, len("lambda"))
+    first, last = found[0], found[-1]
+    if slot.code.text.count("\n"):
+        return slot.code.span
+    whole = ast.Name(
+        id="",
+        lineno=first.lineno,
+        col_offset=first.col_offset,
+        end_lineno=last.end_lineno,
+        end_col_offset=last.end_col_offset,
+    )
+    return node_place(slot.code, whole)
+
+
+def _swapped(tree: ast.Lambda, due: tuple[str, ...]) -> list[str]:
+    """The names of the arguments of a lambda, if they are those of its state in another order."""
+    own = [each.arg for each in parameters(tree)]
+    meant = [next((name for name in due if _means(arg, name)), "") for arg in own]
+    return own if tuple(meant) != due and sorted(meant) == sorted(due) else []
+
+
+def _means(own: str, argument: str) -> bool:
+    """Whether a name stands for an argument: the same, its beginning, or a usual short form."""
+    if argument == "userdata":
+        return own in USERDATA
+    return (len(own) > 2 and argument.startswith(own)) or own == {"message": "msg"}.get(argument)
+
+
+NOTHING_RETURNED = {
+    "list": frozenset(["append", "extend", "insert", "remove", "sort", "reverse", "clear"]),
+    "mapping": frozenset(["update", "clear"]),
+}
+"""The methods that change a value and return None, by the kind of the value."""
+
+ALWAYS_NOTHING = frozenset(["append", "extend"])
+"""Those that return None whatever the value is."""
+
+
+@rule("SM318", "wrong-result", Severity.ERROR)
+def wrong_result(context: Context) -> Iterator[Finding]:
+    """A function of the script returns nothing, or something that the state cannot use.
+
+    Methods such as `append` change a list and return None: a condition is then never true, and a
+    callback replaces the value of its key by None.
+
+    Exactly: a result that is None in conditions, durations and callbacks (there only that of a
+    method that changes a value); text as a duration; a text that is not an outcome of the state in
+    a function that returns its outcome. A warning if only some runs give this result, or if the
+    type of the value is not known.
+
+    Wrong:
+        name: sm
+        template: Base
+        outcomes: [succeeded]
+        userdata: {seen: [1]}
+        output_keys: [seen]
+        states:
+          - NOTE:
+              template: CallbacksState
+              input_keys: [seen]
+              output_keys: [seen]
+              callbacks: {seen: 'lambda ud: ud.seen.append(2)'}
+              transitions: {succeeded: succeeded}
+
+    Right:
+        name: sm
+        template: Base
+        outcomes: [succeeded]
+        userdata: {seen: [1]}
+        output_keys: [seen]
+        states:
+          - NOTE:
+              template: CallbacksState
+              input_keys: [seen]
+              output_keys: [seen]
+              callbacks: {seen: 'lambda ud: ud.seen + [2]'}
+              transitions: {succeeded: succeeded}
+    """
+    for path, node, slot, tree in _slots(context):
+        if not isinstance(tree, ast.Lambda) or slot.quoted or not slot.returns:
+            continue
+        found = results(tree)
+        for result in found:
+            fault = _outcome_fault(node, slot, result)
+            if slot.returns == "value":
+                fault = _value_fault(context, path, slot, result)
+            if fault is None:
+                continue
+            what, help, sure = fault
+            yield Finding(
+                span=node_place(slot.code, result),
+                message=f"the function of {_owner(slot, node)} returns {what}",
+                arguments=(slot.name, ast.unparse(result)),
+                help=help,
+                related=calls(node, slot.code.span),
+                node=path,
+                severity=None if sure and len(found) == 1 else Severity.WARNING,
+            )
+
+
+Fault = tuple[str, str | None, bool]
+"""What a function returns, the help, and whether it is certain."""
+
+
+def _value_fault(context: Context, path: str, slot: CodeSlot, result: ast.expr) -> Fault | None:
+    """The fault of a result that must be a value."""
+    match result:
+        case ast.Constant(value=None) if slot.role != "callbacks":
+            what = "None, which is never true" if slot.role == "conditions" else "None"
+            return what, "return a value", True
+        case ast.Call(func=ast.Name(id="print")) if slot.role != "callbacks":
+            return "None: `print` returns nothing", "return a value", True
+        case ast.Call(func=ast.Attribute(value=value, attr=method)):
+            type_ = _type(context, path, slot, value)
+            known = next(iter(kinds(type_)), "") if len(kinds(type_)) == 1 else ""
+            if known and method not in NOTHING_RETURNED.get(known, ()):
+                return None
+            if not known and (method not in ALWAYS_NOTHING or type_ != ANY):
+                return None
+            what = f"None: `{method}` changes the value and returns nothing"
+            return what, _instead(result, value, method), bool(known)
+    if slot.role == "duration":
+        type_ = _type(context, path, slot, result)
+        if kinds(type_) and "number" not in kinds(type_):
+            what = f"`{type_text(type_)}`, but a duration is a number of seconds"
+            return what, "return a number, for example with `float(...)`", True
+    return None
+
+
+def _instead(call: ast.Call, value: ast.expr, method: str) -> str:
+    """The code that returns the changed value."""
+    owner = ast.unparse(value)
+    given = [ast.unparse(each) for each in call.args]
+    match method, given:
+        case "append", [item]:
+            return f"write `{owner} + [{item}]` for the longer list"
+        case "extend", [items]:
+            return f"write `{owner} + {items}` for the longer list"
+        case "sort", []:
+            return f"write `sorted({owner})` for the sorted list"
+    return "return the new value"
+
+
+def _type(context: Context, path: str, slot: CodeSlot, value: ast.expr) -> Type:
+    """The type of a part of a function, by the types of the keys that it reads."""
+    name = userdata_parameter(slot)
+    tree = parsed(ast.unparse(value))
+    if name is None or tree is None:
+        return ANY
+    keys = {key: type_ for (where, key), type_ in context.types.inputs.items() if where == path}
+    return type_of(tree, {name: record(keys.items())})
+
+
+def _outcome_fault(node: Node, slot: CodeSlot, result: ast.expr) -> Fault | None:
+    """The fault of a result that must be an outcome."""
+    if not isinstance(node, Leaf) or not isinstance(result, ast.Constant) or result.value is None:
+        return None
+    names = outcome_names(node)
+    if result.value in names or slot.returns != "outcome" or not names:
+        return None
+    guess = guesser(names)(result.value) if isinstance(result.value, str) else None
+    help = did_you_mean(guess) or f"return one of its outcomes: {listed(names)}"
+    return f"`{result.value!r}`, which is not an outcome of `{node.name}`", help, True

@@ -1,0 +1,66 @@
+"""Slips in code: words and signs of other languages, and missing signs."""
+
+from __future__ import annotations
+
+import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+
+from smachac.ir.code_places import python_tree
+from smachac.ir.code_slips import corrected, slips
+
+
+@pytest.mark.parametrize(
+    ("text", "token", "cure"),
+    [
+        ("lambda ud: ud.a && ud.b", "&&", "lambda ud: ud.a and ud.b"),
+        ("lambda ud: ud.a&&ud.b", "&&", "lambda ud: ud.a and ud.b"),
+        ("lambda ud: ud.a || !ud.b", "||", "lambda ud: ud.a or not ud.b"),
+        ("lambda ud: f(!ud.a)", "!", "lambda ud: f(not ud.a)"),
+        ("lambda ud: ud.a === 1", "===", "lambda ud: ud.a == 1"),
+        ("lambda ud: ud.a !== 1", "!==", "lambda ud: ud.a != 1"),
+        ("lambda ud: ud.a <> 1", "<>", "lambda ud: ud.a != 1"),
+        ("lambda ud: ud->a", "->", "lambda ud: ud.a"),
+        ("lambda ud: return ud.a", "return ", "lambda ud: ud.a"),
+        ("lambda ud: ud.a = 1", "=", None),
+        ("lambda ud: f(x=1, y=2) = 1", "=", None),
+        ("lambda ud: ud.a += 1", "+=", None),
+        ("lambda ud: ud.a++", "++", None),
+        ("lambda ud: ud.a ? 1 : 2", "?", None),
+        ("lambda ud -> ud.a", "->", None),
+        ("ud => ud.a", "=>", None),
+        ("lambda ud: if ud.a: 1", "if", None),
+        ("def f(ud): return 1", "def", None),
+        ("lambda ud: f(ud.a", "(", None),
+        ("lambda ud: f(ud.a))", ")", None),
+        ("lambda ud: f(ud.a]", "]", None),
+        ("lambda ud: 'a", "'", None),
+        ("lambda ud: ud.a +", "+", None),
+        ("lambda ud ud.a", "lambda", None),
+        ("lambda ud: ud.a ud.b", "ud", None),
+        ("lambda ud: '&&' ! 'x'", "!", None),
+    ],
+)
+def test_the_slip_is_marked_and_cured_where_that_is_certain(
+    text: str, token: str, cure: str | None
+) -> None:
+    assert python_tree(text) is None
+    found = slips(text)
+    assert text[found[0].start : found[0].end] == token
+    assert corrected(text, found) == cure
+
+
+def test_an_assignment_in_a_condition_is_a_comparison() -> None:
+    text = "lambda ud: ud.a = 1"
+    assert corrected(text, slips(text, compares=True)) == "lambda ud: ud.a == 1"
+
+
+@given(st.text(alphabet="ab(){}[]'\"=!&|?:-+>. lambdaudreturn", max_size=60))
+def test_every_text_that_python_rejects_has_a_slip(text: str) -> None:
+    if python_tree(text) is not None:
+        return
+    found = slips(text)
+    assert all(0 <= slip.start <= slip.end <= len(text) and slip.what for slip in found)
+    assert found
+    cured = corrected(text, found)
+    assert cured is None or python_tree(cured) is not None
