@@ -62,7 +62,7 @@ def full(subject: Subject, name: str) -> str:
 
 
 def violated(subject: Subject, form: Data, site: Site, outcome: str, target: str) -> Mutant | None:
-    """The mutant in which a transition leads elsewhere; None if the property was violated before."""
+    """A mutant in which a transition leads elsewhere; None if the property was violated before."""
     number, holds = planted(subject, form)
     if not holds:
         return None
