@@ -279,7 +279,7 @@ def test_files_name_their_schemas(project: Path, capsys: pytest.CaptureFixture[s
         found = (project / path).parent / first.partition("=")[2]
         assert main(["schema", found.stem]) == 0
         assert found.read_text("utf-8") == capsys.readouterr().out
-    for path in (project / "schemas").iterdir():
-        path.unlink()
+    for schema in (project / "schemas").iterdir():
+        schema.unlink()
     assert main(["new", "state", "Drop"]) == 0
     assert (project / "templates/Drop.yml").read_text("utf-8").startswith("# The interface")
