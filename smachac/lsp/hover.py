@@ -14,7 +14,7 @@ from smachac.lsp.facts import Facts
 from smachac.lsp.navigation import Named, named_at, script_path
 from smachac.lsp.place import FIELD, KEY, Body, Place
 from smachac.lsp.session import View
-from smachac.report.explain_key import explain_keys, key_text
+from smachac.report.explain_key import explain_key, key_text
 from smachac.report.explain_state import explain_state, state_text
 from smachac.report.outline import paragraphs
 from smachac.report.state_types import Known, container_type, type_markdown
@@ -101,9 +101,7 @@ def _named(named: Named, facts: Facts, view: View, path: str) -> str:
     full = full_path(context, plain)
     if named.kind == "state":
         return _text(paragraphs(*state_text(explain_state(context, full, []))))
-    found = list(explain_keys(context, [(full, named.name)]))
-    parts = [paragraphs(*key_text(part)) for each in found for part in each]
-    return _text("\n".join(parts))
+    return _text(paragraphs(*key_text(explain_key(context, full, named.name))))
 
 
 def full_path(context: Context, plain: str) -> str:

@@ -5,9 +5,11 @@ A file is parsed once for each content, a script analysed once for each state of
 
 from __future__ import annotations
 
+import gc
 import os
 import re
-from collections.abc import Iterable
+from collections.abc import Iterable, Iterator
+from contextlib import contextmanager
 from dataclasses import dataclass, replace
 from pathlib import Path
 
@@ -24,6 +26,18 @@ from smachac.frontend.yaml_tree import Map, Seq, Tree
 from smachac.ir.nodes import Machine
 from smachac.ir.recursion import deep_recursion
 from smachac.lsp.repair import repaired
+
+
+@contextmanager
+def collection_paused() -> Iterator[None]:
+    """The garbage collector pauses: it would run many times over the growing results."""
+    enabled = gc.isenabled()
+    gc.disable()
+    try:
+        yield
+    finally:
+        if enabled:
+            gc.enable()
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -173,7 +187,8 @@ class Session:
     def check(self, path: str) -> dict[str, Report]:
         """The findings of the scripts by which a text is checked, by file."""
         if path not in self._checked:
-            self._checked[path] = self._check(path)
+            with collection_paused():
+                self._checked[path] = self._check(path)
         return self._checked[path]
 
     def _check(self, path: str) -> dict[str, Report]:
@@ -226,7 +241,7 @@ class Session:
     def view(self, path: str) -> View | None:
         """A text as answers need it; None if there is no such file."""
         if path not in self._views:
-            with deep_recursion():
+            with deep_recursion(), collection_paused():
                 made = self._make_view(path)
             if made is None:
                 return None
