@@ -8,7 +8,7 @@ from __future__ import annotations
 import json
 import os
 from collections.abc import Iterable, Iterator, Mapping, Sequence
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, field, replace
 from pathlib import Path
 
 from smachac.diagnostics.diagnostic import Diagnostic, Report, identity, in_order
@@ -29,11 +29,12 @@ class Batch:
 
     A sub-script that one of the others calls has no report of its own. `uses` holds, by the same
     names, the real paths of all files that a script was read from, and of those that were looked
-    for and not found.
+    for and not found. `analyses` has the analysis of each script.
     """
 
     reports: Mapping[str, Report]
     uses: Mapping[str, frozenset[str]]
+    analyses: Mapping[str, Analysis] = field(default_factory=dict, compare=False, repr=False)
 
     @property
     def report(self) -> Report:
@@ -107,7 +108,11 @@ def check_scripts(
     reports = {name: analyses[name].report for name in names}
     if len(names) > 1:
         _report_unused_allowances(analyses, reports)
-    return Batch(reports=reports, uses={name: uses[name] for name in names})
+    return Batch(
+        reports=reports,
+        uses={name: uses[name] for name in names},
+        analyses={name: analyses[name] for name in names},
+    )
 
 
 def _report_unused_allowances(analyses: Mapping[str, Analysis], reports: dict[str, Report]) -> None:
@@ -128,7 +133,8 @@ def analyse_alone(source: Source, library: Library, report: Report) -> Analysis:
 
     The generated script provides the keys that the sub-script needs and ends with its outcomes.
     Params come from callers, so unresolved look-ups are not reported. Undefined names are not
-    reported either: the base template of a caller may define them.
+    reported either: the base template of a caller may define them. The machine is that of the
+    generated script, and so never a checked one.
     """
     name = f"{source.name} (alone)"
 
@@ -149,7 +155,7 @@ def analyse_alone(source: Source, library: Library, report: Report) -> Analysis:
         )
         caller = _caller(name, [outcome.name for outcome in state.outcomes], *keys)
     found = analyse(caller, own, report)
-    return replace(found, report=list(_without(caller, found.report)), machine=None, checked=None)
+    return replace(found, report=list(_without(caller, found.report)), checked=None)
 
 
 def _caller(

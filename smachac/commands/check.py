@@ -29,6 +29,7 @@ if TYPE_CHECKING:
 
     from smachac.batch import Batch
     from smachac.diagnostics.diagnostic import Report
+    from smachac.frontend.files import Disk
     from smachac.refactor.autofix import FixResult
 
 EXAMPLES = """\
@@ -86,6 +87,7 @@ def check_command(arguments: Namespace) -> int:
 
     from smachac.commands.memory import limited_memory
     from smachac.driver import CODES
+    from smachac.frontend.files import Disk
 
     arguments.script = arguments.script or [Path()]
     for code in (*_codes_of(arguments.select), *_codes_of(arguments.ignore)):
@@ -95,7 +97,9 @@ def check_command(arguments: Namespace) -> int:
         return usage("--write-baseline needs --baseline FILE")
     try:
         with limited_memory(arguments.memory_limit):
-            return _watch(arguments) if arguments.watch else _check_once(arguments, set())
+            if arguments.watch:
+                return _watch(arguments)
+            return _check_once(arguments, set(), Disk())
     except _wrong_usage() as error:
         return usage(str(error))
 
@@ -114,7 +118,7 @@ def _codes_of(words: list[str]) -> list[str]:
     return [code.strip().upper() for word in words for code in word.split(",") if code.strip()]
 
 
-def _check_once(arguments: Namespace, used: set[str]) -> int:
+def _check_once(arguments: Namespace, used: set[str], disk: Disk) -> int:
     """Check once; the exit code. The real paths of all files that were read go into `used`."""
     from smachac.batch import check_scripts
     from smachac.checks.workspace import unreachable
@@ -123,7 +127,6 @@ def _check_once(arguments: Namespace, used: set[str]) -> int:
     from smachac.frontend.files import Disk
 
     started = time.perf_counter()
-    disk = Disk()
     paths = scripts_of(arguments.script, disk)
     sim_rule = unreachable if arguments.sim else None
 
@@ -299,14 +302,16 @@ def _read_baseline(path: Path) -> Counter[str]:
 
 def _watch(arguments: Namespace) -> int:
     """Check, and check again when a file changes, until Ctrl-C."""
-    from smachac.frontend.files import stamps
+    from smachac.frontend.files import Disk, stamps
 
+    disk = Disk()  # files that did not change are read and parsed once
     known: set[str] = set()
     while True:
         before = stamps(_watched(arguments, known))
         used: set[str] = set()
         try:
-            _check_once(arguments, used)
+            disk.refresh()
+            _check_once(arguments, used, disk)
         except _wrong_usage() as error:
             if not known:
                 raise

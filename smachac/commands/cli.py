@@ -43,6 +43,8 @@ COMMANDS = {
     "targets": ("targets", "list the targets and their options"),
     "completion": ("completion", "print the completion of commands for a shell"),
     "doctor": ("doctor", "list what is installed and what is missing"),
+    "schema": ("schema", "print the JSON Schema of a kind of file"),
+    "lsp": ("lsp", "serve an editor (language server)"),
 }
 """Command to its module and to what it does."""
 

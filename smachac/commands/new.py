@@ -48,6 +48,7 @@ def new_command(arguments: Namespace) -> int:
     from pathlib import Path
 
     from smachac.commands.scaffold import project
+    from smachac.commands.schema import schema_text
 
     words: list[str] = arguments.words
     if words[:1] == ["state"] and len(words) == 2:
@@ -59,7 +60,8 @@ def new_command(arguments: Namespace) -> int:
     folder = Path(words[0])
     if not words[0].isprintable():
         return usage(f"`{words[0]}` is not a name for a folder")
-    return _put(folder, project(folder.resolve().name))
+    schemas = {each: schema_text(each) for each in ("script", "interface", "project")}
+    return _put(folder, project(folder.resolve().name, schemas))
 
 
 def _put(folder: Path, files: Files) -> int:
@@ -92,6 +94,7 @@ def _state(name: str, arguments: Namespace) -> int:
 
     from smachac.commands.files import present_files
     from smachac.commands.scaffold import (
+        INTERFACE_SCHEMA,
         BadNameError,
         NewStateType,
         code_file,
@@ -125,7 +128,9 @@ def _state(name: str, arguments: Namespace) -> int:
     library = disk_library(folder / "main.yml", report)
     there = library.own_template(f"{name}.yml")
     if there is None:
-        files[f"templates/{name}.yml"] = interface(wanted, language)
+        with_schema = bool(present_files(folder, {INTERFACE_SCHEMA: ""}))
+        text = interface(wanted, language, with_schema=with_schema)
+        files[f"templates/{name}.yml"] = text
         library = _with(library, f"{name}.yml", files[f"templates/{name}.yml"])
     type_ = find_state_type(name, library, report)
     assert type_ is not None

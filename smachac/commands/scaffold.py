@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import re
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from keyword import iskeyword
 
@@ -49,10 +49,16 @@ def file_stem(name: str) -> str:
     return re.sub(r"(?<=[a-z0-9])(?=[A-Z])|(?<=[A-Z])(?=[A-Z][a-z])", "_", name).lower()
 
 
-def interface(wanted: NewStateType, language: str) -> str:
-    """The interface of a new state type."""
+INTERFACE_SCHEMA = "schemas/interface.json"
+"""The schema of interfaces in a project."""
+
+
+def interface(wanted: NewStateType, language: str, *, with_schema: bool = False) -> str:
+    """The interface of a new state type. `with_schema`: the project has the schema of
+    interfaces."""
     name = wanted.name
     lines = [
+        *([f"# yaml-language-server: $schema=../{INTERFACE_SCHEMA}"] if with_schema else []),
         f"# The interface of {name}: its keys, outcomes and variables (docs/language.md).",
         f"name: {name}",
         "doc: Describe in one sentence what it does.",
@@ -196,6 +202,7 @@ def _cpp_stub(type_: StateType) -> str:
 # --- a project
 
 MAIN = """\
+# yaml-language-server: $schema=schemas/script.json
 # A first machine: it greets, acts, and ends with success or failure.
 name: {name}
 template: Base
@@ -216,6 +223,7 @@ states:
 """
 
 SETTINGS = """\
+#:schema schemas/project.json
 # Folders with sub-scripts and state types (docs/ci.md describes all settings).
 templates = ["templates"]
 """
@@ -247,11 +255,14 @@ READ_ME = """\
 - `smachac check` finds errors, `smachac run main.yml` runs it,
   `smachac build main.yml --target python` generates a program.
 - `smachac new state Grasp` creates another state type.
+- `schemas/` is for editors: the first line of a file names its schema. After an update of smachac,
+  `smachac schema script > schemas/script.json` writes the new one.
 
 The command for CI: `smachac fmt . --check && smachac check . --strict`
 """
 
 GREET = """\
+# yaml-language-server: $schema=../schemas/interface.json
 # The interface of Greet: its keys, outcomes and variables (docs/language.md).
 name: Greet
 doc: Prints the goal.
@@ -279,8 +290,9 @@ class Greet(smach.State):
 """
 
 
-def project(name: str) -> Files:
-    """A project without findings, which can be built and run."""
+def project(name: str, schemas: Mapping[str, str]) -> Files:
+    """A project without findings, which can be built and run. `schemas`: the texts of the schemas
+    of its files, by name."""
     machine = re.sub(r"\W+", "_", name).strip("_").lower() or "robot"
     machine = f"robot_{machine}" if not machine.isidentifier() else machine
     return {
@@ -291,6 +303,7 @@ def project(name: str) -> Files:
         f"{MODULES}/greet.py": GREET_CODE,
         ".pre-commit-config.yaml": HOOKS,
         "README.md": READ_ME.format(name=name, modules=MODULES),
+        **{f"schemas/{each}.json": text for each, text in schemas.items()},
     }
 
 

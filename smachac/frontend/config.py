@@ -14,7 +14,15 @@ from smachac.diagnostics.source import Source, Span
 from smachac.diagnostics.wording import listed
 from smachac.frontend.errors.script import too_big, unreadable_file
 
-SETTINGS = ("scripts", "templates", "code", "exclude", "severity")
+SETTINGS: Mapping[str, str] = {
+    "scripts": "Folders with sub-scripts, relative to this file.",
+    "templates": "Folders with state types: their interfaces and templates.",
+    "code": "Folders with the Python modules and C++ headers of state types.",
+    "exclude": "Patterns of files to exclude when a folder is checked or formatted.",
+    "severity": 'Severities by code, or by the beginning of codes: SM204 = "error".',
+}
+"""The settings of a project file, with their descriptions."""
+
 LEVELS: Mapping[str, Severity | None] = {
     **{severity.value: severity for severity in Severity},
     "off": None,

@@ -11,6 +11,7 @@ import sys
 from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from dataclasses import replace
 from pathlib import Path
+from typing import TypeAlias
 
 from smachac.diagnostics.diagnostic import Code, Diagnostic, Report, did_you_mean
 from smachac.diagnostics.source import Source, Span
@@ -120,7 +121,8 @@ def decoded(data: bytes) -> str:
 
 
 class Disk:
-    """The files of one run: each file is read once, each text is parsed once.
+    """The files of one or several runs: each file is read once, each text is parsed once, until
+    `replace` or `refresh` forgets it.
 
     `texts` replace the files at their (real) paths. `asked` collects the real paths of all files
     that were searched, found or not; the caller may empty it. `plain`: all line ends become line
@@ -134,11 +136,12 @@ class Disk:
         plain: bool = False,
         refused: Mapping[str, Diagnostic] | None = None,
     ) -> None:
-        self.texts = texts or {}
+        self.texts = dict(texts or {})
         self.refused = dict(refused or {})
         self.plain = plain
         self.asked: set[str] = set()
         self._sources: dict[str, tuple[Source | None, Report]] = {}
+        self._stamps: dict[str, Stamp] = {}
         self._trees: dict[Source, tuple[Tree | None, Report]] = {}
 
     def read(self, path: Path, report: Report) -> Source | None:
@@ -151,6 +154,8 @@ class Disk:
         if key not in self._sources:
             found: Report = []
             text = self.texts.get(key)
+            if text is None:  # before the text: a change while it is read is noticed
+                self._stamps |= stamps([key])
             source = read_source(path, found) if text is None else Source(str(path), text)
             if self.plain and source is not None and "\r" in source.text:
                 source = Source(source.name, with_line_feeds(source.text))
@@ -167,6 +172,30 @@ class Disk:
         tree, problems_found = self._trees[source]
         report.extend(problems_found)
         return tree
+
+    def replace(self, path: Path, text: str | None) -> None:
+        """Set the text of a file from now on; with None, its text is that on disk again."""
+        key = os.path.realpath(path)
+        if text is None:
+            self.texts.pop(key, None)
+        else:
+            self.texts[key] = text
+        self._forget(key)
+
+    def refresh(self) -> set[str]:
+        """Forget the files that have changed on disk since they were read; their real paths."""
+        now = stamps(key for key in self._sources if key not in self.texts)
+        changed = {key for key, stamp in now.items() if stamp != self._stamps.get(key)}
+        for key in changed:
+            self._forget(key)
+        held = {source for source, _ in self._sources.values()}
+        self._trees = {source: tree for source, tree in self._trees.items() if source in held}
+        return changed
+
+    def _forget(self, key: str) -> None:
+        source, _ = self._sources.pop(key, (None, []))
+        if source is not None:
+            self._trees.pop(source, None)
 
     def is_file(self, path: Path) -> bool:
         key = os.path.realpath(path)
@@ -406,9 +435,13 @@ def _stems(folders: Sequence[Path], suffixes: Sequence[str]) -> list[str]:
     return list(dict.fromkeys(names))
 
 
-def stamps(paths: Iterable[str]) -> dict[str, tuple[int, int] | None]:
-    """Time of modification (ns) and size of each file; None if it does not exist."""
-    found: dict[str, tuple[int, int] | None] = {}
+Stamp: TypeAlias = "tuple[int, int] | None"
+"""Time of modification (ns) and size of a file; None if it does not exist."""
+
+
+def stamps(paths: Iterable[str]) -> dict[str, Stamp]:
+    """The stamp of each file."""
+    found: dict[str, Stamp] = {}
     for path in paths:
         try:
             status = Path(path).stat()

@@ -85,6 +85,106 @@ VARIABLES: dict[str, Field] = {
 `default_outcome` of a leaf, are variables of the state type. A state with `script` is a call of a
 sub-script and may have each field that the called state may have."""
 
+FIELD_DOCS: Mapping[str, str] = {
+    "name": "The name of the machine, and of the files that are made of it.",
+    "manifest": "The ROS package whose manifest is loaded (roslib).",
+    "node_name": "The name of the ROS node.",
+    "function_name": "The name of the function that the generated code defines.",
+    "types": "Short names for types: {Joints: float[7]}.",
+    "robot": "A built-in arm (panda, baxter), or a URDF file below this one's folder.",
+    "frames": "Frames beside those of the robot, which something else provides.",
+    "properties": "What must never or always happen in a run: a list, or a file with the list.",
+    "template": "The state type, or the type of the container: StateMachine, Concurrence,"
+    " Sequence, Iterator.",
+    "doc": "What it does, in a sentence: shown in pictures.",
+    "params": "Constants for look-ups ([params, x] or [[x]]) here and in everything inside.",
+    "userdata": "Data that is there before the machine starts. Short form `key: value`,"
+    " long form `key: {type: T, value: V}`.",
+    "input_keys": "Userdata keys that are read: [a, b], or with types {a: float, b: Pose}.",
+    "output_keys": "Userdata keys that are written: [a, b], or with types {a: float, b: Pose}.",
+    "outcomes": "What it can end with.",
+    "states": "The states, in order; the first is the initial one unless `initial` names another.",
+    "remapping": "Which key of the container a key of the state stands for:"
+    " {key of the state: key of the container}.",
+    "transitions": "Where each outcome leads: {outcome: state or outcome of the container}."
+    " An outcome without one leaves the container by its own name.",
+    "claims": "Resources held while it runs: [arm.left].",
+    "tags": "Names for properties: [moves, holds].",
+    "timeout": "A time limit, as `20s`, `500ms`, `1.5min`; it adds the outcome `timeout`."
+    " Where the state type has a variable of that name, that is meant.",
+    "retry": "Further tries: {on: [aborted], max: 3, delay: 1s}; it adds the outcome `exhausted`.",
+    "for_each": "Once for each item of a list or of a userdata key: {item: wp, in: waypoints}.",
+    "callbacks": "Code over userdata, by the name of the key or outcome it is for.",
+    "default_outcome": "What it ends with when no rule holds.",
+    "outcome_map": "The rules of a concurrence: {outcome: {CHILD: outcome of the child}}.",
+    "join": "all: wait for every child. any: preempt the rest when the first has ended.",
+    "initial": "The state to begin with.",
+    "forever": "It is meant to loop without an end.",
+    "on_error": "Where an exception in one of the states leads: a state, or an outcome.",
+    "connector_outcome": "The outcome that leads from each state to the next.",
+    "it": "What to run over: a list, or the userdata key that holds it.",
+    "it_label": "The userdata key under which the child finds the item.",
+    "exhausted_outcome": "What it ends with when there are no more items.",
+    "loop_outcomes": "Outcomes of the child after which the next item comes.",
+    "break_outcomes": "Outcomes of the child that end the iteration.",
+    "final_outcome_map": "What the iterator ends with: {ending outcome: outcome of the iterator}.",
+    "script": "The sub-script to call, without its ending; its variables can be overridden here.",
+}
+"""The descriptions of the fields, for editors."""
+
+FIELD_CHOICES: Mapping[str, tuple[str, ...]] = {"join": ("all", "any")}
+"""The values of fields that have few."""
+
+FIELD_DEFAULTS: Mapping[str, str] = {
+    "join": "all",
+    "it_label": "it_data",
+    "exhausted_outcome": "exhausted",
+}
+"""The values of optional fields that have one."""
+
+INTERFACE_FIELDS: Mapping[str, str] = {
+    "name": "The name of the state type, which is that of the file.",
+    "doc": "What it does, in a sentence.",
+    "kind": "What it is: `state`, `container` or `base`.",
+    "variables": "The variables that a script sets; one without a default is required.",
+    "input_keys": "Userdata keys that it reads: {target: Pose}.",
+    "output_keys": "Userdata keys that it writes: {width: float}.",
+    "outcomes": "What it can end with: {succeeded: {}, aborted: {doc: Not reached in time.}}.",
+    "writes": "The outputs that only some outcomes write: {succeeded: [width]}.",
+    "claims": 'Resources held while it runs: ["arm.{limb}"]; a part in braces is a variable.',
+    "blocking": "It waits for the outside world, so it needs a time limit.",
+    "stand_in": "It takes the place of a state that does not exist yet.",
+    "simulation": "Its Python code uses the simulated world.",
+    "adds_frames": "The variables that name a frame which it adds to the simulated world.",
+    "code": "Its code, by language: {python: my_robot.states:Grasp}.",
+}
+"""The fields of the interface of a state type, with their descriptions."""
+
+VARIABLE_FACTS: Mapping[str, str] = {
+    "type": "As float<rad>[7] or Pose.",
+    "default": "The value without an entry of the script; without a default one is required.",
+    "doc": "What it means, in a sentence.",
+    "role": "What the value means to the state (docs/state_types.md, Facts).",
+    "keys": "What the keys of the mapping are.",
+    "called_first": "Programs call the functions before the state, which does not get them.",
+    "unquoted": "Programs contain the text without quotes: the shape that it must have.",
+}
+"""What an interface can state about a variable, with descriptions."""
+
+KEY_FACTS: Mapping[str, str] = {
+    "type": "As float<rad>[7] or Pose.",
+    "doc": "What it means, in a sentence.",
+    "role": "What the key means to the state (docs/state_types.md, Facts).",
+    "optional": "The state has the key only if the script lists it.",
+}
+"""What an interface can state about a key, with descriptions."""
+
+OUTCOME_FACTS: Mapping[str, str] = {
+    "doc": "When it ends so, in a sentence.",
+    "optional": "The state has the outcome only if the script names it.",
+}
+"""What an interface can state about an outcome, with descriptions."""
+
 LONG: dict[str, str] = {row.short: row.name for row in VARIABLES.values() if row.short}
 """Short name to long name."""
 

@@ -17,6 +17,7 @@ from smachac.frontend.class_reader import read_module, read_template
 from smachac.frontend.errors.script import Owner, unknown_variable, wrong_shape
 from smachac.frontend.fields import as_flag, as_map, as_name, as_names, as_outcome, as_text
 from smachac.frontend.loader import Library
+from smachac.frontend.schema import INTERFACE_FIELDS
 from smachac.frontend.type_annotations import read_type
 from smachac.frontend.unquoted import VARIABLE_SHAPES, check_name, check_unquoted, is_name
 from smachac.frontend.values import as_value
@@ -43,10 +44,6 @@ _ALL_GIVEN = frozenset(["variables", "input_keys", "output_keys", "outcomes"])
 
 _SECTIONS = ("variables", "input_keys", "output_keys", "outcomes", "writes", "code")
 """The fields of an interface that are mappings of names."""
-
-_FIELDS = ("name", "doc", "kind", *_SECTIONS[:5], "claims", "blocking", "stand_in",
-           "simulation", "adds_frames", "code")  # fmt: skip
-"""All fields of an interface."""
 
 _VARIABLE_ROLES: tuple[VariableRole, ...] = get_args(VariableRole)
 _KEY_ROLES: tuple[KeyRole, ...] = get_args(KeyRole)
@@ -98,11 +95,12 @@ def _read_interface(
     fields: dict[str, Tree] = {}
     for entry in as_map(tree, report):
         key = str(entry.key.value)
-        if key in _FIELDS:
+        if key in INTERFACE_FIELDS:
             fields[key] = entry.value
         else:
             word = Word(key, entry.key.span)
-            report.append(unknown_variable(word, Owner("interface", "an interface"), _FIELDS))
+            owner = Owner("interface", "an interface")
+            report.append(unknown_variable(word, owner, INTERFACE_FIELDS))
     if "name" in fields:
         as_name(fields["name"], report)
     sections = {key: as_map(fields[key], report) if key in fields else () for key in _SECTIONS}

@@ -198,6 +198,40 @@ def events(text: str) -> Iterator[Any]:
     return iter(found) if found else _pure_events(text)
 
 
+_WITHOUT_END = (
+    "while parsing a flow",
+    "while scanning a simple key",
+    "while scanning a quoted scalar",
+)
+"""What the parser was reading where the line of its beginning has the error."""
+
+
+def syntax_error_line(text: str) -> int | None:
+    """The line, counted from 0, of the first syntax error; None if the text is YAML.
+
+    It is the line of the part that has no end, if the parser names it, else that at which the
+    parser stops, else the last one.
+    """
+    from ruamel.yaml.error import YAMLError
+
+    last = text.count("\n")
+    bad = _UNPRINTABLE.search(text)
+    if bad is not None:
+        return text.count("\n", 0, bad.start())
+    if _deepest_bracket(text) > DEEPEST_REREAD:
+        return last
+    for events in (_c_events, _pure_events):
+        try:
+            if [*events(text)]:
+                return None
+        except (YAMLError, ValueError) as error:
+            context = getattr(error, "context", None) or ""
+            named = context.startswith(_WITHOUT_END) and error.context_mark is not None  # type: ignore[union-attr]
+            mark = getattr(error, "context_mark" if named else "problem_mark", None)
+            return min(mark.line, last) if mark is not None else last
+    return None
+
+
 def _build(source: Source, report: Report) -> Tree | None:
     from ruamel.yaml.error import YAMLError
 

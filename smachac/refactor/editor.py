@@ -103,6 +103,11 @@ class ScriptEditor:
             text = f"{written[0]}{text}{written[0]}"
         self._words[span.start, span.end] = text
 
+    @property
+    def replaced(self) -> list[Span]:
+        """The words that are replaced, in the order of the text."""
+        return [Span(self.source, start, end) for start, end in sorted(self._words)]
+
     def rewrite_state(self, place: StateItem, items: list[Item] | None = None) -> None:
         """Print a state from its changed syntax tree, or replace it with other states or none."""
         self._rewritten[place.item.start] = (place, [place.item] if items is None else items)

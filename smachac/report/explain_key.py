@@ -83,10 +83,11 @@ def explain_keys(context: Context, pairs: Iterable[tuple[str, str]]) -> Iterator
         if pair not in done:
             same = same_key(context.flow, *pair)
             done.update(same)
-            yield tuple(_part(context, path, key) for path, key in same)
+            yield tuple(explain_key(context, path, key) for path, key in same)
 
 
-def _part(context: Context, path: str, key: str) -> KeyPart:
+def explain_key(context: Context, path: str, key: str) -> KeyPart:
+    """The explanation of a key in one container, without its copies in others."""
     flow = context.flow
     scope = flow.scopes[path]
     container = scope.container

@@ -268,3 +268,18 @@ def test_what_the_user_has_comes_first(
     assert listed.count("  SleepState ") == 1
     assert main(["states", "Mine", "--templates", "more"]) == 0
     assert "anything goes" in capsys.readouterr().out
+
+
+def test_files_name_their_schemas(project: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    assert main(["new", "state", "Grasp"]) == 0
+    capsys.readouterr()
+    for path in ("main.yml", "templates/Greet.yml", "templates/Grasp.yml"):
+        first = (project / path).read_text("utf-8").splitlines()[0]
+        assert first.startswith("# yaml-language-server: $schema=")
+        found = (project / path).parent / first.partition("=")[2]
+        assert main(["schema", found.stem]) == 0
+        assert found.read_text("utf-8") == capsys.readouterr().out
+    for schema in (project / "schemas").iterdir():
+        schema.unlink()
+    assert main(["new", "state", "Drop"]) == 0
+    assert (project / "templates/Drop.yml").read_text("utf-8").startswith("# The interface")

@@ -18,6 +18,7 @@ LAYERS = (
     ("driver", "report"),
     ("__init__", "batch"),
     ("refactor", "verify"),
+    ("lsp",),
     ("commands",),
     ("__main__",),
 )
@@ -29,10 +30,13 @@ PACKAGES: Mapping[str, frozenset[str]] = {
 }
 """The rooms that generated programs stand on, with the packages that they may import."""
 
-HEAVY = {"networkx", "lark", "jinja2", "pybullet", "pybullet_data", "numpy", "PIL"}
+HEAVY = {
+    *("networkx", "lark", "jinja2", "pybullet", "pybullet_data", "numpy", "PIL"),
+    *("pygls", "lsprotocol"),
+}
 """Packages slow to load: imported inside the functions that use them, or for types alone."""
 
-LATE = {"smachac/targets/templates/sandbox.py"}
+LATE = {"smachac/targets/templates/sandbox.py", "smachac/lsp/server.py"}
 """Modules that are made of a heavy package, and so are imported where they are used."""
 
 Tree = Mapping[str, str]
