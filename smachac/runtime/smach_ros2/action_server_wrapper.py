@@ -87,7 +87,7 @@ class ActionServerWrapper:
             node,
             action_spec,
             server_name,
-            execute_callback=None,
+            execute_callback=lambda handle: self._spec.Result(),  # never called: see `_accept`
             callback_group=ros.own_group(),
             handle_accepted_callback=self._accept,
             cancel_callback=self._cancel,

@@ -35,6 +35,8 @@ class Outgoing:
             return None
         try:
             message = copy.deepcopy(self.default if self.key is None else ud[self.key])
+            if hasattr(message, "_check_fields"):  # otherwise a wrong type is converted or crashes
+                message._check_fields = True
             for slot in self.slots:
                 setattr(message, slot, ud[slot])
             changed = None if self.callback is None else self.callback(ud, message)

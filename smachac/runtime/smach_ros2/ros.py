@@ -82,7 +82,7 @@ def fields(message: Any) -> list[str]:
 
 def is_shut_down() -> bool:
     """Whether rclpy was initialized and has been shut down."""
-    context = rclpy.get_default_context(shutting_down=True)
+    context = rclpy.get_default_context()
     return context.handle is not None and not context.ok()
 
 

@@ -141,7 +141,9 @@ class ReadTopicState(RosState):
     def execute(self, ud: Any) -> str:
         """Read one message."""
         topic = self._source[0] or ud["topic"]
-        wanted = self._source[1] or ud.get("msg_type", None)
+        wanted = self._source[1]
+        if wanted is None and "msg_type" in ud:
+            wanted = ud["msg_type"]
         try:
             msg_type = self._type_of(topic) if wanted is None else wanted
             if isinstance(msg_type, str):
