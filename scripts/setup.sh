@@ -178,9 +178,14 @@ prepare_ros2() {
   printf '%s\n' "$state $PWD" >"$stamp"
 }
 
-# Builds the interface packages of the tests into .venv-ros2/interfaces.
+# Builds the interface packages of the tests into .venv-ros2/interfaces. The wheels name folders of
+# the machine that built them, which cmake refuses.
 build_interfaces() {
-  local root=$PWD/.venv-ros2 package
+  local root=$PWD/.venv-ros2 package site include
+  site=$("$root/bin/python" -c 'import sysconfig; print(sysconfig.get_path("purelib"))')
+  include=$("$root/bin/python" -c 'import sysconfig; print(sysconfig.get_path("include"))')
+  grep -rlZ /opt/python "$root/share" --include='*.cmake' | xargs -0r sed -i -E \
+    "s#/opt/python/[^;\"]*/site-packages#$site#g; s#/opt/python/[^;\"]*/include/python[0-9.]+#$include#g"
   for package in "$1"/*/; do
     rm -rf "$root/build"
     PATH=$root/bin:$PATH AMENT_PREFIX_PATH=$root CMAKE_PREFIX_PATH=$root \

@@ -71,6 +71,13 @@ class Graph:
             "PYTHONDONTWRITEBYTECODE": "1",
         }
 
+    def use_interfaces(self) -> None:
+        """Let programs that start from now on import the interface packages of the tests."""
+        folder = Path(PYTHON).parents[1] / "interfaces"
+        (packages,) = folder.glob("lib/python3*/site-packages")
+        self.environment["PYTHONPATH"] += f"{os.pathsep}{packages}"
+        self.environment["LD_LIBRARY_PATH"] = str(folder / "lib")
+
     def _launch(self, command: list[str]) -> Program:
         program = Program(command, self.environment)
         self._programs.append(program)

@@ -81,7 +81,7 @@ def test_a_cancel_request_preempts_the_machine(graph2: Graph) -> None:
     caller.say("4")
     caller.expect("accepted")
     caller.say("cancel")
-    caller.expect("ended canceled")
+    assert caller.expect("ended").startswith("ended canceled")
 
 
 def test_a_new_goal_preempts_the_one_that_runs(graph2: Graph) -> None:
@@ -90,12 +90,11 @@ def test_a_new_goal_preempts_the_one_that_runs(graph2: Graph) -> None:
     caller.say("4")
     program.expect("runs")
     caller.say("1")
-    caller.expect("ended aborted [4]")
-    caller.expect("ended succeeded [1]")
+    assert caller.expect("ended") == "ended aborted [4]"
+    assert caller.expect("ended") == "ended succeeded [1]"
 
 
-def test_the_feedback_may_be_the_path_of_the_active_state(graph2: Graph) -> None:
-    # Fibonacci has no text in its feedback: the test of the generated interfaces shows one.
+def test_paths_of_active_states(graph2: Graph) -> None:
     output = graph2.run(
         MACHINE.replace("sys.stdin.readline()", "")
         + """

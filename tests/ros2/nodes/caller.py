@@ -2,6 +2,7 @@
 
 import sys
 import threading
+from typing import Any
 
 import rclpy
 from rclpy.action import ActionClient
@@ -15,19 +16,19 @@ client = ActionClient(node, Fibonacci, "machine")
 threading.Thread(target=rclpy.spin, args=(node,), daemon=True).start()
 client.wait_for_server()
 print("ready", flush=True)
-handles = []
+handles: list[Any] = []
 
 
-def show_feedback(message):
+def show_feedback(message: Any) -> None:
     print("feedback", list(message.feedback.sequence), flush=True)
 
 
-def show_result(future):
+def show_result(future: Any) -> None:
     response = future.result()
     print("ended", NAMES[response.status], list(response.result.sequence), flush=True)
 
 
-def show_handle(future):
+def show_handle(future: Any) -> None:
     handle = future.result()
     print("accepted" if handle.accepted else "rejected", flush=True)
     handles.append(handle)

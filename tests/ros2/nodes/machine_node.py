@@ -2,6 +2,8 @@
 
 import atexit
 import threading
+from collections.abc import Callable
+from typing import Any
 
 from rclpy.duration import Duration
 from std_msgs.msg import Int32, String
@@ -31,25 +33,25 @@ __all__ = [
 node = program.start_node("machine")
 
 
-def report(name, *values):
+def report(name: str, *values: object) -> None:
     """Print what a test reads: `name: values`."""
     print(f"{name}:", *values)
 
 
-def after(seconds, action):
+def after(seconds: float, action: Callable[[], object]) -> None:
     """Perform an action later."""
     timer = threading.Timer(seconds, action)
     timer.daemon = True
     timer.start()
 
 
-def goal_state(order, **arguments):
+def goal_state(order: int, **arguments: Any) -> Any:
     """A state that sends the goal `order` to the server of the tests."""
     goal = Fibonacci.Goal(order=order)
     return smach_ros.SimpleActionState(node, "work", Fibonacci, goal=goal, **arguments)
 
 
-def finish():
+def finish() -> None:
     program.stop_node(node)
     left = [each.name for each in threading.enumerate() if each is not threading.main_thread()]
     print("threads left:", left)

@@ -9,6 +9,7 @@ import os
 import sys
 import threading
 import time
+from typing import Any
 
 import rclpy
 from rclpy.action import ActionServer, CancelResponse, GoalResponse
@@ -24,17 +25,17 @@ group = ReentrantCallbackGroup()
 released = threading.Event()
 
 
-def accept(goal):
+def accept(goal: Any) -> Any:
     print(f"goal {goal.order}", flush=True)
     return GoalResponse.REJECT if goal.order == 3 else GoalResponse.ACCEPT
 
 
-def cancel(handle):
+def cancel(handle: Any) -> Any:
     print(f"cancel {handle.request.order} at {time.monotonic():.6f}", flush=True)
     return CancelResponse.REJECT if handle.request.order == 5 else CancelResponse.ACCEPT
 
 
-def execute(handle):
+def execute(handle: Any) -> Any:
     order = handle.request.order
     if order == 7:
         os._exit(1)
@@ -56,28 +57,28 @@ def execute(handle):
     return Fibonacci.Result(sequence=[order, 10])
 
 
-def trigger(request, response):
+def trigger(request: Any, response: Any) -> Any:
     response.success, response.message = True, "done"
     return response
 
 
-def invert(request, response):
+def invert(request: Any, response: Any) -> Any:
     response.success, response.message = not request.data, str(request.data)
     return response
 
 
-def hang(request, response):
+def hang(request: Any, response: Any) -> Any:
     print("called", flush=True)
     released.wait(60)
     response.message = "late"
     return response
 
 
-def die(request, response):
+def die(request: Any, response: Any) -> None:
     os._exit(1)
 
 
-def release():
+def release() -> None:
     for _ in sys.stdin:
         released.set()
 
