@@ -157,7 +157,7 @@ def test_a_program_that_ends_without_a_shutdown_ends_cleanly(graph2: Graph) -> N
 
 
 def test_limits_are_in_simulated_time(graph2: Graph) -> None:
-    graph2.node("server")
+    server = graph2.node("server")
     program = graph2.start(
         START.replace(
             'rclpy.create_node("machine")',
@@ -172,6 +172,7 @@ goal = Fibonacci.Goal(order=4)
 state = smach_ros.SimpleActionState(node, "work", Fibonacci, goal, exec_timeout=1000.0)
 thread = threading.Thread(target=lambda: print("outcome:", state.execute(smach.UserData())))
 thread.start()
+input()
 second = 0
 while thread.is_alive():
     message = Clock()
@@ -186,6 +187,8 @@ for other in threading.enumerate():
 left()
 """
     )
+    server.expect("goal 4")
+    program.say("let the time pass")
     assert program.end() == 0, program.output
     assert "outcome: aborted" in program.output
     assert "is cancelled after 1000.0 s" in program.output

@@ -143,6 +143,6 @@ def test_sensor_data_come_from_every_publisher(graph2: Graph) -> None:
 report("message", wait_for_message(node, "numbers", Int32, qos="sensor_data").data)
 """
     )
-    publisher.say("4")
+    publisher.say("cycle 4")
     assert program.end() == 0, program.output
     assert "message: 4" in program.output

@@ -154,10 +154,12 @@ class ActionServerWrapper:
             self._execute(self._current)
 
     def _execute(self, handle: Any) -> None:
-        if _key(handle) in self._cancelled:
+        server = ros.load("rclpy.action.server")
+        try:
+            handle._update_state(server.GoalEvent.EXECUTE)
+        except server.RCLError:  # a goal that is being cancelled does not begin
             self._end(handle, "it was cancelled before it began")
             return
-        handle._update_state(ros.load("rclpy.action.server").GoalEvent.EXECUTE)
         try:
             result = self.execute_cb(handle)
         except Exception:
