@@ -11,7 +11,7 @@ import tempfile
 from pathlib import Path
 from typing import IO
 
-from tests.ros.ros_graph import Program
+from tests.ros.ros_graph import Program as Program
 
 ROOT = Path(__file__).parents[2]
 NODES = Path(__file__).with_name("nodes")

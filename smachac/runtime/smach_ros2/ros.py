@@ -46,8 +46,22 @@ if TYPE_CHECKING:
 
         def __getattr__(self, name: str) -> Any: ...
 
+    class LifecycleNode(Node):
+        """The class rclpy.lifecycle.LifecycleNode."""
+
+        def on_configure(self, state: Any) -> Any: ...
+
+        def on_activate(self, state: Any) -> Any: ...
+
+        def on_deactivate(self, state: Any) -> Any: ...
+
+        def on_cleanup(self, state: Any) -> Any: ...
+
+        def on_shutdown(self, state: Any) -> Any: ...
+
 else:
     Node = load("rclpy.node").Node
+    LifecycleNode = load("rclpy.lifecycle").LifecycleNode
 
 NANOSECONDS = 1_000_000_000
 
