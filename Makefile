@@ -8,10 +8,10 @@ SMACHAC := .venv/bin/smachac
 DEMO := examples/08_pick_and_place/main.yml
 
 .DEFAULT_GOAL := help
-.PHONY: help demo test test-all test-ros test-lowest check golden docs bench build clean
+.PHONY: help demo test test-all test-ros test-ros2 test-lowest check golden docs bench build clean
 
 help: ## Print this list
-	@awk -F ':.*## ' '/^[a-z-]+:.*## / {printf "  make %-11s %s\n", $$1, $$2}' Makefile
+	@awk -F ':.*## ' '/^[a-z0-9-]+:.*## / {printf "  make %-11s %s\n", $$1, $$2}' Makefile
 
 demo: ## From YAML to a robot that moves: compile, check, simulate, draw; everything lands in out/
 	@scripts/setup.sh sim
@@ -24,17 +24,22 @@ demo: ## From YAML to a robot that moves: compile, check, simulate, draw; everyt
 
 test: ## Run the tests that a change is likely to break; ARGS="-k trace" selects some of them
 	@scripts/setup.sh dev
-	$(RUN) pytest -n auto --maxprocesses 8 -m "not slow and not ros" $(ARGS)
+	$(RUN) pytest -n auto --maxprocesses 8 -m "not slow and not ros and not ros2" $(ARGS)
 
 test-all: ## Run every test: also the slow ones, and those with live ROS
 	@scripts/setup.sh dev
-	$(RUN) pytest -n auto --maxprocesses 8 -m "not ros" $(ARGS)
-	@$(MAKE) --no-print-directory test-ros
+	$(RUN) pytest -n auto --maxprocesses 8 -m "not ros and not ros2" $(ARGS)
+	@$(MAKE) --no-print-directory test-ros test-ros2
 
 test-ros: ## Install ROS from Debian and run the tests with live nodes
 	@scripts/setup.sh dev
 	@scripts/setup.sh ros || test -z "$$SMACHAC_REQUIRE_ROS"
 	$(RUN) pytest -n 4 -m ros -rs $(ARGS)
+
+test-ros2: ## Install ROS 2 with pip in .venv-ros2 and run the tests with live nodes
+	@scripts/setup.sh dev
+	@scripts/setup.sh ros2 || test -z "$$SMACHAC_REQUIRE_ROS"
+	$(RUN) pytest -n 4 -m ros2 -rs $(ARGS)
 
 test-lowest: ## Run core tests with the lowest versions of the dependencies that pyproject.toml states
 	@scripts/lowest.sh $(ARGS)
@@ -65,4 +70,4 @@ build: ## Make the source archive and the wheel in dist/
 	$(RUN) build --outdir dist
 
 clean: ## Remove everything that the other targets made
-	rm -rf .venv .venv-lowest out dist build smachac.egg-info .mypy_cache .ruff_cache .pytest_cache .hypothesis
+	rm -rf .venv .venv-lowest .venv-ros2 out dist build smachac.egg-info .mypy_cache .ruff_cache .pytest_cache .hypothesis

@@ -12,6 +12,7 @@ import pytest
 from hypothesis import settings
 
 from tests.ros.ros_graph import Graph, missing
+from tests.ros2 import ros2_graph
 from tests.support.silent_smach import silent_smach
 
 # A shell starts what it puts in the background deaf to Ctrl-C, which tests send and raise.
@@ -47,7 +48,7 @@ def pytest_runtest_makereport(
 ) -> Generator[None, pytest.TestReport, pytest.TestReport]:
     """Judge the skip of one test; ROS is asked for on its own."""
     report = yield
-    live = item.get_closest_marker("ros") is not None
+    live = any(item.get_closest_marker(each) is not None for each in ("ros", "ros2"))
     _fail_if_skipped(report, "SMACHAC_REQUIRE_ROS" if live else "SMACHAC_REQUIRE_ALL")
     return report
 
@@ -73,6 +74,18 @@ def graph(tmp_path: Path) -> Iterator[Graph]:
     if missing():
         pytest.skip(f"ROS is not there ({missing()}): make test-ros")
     live = Graph(tmp_path)
+    try:
+        yield live
+    finally:
+        live.stop()
+
+
+@pytest.fixture
+def graph2(tmp_path: Path) -> Iterator[ros2_graph.Graph]:
+    """A ROS 2 domain that nobody else uses; without ROS 2 the test is skipped."""
+    if ros2_graph.missing():
+        pytest.skip(f"ROS 2 is not there ({ros2_graph.missing()}): make test-ros2")
+    live = ros2_graph.Graph(tmp_path)
     try:
         yield live
     finally:

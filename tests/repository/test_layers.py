@@ -25,7 +25,9 @@ LAYERS = (
 """The rooms of smachac/, lowest first: a room imports only from the rows above its own here."""
 
 PACKAGES: Mapping[str, frozenset[str]] = {
-    "runtime": frozenset({"rospy", "rosgraph", "actionlib", "actionlib_msgs", "genpy"}),
+    "runtime": frozenset(
+        {"rospy", "rosgraph", "actionlib", "actionlib_msgs", "genpy", "smach_msgs"}
+    ),
     "sim": frozenset({"pybullet", "pybullet_data", "numpy", "PIL", "imageio_ffmpeg"}),
 }
 """The rooms that generated programs stand on, with the packages that they may import."""

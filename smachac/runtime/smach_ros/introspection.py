@@ -5,10 +5,10 @@ from __future__ import annotations
 import base64
 import pickle
 import threading
-from collections.abc import Iterator
 from typing import Any
 
 from smachac.runtime import smach
+from smachac.runtime.container_tree import containers, pickled
 from smachac.runtime.smach import InvalidStateError, State, UserData
 from smachac.runtime.smach.container import Container
 from smachac.runtime.smach.user_data import store
@@ -20,9 +20,6 @@ STRUCTURE_TOPIC = "/smach/container_structure"
 
 HEARTBEAT = 2.0
 """Seconds between two reports on all containers."""
-
-PROTOCOL = 2
-"""The pickle protocol of userdata; SMACH's viewer reads it, in Python 2 too."""
 
 
 class _Reporter:
@@ -125,7 +122,7 @@ class _Reporter:
             path=path,
             initial_states=[str(label) for label in container.get_initial_states()],
             active_states=[str(label) for label in container.get_active_states()],
-            local_data=_pickled(container.userdata),
+            local_data=pickled(container.userdata),
             info=info,
         )
 
@@ -150,7 +147,7 @@ class _Reporter:
         userdata = UserData()
         if command.local_data and self._unpickle:
             store(userdata).update(pickle.loads(base64.b64decode(command.local_data)))
-        elif command.local_data not in ("", _pickled(UserData())):
+        elif command.local_data not in ("", pickled(UserData())):
             smach.logwarn(
                 f"container '{command.path}' is given an initial state; the userdata that came "
                 "with it is dropped, for unpickling it may run any code (IntrospectionServer: "
@@ -193,7 +190,7 @@ class IntrospectionServer(_Reporter):
             raise InvalidStateError(f"a {type(state).__name__} has nothing to look into")
         if server_name != self._name:
             raise InvalidStateError(f"server '{self._name}' does not report as '{server_name}'")
-        added = dict(_containers(path, state))
+        added = dict(containers(path, state))
         self._paths = {**self._paths, **added}
         if self._running:
             for each, container in added.items():
@@ -252,7 +249,7 @@ class IntrospectionClient:
 
         type_, limit = messages.initial_status_command(), ros.seconds(timeout)
         commands = self._rospy.Publisher(server + INIT_TOPIC, type_, queue_size=1, latch=True)
-        data = _pickled(initial_userdata or UserData())
+        data = pickled(initial_userdata or UserData())
         commands.publish(type_(path=path, initial_states=initial_states, local_data=data))
         if limit is None:
             return None
@@ -276,32 +273,3 @@ class _SubscriberListener:
 
     def peer_unsubscribe(self, topic: str, peers: int) -> None:
         """No report is due."""
-
-
-def _containers(path: str, container: Container) -> Iterator[tuple[str, Container]]:
-    """A container and those below it, each with its path."""
-    pending = [(path, container)]
-    while pending:
-        path, container = pending.pop(0)
-        yield path, container
-        for label, child in container.get_children().items():
-            if isinstance(child, Container):
-                pending.append((f"{path.rstrip('/')}/{label}", child))
-
-
-def _pickled(userdata: UserData) -> str:
-    """The userdata in the format of SMACH's viewer; the `repr` of values that cannot be pickled."""
-    held = dict(store(userdata))
-    try:
-        data = pickle.dumps(held, PROTOCOL)
-    except Exception:
-        data = pickle.dumps({key: _picklable(value) for key, value in held.items()}, PROTOCOL)
-    return base64.b64encode(data).decode("ascii")
-
-
-def _picklable(value: object) -> object:
-    try:
-        pickle.dumps(value, PROTOCOL)
-    except Exception:
-        return repr(value)
-    return value

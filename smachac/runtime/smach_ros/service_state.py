@@ -10,7 +10,8 @@ from typing import Any
 
 from smachac.runtime import smach
 from smachac.runtime.smach import has_smach_interface
-from smachac.runtime.smach_ros.ros_state import RosState, callback, check_slots, is_outcome
+from smachac.runtime.smach_ros.ros_state import RosState
+from smachac.runtime.state_callbacks import callback, checked_slots, is_outcome
 
 FIRST_WAIT = 0.5
 """Seconds to wait for a service before the wait is logged."""
@@ -58,8 +59,12 @@ class ServiceState(RosState):
         self._request = service_spec._request_class() if request is None else request
         self._request_key = request_key
         self._response_key = response_key
-        self._request_slots = check_slots(request_slots, service_spec._request_class, "request")
-        self._response_slots = check_slots(response_slots, service_spec._response_class, "response")
+        self._request_slots = checked_slots(
+            request_slots, service_spec._request_class.__slots__, "request"
+        )
+        self._response_slots = checked_slots(
+            response_slots, service_spec._response_class.__slots__, "response"
+        )
         keys = tuple(input_keys), tuple(output_keys)
         self._request_cb = callback(
             self, "request", request_cb, request_cb_args, request_cb_kwargs, keys

@@ -12,8 +12,9 @@ from typing import Any
 from smachac.runtime import smach
 from smachac.runtime.smach import InvalidStateError, has_smach_interface
 from smachac.runtime.smach_ros import ros
-from smachac.runtime.smach_ros.ros_state import RosState, callback, check_slots, is_outcome
+from smachac.runtime.smach_ros.ros_state import RosState
 from smachac.runtime.smach_ros.server_watch import GoalMonitor
+from smachac.runtime.state_callbacks import callback, checked_slots, is_outcome
 
 SHUTDOWN_WAIT = 5.0
 """Seconds that a shutdown of the node waits for the end of a cancelled goal."""
@@ -78,8 +79,10 @@ class SimpleActionState(RosState):
         self._goal = message.action_goal.goal if goal is None else goal
         self._goal_key = goal_key
         self._result_key = result_key
-        self._goal_slots = check_slots(goal_slots, message.action_goal.goal, "goal")
-        self._result_slots = check_slots(result_slots, message.action_result.result, "result")
+        self._goal_slots = checked_slots(goal_slots, message.action_goal.goal.__slots__, "goal")
+        self._result_slots = checked_slots(
+            result_slots, message.action_result.result.__slots__, "result"
+        )
         keys = tuple(input_keys), tuple(output_keys)
         self._goal_cb = callback(self, "goal", goal_cb, goal_cb_args, goal_cb_kwargs, keys)
         self._feedback_cb = callback(

@@ -1,0 +1,68 @@
+"""The policies and presets of the quality of service of ROS 2 topics, as data; no ROS is needed."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from typing import Any
+
+DEPTH = 10
+"""The depth of the history where none is stated."""
+
+POLICIES: Mapping[str, tuple[str, ...]] = {
+    "reliability": ("reliable", "best_effort"),
+    "durability": ("volatile", "transient_local"),
+    "history": ("keep_last", "keep_all"),
+}
+"""The values of each policy. The key `depth`, a positive number, is known too."""
+
+PRESETS: Mapping[str, Mapping[str, Any]] = {
+    "default": {},
+    "sensor_data": {"reliability": "best_effort", "depth": 5},
+    "latched": {"durability": "transient_local", "depth": 1},
+    "services_default": {},
+    "parameters": {"depth": 1000},
+}
+"""Names for often used policies. All but `latched` are names of ROS 2."""
+
+
+def policies(value: int | str | Mapping[str, Any] | None) -> dict[str, Any]:
+    """All policies of a value without faults: None, a depth, a preset, or a mapping."""
+    stated: Mapping[str, Any]
+    if value is None:
+        stated = {}
+    elif isinstance(value, int):
+        stated = {"depth": value}
+    elif isinstance(value, str):
+        stated = PRESETS[value]
+    else:
+        stated = {**PRESETS[value.get("preset", "default")], **value}
+    default = {"reliability": "reliable", "durability": "volatile", "history": "keep_last"}
+    merged = {**default, "depth": DEPTH, **stated}
+    merged.pop("preset", None)
+    return merged
+
+
+def faults(value: object) -> list[str]:
+    """What is wrong with a value; empty if it is a quality of service."""
+    if value is None:
+        return []
+    if isinstance(value, str):
+        known = ", ".join(PRESETS)
+        return [] if value in PRESETS else [f"qos: no preset `{value}`; there are {known}"]
+    if isinstance(value, Mapping):
+        return [fault for key, each in value.items() for fault in _policy_faults(key, each)]
+    return _policy_faults("depth", value)
+
+
+def _policy_faults(key: object, value: object) -> list[str]:
+    """What is wrong with one policy."""
+    if key == "depth":
+        is_depth = isinstance(value, int) and not isinstance(value, bool) and value > 0
+        return [] if is_depth else [f"qos: the depth is a positive number, not `{value}`"]
+    if key == "preset":
+        return faults(str(value))
+    if key not in POLICIES:
+        known = ", ".join([*POLICIES, "depth", "preset"])
+        return [f"qos: no policy `{key}`; there are {known}"]
+    values = POLICIES[str(key)]
+    return [] if value in values else [f"qos: {key} is {' or '.join(values)}, not `{value}`"]

@@ -1,0 +1,299 @@
+"""IntrospectionServer: publishes the structure and the status of a machine on ROS topics.
+
+Where smach_msgs can be imported the messages are those of SMACH's viewer. Otherwise they are JSON
+texts (std_msgs/String) with the same fields, on topics of their own.
+"""
+
+from __future__ import annotations
+
+import base64
+import json
+import pickle
+import threading
+from collections.abc import Mapping
+from importlib import import_module
+from typing import Any
+
+from smachac.runtime import smach
+from smachac.runtime.container_tree import containers, pickled
+from smachac.runtime.smach import InvalidStateError, State, UserData
+from smachac.runtime.smach.container import Container
+from smachac.runtime.smach.user_data import store
+from smachac.runtime.smach_ros2 import ros, spinning
+
+STATUS_TOPIC = "/smach/container_status"
+INIT_TOPIC = "/smach/container_init"
+STRUCTURE_TOPIC = "/smach/container_structure"
+JSON_SUFFIX = "_json"
+"""What follows the name of a topic whose messages are JSON texts."""
+
+HEARTBEAT = 2.0
+"""Seconds between two reports on all containers; a viewer that starts late waits for one."""
+
+
+class Format:
+    """The messages of introspection: those of smach_msgs, or JSON texts without it."""
+
+    def __init__(self) -> None:
+        try:
+            self._types: Any = import_module("smach_msgs.msg")
+        except ImportError:
+            self._types = None
+            self._text: Any = ros.load("std_msgs.msg").String
+
+    def topic(self, server: str, name: str) -> str:
+        """The full name of a topic."""
+        return f"{server}{name}" + ("" if self._types else JSON_SUFFIX)
+
+    def message_type(self, name: str) -> Any:
+        """The class of the messages on a topic."""
+        names = {
+            STATUS_TOPIC: "SmachContainerStatus",
+            STRUCTURE_TOPIC: "SmachContainerStructure",
+            INIT_TOPIC: "SmachContainerInitialStatusCmd",
+        }
+        return getattr(self._types, names[name]) if self._types else self._text
+
+    def encode(self, node: Any, name: str, fields: Mapping[str, Any]) -> Any:
+        """The message with these fields."""
+        if not self._types:
+            return self._text(data=json.dumps(fields))
+        message = self.message_type(name)()
+        if hasattr(message, "header"):
+            message.header.stamp = node.get_clock().now().to_msg()
+        for field, value in fields.items():
+            setattr(message, field, value.encode() if field == "local_data" else value)
+        return message
+
+    def decode(self, message: Any) -> dict[str, Any]:
+        """The fields of a message."""
+        if not self._types:
+            decoded: dict[str, Any] = json.loads(message.data)
+            return decoded
+        values = {field: getattr(message, field) for field in ros.fields(message)}
+        return {**values, "local_data": bytes(values.get("local_data", b"")).decode()}
+
+
+class ContainerProxy:
+    """Reports on one container, and not on those below it, every `update_rate` seconds."""
+
+    def __init__(
+        self,
+        server: Any,
+        server_name: str,
+        container: Container,
+        path: str,
+        update_rate: float = HEARTBEAT,
+        unpickle: bool = False,
+    ) -> None:
+        self._node = server
+        self._container = container
+        self._path = path
+        self._unpickle = unpickle
+        self._format = Format()
+        self._running = False
+        self._publishers = {
+            name: server.create_publisher(
+                self._format.message_type(name), self._format.topic(server_name, name), latched()
+            )
+            for name in (STATUS_TOPIC, STRUCTURE_TOPIC)
+        }
+        server.create_subscription(
+            self._format.message_type(INIT_TOPIC),
+            self._format.topic(server_name, INIT_TOPIC),
+            self._on_init_command,
+            10,
+        )
+        self._timer = server.create_timer(update_rate, self._on_heartbeat)
+        container.register_start_cb(self._on_change)
+        container.register_transition_cb(self._on_change)
+        container.register_termination_cb(self._on_change)
+
+    def start(self) -> None:
+        """Start to report."""
+        self._running = True
+        self._publish_structure()
+        self._publish_status("Initial state")
+
+    def stop(self) -> None:
+        """Stop to report."""
+        self._running = False
+        self._timer.cancel()
+
+    def _on_change(self, userdata: UserData, *what: object) -> None:
+        self._publish_status(repr(what))
+
+    def _on_heartbeat(self) -> None:
+        self._publish_structure()
+        self._publish_status("HEARTBEAT")
+
+    def _publish_structure(self) -> None:
+        container = self._container
+        edges = [[str(part) for part in edge] for edge in container.get_internal_edges()]
+        self._publish(
+            STRUCTURE_TOPIC,
+            path=self._path,
+            children=[str(label) for label in container.get_children()],
+            internal_outcomes=[outcome for outcome, _, _ in edges],
+            outcomes_from=[label for _, label, _ in edges],
+            outcomes_to=[target for _, _, target in edges],
+            container_outcomes=[str(each) for each in container.get_registered_outcomes()],
+        )
+
+    def _publish_status(self, info: str = "") -> None:
+        container = self._container
+        self._publish(
+            STATUS_TOPIC,
+            path=self._path,
+            initial_states=[str(label) for label in container.get_initial_states()],
+            active_states=[str(label) for label in container.get_active_states()],
+            local_data=pickled(container.userdata),
+            info=info,
+        )
+
+    def _publish(self, name: str, **fields: Any) -> None:
+        if not self._running or not self._node.context.ok():
+            return
+        try:
+            self._publishers[name].publish(self._format.encode(self._node, name, fields))
+        except (ros.invalid_handle(), ros.rclpy.exceptions.ROSInterruptException) as error:
+            smach.logdebug(f"nothing is reported: {error}")
+
+    def _on_init_command(self, message: Any) -> None:
+        """Set the initial state of the container for all later runs."""
+        command = self._format.decode(message)
+        if command["path"] != self._path:
+            return
+        known = {str(label): label for label in self._container.get_children()}
+        unknown = [label for label in command["initial_states"] if label not in known]
+        if unknown:
+            smach.logerr(f"container '{self._path}' has no states {unknown} to start in")
+            return
+        data, userdata = command["local_data"], UserData()
+        if data and self._unpickle:
+            store(userdata).update(pickle.loads(base64.b64decode(data)))
+        elif data not in ("", pickled(UserData())):
+            smach.logwarn(
+                f"container '{self._path}' is given an initial state; the userdata that came with "
+                "it is dropped, for unpickling it may run any code (IntrospectionServer: unpickle)"
+            )
+        states = [known[each] for each in command["initial_states"]]
+        self._container.set_initial_state(states, userdata)
+        self._publish_status("REMOTE_INIT")
+
+
+class IntrospectionServer(ros.Node):
+    """Reports on the container `state`, whose path is `path`, and on all containers below it.
+
+    It is a node. It publishes on `<server_name>/smach/container_structure` and `container_status`
+    (without smach_msgs: `..._json`): at every start, transition and end of a container, and on all
+    containers every two seconds; a new subscriber gets the newest report on each container.
+
+    On `container_init` a viewer may set the initial state of a container for all later runs. The
+    userdata of such a command is a pickle, which can run any code: it is dropped, unless `unpickle`
+    is true.
+    """
+
+    def __init__(
+        self, server_name: str, state: State, path: str, unpickle: bool = False, **kwargs: Any
+    ) -> None:
+        super().__init__(server_name.strip("/").replace("/", "_"), **kwargs)
+        self._server_name = server_name
+        self._state = state
+        self._path = path
+        self._unpickle = unpickle
+        self._proxies: list[ContainerProxy] = []
+        self._spinner: spinning.Spinner | None = None
+
+    def start(self) -> None:
+        """Start to report. Raises InvalidStateError for a state that is no container."""
+        self.construct(self._server_name, self._state, self._path)
+        if not spinning.is_assigned(self):
+            self._spinner = spinning.Spinner(self)
+            self._spinner.start()
+
+    def stop(self) -> None:
+        """Stop to report."""
+        for proxy in self._proxies:
+            proxy.stop()
+        if self._spinner is not None:
+            self._spinner.stop()
+            self._spinner = None
+
+    def construct(self, server_name: str, state: State, path: str) -> None:
+        """Report also on the container `state`, whose path is `path`, and on those below it.
+
+        Raises InvalidStateError for a state that is no container.
+        """
+        if not isinstance(state, Container):
+            raise InvalidStateError(f"a {type(state).__name__} has nothing to look into")
+        for each, container in containers(path, state):
+            proxy = ContainerProxy(self, server_name, container, each, unpickle=self._unpickle)
+            self._proxies.append(proxy)
+            proxy.start()
+
+    def clear(self) -> None:
+        """Report on no container any more, until `construct` or `start` adds some."""
+        while self._proxies:
+            self._proxies.pop().stop()
+
+
+class IntrospectionClient(ros.Node):
+    """The viewer's side, a node: finds servers, and sets the initial states of containers."""
+
+    def __init__(self, node_name: str = "introspection_client", **kwargs: Any) -> None:
+        super().__init__(node_name, **kwargs)
+        self._format = Format()
+
+    def get_servers(self) -> list[str]:
+        """The names of the introspection servers on the ROS graph."""
+        end = self._format.topic("", STATUS_TOPIC)
+        topics = self.get_topic_names_and_types()
+        return [name[: -len(end)] for name, _ in topics if name.endswith(end)]
+
+    def set_initial_state(
+        self,
+        server: str,
+        path: str,
+        initial_states: list[str],
+        initial_userdata: UserData | None = None,
+        timeout: ros.Time | None = None,
+    ) -> bool | None:
+        """Set the initial states of a container; whether it confirms them within `timeout`.
+
+        Without a timeout the command is sent without waiting, and the result is None.
+        """
+        confirmed, limit = threading.Event(), ros.seconds(timeout)
+
+        def on_status(message: Any) -> None:
+            status = self._format.decode(message)
+            states = list(status["initial_states"])
+            if (status["path"], states) == (path, list(initial_states)):
+                confirmed.set()
+
+        commands = self.create_publisher(
+            self._format.message_type(INIT_TOPIC), self._format.topic(server, INIT_TOPIC), latched()
+        )
+        fields = {
+            "path": path,
+            "initial_states": list(initial_states),
+            "local_data": pickled(initial_userdata or UserData()),
+        }
+        commands.publish(self._format.encode(self, INIT_TOPIC, fields))
+        if limit is None:
+            return None
+        self.create_subscription(
+            self._format.message_type(STATUS_TOPIC),
+            self._format.topic(server, STATUS_TOPIC),
+            on_status,
+            latched(),
+        )
+        spinning.ensure(self)
+        confirmed.wait(limit)
+        return confirmed.is_set()
+
+
+def latched() -> Any:
+    """The quality of service with which a new subscriber gets the last message."""
+    module = ros.load("rclpy.qos")
+    return module.QoSProfile(depth=1, durability=module.DurabilityPolicy.TRANSIENT_LOCAL)

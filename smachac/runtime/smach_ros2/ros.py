@@ -1,0 +1,119 @@
+"""Access to rclpy: the module, its Node class, durations, and the hooks of SMACH.
+
+Importing this module imports rclpy. ImportError names the packages if there is none.
+"""
+
+from __future__ import annotations
+
+import traceback
+from importlib import import_module
+from typing import TYPE_CHECKING, Any, Protocol, TypeAlias
+
+from smachac.runtime import smach
+from smachac.runtime.smach import log
+
+
+class Duration(Protocol):
+    """The interface of rclpy.duration.Duration."""
+
+    @property
+    def nanoseconds(self) -> int: ...
+
+
+Time: TypeAlias = "Duration | float"
+"""A duration: rclpy.duration.Duration, or a number of seconds."""
+
+
+def load(name: str) -> Any:
+    """The module of that name. Raises ImportError with the packages to install."""
+    try:
+        return import_module(name)
+    except ImportError as error:
+        raise ImportError(
+            f"smach_ros2 needs ROS 2, and this Python has none ({error}); source the setup file of "
+            "a ROS 2 installation, or: pip install ros-rclpy ros-rmw-fastrtps-cpp"
+        ) from error
+
+
+rclpy: Any = load("rclpy")
+
+if TYPE_CHECKING:
+
+    class Node:
+        """The class rclpy.node.Node."""
+
+        def __init__(self, node_name: str, **kwargs: Any) -> None: ...
+
+        def __getattr__(self, name: str) -> Any: ...
+
+    class LifecycleNode(Node):
+        """The class rclpy.lifecycle.LifecycleNode."""
+
+        def on_configure(self, state: Any) -> Any: ...
+
+        def on_activate(self, state: Any) -> Any: ...
+
+        def on_deactivate(self, state: Any) -> Any: ...
+
+        def on_cleanup(self, state: Any) -> Any: ...
+
+        def on_shutdown(self, state: Any) -> Any: ...
+
+else:
+    Node = load("rclpy.node").Node
+    LifecycleNode = load("rclpy.lifecycle").LifecycleNode
+
+NANOSECONDS = 1_000_000_000
+
+
+def seconds(time: Time | None) -> float | None:
+    """A duration as a number of seconds; None stays None."""
+    if time is None or isinstance(time, (int, float)):
+        return time
+    return time.nanoseconds / NANOSECONDS
+
+
+def limit(time: Time | None) -> float | None:
+    """A time limit as a number of seconds; None, and 0 as in smach_ros, means no limit."""
+    return seconds(time) or None
+
+
+def invalid_handle() -> type[Exception]:
+    """The exception of rclpy for an entity that is destroyed while it is used."""
+    error: type[Exception] = load("rclpy.exceptions").InvalidHandle
+    return error
+
+
+def own_group() -> Any:
+    """A callback group for one entity, which other callbacks of the node do not block."""
+    return load("rclpy.callback_groups").ReentrantCallbackGroup()
+
+
+def fields(message: Any) -> list[str]:
+    """The names of the fields of a message, a request, a goal and so on."""
+    return list(message.get_fields_and_field_types())
+
+
+def is_shut_down() -> bool:
+    """Whether rclpy was initialized and has been shut down."""
+    context = rclpy.get_default_context()
+    return context.handle is not None and not context.ok()
+
+
+def connect_smach() -> None:
+    """Give SMACH the logger of rclpy and the shutdown check, unless a script set others."""
+    if (smach.loginfo, smach.logerr) == (log.loginfo, log.logerr):
+        logger = load("rclpy.logging").get_logger("smach_ros")
+        smach.set_loggers(
+            lambda text: logger.info(text),
+            lambda text: logger.warning(text),
+            lambda text: logger.debug(text),
+            lambda text: logger.error(text),
+        )
+    if smach.is_shutdown is log.is_shutdown:
+        smach.set_shutdown_check(is_shut_down)
+
+
+def log_failure(node: Any, what: str) -> None:
+    """Log the exception that is being handled, with its traceback."""
+    node.get_logger().error(f"{what}:\n{traceback.format_exc()}")

@@ -1,0 +1,123 @@
+"""Ctrl-C and SIGTERM: machines are preempted while the node still works."""
+
+from __future__ import annotations
+
+import os
+import signal
+import sys
+import threading
+import time
+from typing import Any
+
+from smachac.runtime import smach
+from smachac.runtime.smach_ros2 import ros
+
+GRACE = 5.0
+"""Seconds that a machine has to end after a stop request, before rclpy is shut down."""
+
+SIGNALS = (signal.SIGINT, signal.SIGTERM)
+
+
+class PreemptHandler:
+    """The handler of SIGINT and SIGTERM that preempts machines.
+
+    The first signal preempts the machines; the second one ends the program. A thread reads the
+    signal from a pipe, because Python runs no handler while the main thread waits inside rclpy.
+
+    Attributes:
+        machines: the containers to preempt.
+    """
+
+    def __init__(self, context: Any, grace: float = GRACE, shuts_down: bool = False) -> None:
+        self.machines: list[Any] = []
+        self._context = context
+        self._grace = grace
+        self._shuts_down = shuts_down
+        self._pipe = os.pipe()
+        os.set_blocking(self._pipe[1], False)
+        self._thread = threading.Thread(target=self._wait, name="signals", daemon=True)
+        self._before: list[Any] = []
+
+    def install(self) -> None:
+        """Handle the signals from now on; to be called in the main thread."""
+        self._pipe_before = signal.set_wakeup_fd(self._pipe[1])
+        self._before = [signal.signal(number, self) for number in SIGNALS]
+        self._thread.start()
+
+    def remove(self) -> None:
+        """Restore the handlers that were there before."""
+        signal.set_wakeup_fd(self._pipe_before)
+        for number, handler in zip(SIGNALS, self._before, strict=True):
+            signal.signal(number, handler)
+        os.write(self._pipe[1], b"\0")
+        self._thread.join(2 * self._grace)
+        for end in self._pipe:
+            os.close(end)
+
+    def __call__(self, number: int, frame: object) -> None:
+        """Let the next signal end the program; the thread does the rest."""
+        signal.signal(signal.SIGINT, signal.default_int_handler)
+        signal.signal(signal.SIGTERM, signal.SIG_DFL)
+
+    def _wait(self) -> None:
+        """Wait for the first signal; a zero byte ends the wait."""
+        while number := os.read(self._pipe[0], 1)[0]:
+            if number in SIGNALS:
+                main = threading.main_thread().ident
+                is_main = any(is_executed_by(main, machine) for machine in self.machines)
+                self._preempt()
+                if self._shuts_down and not is_main:
+                    self._context.try_shutdown()
+                return
+
+    def _preempt(self) -> None:
+        """Preempt the machines and wait for their end; shut rclpy down after the grace time."""
+        for machine in self.machines:
+            machine.request_preempt()
+        end = time.monotonic() + self._grace
+        while self._context.ok() and any(machine.is_running() for machine in self.machines):
+            if time.monotonic() > end:
+                smach.logwarn(
+                    f"the state machine did not end within {self._grace:g} s: the node shuts down"
+                )
+                self._context.try_shutdown()
+                return
+            time.sleep(0.02)
+
+
+def is_executed_by(thread: int | None, container: Any) -> bool:
+    """Whether a thread executes the container, somewhere in its stack."""
+    frame: Any = sys._current_frames().get(thread or 0)
+    while frame is not None:
+        if frame.f_code.co_name == "execute" and frame.f_locals.get("self") is container:
+            return True
+        frame = frame.f_back
+    return False
+
+
+def set_preempt_handler(sc: Any) -> None:
+    """Preempt a container at Ctrl-C, at SIGTERM and when rclpy is shut down.
+
+    At a signal the container is preempted while the node still works, so that goals are cancelled.
+    rclpy is shut down after its end, which ends `rclpy.spin`; if the main thread itself executes
+    the container, the program continues after `execute` instead. The handlers of rclpy, which shut
+    it down at once, are removed. A handler that the program set for SIGINT is kept.
+    """
+    context = ros.rclpy.get_default_context()
+
+    def at_shutdown() -> None:
+        if sc.is_running():
+            sc.request_preempt()
+
+    context.on_shutdown(at_shutdown)
+    known = signal.getsignal(signal.SIGINT)
+    if isinstance(known, PreemptHandler):
+        known.machines.append(sc)
+    elif (
+        known is signal.default_int_handler
+        and threading.current_thread() is threading.main_thread()
+    ):
+        ros.load("rclpy.signals").uninstall_signal_handlers()
+        handler = PreemptHandler(context, shuts_down=True)
+        handler.machines.append(sc)
+        handler.install()

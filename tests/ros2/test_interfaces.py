@@ -1,0 +1,181 @@
+"""smach_ros2 with interfaces that are no standard ones: nested messages, arrays, smach_msgs."""
+
+from __future__ import annotations
+
+import pytest
+
+from tests.ros2.ros2_graph import Graph
+
+pytestmark = pytest.mark.ros2
+
+SERVER = """
+import rclpy
+from rclpy.action import ActionServer
+from smachac_test_interfaces.action import Drive
+from smachac_test_interfaces.srv import Place
+
+rclpy.init()
+node = rclpy.create_node("server")
+
+def place(request, response):
+    print("part", request.parts[1].name, request.parts[1].position.tolist(), request.thing.i64)
+    response.success, response.placed = True, request.parts[1]
+    return response
+
+def drive(handle):
+    handle.succeed()
+    x = handle.request.target.pose.position.x
+    return Drive.Result(arrived=True, message=f"at {x} over {len(handle.request.over)}")
+
+node.create_service(Place, "place", place)
+server = ActionServer(node, Drive, "drive", drive)
+print("ready", flush=True)
+rclpy.spin(node)
+"""
+
+START = """
+from machine_node import *
+from geometry_msgs.msg import Point, Pose, PoseStamped
+from smachac_test_interfaces.action import Drive
+from smachac_test_interfaces.msg import AllFields, Part
+from smachac_test_interfaces.srv import Place
+"""
+
+
+def test_nested_messages_and_arrays_pass_through_states(graph2: Graph) -> None:
+    graph2.use_interfaces()
+    server = graph2.start(SERVER)
+    server.expect("ready")
+    output = graph2.run(
+        START
+        + """
+ud = smach.UserData()
+ud.parts = [Part(name="a"), Part(name="b", position=[1.0, 2.0, 3.0])]
+ud.thing = AllFields(i64=2**40)
+state = smach_ros.ServiceState(
+    node, "place", Place, request_slots=["parts", "thing"], response_slots=["placed"]
+)
+report("placed", state.execute(ud), ud.placed.name, type(ud.placed).__name__)
+ud.over = ud.parts
+ud.target = PoseStamped(pose=Pose(position=Point(x=2.5)))
+state = smach_ros.SimpleActionState(
+    node, "drive", Drive, goal_slots=["target", "over"], result_slots=["arrived", "message"]
+)
+report("driven", state.execute(ud), ud.arrived, ud.message)
+ud.parts = ["no part"]
+report("refused", smach_ros.ServiceState(node, "place", Place, request_slots=["parts"]).execute(ud))
+ud.goal = 4
+report("no goal", smach_ros.SimpleActionState(node, "drive", Drive, goal_key="goal").execute(ud))
+"""
+    )
+    server.expect("part b [1.0, 2.0, 3.0] 1099511627776")
+    assert "placed: succeeded b Part" in output
+    assert "driven: succeeded True at 2.5 over 2" in output
+    assert "refused: aborted" in output
+    assert "no goal: aborted" in output
+
+
+CALLER = """
+import rclpy, threading
+from rclpy.action import ActionClient
+from smachac_test_interfaces.action import Drive
+
+rclpy.init()
+node = rclpy.create_node("caller")
+client = ActionClient(node, Drive, "machine")
+threading.Thread(target=rclpy.spin, args=(node,), daemon=True).start()
+client.wait_for_server()
+states = []
+response = client.send_goal(
+    Drive.Goal(speed=0.5), feedback_callback=lambda each: states.append(each.feedback.state)
+)
+print("states", states)
+print("result", response.result.message)
+rclpy.shutdown()
+"""
+
+
+def test_the_feedback_of_a_machine_is_the_path_of_its_active_state(graph2: Graph) -> None:
+    graph2.use_interfaces()
+    program = graph2.start(
+        START
+        + """
+import sys, time
+ends = ["succeeded", "preempted"]
+
+def wait(ud):
+    time.sleep(0.05)
+    return "succeeded"
+
+inner = smach.StateMachine(ends)
+with inner:
+    smach.StateMachine.add("GO", smach.CBState(wait, outcomes=ends))
+machine = smach.StateMachine(ends, input_keys=["speed"], output_keys=["message"])
+with machine:
+    smach.StateMachine.add("NAVIGATE", inner, {"succeeded": "DOCK"})
+    smach.StateMachine.add("DOCK", smach.CBState(wait, outcomes=ends))
+machine.userdata.message = "docked"
+smach_ros.ActionServerWrapper(
+    node, "machine", Drive, machine, ["succeeded"], [], ["preempted"],
+    expand_goal_slots=True, pack_result_slots=True, path_slot="state",
+)
+sys.stdin.readline()
+report("speed", machine.userdata.speed)
+"""
+    )
+    caller = graph2.start(CALLER)
+    caller.expect("states ['/NAVIGATE', '/NAVIGATE/GO', '/DOCK']")
+    caller.expect("result docked")
+    program.say("end")
+    assert program.end() == 0, program.output
+    assert "speed: 0.5" in program.output
+
+
+VIEWER = """
+import base64, pickle, rclpy
+from rclpy.qos import DurabilityPolicy, QoSProfile
+from smach_msgs.msg import SmachContainerStatus, SmachContainerStructure
+
+rclpy.init()
+node = rclpy.create_node("viewer")
+
+def show_status(message):
+    data = pickle.loads(base64.b64decode(bytes(message.local_data)))
+    print("status", message.path, list(message.active_states), data, flush=True)
+
+def show_structure(message):
+    print("structure", message.path, list(message.children), flush=True)
+
+node.create_subscription(SmachContainerStatus, "viewed/smach/container_status", show_status, 10)
+node.create_subscription(
+    SmachContainerStructure, "viewed/smach/container_structure", show_structure, 10
+)
+print("ready", flush=True)
+rclpy.spin(node)
+"""
+
+
+def test_a_viewer_reads_the_messages_of_smach(graph2: Graph) -> None:
+    graph2.use_interfaces()
+    viewer = graph2.start(VIEWER)
+    viewer.expect("ready")
+    program = graph2.start(
+        START
+        + """
+import sys
+machine = smach.StateMachine(["succeeded"])
+with machine:
+    smach.StateMachine.add("ONLY", smach.CBState(lambda ud: "succeeded", outcomes=["succeeded"]))
+machine.userdata.key = 4
+server = smach_ros.IntrospectionServer("viewed", machine, "/ROOT")
+server.start()
+sys.stdin.readline()
+report("outcome", machine.execute())
+server.stop()
+"""
+    )
+    viewer.expect("structure /ROOT ['ONLY']")
+    viewer.expect("status /ROOT")
+    program.say("run")
+    viewer.expect("status /ROOT ['ONLY'] {'key': 4}")
+    assert program.end() == 0, program.output
