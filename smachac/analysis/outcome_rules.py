@@ -11,6 +11,7 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
+from functools import partial
 
 from smachac.analysis.control_flow import is_open
 from smachac.diagnostics.spelling import guesser
@@ -264,11 +265,13 @@ def space(read: Study, known: OutcomesByPath) -> Space:
         names = known[f"{read.path}/{child.name}"]
         if is_open(child):
             names = tuple(
-                dict.fromkeys([*good_first(child, names), *asked.get(child.name, ()), OTHER])
+                dict.fromkeys(
+                    [*good_first(names, partial(fails, child)), *asked.get(child.name, ()), OTHER]
+                )
             )
         elif not names and read.node.join == "any":
             names = (OTHER,)
-        found[child.name] = good_first(child, names)
+        found[child.name] = good_first(names, partial(fails, child))
     return found
 
 

@@ -6,7 +6,7 @@ An interface or a script declares it (`failure: true`); otherwise the words of t
 from __future__ import annotations
 
 import re
-from collections.abc import Iterable
+from collections.abc import Callable, Iterable
 
 from smachac.ir import nodes
 from smachac.ir.nodes import Node
@@ -71,13 +71,15 @@ def successes(node: Node) -> frozenset[str]:
     return frozenset([name for name in names if name.lower() in words]).difference(failures)
 
 
-def good_first(node: Node, outcomes: Iterable[str]) -> tuple[str, ...]:
-    """Outcomes of a state sorted: success first, failure and preemption last."""
+def good_first(
+    outcomes: Iterable[str], failed: Callable[[str], bool] = is_failure
+) -> tuple[str, ...]:
+    """Outcomes of one state sorted: success first, those that `failed` and preemption last."""
 
     def rank(name: str) -> int:
         word = name.lower()
         if word in SUCCESSES or word in GOOD:
             return 0
-        return 3 if name == PREEMPTED else 2 if fails(node, name) else 1
+        return 3 if name == PREEMPTED else 2 if failed(name) else 1
 
     return tuple(sorted(outcomes, key=rank))
