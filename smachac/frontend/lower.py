@@ -181,10 +181,13 @@ def _leaf(state: State) -> Leaf:
 
 def _given_outcomes(state: State) -> list[Outcome]:
     """The outcomes that a script lists: those that it adds to the state type, or declares again."""
-    type_, led = state.type, [_outcome(key) for key, _ in state.transitions]
+    type_ = state.type
     if not type_.open and "outcomes" not in type_.given:
         # An outcome that the type lacks was reported; its transition is no second fault.
-        names = {each.name for each in (*led, *type_.outcomes)}
+        if not state.outcomes:
+            return []
+        names = {key.text for key, _ in state.transitions}
+        names.update(each.name for each in type_.outcomes)
         return [each for each in state.outcomes if each.name in names]
     given = [*state.outcomes]
     if state.default_outcome is not None:
@@ -197,7 +200,9 @@ def _given_outcomes(state: State) -> list[Outcome]:
                     pass
                 case data:
                     given.append(Outcome(name=str(data), span=state.name.span))
-    return led if type_.open and not given else given
+    if type_.open and not given:
+        return [_outcome(key) for key, _ in state.transitions]
+    return given
 
 
 def _outcome(word: Word) -> Outcome:

@@ -84,8 +84,8 @@ def with_meant_fields(
     unknown = [
         key
         for key in entries
-        if not accepts(type_, key)
-        and ((row := schema.VARIABLES.get(key)) is None or owner not in row.owners)
+        if ((row := schema.VARIABLES.get(key)) is None or owner not in row.owners)
+        and not accepts(type_, key)
     ]
     if not unknown:
         return entries

@@ -36,6 +36,7 @@ GOOD = frozenset(
 PREEMPTED = "preempted"
 """The outcome of a preempted state; without a request to stop it does not occur."""
 
+_ENDS, _DIGITS = (*sorted(FAILURES), "out"), "0123456789_-. "
 _WORDS = re.compile(r"[A-Z]?[a-z]+|[A-Z]+(?![a-z])")
 
 
@@ -44,6 +45,8 @@ def is_failure(outcome: str) -> bool:
     name = outcome.lower()
     if name in FAILURES:
         return True
+    if not name.rstrip(_DIGITS).endswith(_ENDS):
+        return False
     *before, last = [word.lower() for word in _WORDS.findall(outcome)] or [""]
     if before[-1:] == ["timed"] and last == "out":
         before, last = before[:-1], "timed_out"
