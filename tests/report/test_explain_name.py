@@ -140,7 +140,7 @@ states:
   - B:
       template: CallbacksState
       output_keys: [goal]
-      callbacks: {goal: '3'}
+      callbacks: {goal: 'lambda ud: 3'}
       transitions: {succeeded: C}
   - C: {template: ScriptedState, outcomes: [ok], input_keys: [goal], transitions: {ok: done}}
 """

@@ -42,4 +42,4 @@ def test_an_unusual_project_has_no_finding(path: Path) -> None:
 
 
 def test_there_are_many() -> None:
-    assert len(PROJECTS) >= 60
+    assert len(PROJECTS) >= 80
