@@ -9,7 +9,7 @@ from smachac.analysis.definite_assignment import DataFlow, UserdataScope
 from smachac.analysis.fixpoint import KeyStep
 from smachac.ir.graph import START, Vertex
 from smachac.ir.nodes import Key, Leaf, Sequence, StateMachine
-from smachac.ir.outcome_names import is_failure
+from smachac.ir.outcome_names import fails
 from smachac.ir.traversal import remapping
 
 MOST_VISITS = 1_000_000
@@ -84,9 +84,11 @@ def _steps_back(scope: UserdataScope) -> _Back:
     return back
 
 
-def _replaces(step: KeyStep, name: str) -> bool:
-    """Whether a step surely sets a key."""
-    return name in step.writes.trusted and not is_failure(step.outcome)
+def _replaces(scope: UserdataScope, vertex: Vertex, step: KeyStep, name: str) -> bool:
+    """Whether a step from a vertex surely sets a key."""
+    if not isinstance(vertex, str) or name not in step.writes.trusted:
+        return False
+    return not fails(scope.children[vertex], step.outcome)
 
 
 def _live(scope: UserdataScope, back: _Back, name: str) -> set[Vertex]:
@@ -100,7 +102,7 @@ def _live(scope: UserdataScope, back: _Back, name: str) -> set[Vertex]:
     todo = list(live)
     while todo:
         for before, step in back.get(todo.pop(), ()):
-            if before not in live and not _replaces(step, name):
+            if before not in live and not _replaces(scope, before, step, name):
                 live.add(before)
                 todo.append(before)
     return live
@@ -116,7 +118,7 @@ def _overwriting(scope: UserdataScope, start: str, name: str) -> tuple[str, ...]
             continue
         seen.add(vertex)
         for step in scope.steps.get(vertex, ()):
-            if _replaces(step, name):
+            if _replaces(scope, vertex, step, name):
                 found[str(vertex)] = None
             else:
                 todo.append(step.target)
