@@ -99,8 +99,8 @@ def test_a_state_whose_other_output_is_read_is_not_reported() -> None:
 MACHINE = """{template: StateMachine, outcomes: [ok], input_keys: [pose], states: [
       X: {template: PrintUserdataState, input_keys: [pose], transitions: {succeeded: ok}}],
       transitions: {ok: B}}"""
-ITERATOR = """{template: Iterator, outcomes: [ok], input_keys: [pose], it: '`ud.pose`', it_label: i,
-      exhausted_outcome: ok, loop_outcomes: [succeeded],
+ITERATOR = """{template: Iterator, outcomes: [ok], input_keys: [pose], it: '`lambda ud: ud.pose`',
+      it_label: i, exhausted_outcome: ok, loop_outcomes: [succeeded],
       states: [X: {template: PrintUserdataState, input_keys: [i]}], transitions: {ok: B}}"""
 
 
