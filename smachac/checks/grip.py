@@ -1,0 +1,198 @@
+"""The rule over the order of grasps: a gripper that is closed when the tool comes to a body."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Mapping
+from typing import Literal, NamedTuple
+
+from smachac.analysis.context import Context
+from smachac.checks.messages import calls, other_place
+from smachac.checks.rule import rule
+from smachac.diagnostics.diagnostic import Finding, Severity
+from smachac.diagnostics.wording import listed
+from smachac.ir.graph import Event
+from smachac.ir.leaf import variable_of
+from smachac.ir.nodes import Leaf, Node
+from smachac.ir.outcome_names import successes
+
+MOST_VISITS = 200_000
+"""The most events that the searches of one machine visit; beyond them nothing more is found."""
+
+
+@rule("SM513", "closed-gripper", Severity.WARNING)
+def closed_gripper(context: Context) -> Iterator[Finding]:
+    """The tool comes to a body with a closed gripper, which then closes again.
+
+    The closed fingers push the body away or break it, and the grasp fails.
+
+    Exactly: on every path to a state that closes the gripper, the gripper was closed before with
+    success, and since then it was not opened and the tool moved to a grasp pose: a state with
+    `role: grasp` and without an offset. Whether a state opens or closes a gripper is the fact
+    `role: grip` of its type. A path with a state that may do something else to the gripper decides
+    nothing: a stand-in, a type without an interface, one of the user without that fact.
+
+    Wrong:
+        name: sm
+        template: PyBulletBase
+        outcomes: [succeeded, aborted]
+        userdata: {cup: [[0.5, 0.1, 0.03], [0, 0, 0, 1]], box: [[0.5, -0.1, 0.03], [0, 0, 0, 1]]}
+        states:
+          - TO_CUP:
+              template: MoveAlongState
+              grasp: true
+              remapping: {pose: cup}
+              transitions: {succeeded: HOLD_CUP, aborted: aborted, preempted: aborted}
+          - HOLD_CUP:
+              template: GripperState
+              command: close
+              transitions: {succeeded: TO_BOX, aborted: aborted, preempted: aborted}
+          - TO_BOX:
+              template: MoveAlongState
+              grasp: true
+              remapping: {pose: box}
+              transitions: {succeeded: HOLD_BOX, aborted: aborted, preempted: aborted}
+          - HOLD_BOX:
+              template: GripperState
+              command: close
+              transitions: {succeeded: succeeded, aborted: aborted, preempted: aborted}
+
+    Right:
+        name: sm
+        template: PyBulletBase
+        outcomes: [succeeded, aborted]
+        userdata: {cup: [[0.5, 0.1, 0.03], [0, 0, 0, 1]], box: [[0.5, -0.1, 0.03], [0, 0, 0, 1]]}
+        states:
+          - TO_CUP:
+              template: MoveAlongState
+              grasp: true
+              remapping: {pose: cup}
+              transitions: {succeeded: HOLD_CUP, aborted: aborted, preempted: aborted}
+          - HOLD_CUP:
+              template: GripperState
+              command: close
+              transitions: {succeeded: LET_GO, aborted: aborted, preempted: aborted}
+          - LET_GO:
+              template: GripperState
+              command: open
+              transitions: {succeeded: TO_BOX, aborted: aborted, preempted: aborted}
+          - TO_BOX:
+              template: MoveAlongState
+              grasp: true
+              remapping: {pose: box}
+              transitions: {succeeded: HOLD_BOX, aborted: aborted, preempted: aborted}
+          - HOLD_BOX:
+              template: GripperState
+              command: close
+              transitions: {succeeded: succeeded, aborted: aborted, preempted: aborted}
+    """
+    leaves = {path: node for path, node in context.states if isinstance(node, Leaf)}
+    closing = [path for path, leaf in leaves.items() if _grip(leaf) == "close"]
+    if len(closing) < 2 or not any(map(_comes_to_body, leaves.values())):
+        return
+    visits = 0
+    for path in closing:
+        found = _closed_before(context, leaves, path)
+        visits += found.visits
+        if visits > MOST_VISITS:
+            return
+        if found.closed:
+            leaf = leaves[path]
+            names = [context.routes.nodes[each].name for each in (*found.closed, *found.moved)]
+            places = [context.routes.nodes[each].span for each in (found.closed[0], found.moved[0])]
+            yield Finding(
+                span=leaf.span,
+                message=f"`{leaf.name}` closes a gripper that is already closed:"
+                f" {listed(names[: len(found.closed)])} closed it before the tool moved to the body"
+                f" ({listed(names[len(found.closed) :])})",
+                arguments=(leaf.name, *sorted(set(names))),
+                help="open the gripper before the tool moves to the body",
+                related=(
+                    *other_place(places[0], "the gripper is closed here"),
+                    *other_place(places[1], "the tool moves to the body here"),
+                    *calls(leaf, leaf.span),
+                ),
+                node=path,
+            )
+
+
+class _Closed(NamedTuple):
+    """The states that have closed a gripper on all paths to a state, and the motions between; none
+    where a path decides nothing."""
+
+    closed: tuple[str, ...]
+    moved: tuple[str, ...]
+    visits: int
+
+
+def _closed_before(context: Context, leaves: Mapping[str, Leaf], path: str) -> _Closed:
+    """The search backwards from the entry of a state that closes a gripper."""
+    graph = context.routes.graph
+    resources = set(context.claims.get(path, {}))
+    start: tuple[Event, bool] = ((path, ""), False)
+    seen = {start}
+    todo = [start]
+    closed: dict[str, None] = {}
+    moved: dict[str, None] = {}
+    for event, has_moved in todo:
+        where, outcome = event
+        leaf = leaves.get(where)
+        comes = has_moved
+        if leaf is not None and outcome:
+            known = _effect(leaf, outcome)
+            same = known is None or set(context.claims.get(where, {})) == resources
+            if known == "close" and same and has_moved:
+                closed[where] = None
+                continue
+            if known is not None or not _keeps_gripper(leaf):
+                return _Closed((), (), len(seen))
+            if _comes_to_body(leaf) and outcome in successes(leaf):
+                moved[where] = None
+                comes = True
+        before = list(graph.pred[event])
+        if not before:
+            return _Closed((), (), len(seen))
+        for each in before:
+            if (each, comes) not in seen:
+                seen.add((each, comes))
+                todo.append((each, comes))
+    return _Closed(tuple(closed), tuple(moved) if closed else (), len(seen))
+
+
+Effect = Literal["open", "close", "unknown"]
+
+
+def _grip(leaf: Leaf) -> Effect | None:
+    """What a state does to its gripper, by the value of its variable."""
+    held = variable_of(leaf, "grip")
+    if held is None:
+        return None
+    return (
+        "open"
+        if held.value.data == "open"
+        else "close"
+        if held.value.data == "close"
+        else "unknown"
+    )
+
+
+def _effect(leaf: Leaf, outcome: str) -> Effect | None:
+    """What a state has done to its gripper when it ends with an outcome."""
+    found = _grip(leaf)
+    return found if found is None or outcome in successes(leaf) else "unknown"
+
+
+def _keeps_gripper(leaf: Leaf) -> bool:
+    """Whether a state surely leaves the gripper as it is."""
+    return bool(leaf.built_in) and not leaf.stand_in and not leaf.open
+
+
+def _comes_to_body(node: Node) -> bool:
+    """Whether a state moves the tool to the pose of a body."""
+    if not isinstance(node, Leaf) or not node.claims:
+        return False
+    held = variable_of(node, "grasp")
+    offset = any(
+        key.role == "goal_offset" and any(remap.key == key.name for remap in node.remaps)
+        for key in node.inputs
+    )
+    return held is not None and held.value.data is True and not offset
