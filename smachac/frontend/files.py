@@ -180,22 +180,21 @@ class Disk:
             self.texts.pop(key, None)
         else:
             self.texts[key] = text
-        self._forget(key)
+        self._forget([key])
 
     def refresh(self) -> set[str]:
         """Forget the files that have changed on disk since they were read; their real paths."""
         now = stamps(key for key in self._sources if key not in self.texts)
         changed = {key for key, stamp in now.items() if stamp != self._stamps.get(key)}
-        for key in changed:
-            self._forget(key)
-        held = {source for source, _ in self._sources.values()}
-        self._trees = {source: tree for source, tree in self._trees.items() if source in held}
+        self._forget(changed)
         return changed
 
-    def _forget(self, key: str) -> None:
-        source, _ = self._sources.pop(key, (None, []))
-        if source is not None:
-            self._trees.pop(source, None)
+    def _forget(self, keys: Iterable[str]) -> None:
+        """Forget some files, and the trees of all texts that are no file or none any more."""
+        for key in keys:
+            self._sources.pop(key, None)
+        held = {source for source, _ in self._sources.values()}
+        self._trees = {source: tree for source, tree in self._trees.items() if source in held}
 
     def is_file(self, path: Path) -> bool:
         key = os.path.realpath(path)

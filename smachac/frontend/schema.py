@@ -166,6 +166,8 @@ VARIABLE_FACTS: Mapping[str, str] = {
     "doc": "What it means, in a sentence.",
     "role": "What the value means to the state (docs/state_types.md, Facts).",
     "keys": "What the keys of the mapping are.",
+    "arguments": "The arguments that a function in the variable gets: [userdata].",
+    "returns": "What a function in the variable returns.",
     "called_first": "Programs call the functions before the state, which does not get them.",
     "unquoted": "Programs contain the text without quotes: the shape that it must have.",
 }
@@ -175,12 +177,14 @@ KEY_FACTS: Mapping[str, str] = {
     "type": "As float<rad>[7] or Pose.",
     "doc": "What it means, in a sentence.",
     "role": "What the key means to the state (docs/state_types.md, Facts).",
+    "frame": "The frame of the pose, or the variable that names it.",
     "optional": "The state has the key only if the script lists it.",
 }
 """What an interface can state about a key, with descriptions."""
 
 OUTCOME_FACTS: Mapping[str, str] = {
     "doc": "When it ends so, in a sentence.",
+    "failure": "Whether it means failure; without it, the name decides.",
     "optional": "The state has the outcome only if the script names it.",
 }
 """What an interface can state about an outcome, with descriptions."""

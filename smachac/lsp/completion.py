@@ -11,7 +11,7 @@ from smachac.frontend import schema
 from smachac.frontend.schema import CONTAINER_DOCS, CONTAINERS
 from smachac.frontend.state_types import find_state_type
 from smachac.ir.nodes import StateType, VariableType
-from smachac.ir.outcome_names import GOOD_OUTCOMES, PREEMPTED, good_first, is_failure
+from smachac.ir.outcome_names import GOOD, GOOD_OUTCOMES, PREEMPTED, SUCCESSES, is_failure
 from smachac.ir.types import ANY, WORDS
 from smachac.lsp.facts import Facts
 from smachac.lsp.place import FIELD, ITEM, KEY, STATE, VALUE, Body, Place, place_at
@@ -715,7 +715,14 @@ def _usual_order(names: Iterable[str]) -> list[str]:
 
 
 def _success_first(outcomes: Iterable[str]) -> list[str]:
-    return list(good_first(outcomes))
+    """Outcomes by their names: success first, failure and preemption last."""
+
+    def rank(name: str) -> int:
+        if name.lower() in SUCCESSES | GOOD:
+            return 0
+        return 3 if name == PREEMPTED else 2 if is_failure(name) else 1
+
+    return sorted(outcomes, key=rank)
 
 
 def _expressions(body: Body) -> Iterable[str]:

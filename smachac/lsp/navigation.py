@@ -218,6 +218,10 @@ def _class_places(type_: StateType, facts: Facts) -> Iterator[Span]:
         text = getattr(module, "text", None)
         if isinstance(text, Source):
             yield Span(text, 0, 0)
+    elif type_.code.get("python"):
+        template = facts.library.template(type_.code["python"])
+        if template is not None:
+            yield Span(template, 0, 0)
     header = type_.classes.get("cpp", {}).get("header", "")
     source = facts.library.code(header) if header else None
     if source is not None:

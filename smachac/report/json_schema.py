@@ -16,7 +16,7 @@ from smachac.frontend.schema import CONTAINERS, REQUIRED, VARIABLES, FieldOwner
 from smachac.frontend.state_types import CLASS_FIELDS
 from smachac.frontend.unquoted import VARIABLE_SHAPES
 from smachac.interpreter.scenario import STEP_FIELDS
-from smachac.ir.nodes import KeyRole, StateKind, VariableRole
+from smachac.ir.nodes import FunctionResult, KeyRole, StateKind, VariableRole
 
 Schema: TypeAlias = dict[str, Any]
 
@@ -30,6 +30,12 @@ SHAPES: Mapping[str, Schema] = {
         "type": _NAME,
     },
     "names": {"type": "array", "items": {"$ref": "#/definitions/name"}},
+    "outcomes": {
+        "anyOf": [
+            {"$ref": "#/definitions/names"},
+            {"type": "object", "additionalProperties": {"$ref": "#/definitions/outcome"}},
+        ]
+    },
     "text": {"type": ["string", "number", "boolean", "array"]},
     "flag": {"type": "boolean"},
     "value": {},
@@ -57,6 +63,18 @@ PRESET: Schema = {
 """The long form of a userdata key."""
 
 
+OUTCOME: Schema = {
+    "type": "object",
+    "additionalProperties": False,
+    "properties": {
+        name: {"description": doc, "type": "boolean" if name == "failure" else "string"}
+        for name, doc in schema.OUTCOME_FACTS.items()
+        if name != "optional"
+    },
+}
+"""What a script can state about an outcome."""
+
+
 def generated_schemas(codes: Mapping[str, Code]) -> dict[str, Callable[[], Schema]]:
     """The generated schemas by name. `codes` are those whose severity a project file may set."""
     return {
@@ -82,6 +100,7 @@ def script_schema() -> Schema:
             **SHAPES,
             **{f"field_{name}": _field(name) for name in VARIABLES},
             "preset": PRESET,
+            "outcome": OUTCOME,
             "base": {
                 "description": "A script: one machine. Its base may have variables of its own.",
                 "type": "object",
@@ -186,7 +205,7 @@ def interface_schema() -> Schema:
         }
 
     flag, text = {"type": "boolean"}, {"type": "string"}
-    common: Schema = {"type": text, "doc": text, "optional": flag}
+    common: Schema = {"type": text, "doc": text, "optional": flag, "failure": flag}
     type_only: Schema = {"type": ["string", "null"], "description": "A type, as float<rad>[7]."}
 
     def section(of: Schema) -> Schema:
@@ -196,9 +215,13 @@ def interface_schema() -> Schema:
         "role": {"enum": list(get_args(VariableRole))},
         "keys": text,
         "called_first": flag,
+        "arguments": {"type": "array", "items": text},
+        "returns": {"enum": list(get_args(FunctionResult))},
         "unquoted": {"enum": list(VARIABLE_SHAPES)},
     }
-    keys = section(facts(schema.KEY_FACTS, common | {"role": {"enum": list(get_args(KeyRole))}}))
+    keys = section(
+        facts(schema.KEY_FACTS, common | {"role": {"enum": list(get_args(KeyRole))}, "frame": text})
+    )
     names: Schema = {"type": "array", "items": {"type": "string"}}
     class_: Schema = {
         "type": "object",

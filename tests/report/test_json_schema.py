@@ -2,8 +2,6 @@
 
 from __future__ import annotations
 
-import subprocess
-import sys
 from pathlib import Path
 from typing import Any, get_args
 
@@ -190,20 +188,6 @@ def test_descriptions_are_in_every_schema() -> None:
         assert all(entry["description"] for entry in GENERATED[name]["properties"].values())
     facts = schema.KEY_FACTS, schema.VARIABLE_FACTS, schema.OUTCOME_FACTS
     assert all(text for each in facts for text in each.values())
-
-
-@pytest.mark.parametrize("name", ["script", "interface"])
-def test_the_validator_of_editors_accepts_the_files(name: str, tmp_path: Path) -> None:
-    """check-jsonschema, an independent validator, on the printed schema."""
-    file = tmp_path / f"{name}.json"
-    file.write_text(schema_text(name), "utf-8")
-    checker = [sys.executable, "-m", "check_jsonschema"]
-    subprocess.run([*checker, "--check-metaschema", str(file)], check=True, capture_output=True)
-    paths = [str(path) for path in YAML_FILES if kind(path) == name]
-    done = subprocess.run(
-        [*checker, "--schemafile", str(file), *paths], capture_output=True, text=True
-    )
-    assert (done.returncode, done.stdout.strip()) == (0, "ok -- validation done")
 
 
 def test_the_command_prints_each_schema(capsys: pytest.CaptureFixture[str]) -> None:
