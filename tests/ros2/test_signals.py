@@ -156,8 +156,14 @@ rclpy.shutdown()
 
 def test_a_shutdown_by_the_program_ends_the_machine(graph2: Graph) -> None:
     server = graph2.node("server")
+    last = """
+    last = smach.CBState(lambda ud: print("the last state runs"), outcomes=["succeeded"])
+    following = dict.fromkeys(state.get_registered_outcomes(), "LAST")
+    smach.StateMachine.add("GO", state, following)
+    smach.StateMachine.add("LAST", last)
+"""
     program = graph2.start(
-        UPSTREAM
+        UPSTREAM.replace('    smach.StateMachine.add("GO", state)\n', last)
         + """
 thread = threading.Thread(target=lambda: print("outcome:", machine.execute()))
 thread.start()
@@ -169,7 +175,8 @@ thread.join()
     server.expect("goal 4")
     program.say("end")
     assert program.end() == 0, program.output
-    assert "outcome: " in program.output
+    assert "outcome: None" in program.output
+    assert "the last state runs" not in program.output
 
 
 @pytest.mark.parametrize("stage", ["before", "after"])
