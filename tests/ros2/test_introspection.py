@@ -36,7 +36,7 @@ for name in "container_structure", "container_status":
         received.setdefault(name, {}).setdefault(fields["path"], []).append(fields)
     node.create_subscription(
         String, f"viewed/smach/{name}_json", keep,
-        smach_ros.introspection.latched(),
+        smach_ros.introspection.latched(20),
     )
 """
 

@@ -11,13 +11,11 @@ from tests.ros2.ros2_graph import Graph, Program
 pytestmark = pytest.mark.ros2
 
 PROGRAM = """
-import sys, threading, rclpy
-from rclpy.signals import SignalHandlerOptions
+import sys, threading
 from test_msgs.action import Fibonacci
 from smachac.runtime import smach
 from smachac.runtime import smach_ros2 as smach_ros
-from smachac.runtime.smach_ros2 import program
-from smachac.runtime.smach_ros2.lifecycle import LifecycleMachineNode
+from smachac.runtime.smach_ros2 import lifecycle, program
 
 builds = []
 
@@ -32,10 +30,8 @@ def build(node):
         smach.StateMachine.add("GO", smach_ros.SimpleActionState(node, "work", Fibonacci, goal))
     return machine
 
-rclpy.init(signal_handler_options=SignalHandlerOptions.NO)
-node = LifecycleMachineNode("machine", build)
-node.start()
-outcome = program.run(node, node)
+node = lifecycle.start_node("machine", build)
+outcome = lifecycle.run(node)
 program.stop_node(node)
 print("outcome:", outcome, "builds:", len(builds))
 left = [each.name for each in threading.enumerate() if each is not threading.main_thread()]

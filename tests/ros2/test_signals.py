@@ -156,8 +156,14 @@ rclpy.shutdown()
 
 def test_a_shutdown_by_the_program_ends_the_machine(graph2: Graph) -> None:
     server = graph2.node("server")
+    last = """
+    last = smach.CBState(lambda ud: print("the last state runs"), outcomes=["succeeded"])
+    following = dict.fromkeys(state.get_registered_outcomes(), "LAST")
+    smach.StateMachine.add("GO", state, following)
+    smach.StateMachine.add("LAST", last)
+"""
     program = graph2.start(
-        UPSTREAM
+        UPSTREAM.replace('    smach.StateMachine.add("GO", state)\n', last)
         + """
 thread = threading.Thread(target=lambda: print("outcome:", machine.execute()))
 thread.start()
@@ -169,4 +175,58 @@ thread.join()
     server.expect("goal 4")
     program.say("end")
     assert program.end() == 0, program.output
-    assert "outcome: " in program.output
+    assert "outcome: None" in program.output
+    assert "the last state runs" not in program.output
+
+
+@pytest.mark.parametrize("stage", ["before", "after"])
+def test_a_signal_before_or_after_the_machine_does_no_harm(graph2: Graph, stage: str) -> None:
+    program = graph2.start(
+        START
+        + f"""
+def pause():
+    report("stage")
+    sys.stdin.readline()
+
+machine = smach.StateMachine(["succeeded", "preempted"])
+with machine:
+    for name in "FIRST", "SECOND":
+        target = "SECOND" if name == "FIRST" else "succeeded"
+        waiting = smach_ros.ConditionState(node, lambda ud: stage == "after")
+        smach.StateMachine.add(
+            name, waiting, {{"true": target, "false": target, "preempted": "preempted"}}
+        )
+stage = {stage!r}
+if stage == "before":
+    pause()
+report("outcome", program.run(node, machine))
+if stage == "after":
+    pause()
+"""
+    )
+    program.expect("stage")
+    program.send(signal.SIGINT)
+    program.say("go on")
+    assert program.end() == 0, program.output
+    assert f"outcome: {'preempted' if stage == 'before' else 'succeeded'}" in program.output
+    assert "threads left: []" in program.output
+
+
+def test_signals_during_the_end_of_the_program_are_ignored(graph2: Graph) -> None:
+    program = graph2.start(
+        START
+        + """
+import os, signal
+stop = node.stop
+
+def interrupted():
+    for _ in range(3):
+        os.kill(os.getpid(), signal.SIGINT)
+    stop()
+
+node.stop = interrupted
+"""
+    )
+    assert program.end() == 0, program.output
+    assert "threads left: []" in program.output
+    assert "KeyboardInterrupt" not in program.output

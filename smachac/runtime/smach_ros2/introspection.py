@@ -27,6 +27,9 @@ STRUCTURE_TOPIC = "/smach/container_structure"
 JSON_SUFFIX = "_json"
 """What follows the name of a topic whose messages are JSON texts."""
 
+STATUS_DEPTH = 20
+"""Messages on the status of one container that are kept: a machine may be faster than a viewer."""
+
 HEARTBEAT = 2.0
 """Seconds between two reports on all containers; a viewer that starts late waits for one."""
 
@@ -94,9 +97,11 @@ class ContainerProxy:
         self._running = False
         self._publishers = {
             name: server.create_publisher(
-                self._format.message_type(name), self._format.topic(server_name, name), latched()
+                self._format.message_type(name),
+                self._format.topic(server_name, name),
+                latched(depth),
             )
-            for name in (STATUS_TOPIC, STRUCTURE_TOPIC)
+            for name, depth in ((STATUS_TOPIC, STATUS_DEPTH), (STRUCTURE_TOPIC, 1))
         }
         server.create_subscription(
             self._format.message_type(INIT_TOPIC),
@@ -286,14 +291,17 @@ class IntrospectionClient(ros.Node):
             self._format.message_type(STATUS_TOPIC),
             self._format.topic(server, STATUS_TOPIC),
             on_status,
-            latched(),
+            latched(STATUS_DEPTH),
         )
         spinning.ensure(self)
         confirmed.wait(limit)
         return confirmed.is_set()
 
 
-def latched() -> Any:
-    """The quality of service with which a new subscriber gets the last message."""
+def latched(depth: int = 1) -> Any:
+    """The quality of service with which a new subscriber gets the last messages.
+
+    The depth is also the number of messages that a slow network may delay without a loss.
+    """
     module = ros.load("rclpy.qos")
-    return module.QoSProfile(depth=1, durability=module.DurabilityPolicy.TRANSIENT_LOCAL)
+    return module.QoSProfile(depth=depth, durability=module.DurabilityPolicy.TRANSIENT_LOCAL)

@@ -6,7 +6,7 @@ import threading
 from collections.abc import Callable
 from typing import Any
 
-from smachac.runtime.smach_ros2 import ros
+from smachac.runtime.smach_ros2 import program, ros
 from smachac.runtime.smach_ros2.ros import LifecycleNode
 from smachac.runtime.smach_ros2.spinning import Spinner
 
@@ -39,6 +39,7 @@ class LifecycleMachineNode(LifecycleNode):
         self._over = threading.Event()
         self._results: Any = ros.load("rclpy.lifecycle").TransitionCallbackReturn
         self._spinner: Spinner | None = None
+        self.signal_handler: Any = None
 
     def start(self) -> None:
         """Spin the node in threads: transitions wait for a machine that needs the node."""
@@ -120,3 +121,19 @@ class LifecycleMachineNode(LifecycleNode):
     def is_running(self) -> bool:
         """Whether the machine runs."""
         return self._run_thread is not None and self._run_thread.is_alive()
+
+
+def start_node(
+    name: str, build: Callable[[Any], Any], args: list[str] | None = None, **kwargs: Any
+) -> LifecycleMachineNode:
+    """Initialize rclpy and start a LifecycleMachineNode, as `program.start_node` does."""
+    node: LifecycleMachineNode = program.start(
+        lambda: LifecycleMachineNode(name, build, **kwargs), args
+    )
+    return node
+
+
+def run(node: LifecycleMachineNode) -> str | None:
+    """Wait until the node is shut down by a transition, or by Ctrl-C or SIGTERM, which preempt its
+    machine; the outcome of the last run."""
+    return program.run(node, node)

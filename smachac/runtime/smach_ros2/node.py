@@ -14,6 +14,7 @@ class SmachNode(ros.Node):
     def __init__(self, node_name: str, **kwargs: Any) -> None:
         super().__init__(node_name, **kwargs)
         self._spinner: Spinner | None = None
+        self.signal_handler: Any = None
 
     def start(self) -> None:
         """Spin the node in a thread, until rclpy shuts down."""

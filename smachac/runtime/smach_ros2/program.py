@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import threading
-from collections.abc import Collection
+from collections.abc import Callable, Collection
 from typing import Any
 
 from smachac.runtime.smach_ros2 import ros
@@ -11,47 +11,71 @@ from smachac.runtime.smach_ros2.node import SmachNode
 from smachac.runtime.smach_ros2.signals import GRACE, PreemptHandler
 
 
-def start_node(name: str, args: list[str] | None = None, **kwargs: Any) -> SmachNode:
+def start_node(name: str, args: list[str] | None = None, **kwargs: Any) -> Any:
     """Initialize rclpy and start a node that a thread spins.
 
-    rclpy gets no signal handlers, because they end the node before goals can be cancelled: see
-    `run`. `args` are the arguments of the program (default: sys.argv); other arguments are those of
-    rclpy.node.Node.
+    From now on SIGINT and SIGTERM preempt the machine of `run`; rclpy gets no signal handlers,
+    because they end the node before goals can be cancelled. `args` are the arguments of the program
+    (default: sys.argv); other arguments are those of rclpy.node.Node.
     """
-    options = ros.load("rclpy.signals").SignalHandlerOptions
-    ros.rclpy.init(args=args, signal_handler_options=options.NO)
-    node = SmachNode(name, **kwargs)
-    node.start()
+    return start(lambda: SmachNode(name, **kwargs), args)
+
+
+def start(make: Callable[[], Any], args: list[str] | None = None) -> Any:
+    """Initialize rclpy as `start_node` does, and start the node that `make` returns."""
+    handler = None
+    if threading.current_thread() is threading.main_thread():
+        handler = PreemptHandler(ros.rclpy.get_default_context())
+        handler.install()
+    try:
+        options = ros.load("rclpy.signals").SignalHandlerOptions
+        ros.rclpy.init(args=args, signal_handler_options=options.NO)
+        node = make()
+        node.signal_handler = handler
+        node.start()
+    except BaseException:
+        ros.rclpy.try_shutdown()
+        if handler is not None:
+            handler.remove()
+        raise
     return node
 
 
 def run(node: Any, machine: Any, grace: float = GRACE) -> str | None:
-    """Execute a machine in this thread and return its outcome.
+    """Execute a machine in this thread and return its outcome; the node is one of `start_node`.
 
     The first Ctrl-C or SIGTERM preempts it; after `grace` seconds the node shuts down, and states
     that wait for ROS end. The second one ends the program.
     """
-    if threading.current_thread() is not threading.main_thread():
-        return _execute(machine)
-    handler = PreemptHandler(node.context, grace)
-    handler.machines.append(machine)
-    handler.install()
+    handler: PreemptHandler | None = node.signal_handler
+    outcome: str | None
+    if handler is None:
+        outcome = machine.execute()
+        return outcome
+    handler.grace, handler.is_executing = grace, True
+    handler.add(machine)
     try:
-        return _execute(machine)
+        outcome = machine.execute()
     finally:
-        handler.remove()
-
-
-def _execute(machine: Any) -> str | None:
-    outcome: str | None = machine.execute()
+        handler.is_executing = False
+        handler.discard(machine)
     return outcome
 
 
-def stop_node(node: SmachNode) -> None:
-    """Stop the thread of a node, destroy the node and shut rclpy down."""
+def stop_node(node: Any) -> None:
+    """Stop the thread of a node of `start_node`, destroy the node and shut rclpy down.
+
+    Signals are ignored meanwhile; after that the former handlers are in place again.
+    """
+    handler: PreemptHandler | None = node.signal_handler
+    if handler is not None:
+        handler.ignore()
     node.stop()
     node.destroy_node()
     node.context.try_shutdown()
+    if handler is not None:
+        handler.remove()
+        node.signal_handler = None
 
 
 def exit_code(outcome: str | None, failures: Collection[str] = ("aborted", "preempted")) -> int:

@@ -6,6 +6,7 @@ Importing this module imports rclpy. ImportError names the packages if there is 
 from __future__ import annotations
 
 import traceback
+from collections.abc import Callable
 from importlib import import_module
 from typing import TYPE_CHECKING, Any, Protocol, TypeAlias
 
@@ -94,10 +95,20 @@ def fields(message: Any) -> list[str]:
     return list(message.get_fields_and_field_types())
 
 
-def is_shut_down() -> bool:
-    """Whether rclpy was initialized and has been shut down."""
-    context = rclpy.get_default_context()
-    return context.handle is not None and not context.ok()
+def shutdown_check() -> Callable[[], bool]:
+    """A function that returns whether rclpy has been shut down since it was seen running.
+
+    rclpy replaces a context that was shut down by a new one, which looks as if nothing had been.
+    """
+    was_running = False
+
+    def is_shut_down() -> bool:
+        nonlocal was_running
+        is_running = bool(rclpy.ok())
+        was_running = was_running or is_running
+        return was_running and not is_running
+
+    return is_shut_down
 
 
 def connect_smach() -> None:
@@ -111,7 +122,7 @@ def connect_smach() -> None:
             lambda text: logger.error(text),
         )
     if smach.is_shutdown is log.is_shutdown:
-        smach.set_shutdown_check(is_shut_down)
+        smach.set_shutdown_check(shutdown_check())
 
 
 def log_failure(node: Any, what: str) -> None:

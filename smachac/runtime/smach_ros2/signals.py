@@ -21,17 +21,22 @@ SIGNALS = (signal.SIGINT, signal.SIGTERM)
 class PreemptHandler:
     """The handler of SIGINT and SIGTERM that preempts machines.
 
-    The first signal preempts the machines; the second one ends the program. A thread reads the
-    signal from a pipe, because Python runs no handler while the main thread waits inside rclpy.
+    The first signal preempts the machines, also those that are added later; the second one ends
+    the program. A thread reads the signal from a pipe, because Python runs no handler while the
+    main thread waits inside rclpy.
 
     Attributes:
-        machines: the containers to preempt.
+        grace: seconds that the machines have to end.
+        is_executing: whether the program is about to execute a machine, or executes one.
     """
 
-    def __init__(self, context: Any, grace: float = GRACE, shuts_down: bool = False) -> None:
-        self.machines: list[Any] = []
+    def __init__(self, context: Any, shuts_down: bool = False) -> None:
+        self.grace = GRACE
+        self.is_executing = False
+        self._machines: list[Any] = []
+        self._signalled = False
+        self._changing = threading.Lock()
         self._context = context
-        self._grace = grace
         self._shuts_down = shuts_down
         self._pipe = os.pipe()
         os.set_blocking(self._pipe[1], False)
@@ -44,13 +49,31 @@ class PreemptHandler:
         self._before = [signal.signal(number, self) for number in SIGNALS]
         self._thread.start()
 
+    def add(self, machine: Any) -> None:
+        """Preempt this machine too; at once if a signal came before."""
+        with self._changing:
+            self._machines.append(machine)
+            is_late = self._signalled
+        if is_late:
+            machine.request_preempt()
+
+    def discard(self, machine: Any) -> None:
+        """Do not preempt this machine any more."""
+        with self._changing:
+            self._machines = [each for each in self._machines if each is not machine]
+
+    def ignore(self) -> None:
+        """Ignore all signals until `remove`, while the program cleans up."""
+        for number in SIGNALS:
+            signal.signal(number, signal.SIG_IGN)
+
     def remove(self) -> None:
         """Restore the handlers that were there before."""
         signal.set_wakeup_fd(self._pipe_before)
         for number, handler in zip(SIGNALS, self._before, strict=True):
             signal.signal(number, handler)
         os.write(self._pipe[1], b"\0")
-        self._thread.join(2 * self._grace)
+        self._thread.join(2 * self.grace)
         for end in self._pipe:
             os.close(end)
 
@@ -63,26 +86,33 @@ class PreemptHandler:
         """Wait for the first signal; a zero byte ends the wait."""
         while number := os.read(self._pipe[0], 1)[0]:
             if number in SIGNALS:
+                with self._changing:
+                    self._signalled = True
+                    machines = list(self._machines)
                 main = threading.main_thread().ident
-                is_main = any(is_executed_by(main, machine) for machine in self.machines)
-                self._preempt()
+                is_main = any(is_executed_by(main, machine) for machine in machines)
+                self._preempt(machines)
                 if self._shuts_down and not is_main:
                     self._context.try_shutdown()
                 return
 
-    def _preempt(self) -> None:
+    def _preempt(self, machines: list[Any]) -> None:
         """Preempt the machines and wait for their end; shut rclpy down after the grace time."""
-        for machine in self.machines:
+        for machine in machines:
             machine.request_preempt()
-        end = time.monotonic() + self._grace
-        while self._context.ok() and any(machine.is_running() for machine in self.machines):
+        end = time.monotonic() + self.grace
+        while self._context.ok() and (self.is_executing or any(map(_is_running, machines))):
             if time.monotonic() > end:
                 smach.logwarn(
-                    f"the state machine did not end within {self._grace:g} s: the node shuts down"
+                    f"the state machine did not end within {self.grace:g} s: the node shuts down"
                 )
                 self._context.try_shutdown()
                 return
             time.sleep(0.02)
+
+
+def _is_running(machine: Any) -> bool:
+    return bool(machine.is_running())
 
 
 def is_executed_by(thread: int | None, container: Any) -> bool:
@@ -112,12 +142,12 @@ def set_preempt_handler(sc: Any) -> None:
     context.on_shutdown(at_shutdown)
     known = signal.getsignal(signal.SIGINT)
     if isinstance(known, PreemptHandler):
-        known.machines.append(sc)
+        known.add(sc)
     elif (
         known is signal.default_int_handler
         and threading.current_thread() is threading.main_thread()
     ):
         ros.load("rclpy.signals").uninstall_signal_handlers()
         handler = PreemptHandler(context, shuts_down=True)
-        handler.machines.append(sc)
+        handler.add(sc)
         handler.install()

@@ -120,5 +120,7 @@ class Probe:
                 "the executor of the node does not run: a thread of smach_ros spins the node"
             )
             Spinner(self._node).start()
-        self._pending = threading.Event()
-        self._node.executor.create_task(self._pending.set)
+        executor = self._node.executor
+        if executor is not None:
+            self._pending = threading.Event()
+            executor.create_task(self._pending.set)

@@ -127,10 +127,11 @@ class ReadTopicState(RosState):
         qos: Any = None,
         input_keys: Iterable[str] = ("topic",),
         output_keys: Iterable[str] = ("output",),
+        outcomes: Iterable[str] = ("succeeded", "aborted", "preempted"),
     ) -> None:
         super().__init__(
             node,
-            outcomes=["succeeded", "aborted", "preempted"],
+            outcomes=list(outcomes),
             input_keys=list(input_keys),
             output_keys=list(output_keys),
         )
@@ -155,7 +156,8 @@ class ReadTopicState(RosState):
         if msg_type is not None:
             message = wait_for_message(self.node, topic, msg_type, self, self._timeout, self._qos)
         if message is None:
-            return "preempted" if self._is_preempted() else "aborted"
+            ends = self.get_registered_outcomes()
+            return "preempted" if "preempted" in ends and self._is_preempted() else "aborted"
         for key in self.get_registered_output_keys():
             ud[key] = message
         return "succeeded"
