@@ -271,7 +271,15 @@ def test_the_grammar_has_every_kind_and_every_field_of_it() -> None:
     grammar = parser._parser()
     assert {word for word in parser.KINDS if grammar_accepts(word)} == {k.keyword for k in kinds}
     names = {field.name for kind in (Machine, *kinds) for field in dataclasses.fields(kind)}
-    places = {"span", "via", "initial_span", "default_span"}
+    places = {
+        "span",
+        "via",
+        "initial_span",
+        "default_span",
+        "connector_span",
+        "items_span",
+        "loop_spans",
+    }
     in_the_head = {"name", "type", "children", "root"}
     in_other_files = {"class_facts", "properties", "robot", "state_types", "unused", "written"}
     in_other_files |= {"adds_frames", "built_in", "definitions", "stand_in"}  # only for rules
