@@ -146,7 +146,7 @@ class _Inference:
         self.arrive(TypeFlow(type=type_, how="value", span=span, cell=cell, value=data))
 
     def variable(self, held: Variable, path: str, node: Node | None) -> None:
-        if not is_open(held.type):
+        if not is_open(held.type) and not _is_quoted_function(held):
             cell = self.cell(path, held.name, "variable", node, held.span)
             cell.declared = held.type
             self.literal(cell, held.value.data, held.value.span)
@@ -342,6 +342,13 @@ class _Inference:
                 if cell.role in ("scope", "input")
             },
         )
+
+
+def _is_quoted_function(held: Variable) -> bool:
+    """Whether a function in a variable is written as text (SM316)."""
+    data = held.value.data
+    is_function = held.role in ("function", "duration")
+    return is_function and isinstance(data, str) and data.lstrip().startswith("lambda")
 
 
 def _kind(flow: TypeFlow) -> Type:

@@ -19,8 +19,7 @@ from smachac.analysis.code_slots import (
 )
 from smachac.analysis.context import Context
 from smachac.analysis.expression_errors import kinds, type_text
-from smachac.analysis.expression_types import parsed, type_of
-from smachac.analysis.type_lattice import record
+from smachac.analysis.expression_types import type_of_call
 from smachac.checks.messages import calls, did_you_mean
 from smachac.checks.rule import rule
 from smachac.diagnostics.diagnostic import Edit, Finding, Severity
@@ -28,7 +27,7 @@ from smachac.diagnostics.source import Span
 from smachac.diagnostics.spelling import guesser
 from smachac.diagnostics.wording import listed
 from smachac.ir.code_places import node_place, node_range, place_in
-from smachac.ir.nodes import Leaf, Node
+from smachac.ir.nodes import Expression, Leaf, Node
 from smachac.ir.traversal import outcome_names
 from smachac.ir.types import ANY, Type
 
@@ -330,7 +329,7 @@ def wrong_result(context: Context) -> Iterator[Finding]:
         for result in found:
             fault = _outcome_fault(node, slot, result)
             if slot.returns == "value":
-                fault = _value_fault(context, path, slot, result)
+                fault = _value_fault(context, path, node, slot, result)
             if fault is None:
                 continue
             what, help, sure = fault
@@ -349,7 +348,9 @@ Fault = tuple[str, str | None, bool]
 """What a function returns, the help, and whether it is certain."""
 
 
-def _value_fault(context: Context, path: str, slot: CodeSlot, result: ast.expr) -> Fault | None:
+def _value_fault(
+    context: Context, path: str, node: Node, slot: CodeSlot, result: ast.expr
+) -> Fault | None:
     """The fault of a result that must be a value."""
     match result:
         case ast.Constant(value=None) if slot.role != "callbacks":
@@ -358,7 +359,7 @@ def _value_fault(context: Context, path: str, slot: CodeSlot, result: ast.expr) 
         case ast.Call(func=ast.Name(id="print")) if slot.role != "callbacks":
             return "None: `print` returns nothing", "return a value", True
         case ast.Call(func=ast.Attribute(value=value, attr=method)):
-            type_ = _type(context, path, slot, value)
+            type_ = _type(context, path, node, slot, value)
             known = next(iter(kinds(type_)), "") if len(kinds(type_)) == 1 else ""
             if known and method not in NOTHING_RETURNED.get(known, ()):
                 return None
@@ -367,7 +368,7 @@ def _value_fault(context: Context, path: str, slot: CodeSlot, result: ast.expr) 
             what = f"None: `{method}` changes the value and returns nothing"
             return what, _instead(result, value, method), bool(known)
     if slot.role == "duration":
-        type_ = _type(context, path, slot, result)
+        type_ = _type(context, path, node, slot, result)
         if kinds(type_) and "number" not in kinds(type_):
             what = f"`{type_text(type_)}`, but a duration is a number of seconds"
             return what, "return a number, for example with `float(...)`", True
@@ -388,14 +389,15 @@ def _instead(call: ast.Call, value: ast.expr, method: str) -> str:
     return "return the new value"
 
 
-def _type(context: Context, path: str, slot: CodeSlot, value: ast.expr) -> Type:
+def _type(context: Context, path: str, node: Node, slot: CodeSlot, value: ast.expr) -> Type:
     """The type of a part of a function, by the types of the keys that it reads."""
     name = userdata_parameter(slot)
-    tree = parsed(ast.unparse(value))
-    if name is None or tree is None:
+    if name is None:
         return ANY
-    keys = {key: type_ for (where, key), type_ in context.types.inputs.items() if where == path}
-    return type_of(tree, {name: record(keys.items())})
+    code = Expression(text=f"lambda {name}: {ast.unparse(value)}", span=slot.code.span)
+    types = context.types.inputs
+    keys = {key.name: types.get((path, key.name), ANY) for key in node.inputs}
+    return type_of_call(code, keys)
 
 
 def _outcome_fault(node: Node, slot: CodeSlot, result: ast.expr) -> Fault | None:

@@ -304,6 +304,17 @@ def test_a_user_s_state_type_states_the_same_facts() -> None:
     assert codes == [["SM317"], ["SM317"], ["SM318"], []]
 
 
+def test_a_function_in_quotes_is_no_wrong_number() -> None:
+    interface = (
+        "name: Wait\nvariables: {time: {type: float<s>, role: duration}}\noutcomes: {done: {}}\n"
+        'code: {python: "w:W"}\n'
+    )
+    text = "name: sm\noutcomes: [done]\nstates: [{A: {template: Wait, time: 'lambda ud: 3'}}]\n"
+    library = memory_library({"templates/Wait.yml": interface}, BUILT_IN)
+    report = analyse(Source("main.yml", text), library, []).report
+    assert [item.code for item in report if item.code in ("SM304", "SM316")] == ["SM316"]
+
+
 def test_faults_of_the_facts_are_reported() -> None:
     interface = "name: W\nvariables: {f: {role: function, returns: valeu}}\noutcomes: {done: {}}\n"
     text = "name: sm\noutcomes: [done]\nstates: [{A: {template: W, f: null}}]\n"
