@@ -47,6 +47,7 @@ VARIABLES: dict[str, Field] = {
         _row("function_name", "", "text", "base"),
         _row("types", "", "map", "base"),
         _row("robot", "", "name", "base"),
+        _row("scene", "", "name", "base"),
         _row("frames", "", "names", "base"),
         _row("properties", "", "value", "base"),
         _row("template", "T", "name", _ALL),

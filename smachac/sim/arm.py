@@ -28,11 +28,16 @@ class Arm(JointControl):
 
     Attributes:
         world: the scene that the arm stands in.
+        body: PyBullet's number of its robot.
+        base: the pose of its robot's base (world frame).
+        kinematics: forward and inverse kinematics of its robot.
     """
 
     def __init__(self, world: Scene, mounted: MountedLimb) -> None:
-        super().__init__(world.engine, world.robot_body, mounted)
+        super().__init__(world.engine, mounted)
         self.world = world
+        self.body, self.base = mounted.body, mounted.base
+        self.kinematics = world.kinematics[mounted.body]
 
     @property
     def name(self) -> str:
@@ -41,10 +46,9 @@ class Arm(JointControl):
 
     def tip_pose(self, frame: str = "base") -> list[list[float]]:
         """The pose of the tip in `frame`. Raises UnknownNameError."""
-        state = self.engine.getLinkState(
-            self.world.robot_body, self.tip, computeForwardKinematics=True
-        )
-        return transforms.as_lists(self.world.seen_from(frame, (state[4], state[5])))
+        state = self.engine.getLinkState(self.body, self.tip, computeForwardKinematics=True)
+        tip = transforms.compose((state[4], state[5]), self.limb.offset)
+        return transforms.as_lists(self.world.seen_from(frame, tip))
 
     def forces(self) -> dict[str, float]:
         """The bodies that every finger presses, with the force of the weakest finger (N)."""
@@ -57,7 +61,7 @@ class Arm(JointControl):
         not from the present joints, so the posture does not drift from cycle to cycle.
         """
         target = self._target(pose, offset, frame)
-        joints = self.world.kinematics.solve(self.limb, target)
+        joints = self.kinematics.solve(self.limb, target)
         if joints is None:
             place = ", ".join(f"{each:.3f}" for each in target[0])
             self.world.note("ik", f"{self.name}: ({place}) is out of reach")
@@ -65,8 +69,8 @@ class Arm(JointControl):
         return list(joints)
 
     def grasp_pose(self, block_pose: Any) -> list[list[float]]:
-        """The tool pose that grips a cube at `block_pose` with this hand, tool straight down."""
-        return transforms.grasp_pose(block_pose, self.limb.turn)
+        """The tool pose that grips a cube at `block_pose` with this hand."""
+        return transforms.grasp_pose(block_pose, self.limb.grasp)
 
     # Skills
 
@@ -89,7 +93,7 @@ class Arm(JointControl):
     ) -> Result:
         """Move the tip on the straight line from its present pose to `pose` + `offset`."""
         target = self._target(pose, offset, frame)
-        skill = skills.move_along(self, self.world.kinematics, target, speed, preempted)
+        skill = skills.move_along(self, self.kinematics, target, speed, preempted)
         return self._run("move along", skill)
 
     def grip(self, command: str, preempted: Callable[[], bool] | None = None) -> Result:
@@ -112,9 +116,11 @@ class Arm(JointControl):
         return result.outcome == "succeeded"
 
     def _target(self, pose: Any, offset: Any, frame: str) -> Pose:
+        """The pose, moved by `offset`, in the frame of the base of the arm's robot."""
         shift = IDENTITY if offset is None else as_pose(offset)
         moved = transforms.shifted(as_pose(pose), shift)
-        return self.world.seen_from("base", transforms.compose(self.world.frame(frame), moved))
+        place = transforms.compose(self.world.frame(frame), moved)
+        return transforms.compose(transforms.inverse(self.base), place)
 
     def _run(self, name: str, skill: Skill[Result]) -> Result:
         """Run a skill to its end; an aborted one adds an Event with the reason."""

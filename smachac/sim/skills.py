@@ -38,7 +38,7 @@ _STILL_DISTANCE = 1e-5
 _OPENED = 0.9
 """Part of a finger's stroke from which it counts as open."""
 _EMPTY_WIDTH = 0.004
-"""Width (m) of the closed gripper below which there is nothing between the fingers."""
+"""Opening (m) beyond the closed width below which there is nothing between the fingers."""
 _GRASP_FORCE = 0.5
 """Force (N) of the weakest finger above which a body is grasped."""
 
@@ -175,14 +175,17 @@ def grip(
 
     Closing succeeds if one of `bodies` (PyBullet's numbers by name) is grasped.
     """
-    arm.squeeze([each.opened if opening else each.closed for each in arm.limb.fingers])
+    if not arm.fingers:
+        return Result("aborted", "the arm has no gripper")
+    arm.squeeze([each.opened if opening else each.closed for each in arm.finger_joints])
+    stroke = (arm.open_width - arm.closed_width) / 2
     still, before = 0, arm.opening
     for step in range(round(_SETTLING_TIME / TIME_STEP)):
         if preempted is not None and preempted():
             return Result("preempted", "preempted; the gripper goes on moving", arm.width)
         yield
         after = arm.opening
-        moved = max(abs(a - b) for a, b in zip(after, before, strict=True))
+        moved = stroke * max(abs(a - b) for a, b in zip(after, before, strict=True))
         still = still + 1 if moved < _STILL_DISTANCE else 0
         before = after
         if still >= _STILL_STEPS and step * TIME_STEP >= _GRIP_TIME:
@@ -191,8 +194,7 @@ def grip(
 
 
 def _opening_result(arm: JointControl) -> Result:
-    strokes = [abs(each.opened - each.closed) for each in arm.limb.fingers]
-    if all(a > _OPENED * b for a, b in zip(arm.opening, strokes, strict=True)):
+    if all(part > _OPENED for part in arm.opening):
         return Result("succeeded", value=arm.width)
     return Result("aborted", f"the gripper did not open ({1000 * arm.width:.1f} mm)", arm.width)
 
@@ -210,7 +212,7 @@ def check_grasp(arm: JointControl, bodies: Mapping[str, int], name: str | None) 
 
 def _grasp(arm: JointControl, bodies: Mapping[str, int], name: str | None) -> Result:
     """The grasp by width and by force: a gripper that is open is wide too."""
-    if arm.width < _EMPTY_WIDTH:
+    if arm.width - arm.closed_width < _EMPTY_WIDTH:
         return Result("aborted", f"the grasp is empty ({1000 * arm.width:.1f} mm)")
     forces = arm.contact_forces(bodies)
     held = {each: force for each, force in forces.items() if force > _GRASP_FORCE}

@@ -5,13 +5,13 @@ A pose is written `[[x, y, z], [qx, qy, qz, qw]]` in scripts and held as two tup
 
 import math
 from collections.abc import Iterable, Sequence
-from typing import Any, TypeAlias
+from typing import Any
 
-Vector: TypeAlias = tuple[float, float, float]
-Quaternion: TypeAlias = tuple[float, float, float, float]
-Pose: TypeAlias = tuple[Vector, Quaternion]
-
-IDENTITY: Pose = ((0.0, 0.0, 0.0), (0.0, 0.0, 0.0, 1.0))
+from smachac.robots.description import DOWN
+from smachac.robots.fields import IDENTITY as IDENTITY
+from smachac.robots.fields import Pose as Pose
+from smachac.robots.fields import Quaternion as Quaternion
+from smachac.robots.fields import Vector as Vector
 
 
 def as_pose(value: Any) -> Pose:
@@ -125,15 +125,14 @@ def about_z(yaw: float) -> Quaternion:
     return (0.0, 0.0, math.sin(yaw / 2), math.cos(yaw / 2))
 
 
-def grasp_pose(block_pose: Any, turn: float = 0.0) -> list[list[float]]:
-    """The tool pose that grips a cube at `block_pose`: at its centre, tool straight down.
+def grasp_pose(block_pose: Any, grasp: Pose = DOWN) -> list[list[float]]:
+    """The tool pose that grips a cube at `block_pose`, for an upright cube.
 
     A cube is symmetric under quarter turns, so its yaw is reduced to +-45 degrees, the smallest
-    rotation of the wrist. `turn` (rad) is the yaw of the hand when the cube has yaw 0, see
+    rotation of the wrist. `grasp` is the pose of the tool in the frame of the cube, see
     robots.Limb. Raises ValueError for a value that is no pose.
     """
     position, rotation = as_pose(block_pose)
     yaw = yaw_of(rotation)
     folded = yaw - math.pi / 2 * round(yaw / (math.pi / 2))
-    down = multiply(about_z(folded + turn), (1.0, 0.0, 0.0, 0.0))
-    return as_lists((position, down))
+    return as_lists(compose((position, about_z(folded)), grasp))

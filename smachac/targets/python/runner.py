@@ -72,7 +72,7 @@ def execute(
         if record is not None or gui or "smachac.sim" in sys.modules:
             from smachac import sim
 
-            sim.configure(seed=seed, gui=gui, record=record)
+            sim.configure(seed=seed, gui=gui, record=record, folders=[folder])
         built: list[Any] = []
 
         def watch(root: Any) -> None:
