@@ -18,7 +18,8 @@ class Box:
 class Model:
     """A rigid body of boxes.
 
-    `mass` is in kg; a body of mass 0 does not move. A body that is not `solid` is drawn and has no
+    `mass` is in kg; a body of mass 0 does not move, and one that moves has the centre of its first
+    box as centre of mass. A body that is not `solid` is drawn and has no
     contacts. `friction` is the lateral friction coefficient. Bodies of one model take the `colours`
     in turn.
     """
@@ -58,6 +59,12 @@ MODELS: dict[str, Model] = {
     "table": _table((0.6, 0.8), 0.4, (0.80, 0.66, 0.48)),
     "cafe_table": _table((0.913, 0.913), 0.775, (0.80, 0.66, 0.48)),
     "block": Model(boxes=(Box(size=(0.05, 0.05, 0.05)),), colours=_PAINTS, mass=0.1, friction=1.0),
+    "corner_block": Model(
+        boxes=(Box(size=(0.05, 0.05, 0.05), centre=(0.025, 0.025, 0.025)),),
+        colours=_PAINTS,
+        mass=0.5,
+        friction=1.0,
+    ),
     "brick": Model(boxes=(Box(size=(0.10, 0.05, 0.05)),), colours=_PAINTS, mass=0.2, friction=1.0),
     "wall": Model(boxes=(Box(size=(0.02, 0.4, 0.3), centre=(0, 0, 0.15)),), colours=(_GREY,)),
     "goal": Model(

@@ -26,7 +26,12 @@ def build(engine: Engine, model: Model, pose: Pose, turn: int = 0) -> int:
     look = engine.createVisualShapeArray(
         shapeTypes=kinds, halfExtents=halves, visualFramePositions=centres, rgbaColors=colours
     )
-    body: int = engine.createMultiBody(model.mass, shape, look, pose[0], pose[1])
+    # The centre of mass of a body that moves is that of its first box.
+    centre = model.boxes[0].centre if model.mass > 0.0 else (0.0, 0.0, 0.0)
+    body: int = engine.createMultiBody(
+        model.mass, shape, look, pose[0], pose[1], baseInertialFramePosition=centre
+    )
+    place(engine, body, pose)
     for k, colour in enumerate(colours):
         engine.changeVisualShape(body, -1, shapeIndex=k, rgbaColor=colour)
     touch(engine, body, model.friction)

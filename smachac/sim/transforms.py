@@ -17,18 +17,24 @@ from smachac.robots.fields import Vector as Vector
 def as_pose(value: Any) -> Pose:
     """The pose in `value`, which is written as in scripts; its quaternion is normalized.
 
+    A message of ROS, with the attributes `position` and `orientation`, is read too.
     The quaternion may be left out; four zeros mean no rotation, as in many scripts.
     Raises ValueError unless there are three and four finite numbers.
     """
+    if hasattr(value, "pose"):
+        value = value.pose
+    if hasattr(value, "position"):
+        p, q = value.position, value.orientation
+        value = [[p.x, p.y, p.z], [q.x, q.y, q.z, q.w]]
     try:
         position, rotation = value if len(value) == 2 else (value, IDENTITY[1])
-        p = [float(each) for each in position]
-        q = [float(each) for each in rotation]
+        place = [float(each) for each in position]
+        turn = [float(each) for each in rotation]
     except (TypeError, ValueError):
         raise ValueError(f"not a pose [[x, y, z], [qx, qy, qz, qw]]: {value!r}") from None
-    if len(p) != 3 or len(q) != 4 or not all(map(math.isfinite, p + q)):
+    if len(place) != 3 or len(turn) != 4 or not all(map(math.isfinite, place + turn)):
         raise ValueError(f"not a pose [[x, y, z], [qx, qy, qz, qw]]: {value!r}")
-    return (p[0], p[1], p[2]), _normalized(q)
+    return (place[0], place[1], place[2]), _normalized(turn)
 
 
 def as_lists(pose: Pose) -> list[list[float]]:
