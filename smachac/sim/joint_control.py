@@ -11,6 +11,8 @@ GRIP_TIME = 0.4
 """Time (s) in which a finger moves from open to closed: 0.1 m/s for a stroke of 0.04 m."""
 TOP_SPEED = 1.0
 """Joint speed (rad/s) of a move with speed 1; the limit in the URDF applies where it is lower."""
+_FOLLOW_FORCE = 50.0
+"""Force (N) or torque (N m) with which joints of a gripper follow its first one."""
 _LOCK_FORCE = 1000.0
 """Force (N) or torque (N m) that holds a locked joint."""
 
@@ -30,6 +32,7 @@ class JointControl:
         speeds: the speed of each joint (rad/s) in a move with speed 1.
         finger_joints: the fingers of the gripper as described; none without a gripper.
         grip_force: force of each finger (N, or N m if it turns).
+        slips: whether the fingers press with no force, until the gripper opens.
         stuck: joint number -> position at which that joint is locked.
     """
 
@@ -47,6 +50,7 @@ class JointControl:
         # 1 to 40 N hold a block of 0.1 kg, 100 N press it out.
         self.grip_force = gripper.force if gripper is not None else 0.0
         self.closed_width, self.open_width = gripper.width if gripper is not None else (0.0, 0.0)
+        self.slips = False
         self.stuck: dict[int, float] = {}
         self._body = mounted.body
         self._pads = mounted.pads
@@ -136,9 +140,23 @@ class JointControl:
                 index,
                 self.engine.POSITION_CONTROL,
                 targetPosition=position,
-                force=self.grip_force,
+                force=0.0 if self.slips else self.grip_force,
                 maxVelocity=abs(finger.opened - finger.closed) / GRIP_TIME,
             )
+        self.follow()
+
+    def follow(self) -> None:
+        """Bring the other joints of a gripper of more than two to the opening of the first."""
+        if len(self.fingers) > 2:
+            part = self.opening[0]
+            for index, finger in zip(self.fingers[1:], self.finger_joints[1:], strict=True):
+                self.engine.setJointMotorControl2(
+                    self._body,
+                    index,
+                    self.engine.POSITION_CONTROL,
+                    targetPosition=finger.closed + part * (finger.opened - finger.closed),
+                    force=_FOLLOW_FORCE,
+                )
         self._hold_stuck_joints()
 
     def stick(self, indices: Sequence[int]) -> None:

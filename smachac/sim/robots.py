@@ -251,8 +251,10 @@ def _configure_fingers(engine: Engine, body: int, mounted: MountedLimb) -> None:
             restitution=0.0,
             **(_ANCHORED if gripper.anchored else {}),
         )
-    first, *others = gripper.fingers
-    for finger, index in zip(others, mounted.fingers[1:], strict=True):
+    if len(gripper.fingers) != 2:
+        return  # `JointControl.follow` couples more than two.
+    first = gripper.fingers[0]
+    for finger, index in zip(gripper.fingers[1:], mounted.fingers[1:], strict=True):
         # Without this coupling a closing hand moves the block by 12 mm.
         gear = engine.createConstraint(
             body,

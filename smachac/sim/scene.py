@@ -53,6 +53,8 @@ class Scene:
         bodies: name -> PyBullet's number, without the robot.
         caption: the text under the film: the paths of the active states.
         steps: the number of physics steps so far.
+        noise: the standard deviation (m) of measured positions.
+        crashed: whether the world has crashed, by an injected fault.
         limbs: the limbs of all robots with PyBullet's numbers.
         kinematics: PyBullet's number of each robot -> its forward and inverse kinematics.
     """
@@ -74,6 +76,9 @@ class Scene:
         self.bodies: dict[str, int] = {}
         self.caption = ""
         self.steps = 0
+        self.noise = 0.0
+        self.crashed = False
+        self._measured = random.Random(f"{seed}/noise")
         self.clock = Clock(self._step, patience=patience, left_behind=self._left_behind)
         self._on_event = on_event
         self._model_counts: dict[str, int] = {}
@@ -206,6 +211,13 @@ class Scene:
         """The pose of a body in `frame`. Raises UnknownNameError."""
         place = models.where(self.engine, self.body(name))
         return transforms.as_lists(self.seen_from(frame, place))
+
+    def measured_pose(self, name: str, frame: str = "base") -> list[list[float]]:
+        """The pose of a body as a camera measures it: with `noise`. Raises UnknownNameError."""
+        position, rotation = self.pose(name, frame)
+        if self.noise > 0.0:
+            position = [each + self._measured.gauss(0.0, self.noise) for each in position]
+        return [position, rotation]
 
     def error(self, name: str, pose: Any, frame: str = "base") -> float:
         """The distance (m) of a body from the position of `pose`. Raises UnknownNameError."""

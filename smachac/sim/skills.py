@@ -15,6 +15,8 @@ from smachac.sim.joint_control import JointControl
 from smachac.sim.outcome import Preempted, Result
 from smachac.sim.transforms import Pose
 
+_LONGEST_SKILL = 600.0
+"""Simulated time (s) after which a skill that never returns ends the run with an error."""
 _SHORTEST_MOVE = 0.5
 """Shortest duration of a move (s)."""
 _SETTLING_TIME = 2.0
@@ -50,6 +52,15 @@ def sleep(seconds: float, preempted: Preempted) -> Skill[Result]:
             return Result("preempted", "preempted while waiting")
         yield
     return Result("succeeded")
+
+
+def never_returns(preempted: Preempted) -> Skill[Result]:
+    """Wait for a preempt request. Raises TimeoutError after 600 s of simulated time."""
+    for _ in range(round(_LONGEST_SKILL / TIME_STEP)):
+        if preempted is not None and preempted():
+            return Result("preempted", "preempted; it would never have returned")
+        yield
+    raise TimeoutError(f"a skill did not return within {_LONGEST_SKILL:g} s of simulated time")
 
 
 def move(
@@ -177,6 +188,7 @@ def grip(
     """
     if not arm.fingers:
         return Result("aborted", "the arm has no gripper")
+    arm.slips = arm.slips and not opening
     arm.squeeze([each.opened if opening else each.closed for each in arm.finger_joints])
     stroke = (arm.open_width - arm.closed_width) / 2
     still, before = 0, arm.opening
@@ -184,6 +196,7 @@ def grip(
         if preempted is not None and preempted():
             return Result("preempted", "preempted; the gripper goes on moving", arm.width)
         yield
+        arm.follow()
         after = arm.opening
         moved = stroke * max(abs(a - b) for a, b in zip(after, before, strict=True))
         still = still + 1 if moved < _STILL_DISTANCE else 0

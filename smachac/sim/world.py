@@ -23,6 +23,7 @@ from smachac.sim import robots, skills, smach_bridge, tasks
 from smachac.sim.arm import Arm, arm_named
 from smachac.sim.clock import Skill
 from smachac.sim.faults import Fault, FaultSchedule
+from smachac.sim.faults import read as read_faults
 from smachac.sim.outcome import Preempted, Result
 from smachac.sim.robots import Robot
 from smachac.sim.scene import Event, Scene
@@ -37,6 +38,7 @@ class Settings:
     gui: bool = False
     record: str | Path | None = None
     faults: tuple[Fault | Mapping[str, Any], ...] = ()
+    on_event: Callable[[Event], None] | None = None
     folders: tuple[Path, ...] = ()
 
 
@@ -86,7 +88,7 @@ class World(Scene):
             _robot(robot),
             seed,
             gui=_settings.gui if gui is None else gui,
-            on_event=on_event,
+            on_event=on_event or _settings.on_event,
             patience=patience,
         )
         try:
@@ -187,11 +189,14 @@ class World(Scene):
         """
         return smach_bridge.together(self.clock, calls)
 
-    def enter(self, paths: Iterable[str]) -> None:
-        """Set the active states, by path: the caption of the film, and faults that wait for one."""
+    def enter(self, paths: Iterable[str], began: str | None = None) -> None:
+        """Set the active states, by path: the caption of the film, and faults that wait for one.
+
+        `began` is the state that begins now; None: all of them. Raises WorldCrash.
+        """
         active = tuple(paths)
         self.caption = " + ".join(active)
-        self._faults.enter(active)
+        self._faults.enter(self, self.arms, active if began is None else (began,))
 
     def _step(self) -> None:
         """Apply the faults that are due, film, make one physics step; with a GUI, in real time."""
@@ -226,6 +231,7 @@ def configure(
     gui: bool = False,
     record: str | Path | None = None,
     faults: Iterable[Fault | Mapping[str, Any]] = (),
+    on_event: Callable[[Event], None] | None = None,
     folders: Iterable[Path] = (),
 ) -> None:
     """Set the defaults of all worlds opened later; an argument left out is reset.
@@ -234,7 +240,12 @@ def configure(
     """
     global _settings
     _settings = Settings(
-        seed=seed, gui=gui, record=record, faults=tuple(faults), folders=tuple(folders)
+        seed=seed,
+        gui=gui,
+        record=record,
+        faults=read_faults(faults),
+        on_event=on_event,
+        folders=tuple(folders),
     )
 
 
