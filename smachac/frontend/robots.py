@@ -115,13 +115,22 @@ class _Reader:
         if text is None:
             return None
         try:
-            return read_urdf(text)
+            return self.simulated(read_urdf(text))
         except UrdfError as error:
             message = f"`{word.text}` does not describe a robot: {error.message}"
             related = (Related(span=error.span, message="found here"),)
             arguments = ("urdf", word.text, error.span.text)
             self.wrong(word, message, error.help, arguments, related)
             return None
+
+    def simulated(self, robot: Robot) -> Robot:
+        """A robot of a URDF file; one that has all joints of a built-in robot is simulated as it."""
+        names = {joint.name for joint in robot.joints}
+        for name in BUILT_IN:
+            known = built_in_robot(name, self.library)
+            if known and names.issuperset(joint.name for limb in known.limbs for joint in limb):
+                return replace(robot, description=name, limb_names=())
+        return robot
 
     def data(
         self, word: Word, source: Source, read: Callable[[object], T], what: str

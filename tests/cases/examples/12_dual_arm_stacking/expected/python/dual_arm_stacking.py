@@ -113,7 +113,7 @@ class ReadBodyPoseState(smach.State):
         if self.body not in world.bodies:
             smach.logwarn(f"ReadBodyPoseState: there is no body `{self.body}`")
             return "aborted"
-        userdata["pose"] = world.pose(self.body)
+        userdata["pose"] = world.measured_pose(self.body)
         return "succeeded"
 
 
