@@ -124,7 +124,7 @@ class _Reader:
             return None
 
     def simulated(self, robot: Robot) -> Robot:
-        """A robot of a URDF file; one that has all joints of a built-in robot is simulated as it."""
+        """A robot of a URDF file; one with all joints of a built-in robot is simulated as that."""
         names = {joint.name for joint in robot.joints}
         for name in BUILT_IN:
             known = built_in_robot(name, self.library)
