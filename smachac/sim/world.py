@@ -249,11 +249,14 @@ def configure(
     )
 
 
+def open_world() -> World | None:
+    """The open world, the last opened one of several; None if none is open."""
+    return _open_worlds[-1] if _open_worlds else None
+
+
 def world() -> World:
     """The open world, the last opened one of several; if none is open, a new one."""
-    if _open_worlds:
-        return _open_worlds[-1]
-    return World()
+    return open_world() or World()
 
 
 @atexit.register

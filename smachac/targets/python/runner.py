@@ -7,6 +7,7 @@ import random
 import signal
 import sys
 import threading
+import time
 import traceback
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from contextlib import contextmanager
@@ -87,7 +88,8 @@ def execute(
         def watch(root: Any) -> None:
             if observe is not None:
                 name, shown = machine.root.name, script_paths(machine.root)
-                emits.append(trace.attach(root, name, observe, places(machine), paths=shown))
+                at = places(machine)
+                emits.append(trace.attach(root, name, observe, at, clock=_clock(), paths=shown))
             built.append(root)
 
         with (
@@ -101,6 +103,13 @@ def execute(
             outcome=outcomes[0] if outcomes else outcome,
             userdata=_userdata(built[-1]) if built else None,
         )
+
+
+def _clock() -> Callable[[], float]:
+    """The clock of a trace: that of the simulated world, if the program has opened one."""
+    simulation = sys.modules.get("smachac.sim")
+    world = simulation.open_world() if simulation is not None else None
+    return time.monotonic if world is None else lambda: world.time
 
 
 @contextmanager
