@@ -1,5 +1,6 @@
 {% extends "SimSkill.tpl.py" %}
-{% block imports %}{{ super() }}
+{% block imports %}
+from smachac import sim
 from smachac.sim.gazebo import model_of
 {% endblock %}
 {% block class_defs %}
