@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Callable
 from dataclasses import replace
 from typing import TypeVar
@@ -195,9 +196,14 @@ class _Reader:
         """
         if all(limb.limits for limb in data.limbs):
             rows = [
-                Joint(name=name, lower=low, upper=high)
+                Joint(name=name, lower=low, upper=high, velocity=speed)
                 for limb in data.limbs
-                for name, (low, high) in zip(limb.joints, limb.limits, strict=True)
+                for name, (low, high), speed in zip(
+                    limb.joints,
+                    limb.limits,
+                    limb.speeds or (math.inf,) * len(limb.joints),
+                    strict=True,
+                )
             ]
             return {joint.name: joint for joint in rows}, frozenset(data.frames)
         text = self.library.script(data.urdf, source.name) or self.library.robot(data.urdf)

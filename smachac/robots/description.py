@@ -50,7 +50,8 @@ class Limb:
     `grasp` is the pose of the tool in the frame of a cube that it grasps. `settled` is the
     tolerance (rad) of each joint at the end of a move. `efforts` are pairs of a joint and its
     largest torque (N m), which replaces that of the URDF file. `limits` (lowest, highest) are those
-    of the joints where the checker has no URDF file; empty: those of the URDF file.
+    of the joints where the checker has no URDF file, `speeds` their largest speeds (rad/s); empty:
+    those of the URDF file.
     """
 
     name: str
@@ -63,6 +64,7 @@ class Limb:
     settled: float = 0.002
     efforts: tuple[tuple[str, float], ...] = ()
     limits: tuple[tuple[float, float], ...] = ()
+    speeds: tuple[float, ...] = ()
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -151,7 +153,9 @@ def _pair(data: Any, place: Place) -> tuple[float, float]:
     return found[0], found[1]
 
 
-_ARM = (*("joints", "tool", "home", "grasp", "gripper", "tolerance", "efforts", "limits"),)
+_ARM = (
+    *("joints", "tool", "home", "grasp", "gripper", "tolerance", "efforts", "limits", "speeds"),
+)
 
 
 def _limb(name: str, data: Any, place: Place) -> Limb:
@@ -160,7 +164,8 @@ def _limb(name: str, data: Any, place: Place) -> Limb:
     tip, offset = given.take("tool", _tool)
     home = given.take("home", fields.numbers)
     limits: tuple[tuple[float, float], ...] = given.get("limits", _limits, ())
-    for key, found in (("home", home), ("limits", limits)):
+    speeds: tuple[float, ...] = given.get("speeds", fields.numbers, ())
+    for key, found in (("home", home), ("limits", limits), ("speeds", speeds)):
         if found and len(found) != len(joints):
             message = f"`{key}` has {len(found)} items, but the arm has {len(joints)} joints"
             raise DataError(message, (*place, key))
@@ -175,6 +180,7 @@ def _limb(name: str, data: Any, place: Place) -> Limb:
         settled=given.get("tolerance", fields.positive, 0.002),
         efforts=given.get("efforts", _efforts, ()),
         limits=limits,
+        speeds=speeds,
     )
 
 
