@@ -399,7 +399,7 @@ def _known(robot: Robot) -> frozenset[str]:
 
 def _simulated(context: Context, robot: Robot) -> frozenset[str]:
     """The frames of the simulated world; none where code of the user may add to them."""
-    found = {"base", "world", robot.name, *robot.added}
+    found = {"base", "world", robot.name, *robot.added, *robot.scene}
     for _, node in context.states:
         if not isinstance(node, Leaf):
             continue

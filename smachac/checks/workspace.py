@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Iterator, Mapping
 from dataclasses import dataclass
+from pathlib import Path
 from typing import TypeAlias
 
 from smachac.analysis.context import Context
@@ -16,18 +17,17 @@ from smachac.ir.traversal import remapping
 
 Numbers: TypeAlias = "list[Numbers] | float"
 
-SOLVED = "panda"
-"""The robot for which there is a solver."""
-
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Reach:
     """A goal pose of the tool in the frame of the base; `flow` is its literal.
 
-    `grasp`: it is the pose of a body that is grasped from above.
+    `limb` is the name of the arm, None for the only one. `grasp`: it is the pose of a body that is
+    grasped from above.
     """
 
     flow: TypeFlow
+    limb: str | None
     pose: Numbers
     offset: Numbers | None
     grasp: bool
@@ -75,7 +75,7 @@ def poses_to_reach(context: Context) -> Iterator[Reach]:
     robot = context.machine.robot
     base = context.machine.state_types.get(context.machine.base)
     simulated = base is not None and base.simulation
-    if not simulated or robot is None or robot.name != SOLVED:
+    if not simulated or robot is None or not robot.description:
         return
     types = context.types
     literals: dict[Cell, list[TypeFlow]] = {}
@@ -98,13 +98,14 @@ def _reaches(
     limb, grasp = variable_of(leaf, "limb"), variable_of(leaf, "grasp")
     if cell is None or len(offsets) != 1:
         return
-    if limb is not None and limb.value.data not in (None, "arm"):
+    name = limb.value.data if limb is not None else None
+    if not isinstance(name, str | None):
         return
     for flow in literals.get(cell, ()):
         pose = _numbers(flow.value)
         if pose is not None:
             held = grasp is not None and grasp.value.data is True
-            yield Reach(flow=flow, pose=pose, offset=offsets[0], grasp=held)
+            yield Reach(flow=flow, limb=name, pose=pose, offset=offsets[0], grasp=held)
 
 
 def _offsets(types: Types, path: str, leaf: Leaf) -> list[Numbers | None]:
@@ -147,42 +148,57 @@ def unreachable(machine: Machine) -> Report:
         return []
     from smachac.sim import SimUnavailable
 
+    robot = machine.robot
+    assert robot is not None
+    folder = Path(robot.span.source.name).parent
     try:
-        return _asked(wanted)
+        return _solved(wanted, robot.description, folder)
     except SimUnavailable as error:
         raise NoSimulationError(str(error)) from error
 
 
-def _asked(wanted: Iterable[Reach]) -> Report:
+def _solved(wanted: Iterable[Reach], name: str, folder: Path) -> Report:
+    """SM506 for the poses out of reach of the robot `name`, whose files are in `folder`."""
     from smachac.sim import robots
     from smachac.sim.inverse_kinematics import Kinematics
-    from smachac.sim.transforms import IDENTITY, Pose, as_pose, grasp_pose, shifted
+    from smachac.sim.transforms import (
+        IDENTITY,
+        Pose,
+        as_pose,
+        compose,
+        grasp_pose,
+        inverse,
+        shifted,
+    )
 
-    robot = robots.panda()
-    (limb,) = robot.limbs
-    known: dict[Pose, bool] = {}
-
-    def goal(each: Reach) -> Pose | None:
-        try:
-            pose = as_pose(grasp_pose(each.pose, limb.turn) if each.grasp else each.pose)
-            return shifted(pose, IDENTITY if each.offset is None else as_pose(each.offset))
-        except ValueError:
-            return None
-
+    robot = robots.load(name, folders=[folder])
+    arms = [(part, limb) for part in robot.parts for limb in part.limbs]
+    solvers: dict[str, Kinematics] = {}
+    known: dict[tuple[str, Pose], bool] = {}
     found: Report = []
-    kinematics = Kinematics(robot)
     try:
         for each in wanted:
-            pose = goal(each)
-            if pose is None:
+            named = [arm for arm in arms if arm[1].name == each.limb]
+            part, limb = (named or arms)[0]
+            if not named and (each.limb is not None or len(arms) > 1):
                 continue
-            if pose not in known:
-                known[pose] = kinematics.solve(limb, pose) is not None
-            if not known[pose]:
+            try:
+                pose = as_pose(grasp_pose(each.pose, limb.grasp) if each.grasp else each.pose)
+                pose = shifted(pose, IDENTITY if each.offset is None else as_pose(each.offset))
+            except ValueError:
+                continue
+            key = limb.name, pose
+            if key not in known:
+                if part.name not in solvers:
+                    solvers[part.name] = Kinematics(part)
+                goal = compose(inverse(part.base), compose(robot.base, pose))
+                known[key] = solvers[part.name].solve(limb, goal) is not None
+            if not known[key]:
                 point = ", ".join(f"{number:.3f}" for number in pose[0])
                 found.append(out_of_reach(each.flow, f"({point})"))
     finally:
-        kinematics.close()
+        for solver in solvers.values():
+            solver.close()
     return found
 
 

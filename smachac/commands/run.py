@@ -34,6 +34,7 @@ if TYPE_CHECKING:
     from smachac.interpreter.result import InterpreterResult
     from smachac.interpreter.scenario import Scenario, ScenarioProblem
     from smachac.ir.nodes import Machine
+    from smachac.robots.faults import Fault
     from smachac.runtime.tracing.progress import Sugar
 
     Event = dict[str, Any]
@@ -45,6 +46,7 @@ examples:
   smachac run main.yml --trace trace.jsonl -q    write the trace, print only the outcome
   smachac run main.yml --mock scenario.yml       play a scenario, without robot and simulation
   smachac run main.yml --mock scenario.yml --orders 100   try 100 orders of concurrent branches
+  smachac run main.yml --faults faults.yml       inject faults into the simulation
   smachac run main.yml --expect succeeded        fail if the outcome is another one (CI)
 
 exit codes: 0 the machine ended with an outcome (the one of --expect), 1 the run failed or the
@@ -62,6 +64,8 @@ def run_arguments(parser: argparse.ArgumentParser) -> None:
                         help="write every event to FILE, as JSON lines")  # fmt: skip
     parser.add_argument("--seed", type=int, default=0,
                         help="seed of the simulation and random states (default: 0)")  # fmt: skip
+    parser.add_argument("--faults", type=as_path, metavar="FILE",
+                        help="inject the faults in FILE into the simulation")  # fmt: skip
     parser.add_argument("--mock", type=as_path, metavar="FILE",
                         help="play the scenario in FILE, do not run the program")  # fmt: skip
     parser.add_argument("--schedule", type=names, metavar="A,B,...",
@@ -86,7 +90,7 @@ def run_command(arguments: Namespace) -> int:
         return usage(f"--record writes .gif and .mp4, not `{record}`")
     if arguments.mock is None and (arguments.schedule or arguments.orders):
         return usage("--schedule and --orders need --mock: the turns of threads cannot be chosen")
-    if arguments.mock is not None and (record is not None or arguments.gui):
+    if arguments.mock is not None and (record is not None or arguments.gui or arguments.faults):
         return usage(NO_ARM)
     for option, path, is_ours in (
         ("trace", arguments.trace, _is_trace),
@@ -123,7 +127,7 @@ def _is_film(head: bytes) -> bool:
     return head[:6] in (b"GIF87a", b"GIF89a") or head[4:8] == b"ftyp"
 
 
-NO_ARM = "--record and --gui need a program that uses the simulated arm; this run does not"
+NO_ARM = "--record, --gui and --faults need a program that uses the simulated arm; this does not"
 
 
 def _run_program(arguments: Namespace, analysis: Analysis) -> int:
@@ -137,10 +141,17 @@ def _run_program(arguments: Namespace, analysis: Analysis) -> int:
     if machine is None or library is None or not files:
         return FINDINGS
     simulated = any(type_.simulation for type_ in machine.state_types.values())
-    if (arguments.gui or arguments.record) and not simulated:
+    if (arguments.gui or arguments.record or arguments.faults) and not simulated:
         return usage(NO_ARM)
+    faults: tuple[Fault, ...] | None = ()
+    if arguments.faults is not None:
+        found: Report = []
+        faults = read_fault_file(arguments.faults, found)
+        print_report(found, arguments, sys.stderr)
+    if faults is None:
+        return FINDINGS
     ((name, text),) = files.items()
-    go = partial(perform, name, text, machine, arguments)
+    go = partial(perform, name, text, machine, arguments, faults)
     return _observed(arguments, machine, go)
 
 
@@ -313,7 +324,12 @@ def _short_turns(result: InterpreterResult, paths: Mapping[str, str]) -> Iterato
 
 
 def perform(
-    name: str, text: str, machine: Machine, arguments: Namespace, observe: Callable[[Event], None]
+    name: str,
+    text: str,
+    machine: Machine,
+    arguments: Namespace,
+    faults: tuple[Fault, ...],
+    observe: Callable[[Event], None],
 ) -> str:
     """Run the generated module; the outcome. Raises FailedError."""
     from smachac.frontend.files import module_folders
@@ -332,6 +348,7 @@ def perform(
             seed=arguments.seed,
             gui=arguments.gui,
             record=arguments.record,
+            faults=faults,
             on_preempt=lambda: print(
                 "preemption requested: the states stop; Ctrl-C again ends at once", file=sys.stderr
             ),
@@ -398,8 +415,29 @@ def _raise_first(failures: list[OSError]) -> None:
         raise failures[0]
 
 
+def read_fault_file(path: Path, report: Report) -> tuple[Fault, ...] | None:
+    """The faults of a file; None, with findings in the report, if it has mistakes."""
+    from smachac.frontend.data_files import plain, span_at
+    from smachac.frontend.errors.script import wrong_shape
+    from smachac.frontend.files import read_source
+    from smachac.frontend.yaml_tree import parse
+    from smachac.robots.faults import read_file
+    from smachac.robots.fields import DataError
+
+    source = read_source(path, report)
+    tree = parse(source, report) if source is not None else None
+    if tree is None:
+        return None
+    try:
+        return read_file(plain(tree))
+    except DataError as error:
+        report.append(wrong_shape(span_at(tree, error.place), error.message, error.help))
+        return None
+
+
 def read_scenario_file(path: Path, machine: Machine, report: Report) -> Scenario | None:
     """The scenario of a file; None, with findings in the report, if it has faults."""
+    from smachac.frontend.data_files import plain
     from smachac.frontend.errors.script import wrong_shape
     from smachac.frontend.files import read_source
     from smachac.frontend.yaml_tree import parse
@@ -409,20 +447,10 @@ def read_scenario_file(path: Path, machine: Machine, report: Report) -> Scenario
     tree = parse(source, report) if source is not None else None
     if tree is None:
         return None
-    scenario, found = read_scenario(_plain(tree), machine)
+    scenario, found = read_scenario(plain(tree), machine)
     for problem in found:
         report.append(wrong_shape(_place(problem, tree), problem.message))
     return None if report else scenario
-
-
-def _plain(tree: Tree) -> Any:
-    from smachac.frontend.yaml_tree import Map, Seq
-
-    if isinstance(tree, Map):
-        return {entry.key.value: _plain(entry.value) for entry in tree.entries}
-    if isinstance(tree, Seq):
-        return [_plain(item) for item in tree.items]
-    return tree.value
 
 
 def _place(problem: ScenarioProblem, tree: Tree) -> Span:

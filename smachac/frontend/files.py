@@ -24,6 +24,9 @@ PACKAGE = Path(__file__).parent.parent
 BUILT_IN = (PACKAGE / "stdlib", PACKAGE / "targets" / "python" / "templates")
 """The folders of the built-in state types and of the templates of containers."""
 
+ROBOTS = PACKAGE / "robots"
+"""The folder of the descriptions of built-in robots."""
+
 SUFFIXES = ("", ".yml", ".yaml")
 MAX_BYTES = 50_000_000
 
@@ -334,6 +337,7 @@ def disk_library(
         template_names=lambda: _stems(template_folders[:-1], (".tpl.py", ".tpl", ".yml")),
         parse=disk.parse,
         policy=project.policy,
+        robot=lambda name: _robot_file(name, disk, report),
     )
 
 
@@ -387,6 +391,24 @@ def _package_folders(main: Path) -> list[Path]:
 
 def _real_name(folder: Path) -> str:
     return Path(os.path.realpath(folder)).name
+
+
+def _robot_file(name: str, disk: Disk, report: Report) -> Source | None:
+    """A file of the built-in robots, or of PyBullet's data where that is installed."""
+    for folder in (ROBOTS, *_robot_data()):
+        path = _found(name, [folder], ("",), disk, lambda path, folder: None)
+        if path is not None:
+            return disk.read(path, report)
+    return None
+
+
+def _robot_data() -> Iterator[Path]:
+    """The folder of PyBullet's data, found without an import of PyBullet."""
+    from importlib.util import find_spec
+
+    spec = find_spec("pybullet_data")
+    if spec is not None and spec.origin:
+        yield Path(spec.origin).parent
 
 
 def _found(

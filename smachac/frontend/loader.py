@@ -24,7 +24,8 @@ class Library:
     of such code; `definitions(path)` all message definitions of ROS with a path, such as
     `std_srvs/srv/Trigger.srv`, in the order of the searched folders. The lists of folders and names
     are for messages. `policy` has the severities of the project. `parse` may return one tree for
-    all scripts that share a text.
+    all scripts that share a text. `robot(file)` returns a description or URDF file of a built-in
+    robot, or a file of PyBullet's data.
     """
 
     script: Callable[[str, str], Source | None]
@@ -39,6 +40,7 @@ class Library:
     template_names: Callable[[], Sequence[str]] = lambda: ()
     parse: Callable[[Source, Report], Tree | None] = parse
     policy: Policy = field(default_factory=Policy)
+    robot: Callable[[str], Source | None] = lambda file: None
 
 
 def memory_library(files: Mapping[str, str], built_in: Library) -> Library:
@@ -66,6 +68,7 @@ def memory_library(files: Mapping[str, str], built_in: Library) -> Library:
             *(name.removeprefix("templates/").split(".")[0] for name in sources),
             *built_in.template_names(),
         ],
+        robot=built_in.robot,
     )
 
 

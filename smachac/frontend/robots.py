@@ -1,75 +1,264 @@
-"""The robot that a script names: a built-in one, or one in a URDF file beside the script."""
+"""The robot and the scene of a script: built in, or described in files beside the script."""
 
 from __future__ import annotations
 
+import math
+from collections.abc import Callable
 from dataclasses import replace
+from typing import TypeVar
 
 from smachac.diagnostics.diagnostic import Related, Report, did_you_mean
 from smachac.diagnostics.source import NOWHERE, Source, Word
+from smachac.frontend.data_files import plain, span_at
 from smachac.frontend.errors.references import bad_robot
 from smachac.frontend.loader import Library
 from smachac.frontend.script import State
-from smachac.frontend.urdf import XACRO, UrdfError, read_urdf
+from smachac.frontend.urdf import XACRO, UrdfError, read_joints, read_urdf
+from smachac.frontend.yaml_tree import Tree
 from smachac.ir.nodes import StateType
-from smachac.ir.robot import BUILT_IN, Robot
+from smachac.ir.robot import Joint, Robot
+from smachac.robots import description, scene
+from smachac.robots.description import Description, Station, limb_names
+from smachac.robots.fields import DataError, guess
+from smachac.robots.files import BUILT_IN
+from smachac.robots.files import SUFFIXES as DESCRIPTIONS
+
+T = TypeVar("T")
 
 SUFFIXES = (".urdf", ".xml", ".xacro")
-"""The endings of files; any other text is the name of a robot."""
+"""The endings of URDF files; a description ends with `.yml`, any other text is a robot's name."""
 
 
 def robot_of(base: State, source: Source, library: Library, report: Report) -> Robot | None:
     """The robot of a script; None if it names none, or one that only its base type defines."""
-    found = default_robot(base.type)
+    reader = _Reader(source, library, report)
+    bodies = reader.bodies(base.scene) if base.scene is not None else frozenset()
     if base.robot is not None:
-        found = _named(base.robot, base.type, source, library, report)
+        found = reader.named(base.robot, base.type)
+    else:
+        found = default_robot(base.type, library)
     if found is None:
         return None
     span = base.robot.span if base.robot is not None else NOWHERE
-    return replace(found, added=frozenset(word.text for word in base.frames), span=span)
+    added = frozenset(word.text for word in base.frames)
+    return replace(found, added=added, scene=found.scene | bodies, span=span)
 
 
-def default_robot(base: StateType) -> Robot | None:
+def default_robot(base: StateType, library: Library) -> Robot | None:
     """The robot that the interface of a base presets in its variable `robot`."""
     held = base.variables.get("robot")
     name = held.default.data if held is not None and held.default is not None else None
-    return BUILT_IN.get(name) if isinstance(name, str) else None
+    return built_in_robot(name, library) if isinstance(name, str) else None
 
 
-def _named(
-    word: Word, base: StateType, source: Source, library: Library, report: Report
-) -> Robot | None:
-    if word.text in BUILT_IN:
-        return BUILT_IN[word.text]
-    if word.text.lower().endswith(SUFFIXES):
-        return _described(word, source, library, report)
-    if "robot" not in base.variables and not base.open and "variables" not in base.given:
-        known = ", ".join(f"`{name}`" for name in BUILT_IN)
-        help = did_you_mean(word.text, BUILT_IN)
-        help = help or f"use one of {known}, or the name of a URDF file such as `arm.urdf`"
-        message = f"`{word.text}` is not a known robot"
-        report.append(bad_robot(word, message, help, arguments=("name", word.text)))
-    return None
-
-
-def _described(word: Word, source: Source, library: Library, report: Report) -> Robot | None:
-    if word.text.lower().endswith(".xacro"):
-        message = f"`{word.text}` is a xacro file, not a URDF file"
-        report.append(bad_robot(word, message, XACRO, arguments=("xacro", word.text)))
+def built_in_robot(name: str, library: Library) -> Robot | None:
+    """The built-in robot of that name."""
+    if name not in BUILT_IN:
         return None
-    before = len(report)
-    text = library.script(word.text, source.name)
-    if text is None:
-        if len(report) == before:
-            folders = ", ".join(f"`{folder}`" for folder in library.script_folders(source.name))
-            help = f"give its path relative to a folder that is searched: {folders}"
+    return _Reader(Source("", ""), library, []).built_in(Word(name, NOWHERE))
+
+
+class _Reader:
+    """Reads the files that one script names; mistakes are reported."""
+
+    def __init__(self, source: Source, library: Library, report: Report) -> None:
+        self.source, self.library, self.report = source, library, report
+
+    def named(self, word: Word, base: StateType) -> Robot | None:
+        """The robot that a script names."""
+        if word.text in BUILT_IN:
+            return self.built_in(word)
+        if word.text.lower().endswith(DESCRIPTIONS):
+            source = self.file(word)
+            return self.described(word, source) if source is not None else None
+        if word.text.lower().endswith(SUFFIXES):
+            return self.urdf(word)
+        own = "robot" in base.variables and not base.simulation
+        if not own and not base.open and "variables" not in base.given:
+            known = ", ".join(f"`{name}`" for name in BUILT_IN)
+            help = did_you_mean(word.text, BUILT_IN)
+            help = help or (
+                f"use one of {known}, or the name of a description such as `arm.yml` or of a URDF"
+                " file such as `arm.urdf`"
+            )
+            self.wrong(word, f"`{word.text}` is not a known robot", help, ("name", word.text))
+        return None
+
+    def wrong(
+        self,
+        word: Word,
+        message: str,
+        help: str | None,
+        arguments: tuple[str, ...],
+        related: tuple[Related, ...] = (),
+    ) -> None:
+        self.report.append(bad_robot(word, message, help, related, arguments=arguments))
+
+    def file(self, word: Word) -> Source | None:
+        """The file that a word names; reported if there is none."""
+        before = len(self.report)
+        found = self.library.script(word.text, self.source.name)
+        if found is None and len(self.report) == before:
+            folders = self.library.script_folders(self.source.name)
+            searched = ", ".join(f"`{folder}`" for folder in folders)
+            help = f"give its path relative to a folder that is searched: {searched}"
             message = f"the file `{word.text}` was not found"
-            report.append(bad_robot(word, message, help, arguments=("file", word.text)))
-        return None
-    try:
-        return read_urdf(text)
-    except UrdfError as error:
-        message = f"`{word.text}` does not describe a robot: {error.message}"
-        related = (Related(span=error.span, message="found here"),)
-        arguments = ("urdf", word.text, error.span.text)
-        report.append(bad_robot(word, message, error.help, related, arguments=arguments))
-        return None
+            self.wrong(word, message, help, ("file", word.text))
+        return found
+
+    def urdf(self, word: Word) -> Robot | None:
+        """The robot of a URDF file without a description: the simulation cannot move it."""
+        if word.text.lower().endswith(".xacro"):
+            message = f"`{word.text}` is a xacro file, not a URDF file"
+            self.wrong(word, message, XACRO, ("xacro", word.text))
+            return None
+        text = self.file(word)
+        if text is None:
+            return None
+        try:
+            return self.simulated(read_urdf(text))
+        except UrdfError as error:
+            message = f"`{word.text}` does not describe a robot: {error.message}"
+            related = (Related(span=error.span, message="found here"),)
+            arguments = ("urdf", word.text, error.span.text)
+            self.wrong(word, message, error.help, arguments, related)
+            return None
+
+    def simulated(self, robot: Robot) -> Robot:
+        """A robot of a URDF file; one with all joints of a built-in robot is simulated as that."""
+        names = {joint.name for joint in robot.joints}
+        for name in BUILT_IN:
+            known = built_in_robot(name, self.library)
+            if known and names.issuperset(joint.name for limb in known.limbs for joint in limb):
+                return replace(robot, description=name, limb_names=())
+        return robot
+
+    def data(
+        self, word: Word, source: Source, read: Callable[[object], T], what: str
+    ) -> tuple[T, Tree] | None:
+        """What `read` makes of a YAML file, with the tree of the file."""
+        tree = self.library.parse(source, self.report)
+        if tree is None:
+            return None
+        try:
+            return read(plain(tree)), tree
+        except DataError as error:
+            self.mistake(word, tree, error, what)
+            return None
+
+    def mistake(self, word: Word, tree: Tree, error: DataError, what: str) -> None:
+        message = f"`{word.text}` does not describe a {what}: {error.message}"
+        span = span_at(tree, error.place)
+        related = (Related(span=span, message="found here"),)
+        arguments = (what, word.text, ".".join(map(str, error.place)))
+        self.wrong(word, message, error.help, arguments, related)
+
+    def bodies(self, word: Word) -> frozenset[str]:
+        """The names of the bodies of a scene."""
+        source = self.file(word)
+        found = self.data(word, source, scene.read, "scene") if source is not None else None
+        return frozenset(body.name for body in found[0]) if found is not None else frozenset()
+
+    # Descriptions
+
+    def built_in(self, word: Word) -> Robot | None:
+        source = self.library.robot(f"{word.text}.yml")
+        return self.described(word, source) if source is not None else None
+
+    def described(self, word: Word, source: Source) -> Robot | None:
+        """The robot of a description, whose joints have the limits of its URDF file."""
+        found = self.data(word, source, description.read, "robot")
+        if found is None:
+            return None
+        data, tree = found
+        if isinstance(data, Station):
+            return self.station(word, source, data, tree)
+        facts = self.joints(word, source, data, tree)
+        if facts is None:
+            return None
+        joints, frames = facts
+        limbs = tuple(tuple(joints[name] for name in limb.joints) for limb in data.limbs)
+        return Robot(
+            name=data.name,
+            joints=tuple(joints.values()),
+            limbs=limbs,
+            limb_names=tuple(limb.name for limb in data.limbs),
+            description=word.text,
+            frames=frames,
+        )
+
+    def joints(
+        self, word: Word, source: Source, data: Description, tree: Tree
+    ) -> tuple[dict[str, Joint], frozenset[str]] | None:
+        """The joints of a description by name, and its frames.
+
+        The URDF file is not read where the description has the limits of all joints.
+        """
+        if all(limb.limits for limb in data.limbs):
+            rows = [
+                Joint(name=name, lower=low, upper=high, velocity=speed)
+                for limb in data.limbs
+                for name, (low, high), speed in zip(
+                    limb.joints,
+                    limb.limits,
+                    limb.speeds or (math.inf,) * len(limb.joints),
+                    strict=True,
+                )
+            ]
+            return {joint.name: joint for joint in rows}, frozenset(data.frames)
+        text = self.library.script(data.urdf, source.name) or self.library.robot(data.urdf)
+        try:
+            if text is None:
+                raise DataError(
+                    f"the file `{data.urdf}` was not found", ("urdf",), "put it beside this file"
+                )
+            known, turning, links = read_joints(text)
+            description.check(data, known, links)
+            for limb in data.limbs:
+                for k, name in enumerate(limb.joints):
+                    if name not in turning:
+                        raise DataError(
+                            f"the joint `{name}` does not turn", ("arms", limb.name, "joints", k)
+                        )
+        except UrdfError as error:
+            message = f"`{data.urdf}` does not describe a robot: {error.message}"
+            related = (Related(span=error.span, message="found here"),)
+            self.wrong(word, message, error.help, ("urdf", data.urdf, error.span.text), related)
+            return None
+        except DataError as error:
+            self.mistake(word, tree, error, "robot")
+            return None
+        # Files of one robot of the industry define different links: only those of a user count.
+        frames = frozenset(data.frames) if word.text in BUILT_IN else links
+        return turning, frames
+
+    def station(self, word: Word, source: Source, data: Station, tree: Tree) -> Robot | None:
+        """Several robots as one: the joints and limbs of all."""
+        found: list[tuple[str, Robot]] = []
+        for part in data.parts:
+            text = (
+                self.library.script(part.robot, source.name)
+                if part.robot.lower().endswith(DESCRIPTIONS)
+                else self.library.robot(f"{part.robot}.yml")
+            )
+            span = span_at(tree, part.place)
+            if text is None:
+                message = f"there is no robot `{part.robot}`"
+                help = guess(part.robot, BUILT_IN)
+                self.mistake(word, tree, DataError(message, part.place, help), "robot")
+                return None
+            robot = self.described(Word(part.robot, span), text)
+            if robot is None:
+                return None
+            found.append((part.name, robot))
+        joints = {joint.name: joint for _, each in found for joint in each.joints}
+        return Robot(
+            name=data.name,
+            joints=tuple(joints.values()),
+            limbs=tuple(limb for _, each in found for limb in each.limbs),
+            limb_names=tuple(
+                name for part, each in found for name in limb_names(part, each.limb_names)
+            ),
+            description=word.text,
+            scene=frozenset(part for part, _ in found),
+        )

@@ -47,6 +47,7 @@ VARIABLES: dict[str, Field] = {
         _row("function_name", "", "text", "base"),
         _row("types", "", "map", "base"),
         _row("robot", "", "name", "base"),
+        _row("scene", "", "name", "base"),
         _row("frames", "", "names", "base"),
         _row("properties", "", "value", "base"),
         _row("template", "T", "name", _ALL),
@@ -91,7 +92,9 @@ FIELD_DOCS: Mapping[str, str] = {
     "node_name": "The name of the ROS node.",
     "function_name": "The name of the function that the generated code defines.",
     "types": "Short names for types: {Joints: float[7]}.",
-    "robot": "A built-in arm (panda, baxter), or a URDF file below this one's folder.",
+    "robot": "A built-in robot (panda, baxter, iiwa), or a description or URDF file below this"
+    " one's folder.",
+    "scene": "A file with the bodies that are in the simulated world from the start.",
     "frames": "Frames beside those of the robot, which something else provides.",
     "properties": "What must never or always happen in a run: a list, or a file with the list.",
     "template": "The state type, or the type of the container: StateMachine, Concurrence,"

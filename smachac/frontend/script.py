@@ -117,6 +117,7 @@ class State(NamedTuple):
     break_outcomes: tuple[Word, ...] = ()
     final_outcome_map: Pairs = ()
     robot: Word | None = None
+    scene: Word | None = None
     frames: tuple[Word, ...] = ()
 
 

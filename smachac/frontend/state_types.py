@@ -367,7 +367,7 @@ def _unquoted(tree: Tree, report: Report) -> str:
     shape = _text(tree, "unquoted")
     if shape in ("", *VARIABLE_SHAPES):
         return shape
-    message = "`unquoted` is one of `name`, `type`, `function`"
+    message = "`unquoted` is one of `name`, `type`, `function`, `expression`"
     report.append(wrong_shape(tree.span, message, did_you_mean(shape, VARIABLE_SHAPES)))
     return ""
 

@@ -45,15 +45,22 @@ def is_function(text: str) -> bool:
     text = text.strip()
     if len(text) > 2 and text[0] == text[-1] == "`":
         text = text[1:-1].strip()
-    if is_dotted(text):
-        return True
+    return is_dotted(text) or isinstance(_expression(text), ast.Lambda | ast.Call)
+
+
+def is_expression(text: str) -> bool:
+    """Whether a text is an expression of Python on one line."""
+    return "\n" not in text and "#" not in text and _expression(text.strip()) is not None
+
+
+def _expression(text: str) -> ast.expr | None:
+    """The syntax tree of an expression of Python; None for another text."""
     try:
         with warnings.catch_warnings():
             warnings.simplefilter("ignore", SyntaxWarning)
-            tree = ast.parse(text, mode="eval")
+            return ast.parse(text, mode="eval").body
     except (SyntaxError, ValueError, RecursionError, MemoryError):
-        return False
-    return isinstance(tree.body, ast.Lambda | ast.Call)
+        return None
 
 
 def is_header(text: str) -> bool:
@@ -90,12 +97,13 @@ SHAPES: Mapping[str, Shape] = {
     "name": (is_name, "a name in Python", "`run_robot`"),
     "type": (is_ros_type, "the name of a ROS type or of a class", "`std_srvs/Trigger`"),
     "function": (is_function, "a function", "`fill_request` or `lambda ud, request: request`"),
+    "expression": (is_expression, "an expression of Python", "`folder() + '/block.urdf'`"),
     "header": (is_header, "the path of a C++ header", "`my_robot/grasp.hpp`"),
     "class": (is_class, "the qualified name of a C++ class", "`my_robot::Grasp`"),
     "with": (are_parameters, "parameters of a C++ function", "`my_robot::Arm &arm`"),
 }
 
-VARIABLE_SHAPES = ("name", "type", "function")
+VARIABLE_SHAPES = ("name", "type", "function", "expression")
 """The shapes that an interface may give to a variable."""
 
 

@@ -13,6 +13,7 @@ from xml.parsers import expat
 
 from smachac.diagnostics.source import Source, Span
 from smachac.ir.robot import Joint, Robot
+from smachac.robots.description import UrdfJoint
 
 MAX_CHARACTERS = 5_000_000
 MAX_ELEMENTS = 100_000
@@ -50,6 +51,28 @@ class _Link:
 
 def read_urdf(source: Source) -> Robot:
     """The robot that a text describes. Raises UrdfError."""
+    name, joints, links = _read(source)
+    turning = tuple(each.joint for each in joints.values() if each.kind in TURNING)
+    return Robot(name=name, joints=turning, limbs=_limbs(joints, links), frames=links)
+
+
+def read_joints(source: Source) -> tuple[dict[str, UrdfJoint], dict[str, Joint], frozenset[str]]:
+    """All movable joints of a text with their limits, the joints that turn, and the links.
+
+    Raises UrdfError.
+    """
+    _, joints, links = _read(source)
+    known = {
+        name: UrdfJoint(each.joint.lower, each.joint.upper, each.kind in TURNING)
+        for name, each in joints.items()
+        if each.kind in MOVING
+    }
+    turning = {name: each.joint for name, each in joints.items() if each.kind in TURNING}
+    return known, turning, links
+
+
+def _read(source: Source) -> tuple[str, dict[str, _Link], frozenset[str]]:
+    """The name, the joints and the links of a text. Raises UrdfError."""
     reader = _Reader(source)
     reader.read()
     links = frozenset(reader.links)
@@ -59,13 +82,7 @@ def read_urdf(source: Source) -> Robot:
                 message = f"joint `{each.joint.name}` names the link `{link}`, which does not exist"
                 raise UrdfError(message, each.joint.span)
     joints = {name: replace(each, joint=_limited(each)) for name, each in reader.joints.items()}
-    turning = tuple(each.joint for each in joints.values() if each.kind in TURNING)
-    return Robot(
-        name=reader.name,
-        joints=turning,
-        limbs=_limbs(joints, links),
-        frames=links,
-    )
+    return reader.name, joints, links
 
 
 class _Reader:
@@ -176,7 +193,7 @@ class _Reader:
 def _limited(link: _Link) -> Joint:
     """The joint with its limits; a missing attribute of `<limit>` is 0, by the URDF standard."""
     joint = link.joint
-    if link.kind != "revolute":
+    if link.kind != "revolute" and not (link.kind == "prismatic" and link.limits):
         return replace(joint, velocity=_speed(link))
     if not link.limits:
         message = f"the revolute joint `{joint.name}` has no `<limit>`"

@@ -22,7 +22,7 @@ from smachac.sim.physics import SimUnavailable, UnknownNameError
 from smachac.sim.scene import Event
 from smachac.sim.tasks import check_placed, scattered
 from smachac.sim.transforms import grasp_pose
-from smachac.sim.world import World, close, configure, world
+from smachac.sim.world import World, close, configure, open_world, world
 
 __all__ = [
     "MODELS",
@@ -37,6 +37,7 @@ __all__ = [
     "close",
     "configure",
     "grasp_pose",
+    "open_world",
     "robots",
     "scattered",
     "world",

@@ -2,13 +2,13 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Sequence
+from collections.abc import Sequence
 from typing import Any
 
 from smachac.sim import skills, transforms
 from smachac.sim.clock import Skill
 from smachac.sim.joint_control import JointControl
-from smachac.sim.outcome import Result
+from smachac.sim.outcome import Preempted, Result
 from smachac.sim.physics import UnknownNameError
 from smachac.sim.robots import MountedLimb
 from smachac.sim.scene import Scene
@@ -28,11 +28,19 @@ class Arm(JointControl):
 
     Attributes:
         world: the scene that the arm stands in.
+        body: PyBullet's number of its robot.
+        base: the pose of its robot's base (world frame).
+        kinematics: forward and inverse kinematics of its robot.
+        solves: whether the next pose can be within reach; an injected fault unsets it.
+        returns: whether the next skill returns; an injected fault unsets it.
     """
 
     def __init__(self, world: Scene, mounted: MountedLimb) -> None:
-        super().__init__(world.engine, world.robot_body, mounted)
+        super().__init__(world.engine, mounted)
         self.world = world
+        self.solves = self.returns = True
+        self.body, self.base = mounted.body, mounted.base
+        self.kinematics = world.kinematics[mounted.body]
 
     @property
     def name(self) -> str:
@@ -41,10 +49,9 @@ class Arm(JointControl):
 
     def tip_pose(self, frame: str = "base") -> list[list[float]]:
         """The pose of the tip in `frame`. Raises UnknownNameError."""
-        state = self.engine.getLinkState(
-            self.world.robot_body, self.tip, computeForwardKinematics=True
-        )
-        return transforms.as_lists(self.world.seen_from(frame, (state[4], state[5])))
+        state = self.engine.getLinkState(self.body, self.tip, computeForwardKinematics=True)
+        tip = transforms.compose((state[4], state[5]), self.limb.offset)
+        return transforms.as_lists(self.world.seen_from(frame, tip))
 
     def forces(self) -> dict[str, float]:
         """The bodies that every finger presses, with the force of the weakest finger (N)."""
@@ -57,7 +64,8 @@ class Arm(JointControl):
         not from the present joints, so the posture does not drift from cycle to cycle.
         """
         target = self._target(pose, offset, frame)
-        joints = self.world.kinematics.solve(self.limb, target)
+        joints = self.kinematics.solve(self.limb, target) if self.solves else None
+        self.solves = True
         if joints is None:
             place = ", ".join(f"{each:.3f}" for each in target[0])
             self.world.note("ik", f"{self.name}: ({place}) is out of reach")
@@ -65,8 +73,8 @@ class Arm(JointControl):
         return list(joints)
 
     def grasp_pose(self, block_pose: Any) -> list[list[float]]:
-        """The tool pose that grips a cube at `block_pose` with this hand, tool straight down."""
-        return transforms.grasp_pose(block_pose, self.limb.turn)
+        """The tool pose that grips a cube at `block_pose` with this hand."""
+        return transforms.grasp_pose(block_pose, self.limb.grasp)
 
     # Skills
 
@@ -74,25 +82,25 @@ class Arm(JointControl):
         self,
         positions: Sequence[float],
         speed: float = 1.0,
-        preempted: Callable[[], bool] | None = None,
+        preempted: Preempted = None,
     ) -> Result:
         """Move to `positions` (rad) in joint space; `speed` multiplies 1 rad/s."""
-        return self._run("move", skills.move(self, positions, speed, preempted))
+        return self._run("move", skills.move(self, positions, speed, preempted), preempted)
 
     def move_along(
         self,
         pose: Any,
         offset: Any = None,
         speed: float = 1.0,
-        preempted: Callable[[], bool] | None = None,
+        preempted: Preempted = None,
         frame: str = "base",
     ) -> Result:
         """Move the tip on the straight line from its present pose to `pose` + `offset`."""
         target = self._target(pose, offset, frame)
-        skill = skills.move_along(self, self.world.kinematics, target, speed, preempted)
-        return self._run("move along", skill)
+        skill = skills.move_along(self, self.kinematics, target, speed, preempted)
+        return self._run("move along", skill, preempted)
 
-    def grip(self, command: str, preempted: Callable[[], bool] | None = None) -> Result:
+    def grip(self, command: str, preempted: Preempted = None) -> Result:
         """`open` or `close` the gripper; the value is its width (m).
 
         Aborted if it does not open, or closes on nothing. Raises ValueError for another command.
@@ -100,7 +108,7 @@ class Arm(JointControl):
         if command not in ("open", "close"):
             raise ValueError(f"no gripper command `{command}`; known: `open`, `close`")
         skill = skills.grip(self, self.world.bodies, command == "open", preempted)
-        return self._run(f"grip {command}", skill)
+        return self._run(f"grip {command}", skill, preempted)
 
     def check_grasp(self, name: str | None = None) -> Result:
         """Check that both fingers press one body (`name`, else any); the value is its name."""
@@ -112,12 +120,17 @@ class Arm(JointControl):
         return result.outcome == "succeeded"
 
     def _target(self, pose: Any, offset: Any, frame: str) -> Pose:
+        """The pose, moved by `offset`, in the frame of the base of the arm's robot."""
         shift = IDENTITY if offset is None else as_pose(offset)
         moved = transforms.shifted(as_pose(pose), shift)
-        return self.world.seen_from("base", transforms.compose(self.world.frame(frame), moved))
+        place = transforms.compose(self.world.frame(frame), moved)
+        return transforms.compose(transforms.inverse(self.base), place)
 
-    def _run(self, name: str, skill: Skill[Result]) -> Result:
+    def _run(self, name: str, skill: Skill[Result], preempted: Preempted = None) -> Result:
         """Run a skill to its end; an aborted one adds an Event with the reason."""
+        if not self.returns:
+            self.returns = True
+            skill = skills.never_returns(preempted)
         result = self.world.run(skill)
         if result.outcome == "aborted":
             self.world.note(name, f"{self.name}: {result.reason}")

@@ -1,4 +1,4 @@
-"""Injected faults as data: the kind, the target, the time, and the probability.
+"""Injected faults: which of them happen, when, and what each one does to the world.
 
 Which faults happen is drawn from the seed of the world: the same seed gives the same faults.
 """
@@ -6,35 +6,23 @@ Which faults happen is drawn from the seed of the world: the same seed gives the
 from __future__ import annotations
 
 import random
+from collections import Counter
 from collections.abc import Callable, Iterable, Mapping, Sequence
-from dataclasses import dataclass
 from typing import Any
 
+from smachac.robots.faults import Fault as Fault
+from smachac.robots.faults import read as read
 from smachac.sim import models
 from smachac.sim.arm import Arm, arm_named
 from smachac.sim.physics import UnknownNameError
 from smachac.sim.scene import Scene
 from smachac.sim.transforms import as_pose, shifted
 
-
-@dataclass(frozen=True, slots=True, kw_only=True)
-class Fault:
-    """A fault that happens at most once.
-
-    `kind` is one of KINDS; `target` names a body, a joint or a limb (empty: the only limb);
-    `value` is the parameter of the kind. The fault happens at the simulated time `at` (s), or when
-    a state begins whose path is or ends with `state`; in the share `probability` of all seeds.
-    """
-
-    kind: str
-    target: str = ""
-    value: Any = None
-    at: float | None = None
-    state: str | None = None
-    probability: float = 1.0
-
-
 Arms = Sequence[Arm]
+
+
+class WorldCrash(RuntimeError):  # noqa: N818
+    """The simulated world has crashed, as a fault demanded: every later skill raises this too."""
 
 
 def _move_body(scene: Scene, arms: Arms, fault: Fault) -> None:
@@ -52,6 +40,12 @@ def _gripper_dead(scene: Scene, arms: Arms, fault: Fault) -> None:
     arm.stick(arm.fingers)
 
 
+def _gripper_slips(scene: Scene, arms: Arms, fault: Fault) -> None:
+    arm = arm_named(arms, fault.target)
+    arm.slips = True
+    arm.squeeze()
+
+
 def _grip_force(scene: Scene, arms: Arms, fault: Fault) -> None:
     # Lower friction would not drop a held block: PyBullet's contacts keep their first friction.
     arm = arm_named(arms, fault.target)
@@ -60,42 +54,58 @@ def _grip_force(scene: Scene, arms: Arms, fault: Fault) -> None:
 
 
 def _lock_joint(scene: Scene, arms: Arms, fault: Fault) -> None:
+    arm, number = _joint(arms, fault.target)
+    arm.stick([arm.indices[number]])
+
+
+def _weak_joint(scene: Scene, arms: Arms, fault: Fault) -> None:
+    arm, number = _joint(arms, fault.target)
+    efforts = list(arm.efforts)
+    efforts[number] = float(fault.value)
+    arm.efforts = tuple(efforts)
+
+
+def _joint(arms: Arms, name: str) -> tuple[Arm, int]:
     for arm in arms:
-        if fault.target in arm.limb.joints:
-            arm.stick([arm.indices[arm.limb.joints.index(fault.target)]])
-            return
-    known = tuple(name for arm in arms for name in arm.limb.joints)
-    raise UnknownNameError("joint", fault.target, known)
+        if name in arm.limb.joints:
+            return arm, arm.limb.joints.index(name)
+    raise UnknownNameError("joint", name, tuple(name for arm in arms for name in arm.limb.joints))
 
 
-KINDS: dict[str, Callable[[Scene, Arms, Fault], None]] = {
+def _no_ik(scene: Scene, arms: Arms, fault: Fault) -> None:
+    arm_named(arms, fault.target).solves = False
+
+
+def _sensor_noise(scene: Scene, arms: Arms, fault: Fault) -> None:
+    scene.noise = float(fault.value)
+
+
+def _never_returns(scene: Scene, arms: Arms, fault: Fault) -> None:
+    arm_named(arms, fault.target).returns = False
+
+
+def _crash(scene: Scene, arms: Arms, fault: Fault) -> None:
+    scene.crashed = True
+
+
+EFFECTS: Mapping[str, Callable[[Scene, Arms, Fault], None]] = {
     "move_body": _move_body,
     "remove_body": _remove_body,
     "gripper_dead": _gripper_dead,
+    "gripper_slips": _gripper_slips,
     "grip_force": _grip_force,
     "lock_joint": _lock_joint,
+    "weak_joint": _weak_joint,
+    "no_ik": _no_ik,
+    "sensor_noise": _sensor_noise,
+    "never_returns": _never_returns,
+    "crash": _crash,
 }
-"""The effect of each kind. The value of `move_body` is the shift as a pose along the world's axes,
-the value of `grip_force` a force in N; the other kinds have none."""
+"""The effect of each kind of robots.faults.KINDS."""
 
-
-def read(faults: Iterable[Fault | Mapping[str, Any]]) -> tuple[Fault, ...]:
-    """Faults from values or from mappings with the same keys.
-
-    Raises ValueError for an unknown kind or key, and unless just one of `at` and `state` is given.
-    """
-    found = []
-    for each in faults:
-        try:
-            fault = each if isinstance(each, Fault) else Fault(**each)
-        except TypeError as error:
-            raise ValueError(f"not a fault: {each!r}: {error}") from None
-        if fault.kind not in KINDS:
-            raise ValueError(f"no fault kind `{fault.kind}`; known: {', '.join(KINDS)}")
-        if (fault.at is None) == (fault.state is None):
-            raise ValueError(f"fault `{fault.kind}` needs either `at` or `state`")
-        found.append(fault)
-    return tuple(found)
+AT_ONCE = frozenset({"no_ik", "sensor_noise", "never_returns", "crash"})
+"""The kinds that apply when their state begins: they do not touch the physics. The other kinds
+apply before the next physics step."""
 
 
 class FaultSchedule:
@@ -103,40 +113,74 @@ class FaultSchedule:
 
     def __init__(self, faults: Iterable[Fault | Mapping[str, Any]], seed: int) -> None:
         # One draw for each fault from its own source: one more fault does not change the others.
+        self._seed = seed
+        self._visits: Counter[int] = Counter()
         self._pending = [
-            fault
+            (k, fault)
             for k, fault in enumerate(read(faults))
-            if random.Random(f"{seed}/{k}").random() < fault.probability
+            if fault.each_time or self._happens(f"{seed}/{k}", fault)
         ]
         self._due: list[Fault] = []
 
-    def enter(self, paths: Iterable[str]) -> None:
-        """Make the faults due that wait for one of these active states."""
-        active = tuple(f"/{path}" for path in paths)
-        self._make_due(lambda fault: _begins(fault, active))
+    @staticmethod
+    def _happens(source: str, fault: Fault) -> bool:
+        return random.Random(source).random() < fault.probability
+
+    def enter(self, scene: Scene, arms: Arms, began: Iterable[str]) -> None:
+        """Make the faults due that wait for one of the states `began`, which begin now.
+
+        Raises WorldCrash.
+        """
+        if not self._pending:
+            return
+        paths = tuple(f"/{path}" for path in began)
+        found = [each for each in self._pending if _begins(each[1], paths)]
+        for number, fault in found:
+            if fault.each_time:
+                self._visits[number] += 1
+                source = f"{self._seed}/{number}/{self._visits[number]}"
+                if not self._happens(source, fault):
+                    continue
+            else:
+                self._pending.remove((number, fault))
+            if fault.kind in AT_ONCE:
+                _apply(scene, arms, fault)
+            else:
+                self._due.append(fault)
+        check_alive(scene)
 
     def apply(self, scene: Scene, arms: Arms) -> None:
         """Apply the faults that are due; to be called before each physics step.
 
-        Each adds an Event. A fault whose target does not exist has no effect.
+        Each adds an Event. A fault whose target does not exist has no effect. Raises WorldCrash.
         """
-        if not self._pending and not self._due:
-            return
-        self._make_due(lambda fault: fault.at is not None and fault.at <= scene.time)
-        due, self._due = self._due, []
-        for fault in due:
-            try:
-                KINDS[fault.kind](scene, arms, fault)
-            except KeyError as error:
-                scene.note("fault", f"{fault.kind} did not happen: {error}")
-            else:
-                scene.note("fault", " ".join(filter(None, (fault.kind, fault.target))))
-
-    def _make_due(self, condition: Callable[[Fault], bool]) -> None:
-        self._due += [fault for fault in self._pending if condition(fault)]
-        self._pending = [fault for fault in self._pending if not condition(fault)]
+        if self._pending or self._due:
+            now = [each for each in self._pending if _is_due(each[1], scene.time)]
+            self._pending = [each for each in self._pending if each not in now]
+            due, self._due = [*self._due, *(fault for _, fault in now)], []
+            for fault in due:
+                _apply(scene, arms, fault)
+        check_alive(scene)
 
 
-def _begins(fault: Fault, active: tuple[str, ...]) -> bool:
-    state = fault.state
-    return state is not None and any(path.endswith(f"/{state}") for path in active)
+def check_alive(scene: Scene) -> None:
+    """Raises WorldCrash after the fault `crash`."""
+    if scene.crashed:
+        raise WorldCrash("the simulated world has crashed (injected fault)")
+
+
+def _apply(scene: Scene, arms: Arms, fault: Fault) -> None:
+    try:
+        EFFECTS[fault.kind](scene, arms, fault)
+    except KeyError as error:
+        scene.note("fault", f"{fault.kind} did not happen: {error}")
+    else:
+        scene.note("fault", " ".join(filter(None, (fault.kind, fault.target))))
+
+
+def _is_due(fault: Fault, time: float) -> bool:
+    return fault.at is not None and fault.at <= time
+
+
+def _begins(fault: Fault, paths: tuple[str, ...]) -> bool:
+    return fault.state is not None and any(path.endswith(f"/{fault.state}") for path in paths)

@@ -9,8 +9,8 @@ import threading
 from collections.abc import Iterator, Sequence
 
 from smachac.sim.physics import Engine, quiet
-from smachac.sim.robots import Limb, Robot
-from smachac.sim.transforms import Pose, angle_between
+from smachac.sim.robots import Limb, RobotPart
+from smachac.sim.transforms import IDENTITY, Pose, angle_between, compose, inverse
 
 POSITION_TOLERANCE = 1e-4
 """Largest distance (m) of a solution from the goal along each axis."""
@@ -28,7 +28,7 @@ class Kinematics:
     Raises SimUnavailable without PyBullet. To be closed, which frees the physics client.
     """
 
-    def __init__(self, robot: Robot) -> None:
+    def __init__(self, robot: RobotPart) -> None:
         self._engine = Engine()
         self._lock = threading.Lock()
         flags = self._engine.URDF_IGNORE_VISUAL_SHAPES | self._engine.URDF_IGNORE_COLLISION_SHAPES
@@ -86,12 +86,13 @@ class Kinematics:
     def _descend(self, limb: Limb, pose: Pose, start: Sequence[float]) -> tuple[float, ...] | None:
         joints = tuple(start)
         self._tip(limb, joints)
+        link = pose if limb.offset == IDENTITY else compose(pose, inverse(limb.offset))
         for _ in range(_ROUNDS):
             answer = self._engine.calculateInverseKinematics(
                 self._body,
                 self._links[limb.tip],
-                pose[0],
-                pose[1],
+                link[0],
+                link[1],
                 maxNumIterations=20,
                 residualThreshold=1e-6,
             )
@@ -117,4 +118,5 @@ class Kinematics:
         state = self._engine.getLinkState(
             self._body, self._links[limb.tip], computeForwardKinematics=True
         )
-        return state[4], state[5]
+        link = state[4], state[5]
+        return link if limb.offset == IDENTITY else compose(link, limb.offset)

@@ -7,12 +7,12 @@ from collections.abc import Mapping, Sequence
 from smachac.sim.physics import Engine
 from smachac.sim.robots import MountedLimb
 
-GRIP_FORCE = 20.0
-"""Force of each finger (N): 1 to 40 N hold a block of 0.1 kg, 100 N press it out."""
-GRIP_SPEED = 0.1
-"""Speed of each finger (m/s)."""
+GRIP_TIME = 0.4
+"""Time (s) in which a finger moves from open to closed: 0.1 m/s for a stroke of 0.04 m."""
 TOP_SPEED = 1.0
 """Joint speed (rad/s) of a move with speed 1; the limit in the URDF applies where it is lower."""
+_FOLLOW_FORCE = 50.0
+"""Force (N) or torque (N m) with which joints of a gripper follow its first one."""
 _LOCK_FORCE = 1000.0
 """Force (N) or torque (N m) that holds a locked joint."""
 
@@ -30,11 +30,13 @@ class JointControl:
         limits: (lowest, highest) position of each joint (rad).
         efforts: the largest torque of each joint (N m).
         speeds: the speed of each joint (rad/s) in a move with speed 1.
-        grip_force: force of each finger (N).
+        finger_joints: the fingers of the gripper as described; none without a gripper.
+        grip_force: force of each finger (N, or N m if it turns).
+        slips: whether the fingers press with no force, until the gripper opens.
         stuck: joint number -> position at which that joint is locked.
     """
 
-    def __init__(self, engine: Engine, body: int, mounted: MountedLimb) -> None:
+    def __init__(self, engine: Engine, mounted: MountedLimb) -> None:
         self.engine = engine
         self.limb = mounted.limb
         self.tip = mounted.tip
@@ -43,10 +45,16 @@ class JointControl:
         self.limits = mounted.limits
         self.efforts = mounted.efforts
         self.speeds = tuple(min(TOP_SPEED, each or TOP_SPEED) for each in mounted.speeds)
-        self.grip_force = GRIP_FORCE
+        gripper = mounted.limb.gripper
+        self.finger_joints = gripper.fingers if gripper is not None else ()
+        # 1 to 40 N hold a block of 0.1 kg, 100 N press it out.
+        self.grip_force = gripper.force if gripper is not None else 0.0
+        self.closed_width, self.open_width = gripper.width if gripper is not None else (0.0, 0.0)
+        self.slips = False
         self.stuck: dict[int, float] = {}
-        self._body = body
-        self._finger_targets = tuple(each.opened for each in self.limb.fingers)
+        self._body = mounted.body
+        self._pads = mounted.pads
+        self._finger_targets = tuple(each.opened for each in self.finger_joints)
 
     # Measurements
 
@@ -64,15 +72,21 @@ class JointControl:
 
     @property
     def opening(self) -> tuple[float, ...]:
-        """The distance of each finger from its closed position (m)."""
+        """How far each finger is open: 0 closed, 1 open."""
+        if not self.fingers:
+            return ()
         states = self.engine.getJointStates(self._body, self.fingers)
-        pairs = zip(states, self.limb.fingers, strict=True)
-        return tuple(abs(state[0] - finger.closed) for state, finger in pairs)
+        return tuple(
+            abs(state[0] - finger.closed) / abs(finger.opened - finger.closed)
+            for state, finger in zip(states, self.finger_joints, strict=True)
+        )
 
     @property
     def width(self) -> float:
-        """The opening of the gripper (m): the sum over its fingers."""
-        return sum(self.opening)
+        """The distance between the fingers (m), for a gripper with fingers that open alike."""
+        opening = self.opening
+        part = sum(opening) / len(opening) if opening else 0.0
+        return self.closed_width + part * (self.open_width - self.closed_width)
 
     def contact_forces(self, bodies: Mapping[str, int]) -> dict[str, float]:
         """The bodies that every finger presses, with the force of the weakest finger (N)."""
@@ -80,7 +94,7 @@ class JointControl:
         for name, other in bodies.items():
             each = [
                 sum(point[9] for point in self.engine.getContactPoints(self._body, other, finger))
-                for finger in self.fingers
+                for finger in self._pads
             ]
             if each and min(each) > 0.0:
                 pressed[name] = min(each)
@@ -92,7 +106,7 @@ class JointControl:
         """Place the joints at `joints` with the gripper open, at rest; for the start of a world."""
         for index, position in zip(self.indices, joints, strict=True):
             self.engine.resetJointState(self._body, index, position)
-        for index, finger in zip(self.fingers, self.limb.fingers, strict=True):
+        for index, finger in zip(self.fingers, self.finger_joints, strict=True):
             self.engine.resetJointState(self._body, index, finger.opened)
         self.hold()
         self.squeeze(self._finger_targets)
@@ -119,15 +133,30 @@ class JointControl:
         """Drive the fingers to `positions` (m) with the grip force; None keeps the last target."""
         if positions is not None:
             self._finger_targets = tuple(positions)
-        for index, position in zip(self.fingers, self._finger_targets, strict=True):
+        rows = zip(self.fingers, self.finger_joints, self._finger_targets, strict=True)
+        for index, finger, position in rows:
             self.engine.setJointMotorControl2(
                 self._body,
                 index,
                 self.engine.POSITION_CONTROL,
                 targetPosition=position,
-                force=self.grip_force,
-                maxVelocity=GRIP_SPEED,
+                force=0.0 if self.slips else self.grip_force,
+                maxVelocity=abs(finger.opened - finger.closed) / GRIP_TIME,
             )
+        self.follow()
+
+    def follow(self) -> None:
+        """Bring the other joints of a gripper of more than two to the opening of the first."""
+        if len(self.fingers) > 2:
+            part = self.opening[0]
+            for index, finger in zip(self.fingers[1:], self.finger_joints[1:], strict=True):
+                self.engine.setJointMotorControl2(
+                    self._body,
+                    index,
+                    self.engine.POSITION_CONTROL,
+                    targetPosition=finger.closed + part * (finger.opened - finger.closed),
+                    force=_FOLLOW_FORCE,
+                )
         self._hold_stuck_joints()
 
     def stick(self, indices: Sequence[int]) -> None:

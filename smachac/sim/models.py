@@ -1,78 +1,11 @@
-"""Models of bodies: boxes as data, and URDF or SDF files; how bodies are made and placed."""
+"""Bodies in a physics client: built of boxes or read from URDF and SDF files, and placed."""
 
-from dataclasses import dataclass
 from pathlib import Path
 
+from smachac.robots.models import MODELS as MODELS
+from smachac.robots.models import RGB, Box, Model
 from smachac.sim.physics import Engine, data_file, quiet
 from smachac.sim.transforms import IDENTITY, Pose, compose, inverse
-
-RGB = tuple[float, float, float]
-
-
-@dataclass(frozen=True, slots=True, kw_only=True)
-class Box:
-    """A box: edge lengths and centre (m) in the model's frame."""
-
-    size: tuple[float, float, float]
-    centre: tuple[float, float, float] = (0.0, 0.0, 0.0)
-    colour: RGB | None = None
-
-
-@dataclass(frozen=True, slots=True, kw_only=True)
-class Model:
-    """A rigid body of boxes.
-
-    `mass` is in kg; a body of mass 0 does not move. A body that is not `solid` is drawn and has no
-    contacts. `friction` is the lateral friction coefficient. Bodies of one model take the `colours`
-    in turn.
-    """
-
-    boxes: tuple[Box, ...]
-    colours: tuple[RGB, ...]
-    mass: float = 0.0
-    friction: float = 0.8
-    solid: bool = True
-
-
-def _table(size: tuple[float, float], height: float, wood: RGB) -> Model:
-    """A table of `size` (x, y) and `height` (m) on four legs; its origin is on the floor."""
-    x, y = size[0] / 2 - 0.04, size[1] / 2 - 0.04
-    leg, low = height - 0.04, (height - 0.04) / 2
-    grey = (0.38, 0.40, 0.44)
-    corners = ((x, y), (x, -y), (-x, y), (-x, -y))
-    return Model(
-        boxes=(
-            Box(size=(*size, 0.04), centre=(0.0, 0.0, height - 0.02)),
-            *(Box(size=(0.04, 0.04, leg), centre=(*at, low), colour=grey) for at in corners),
-        ),
-        colours=(wood,),
-    )
-
-
-_PAINTS: tuple[RGB, ...] = (
-    (0.86, 0.20, 0.18),
-    (0.16, 0.42, 0.80),
-    (0.95, 0.70, 0.13),
-    (0.93, 0.46, 0.16),
-)
-_GREY: RGB = (0.60, 0.60, 0.60)
-_GREEN: RGB = (0.16, 0.66, 0.36)
-
-MODELS: dict[str, Model] = {
-    "table": _table((0.6, 0.8), 0.4, (0.80, 0.66, 0.48)),
-    "cafe_table": _table((0.913, 0.913), 0.775, (0.80, 0.66, 0.48)),
-    "block": Model(boxes=(Box(size=(0.05, 0.05, 0.05)),), colours=_PAINTS, mass=0.1, friction=1.0),
-    "brick": Model(boxes=(Box(size=(0.10, 0.05, 0.05)),), colours=_PAINTS, mass=0.2, friction=1.0),
-    "wall": Model(boxes=(Box(size=(0.02, 0.4, 0.3), centre=(0, 0, 0.15)),), colours=(_GREY,)),
-    "goal": Model(
-        boxes=(
-            Box(size=(0.08, 0.08, 0.002), centre=(0.0, 0.0, -0.024)),
-            Box(size=(0.058, 0.058, 0.002), centre=(0.0, 0.0, -0.0234), colour=(0.93, 0.95, 0.90)),
-        ),
-        colours=(_GREEN,),
-        solid=False,
-    ),
-}
 
 
 def build(engine: Engine, model: Model, pose: Pose, turn: int = 0) -> int:
@@ -80,11 +13,11 @@ def build(engine: Engine, model: Model, pose: Pose, turn: int = 0) -> int:
 
     `turn` counts the bodies of this model and selects the colour.
     """
-    paint = model.colours[turn % len(model.colours)]
+    own = model.colours[turn % len(model.colours)]
     halves = [[edge / 2 for edge in box.size] for box in model.boxes]
     centres = [list(box.centre) for box in model.boxes]
     kinds = [engine.GEOM_BOX] * len(model.boxes)
-    colours = [[*(box.colour or paint), 1.0] for box in model.boxes]
+    colours = [[*(box.colour or own), 1.0] for box in model.boxes]
     shape = -1
     if model.solid:
         shape = engine.createCollisionShapeArray(
@@ -93,11 +26,22 @@ def build(engine: Engine, model: Model, pose: Pose, turn: int = 0) -> int:
     look = engine.createVisualShapeArray(
         shapeTypes=kinds, halfExtents=halves, visualFramePositions=centres, rgbaColors=colours
     )
-    body: int = engine.createMultiBody(model.mass, shape, look, pose[0], pose[1])
+    # The centre of mass of a body that moves is that of its first box.
+    centre = model.boxes[0].centre if model.mass > 0.0 else (0.0, 0.0, 0.0)
+    body: int = engine.createMultiBody(
+        model.mass, shape, look, pose[0], pose[1], baseInertialFramePosition=centre
+    )
+    place(engine, body, pose)
     for k, colour in enumerate(colours):
         engine.changeVisualShape(body, -1, shapeIndex=k, rgbaColor=colour)
     touch(engine, body, model.friction)
     return body
+
+
+def paint(engine: Engine, body: int, colour: RGB) -> None:
+    """Give all shapes of a body one colour."""
+    for shape in engine.getVisualShapeData(body):
+        engine.changeVisualShape(body, shape[1], rgbaColor=(*colour, 1.0))
 
 
 def floor(engine: Engine) -> None:

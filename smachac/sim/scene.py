@@ -11,12 +11,13 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Any, TypeVar
 
+from smachac.robots.models import RGB, Model
 from smachac.sim import models, transforms
 from smachac.sim.clock import TIME_STEP, Clock, Key, Skill
 from smachac.sim.inverse_kinematics import Kinematics
 from smachac.sim.outcome import Result
 from smachac.sim.physics import Engine, UnknownNameError
-from smachac.sim.robots import Robot, mount
+from smachac.sim.robots import MountedLimb, Robot, mount
 from smachac.sim.transforms import IDENTITY, Pose, as_pose
 
 T = TypeVar("T")
@@ -52,9 +53,10 @@ class Scene:
         bodies: name -> PyBullet's number, without the robot.
         caption: the text under the film: the paths of the active states.
         steps: the number of physics steps so far.
-        robot_body: PyBullet's number of the robot.
-        limbs: the limbs of the robot with PyBullet's numbers.
-        kinematics: forward and inverse kinematics of the robot.
+        noise: the standard deviation (m) of measured positions.
+        crashed: whether the world has crashed, by an injected fault.
+        limbs: the limbs of all robots with PyBullet's numbers.
+        kinematics: PyBullet's number of each robot -> its forward and inverse kinematics.
     """
 
     def __init__(
@@ -74,9 +76,14 @@ class Scene:
         self.bodies: dict[str, int] = {}
         self.caption = ""
         self.steps = 0
+        self.noise = 0.0
+        self.crashed = False
+        self._measured = random.Random(f"{seed}/noise")
         self.clock = Clock(self._step, patience=patience, left_behind=self._left_behind)
         self._on_event = on_event
         self._model_counts: dict[str, int] = {}
+        self.limbs: tuple[MountedLimb, ...] = ()
+        self.kinematics: dict[int, Kinematics] = {}
         self.engine = Engine(gui=gui)
         try:
             self.engine.setGravity(0.0, 0.0, _GRAVITY)
@@ -86,15 +93,18 @@ class Scene:
                 deterministicOverlappingPairs=1,
             )
             models.floor(self.engine)
-            self.robot_body, self.limbs = mount(self.engine, robot)
-            self.kinematics = Kinematics(robot)
+            for part in robot.parts:
+                body, limbs = mount(self.engine, part)
+                self.kinematics[body] = Kinematics(part)
+                self.limbs += limbs
         except BaseException:
-            self.engine.close()
+            Scene.close(self)
             raise
 
     def close(self) -> None:
-        """Free both physics clients; a second call has no effect."""
-        self.kinematics.close()
+        """Free the physics clients; a second call has no effect."""
+        for kinematics in self.kinematics.values():
+            kinematics.close()
         self.engine.close()
 
     # Time and events
@@ -129,12 +139,16 @@ class Scene:
     def frame(self, name: str | None) -> Pose:
         """The pose of a frame in the world frame. Raises UnknownNameError.
 
-        Frames are "base" or the robot's name (also None and ""), "world", and the bodies by name.
+        Frames are "base" or the robot's name (also None and ""), "world", the parts of a robot of
+        several, and the bodies by name.
         """
         if name in (None, "", "base", self.robot.name):
             return self.robot.base
         if name == "world":
             return IDENTITY
+        for part in self.robot.parts:
+            if name == part.name:
+                return part.base
         if name not in self.bodies:
             raise UnknownNameError("frame", str(name), ("base", "world", *self.bodies))
         return models.where(self.engine, self.bodies[str(name)])
@@ -145,8 +159,19 @@ class Scene:
 
     # Bodies
 
-    def add(self, model: str, pose: Any, name: str, path: str | Path | None, frame: str) -> Result:
-        """Put a model at `pose` without an event, between two physics steps; see `World.load`."""
+    def add(
+        self,
+        model: str | Model,
+        pose: Any,
+        name: str,
+        path: str | Path | None,
+        frame: str,
+        colour: RGB | None = None,
+    ) -> Result:
+        """Put a model at `pose` without an event, between two physics steps; see `World.load`.
+
+        `colour` replaces that of the model.
+        """
         if name in self.bodies:
             return Result("aborted", f"a body `{name}` is there already")
         try:
@@ -156,6 +181,8 @@ class Scene:
         body: int | str
         if path:
             body = models.read(self.engine, path, place)
+        elif isinstance(model, Model):
+            body = models.build(self.engine, model, place)
         elif model in models.MODELS:
             count = self._model_counts.get(model, 0)
             self._model_counts[model] = count + 1
@@ -164,6 +191,8 @@ class Scene:
             body = str(UnknownNameError("model", model, tuple(models.MODELS)))
         if isinstance(body, str):
             return Result("aborted", body)
+        if colour is not None:
+            models.paint(self.engine, body, colour)
         self.bodies[name] = body
         return Result("succeeded", value=name)
 
@@ -183,6 +212,13 @@ class Scene:
         place = models.where(self.engine, self.body(name))
         return transforms.as_lists(self.seen_from(frame, place))
 
+    def measured_pose(self, name: str, frame: str = "base") -> list[list[float]]:
+        """The pose of a body as a camera measures it: with `noise`. Raises UnknownNameError."""
+        position, rotation = self.pose(name, frame)
+        if self.noise > 0.0:
+            position = [each + self._measured.gauss(0.0, self.noise) for each in position]
+        return [position, rotation]
+
     def error(self, name: str, pose: Any, frame: str = "base") -> float:
         """The distance (m) of a body from the position of `pose`. Raises UnknownNameError."""
         return math.dist(self.pose(name, frame)[0], as_pose(pose)[0])
@@ -201,7 +237,8 @@ class Scene:
                 numbers += part
             for part in self.engine.getBaseVelocity(body):
                 numbers += part
-        count = self.engine.getNumJoints(self.robot_body)
-        for state in self.engine.getJointStates(self.robot_body, range(count)):
-            numbers += state[:2]
+        for body in self.kinematics:
+            count = self.engine.getNumJoints(body)
+            for state in self.engine.getJointStates(body, range(count)):
+                numbers += state[:2]
         return hashlib.blake2b(struct.pack(f"{len(numbers)}d", *numbers), digest_size=8).hexdigest()

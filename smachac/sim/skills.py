@@ -15,6 +15,8 @@ from smachac.sim.joint_control import JointControl
 from smachac.sim.outcome import Preempted, Result
 from smachac.sim.transforms import Pose
 
+_LONGEST_SKILL = 600.0
+"""Simulated time (s) after which a skill that never returns ends the run with an error."""
 _SHORTEST_MOVE = 0.5
 """Shortest duration of a move (s)."""
 _SETTLING_TIME = 2.0
@@ -38,7 +40,7 @@ _STILL_DISTANCE = 1e-5
 _OPENED = 0.9
 """Part of a finger's stroke from which it counts as open."""
 _EMPTY_WIDTH = 0.004
-"""Width (m) of the closed gripper below which there is nothing between the fingers."""
+"""Opening (m) beyond the closed width below which there is nothing between the fingers."""
 _GRASP_FORCE = 0.5
 """Force (N) of the weakest finger above which a body is grasped."""
 
@@ -50,6 +52,15 @@ def sleep(seconds: float, preempted: Preempted) -> Skill[Result]:
             return Result("preempted", "preempted while waiting")
         yield
     return Result("succeeded")
+
+
+def never_returns(preempted: Preempted) -> Skill[Result]:
+    """Wait for a preempt request. Raises TimeoutError after 600 s of simulated time."""
+    for _ in range(round(_LONGEST_SKILL / TIME_STEP)):
+        if preempted is not None and preempted():
+            return Result("preempted", "preempted; it would never have returned")
+        yield
+    raise TimeoutError(f"a skill did not return within {_LONGEST_SKILL:g} s of simulated time")
 
 
 def move(
@@ -175,14 +186,19 @@ def grip(
 
     Closing succeeds if one of `bodies` (PyBullet's numbers by name) is grasped.
     """
-    arm.squeeze([each.opened if opening else each.closed for each in arm.limb.fingers])
+    if not arm.fingers:
+        return Result("aborted", "the arm has no gripper")
+    arm.slips = arm.slips and not opening
+    arm.squeeze([each.opened if opening else each.closed for each in arm.finger_joints])
+    stroke = (arm.open_width - arm.closed_width) / 2
     still, before = 0, arm.opening
     for step in range(round(_SETTLING_TIME / TIME_STEP)):
         if preempted is not None and preempted():
             return Result("preempted", "preempted; the gripper goes on moving", arm.width)
         yield
+        arm.follow()
         after = arm.opening
-        moved = max(abs(a - b) for a, b in zip(after, before, strict=True))
+        moved = stroke * max(abs(a - b) for a, b in zip(after, before, strict=True))
         still = still + 1 if moved < _STILL_DISTANCE else 0
         before = after
         if still >= _STILL_STEPS and step * TIME_STEP >= _GRIP_TIME:
@@ -191,8 +207,7 @@ def grip(
 
 
 def _opening_result(arm: JointControl) -> Result:
-    strokes = [abs(each.opened - each.closed) for each in arm.limb.fingers]
-    if all(a > _OPENED * b for a, b in zip(arm.opening, strokes, strict=True)):
+    if all(part > _OPENED for part in arm.opening):
         return Result("succeeded", value=arm.width)
     return Result("aborted", f"the gripper did not open ({1000 * arm.width:.1f} mm)", arm.width)
 
@@ -210,7 +225,7 @@ def check_grasp(arm: JointControl, bodies: Mapping[str, int], name: str | None) 
 
 def _grasp(arm: JointControl, bodies: Mapping[str, int], name: str | None) -> Result:
     """The grasp by width and by force: a gripper that is open is wide too."""
-    if arm.width < _EMPTY_WIDTH:
+    if arm.width - arm.closed_width < _EMPTY_WIDTH:
         return Result("aborted", f"the grasp is empty ({1000 * arm.width:.1f} mm)")
     forces = arm.contact_forces(bodies)
     held = {each: force for each, force in forces.items() if force > _GRASP_FORCE}

@@ -8,30 +8,63 @@ SMACH is imported, so machines of SMACH itself and of the bundled runtime work.
 import functools
 import threading
 from collections.abc import Callable, Iterator, Sequence
-from typing import Any
+from typing import Any, TypeAlias
 
-from smachac.sim.clock import Clock, Key
+from smachac.sim.clock import TIME_STEP, Clock, Key, Skill
+
+Show: TypeAlias = Callable[[tuple[str, ...], str], None]
 
 
-def attach(root: Any, clock: Clock, show: Callable[[tuple[str, ...]], None], name: str) -> None:
+def attach(root: Any, clock: Clock, show: Show, name: str) -> None:
     """Put all states below `root`, a container of any SMACH, on `clock`.
 
-    `show` is called with the paths of the active leaves, in the order of their branches, whenever
-    a leaf begins. `name` is the path of `root`. The methods are replaced on each instance.
+    `show` is called with the paths of the active leaves, in the order of their branches, and the
+    path of the one that begins, whenever a leaf begins. A leaf with an event `end_of_wait`, as
+    SleepState, waits in simulated time. `name` is the path of `root`. The methods are replaced on
+    each instance.
     """
     active = _ActiveLeaves(show)
     # Children first: the branch of a child is entered before any other wrapper of its state runs.
     for path, state in reversed(list(_walk(root, name))):
+        if isinstance(getattr(state, "end_of_wait", None), threading.Event | _SimulatedWait):
+            state.end_of_wait = _SimulatedWait(clock)
         if not hasattr(state, "get_children"):
             _wrap(state, "execute", clock, functools.partial(_leaf, clock, active, path))
         elif _is_concurrence(state):
             _ConcurrenceBranches(clock, active, state)
 
 
+class _SimulatedWait:
+    """An event, as threading.Event, whose `wait` lasts in simulated time."""
+
+    def __init__(self, clock: Clock) -> None:
+        self._clock = clock
+        self._is_set = False
+
+    def set(self) -> None:
+        """End the wait at the next physics step."""
+        self._is_set = True
+
+    def clear(self) -> None:
+        """Undo `set`."""
+        self._is_set = False
+
+    def wait(self, seconds: float) -> bool:
+        """Wait for `seconds` of simulated time or for `set`; whether it was set."""
+        return self._clock.run(self._wait(seconds))
+
+    def _wait(self, seconds: float) -> Skill[bool]:
+        steps = 0
+        while not self._is_set and steps * TIME_STEP < seconds:
+            steps += 1
+            yield
+        return self._is_set
+
+
 class _ActiveLeaves:
     """The path of the active leaf of every branch."""
 
-    def __init__(self, show: Callable[[tuple[str, ...]], None]) -> None:
+    def __init__(self, show: Show) -> None:
         self._show = show
         self._lock = threading.Lock()
         self._paths: dict[Key, str] = {}
@@ -40,7 +73,7 @@ class _ActiveLeaves:
         """Record that the branch `key` is in the leaf `path`."""
         with self._lock:
             self._paths[key] = path
-            self._show(tuple(self._paths[each] for each in sorted(self._paths)))
+            self._show(tuple(self._paths[each] for each in sorted(self._paths)), path)
 
     def end(self, key: Key) -> None:
         """Remove the branch `key`, which has ended or forks, and all branches below it."""

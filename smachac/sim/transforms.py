@@ -5,30 +5,36 @@ A pose is written `[[x, y, z], [qx, qy, qz, qw]]` in scripts and held as two tup
 
 import math
 from collections.abc import Iterable, Sequence
-from typing import Any, TypeAlias
+from typing import Any
 
-Vector: TypeAlias = tuple[float, float, float]
-Quaternion: TypeAlias = tuple[float, float, float, float]
-Pose: TypeAlias = tuple[Vector, Quaternion]
-
-IDENTITY: Pose = ((0.0, 0.0, 0.0), (0.0, 0.0, 0.0, 1.0))
+from smachac.robots.description import DOWN
+from smachac.robots.fields import IDENTITY as IDENTITY
+from smachac.robots.fields import Pose as Pose
+from smachac.robots.fields import Quaternion as Quaternion
+from smachac.robots.fields import Vector as Vector
 
 
 def as_pose(value: Any) -> Pose:
     """The pose in `value`, which is written as in scripts; its quaternion is normalized.
 
+    A message of ROS, with the attributes `position` and `orientation`, is read too.
     The quaternion may be left out; four zeros mean no rotation, as in many scripts.
     Raises ValueError unless there are three and four finite numbers.
     """
+    if hasattr(value, "pose"):
+        value = value.pose
+    if hasattr(value, "position"):
+        p, q = value.position, value.orientation
+        value = [[p.x, p.y, p.z], [q.x, q.y, q.z, q.w]]
     try:
         position, rotation = value if len(value) == 2 else (value, IDENTITY[1])
-        p = [float(each) for each in position]
-        q = [float(each) for each in rotation]
+        place = [float(each) for each in position]
+        turn = [float(each) for each in rotation]
     except (TypeError, ValueError):
         raise ValueError(f"not a pose [[x, y, z], [qx, qy, qz, qw]]: {value!r}") from None
-    if len(p) != 3 or len(q) != 4 or not all(map(math.isfinite, p + q)):
+    if len(place) != 3 or len(turn) != 4 or not all(map(math.isfinite, place + turn)):
         raise ValueError(f"not a pose [[x, y, z], [qx, qy, qz, qw]]: {value!r}")
-    return (p[0], p[1], p[2]), _normalized(q)
+    return (place[0], place[1], place[2]), _normalized(turn)
 
 
 def as_lists(pose: Pose) -> list[list[float]]:
@@ -125,15 +131,14 @@ def about_z(yaw: float) -> Quaternion:
     return (0.0, 0.0, math.sin(yaw / 2), math.cos(yaw / 2))
 
 
-def grasp_pose(block_pose: Any, turn: float = 0.0) -> list[list[float]]:
-    """The tool pose that grips a cube at `block_pose`: at its centre, tool straight down.
+def grasp_pose(block_pose: Any, grasp: Pose = DOWN) -> list[list[float]]:
+    """The tool pose that grips a cube at `block_pose`, for an upright cube.
 
     A cube is symmetric under quarter turns, so its yaw is reduced to +-45 degrees, the smallest
-    rotation of the wrist. `turn` (rad) is the yaw of the hand when the cube has yaw 0, see
+    rotation of the wrist. `grasp` is the pose of the tool in the frame of the cube, see
     robots.Limb. Raises ValueError for a value that is no pose.
     """
     position, rotation = as_pose(block_pose)
     yaw = yaw_of(rotation)
     folded = yaw - math.pi / 2 * round(yaw / (math.pi / 2))
-    down = multiply(about_z(folded + turn), (1.0, 0.0, 0.0, 0.0))
-    return as_lists((position, down))
+    return as_lists(compose((position, about_z(folded)), grasp))

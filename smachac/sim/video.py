@@ -154,7 +154,7 @@ def _corners(scene: Scene) -> Iterator[Vector]:
     Points more than 12 cm below the robot's base (the legs of tables) are raised to that height.
     """
     engine, floor = scene.engine, scene.robot.base[0][2] - _BELOW
-    for body in (scene.robot_body, *scene.bodies.values()):
+    for body in (*scene.kinematics, *scene.bodies.values()):
         for link in range(-1, engine.getNumJoints(body)):
             low, high = engine.getAABB(body, link)
             for x in (low[0], high[0]):

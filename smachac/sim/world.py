@@ -16,10 +16,14 @@ from pathlib import Path
 from types import TracebackType
 from typing import Any
 
-from smachac.sim import robots, skills, smach_bridge
+from smachac.robots.files import find_file, read_file
+from smachac.robots.scene import Body
+from smachac.robots.scene import read as read_scene
+from smachac.sim import robots, skills, smach_bridge, tasks
 from smachac.sim.arm import Arm, arm_named
 from smachac.sim.clock import Skill
 from smachac.sim.faults import Fault, FaultSchedule
+from smachac.sim.faults import read as read_faults
 from smachac.sim.outcome import Preempted, Result
 from smachac.sim.robots import Robot
 from smachac.sim.scene import Event, Scene
@@ -34,6 +38,8 @@ class Settings:
     gui: bool = False
     record: str | Path | None = None
     faults: tuple[Fault | Mapping[str, Any], ...] = ()
+    on_event: Callable[[Event], None] | None = None
+    folders: tuple[Path, ...] = ()
 
 
 _settings = Settings()
@@ -46,7 +52,9 @@ class World(Scene):
     """A robot on a floor, and the bodies that are loaded around it.
 
     Metres, rad, s, kg; gravity along -z. Poses are given in the frame "base" (the robot's base)
-    unless a frame is named: "world", or the name of a body. Arguments that are None take the value
+    unless a frame is named: "world", or the name of a body. `robot` is a Robot, the name of a
+    built-in one or the file of a description (default: the Panda); `scene` the file of a scene, or
+    its bodies, which are placed with the seed. Arguments that are None take the value
     set by `configure`; `faults` are added to those of `configure`. `record` names a film (.gif or
     .mp4). `on_event` is called with each Event. A branch that submits no skill for `patience`
     seconds of wall time is left behind.
@@ -62,7 +70,8 @@ class World(Scene):
     def __init__(
         self,
         *,
-        robot: Robot | None = None,
+        robot: Robot | str | None = None,
+        scene: str | Path | Iterable[Body] | None = None,
         seed: int | None = None,
         gui: bool | None = None,
         record: str | Path | None = None,
@@ -76,10 +85,10 @@ class World(Scene):
         self._closing = threading.Lock()
         self._film: Film | None = None
         super().__init__(
-            robot or robots.panda(),
+            _robot(robot),
             seed,
             gui=_settings.gui if gui is None else gui,
-            on_event=on_event,
+            on_event=on_event or _settings.on_event,
             patience=patience,
         )
         try:
@@ -87,6 +96,8 @@ class World(Scene):
             for arm in self.arms:
                 arm.reset(arm.limb.home)
             film = record or _settings.record
+            for body in _bodies(scene):
+                self._add_body(body)
             self._film = Film(self, film) if film else None
         except BaseException:
             self.close()
@@ -116,6 +127,15 @@ class World(Scene):
                     film.close()
             finally:
                 super().close()
+
+    def _add_body(self, body: Body) -> None:
+        """Put a body of the scene into the world. Raises ValueError if that is not possible."""
+        pose = tasks.scattered(self, body.pose, body.spread, dict(body.apart))
+        path = find_file(body.path, _settings.folders) if body.path else None
+        model = body.box or body.model
+        result = self.add(model, pose, body.name, path, body.frame, body.colour)
+        if result.outcome != "succeeded":
+            raise ValueError(f"the scene: {result.reason}")
 
     def arm(self, limb: str | None = None) -> Arm:
         """The arm of that name; the only arm if no name is given. Raises UnknownNameError."""
@@ -169,11 +189,14 @@ class World(Scene):
         """
         return smach_bridge.together(self.clock, calls)
 
-    def enter(self, paths: Iterable[str]) -> None:
-        """Set the active states, by path: the caption of the film, and faults that wait for one."""
+    def enter(self, paths: Iterable[str], began: str | None = None) -> None:
+        """Set the active states, by path: the caption of the film, and faults that wait for one.
+
+        `began` is the state that begins now; None: all of them. Raises WorldCrash.
+        """
         active = tuple(paths)
         self.caption = " + ".join(active)
-        self._faults.enter(active)
+        self._faults.enter(self, self.arms, active if began is None else (began,))
 
     def _step(self) -> None:
         """Apply the faults that are due, film, make one physics step; with a GUI, in real time."""
@@ -185,6 +208,20 @@ class World(Scene):
             time.sleep(max(0.0, self._began + self.time - time.monotonic()))
 
 
+def _robot(robot: Robot | str | None) -> Robot:
+    if isinstance(robot, Robot):
+        return robot
+    return robots.load(robot or "panda", folders=_settings.folders)
+
+
+def _bodies(scene: str | Path | Iterable[Body] | None) -> Iterable[Body]:
+    if scene is None:
+        return ()
+    if not isinstance(scene, str | Path):
+        return scene
+    return read_scene(read_file(find_file(scene, _settings.folders)))
+
+
 # Settings and open worlds of the process
 
 
@@ -194,17 +231,32 @@ def configure(
     gui: bool = False,
     record: str | Path | None = None,
     faults: Iterable[Fault | Mapping[str, Any]] = (),
+    on_event: Callable[[Event], None] | None = None,
+    folders: Iterable[Path] = (),
 ) -> None:
-    """Set the defaults of all worlds opened later; an argument left out is reset."""
+    """Set the defaults of all worlds opened later; an argument left out is reset.
+
+    `folders` are searched for descriptions of robots and scenes, after the working folder.
+    """
     global _settings
-    _settings = Settings(seed=seed, gui=gui, record=record, faults=tuple(faults))
+    _settings = Settings(
+        seed=seed,
+        gui=gui,
+        record=record,
+        faults=read_faults(faults),
+        on_event=on_event,
+        folders=tuple(folders),
+    )
+
+
+def open_world() -> World | None:
+    """The open world, the last opened one of several; None if none is open."""
+    return _open_worlds[-1] if _open_worlds else None
 
 
 def world() -> World:
     """The open world, the last opened one of several; if none is open, a new one."""
-    if _open_worlds:
-        return _open_worlds[-1]
-    return World()
+    return open_world() or World()
 
 
 @atexit.register

@@ -1,7 +1,7 @@
 {% extends "Program.tpl.py" %}
 {%- block main %}
     """Run the state machine once in a simulated world and return its outcome."""
-    with sim.World(robot=sim.robots.{{ robot | default("panda") }}()) as world:
+    with sim.World(robot={% block robot %}{{ robot | default("panda") | literal }}{% endblock %}{% if scene %}, scene={{ scene | literal }}{% endif %}) as world:
         {{ sm_name }} = build()
         world.attach({{ sm_name }}, {{ sm_name | tojson }})
         outcome = {{ sm_name }}.execute()

@@ -287,6 +287,9 @@ class Acceptor:
             return
         raise _NotAllowedError(f"nothing stops {self._name(path)} here")
 
+    def _fault(self, path: str, node: Node, event: Event) -> None:
+        """An injected fault of the simulation is allowed at any time."""
+
     def _error(self, path: str, node: Node, event: Event) -> None:
         """An exception of a state, or of its container after the state has ended."""
         here = path if path in self._runs else path.rpartition("/")[0]
@@ -329,5 +332,6 @@ _ACCEPT = {
     "write": Acceptor._write,
     "preempt": Acceptor._preempt,
     "error": Acceptor._error,
+    "fault": Acceptor._fault,
 }
 """By the kind of an event, the method that accepts it."""

@@ -26,6 +26,7 @@ FIELDS = {
     "preempt": (),
     "error": (),
     "finish": ("outcome",),
+    "fault": ("fault",),
 }
 """By the kind of an event, the fields that it has beside `event` and `path`, all of them texts."""
 

@@ -7,19 +7,20 @@ import pytest
 
 from smachac.checks import check_machine
 from smachac.diagnostics.diagnostic import Diagnostic
-from smachac.frontend.robots import default_robot
+from smachac.frontend.robots import built_in_robot, default_robot
 from smachac.ir.parser import parse_machine
-from smachac.ir.robot import BUILT_IN
+from smachac.robots.files import BUILT_IN
+from tests.support.typed_machines import BUILT_IN as LIBRARY
 from tests.support.typed_machines import with_state_types
 
 
 def found(text: str) -> list[Diagnostic]:
     """What the rules over types find in a machine; `; ` ends a line."""
     machine = with_state_types(parse_machine(text.replace("; ", "\n"), "main.smir"))
-    robot = default_robot(machine.state_types[machine.base])
+    robot = default_robot(machine.state_types[machine.base], LIBRARY)
     for each in machine.variables:
         if each.name == "robot":
-            robot = BUILT_IN.get(str(each.value.data))
+            robot = built_in_robot(str(each.value.data), LIBRARY)
     report = check_machine(replace(machine, robot=robot))
     codes = ("SM304", "SM501", "SM502", "SM503", "SM504")
     return [item for item in report if item.code in codes]
@@ -91,14 +92,18 @@ def test_limits_are_those_of_the_simulated_arm() -> None:
 
     robot = ElementTree.parse(Path(data.getDataPath()) / "franka_panda" / "panda.urdf")
     limits = {joint.get("name"): joint.find("limit") for joint in robot.iter("joint")}
-    for joint in BUILT_IN["panda"].joints:
+    panda = built_in_robot("panda", LIBRARY)
+    assert panda is not None
+    for joint in panda.joints:
         limit = limits[joint.name]
         assert limit is not None
         given = float(limit.get("lower", "")), float(limit.get("upper", ""))
         assert given == (joint.lower, joint.upper)
     links = {link.get("name") for link in robot.iter("link")}
-    assert links == BUILT_IN["panda"].frames
-    assert {len(limb) for each in BUILT_IN.values() for limb in each.limbs} == {7}
+    assert links == panda.frames
+    robots = [built_in_robot(name, LIBRARY) for name in BUILT_IN]
+    assert {len(limb) for each in robots if each is not None for limb in each.limbs} == {7}
+    assert None not in robots
 
 
 READ = """

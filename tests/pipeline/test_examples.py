@@ -12,7 +12,7 @@ from smachac.commands.cli import main
 
 ROOT = Path(__file__).parents[2] / "examples"
 EXAMPLES = sorted(path.parent.name for path in ROOT.glob("*/main.yml"))
-ON_THE_ARM = {"08_pick_and_place", "09_stacking"}
+ON_THE_ARM = {name for name in EXAMPLES if name >= "08"}
 
 
 def script(name: str) -> str:
@@ -28,13 +28,15 @@ def built(tmp_path_factory: pytest.TempPathFactory) -> Path:
     return folder
 
 
-def test_there_are_nine() -> None:
-    assert len(EXAMPLES) == 9
+def test_there_are_thirteen() -> None:
+    assert len(EXAMPLES) == 13
 
 
 @pytest.mark.parametrize("name", EXAMPLES)
 def test_checks_without_a_warning(name: str, capsys: pytest.CaptureFixture[str]) -> None:
-    assert main(["check", "--strict", script(name)]) == 0, capsys.readouterr().out
+    # Example 10 is a script as it was printed, with outcomes that lead nowhere.
+    strict = ["--strict"] if name != "10_baxter_pick_and_place" else []
+    assert main(["check", *strict, script(name)]) == 0, capsys.readouterr().out
 
 
 @pytest.mark.parametrize("name", EXAMPLES)

@@ -11,6 +11,7 @@ import networkx as nx
 import pytest
 
 LAYERS = (
+    ("robots",),
     ("sim", "runtime", "grammars", "diagnostics", "version"),
     ("ir",),
     ("analysis", "interpreter", "frontend"),
@@ -28,6 +29,7 @@ PACKAGES: Mapping[str, frozenset[str]] = {
     "runtime": frozenset(
         {"rospy", "rosgraph", "actionlib", "actionlib_msgs", "genpy", "smach_msgs"}
     ),
+    "robots": frozenset({"ruamel"}),
     "sim": frozenset({"pybullet", "pybullet_data", "numpy", "PIL", "imageio_ffmpeg"}),
 }
 """The rooms that generated programs stand on, with the packages that they may import."""

@@ -2,9 +2,19 @@
 
 from __future__ import annotations
 
+import math
+
 import pytest
 
-from tests.support.arm_examples import PICK_AND_PLACE, STACKING, run
+from smachac.robots.faults import Fault
+from tests.support.arm_examples import (
+    BAXTER_STACKING,
+    DUAL_ARM,
+    PICK_AND_PLACE,
+    RECOVERY,
+    STACKING,
+    run,
+)
 
 LIMIT = 0.002
 """The largest placing error, in metres."""
@@ -67,3 +77,54 @@ def test_a_displaced_block_never_counts_as_placed(way: tuple[float, ...]) -> Non
         ),
     )
     assert found.outcome == "aborted"
+
+
+SEEDS = [0, 1, *(pytest.param(seed, marks=pytest.mark.slow) for seed in range(2, 8))]
+
+
+@pytest.mark.parametrize("seed", SEEDS)
+@pytest.mark.parametrize("example", [BAXTER_STACKING, DUAL_ARM], ids=["one arm", "both arms"])
+def test_baxter_stacks_within_1_mm(example: tuple[str, dict[str, str]], seed: int) -> None:
+    found = run(*example, seed)
+    assert found.outcome == "succeeded"
+    assert found.at_rest
+    assert len(found.errors) == 2
+    assert max(found.errors.values()) < 0.001
+
+
+def test_both_arms_move_at_once_and_always_the_same_way() -> None:
+    first, second = (run(*DUAL_ARM, 3) for _ in range(2))
+    assert first.events == second.events
+    assert first.hash == second.hash
+    paths = visited(first.events)
+    entered = [path.split("/")[2] for path in paths if path.startswith("sm/PICK_BLOCKS/")]
+    assert entered != sorted(entered)  # the two arms alternate
+
+
+def test_the_script_as_printed_places_the_block() -> None:
+    found = run("10_baxter_pick_and_place", {}, 0)
+    assert found.outcome == "succeeded"
+    with_goal = run("10_baxter_pick_and_place", {"block": "block_model_place_pose"}, 0)
+    # The origin of the block is a corner, and the pick pose is 1 to 3 mm beside its centre.
+    assert with_goal.errors["block"] == pytest.approx(math.dist([0.025] * 3, [0] * 3), abs=0.003)
+
+
+SLIP = Fault(kind="gripper_slips", target="left", state="PICK_BLOCK/LIFT")
+HANG = Fault(kind="never_returns", target="left", state="PLACE_BLOCK/MOVE_TO_HOVER")
+LOCK = Fault(kind="lock_joint", target="left_e1", at=0.5)
+
+
+@pytest.mark.parametrize(
+    ("fault", "tries"), [(SLIP, 2), (HANG, 2), (LOCK, 4)], ids=["slip", "hang", "lock"]
+)
+def test_the_machine_recovers(fault: Fault, tries: int) -> None:
+    found = run(*RECOVERY, 1, faults=(fault,))
+    assert found.outcome == "succeeded"
+    assert found.errors["block"] < 0.001
+    assert sum(path.endswith("/FIND_BLOCK") for path in visited(found.events)) == tries
+
+
+def test_a_crash_of_the_world_is_an_exception() -> None:
+    crash = Fault(kind="crash", state="PICK_BLOCK/LIFT")
+    with pytest.raises(Exception, match="crashed"):
+        run(*RECOVERY, 1, faults=(crash,))

@@ -2,12 +2,15 @@
 
 from __future__ import annotations
 
+import json
 from collections.abc import Callable
+from pathlib import Path
 from typing import Any
 
 import pytest
 
 from smachac import sim
+from smachac.commands.cli import main
 from smachac.sim import faults
 from smachac.sim.faults import Fault, FaultSchedule
 
@@ -104,12 +107,98 @@ def test_a_probability_is_drawn_from_the_seed() -> None:
 @pytest.mark.parametrize(
     ("fault", "reason"),
     [
-        ({"kind": "meteor", "at": 1.0}, "no fault kind `meteor`; known: move_body"),
+        ({"kind": "meteor", "at": 1.0}, "no fault kind `meteor`"),
         ({"kind": "gripper_dead"}, "needs either `at` or `state`"),
         ({"kind": "gripper_dead", "at": 1.0, "state": "X"}, "needs either `at` or `state`"),
-        ({"kind": "gripper_dead", "when": 1.0}, "not a fault"),
+        ({"kind": "gripper_dead", "when": 1.0}, "the key `when` is unknown"),
     ],
 )
 def test_what_is_no_fault_is_refused(fault: dict[str, Any], reason: str) -> None:
     with pytest.raises(ValueError, match=reason):
         faults.read([fault])
+
+
+def test_no_pose_is_solved_once() -> None:
+    with sim.World(seed=0, faults=[Fault(kind="no_ik", state="PLAN")]) as world:
+        world.enter(["sm/PLAN"])
+        assert world.arm().solve_ik([BLOCK[0], [1.0, 0.0, 0.0, 0.0]]) is None
+        assert world.arm().solve_ik([BLOCK[0], [1.0, 0.0, 0.0, 0.0]]) is not None
+        assert [event.text for event in world.events if event.name == "fault"] == ["no_ik"]
+
+
+def test_a_weak_joint_does_not_follow() -> None:
+    fault = Fault(kind="weak_joint", target="panda_joint2", value=2.0, at=0.0)
+    with sim.World(seed=0, faults=[fault]) as world:
+        arm = world.arm()
+        result = arm.move_to_joints(arm.solve_ik([[0.6, 0.0, 0.1], [1, 0, 0, 0]]) or [])
+        assert result == sim.Result("aborted", "panda_joint2 does not follow")
+
+
+def test_measured_poses_have_noise_of_the_seed() -> None:
+    def measured(seed: int) -> list[list[float]]:
+        with sim.World(seed=seed, faults=[Fault(kind="sensor_noise", value=0.01, at=0)]) as world:
+            world.load("block", BLOCK)
+            world.sleep(0.01)
+            assert world.measured_pose("block") != world.pose("block")
+            return world.measured_pose("block")
+
+    assert measured(1) == measured(1) != measured(2)
+
+
+def test_a_skill_that_never_returns_can_be_preempted() -> None:
+    with sim.World(seed=0, faults=[Fault(kind="never_returns", state="MOVE")]) as world:
+        world.enter(["sm/MOVE"])
+        arm = world.arm()
+        result = arm.move_to_joints(arm.limb.home, preempted=lambda: world.time > 3.0)
+        assert result.outcome == "preempted"
+        assert arm.move_to_joints(arm.limb.home).outcome == "succeeded"
+
+
+def test_a_slip_is_drawn_at_each_visit() -> None:
+    slips = Fault(kind="gripper_slips", state="CLOSE", probability=0.5, each_time=True)
+    with sim.World(seed=1, faults=[slips]) as world:
+        for _ in range(40):
+            world.enter(["sm/OPEN"])
+            world.enter(["sm/CLOSE", "sm/OTHER"], began="sm/CLOSE")
+            world.enter(["sm/CLOSE", "sm/OTHER"], began="sm/OTHER")
+            world.sleep(0.01)
+        assert 10 < len(world.events) < 30
+
+
+FILE = """
+faults:
+  - {{kind: gripper_slips, state: CLOSE, {entry}}}
+"""
+
+
+@pytest.mark.parametrize(
+    ("entry", "message"),
+    [
+        ("probability: 30", "a probability from 0 to 1 is expected, not 30"),
+        ("value: 1", "fault `gripper_slips` has no `value`"),
+        ("at: 1", "needs either `at` or `state`"),
+        ("each_time: often", "`true` or `false` is expected"),
+    ],
+)
+def test_a_wrong_file_is_a_diagnostic_with_its_place(
+    entry: str, message: str, tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    (tmp_path / "faults.yml").write_text(FILE.format(entry=entry))
+    example = Path(__file__).parents[2] / "examples" / "13_recovery" / "main.yml"
+    assert main(["run", str(example), "--faults", str(tmp_path / "faults.yml"), "-q"]) == 1
+    printed = capsys.readouterr().err
+    assert message in printed
+    assert "faults.yml:3:" in printed
+
+
+def test_faults_are_events_of_the_trace(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    folder = Path(__file__).parents[2] / "examples" / "13_recovery"
+    arguments = ["run", str(folder / "main.yml"), "--faults", str(folder / "locked.yml"), "-q"]
+    trace = tmp_path / "trace.jsonl"
+    assert main([*arguments, "--trace", str(trace), "--expect", "succeeded"]) == 0
+    events = [json.loads(line) for line in trace.read_text().splitlines()]
+    (found,) = [event for event in events if event["event"] == "fault"]
+    assert found["fault"] == "lock_joint left_e1"
+    assert found["sim_time"] == 0.5
+    assert found["during"][0].endswith("PICK_BLOCK/OPEN_GRIPPER")
+    assert capsys.readouterr().out.endswith("outcome: succeeded\n")

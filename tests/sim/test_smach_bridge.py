@@ -57,7 +57,8 @@ class Bench:
         return Waits(self, name, count, fails)
 
     def run(self, machine: Any) -> str | None:
-        smach_bridge.attach(machine, self.clock, self.shown.append, "sm")
+        show = lambda paths, began: self.shown.append(paths)  # noqa: E731
+        smach_bridge.attach(machine, self.clock, show, "sm")
         outcome: str | None = machine.execute()
         assert self.lost == []
         return outcome

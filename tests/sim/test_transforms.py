@@ -74,8 +74,10 @@ def test_a_grasp_points_down_and_turns_at_most_45_degrees(
     assert quarters == pytest.approx(round(quarters), abs=1e-6)
 
 
-def test_the_turn_of_a_hand_is_added() -> None:
-    rotation = as_pose(transforms.grasp_pose(IDENTITY, turn=math.pi))[1]
+def test_a_hand_grasps_at_its_own_pose() -> None:
+    grasp: Pose = ((0.0, 0.0, 0.1), (0.0, 1.0, 0.0, 0.0))
+    position, rotation = as_pose(transforms.grasp_pose(IDENTITY, grasp))
+    assert position == (0.0, 0.0, 0.1)
     assert transforms.angle_between(rotation, (0.0, 1.0, 0.0, 0.0)) < 1e-9
 
 

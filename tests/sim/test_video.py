@@ -83,7 +83,7 @@ def test_the_robot_and_all_bodies_are_in_the_picture() -> None:
             160, 110, view, projection, renderer=world.engine.ER_TINY_RENDERER
         )[4]
         things = numpy.asarray(seen).reshape(110, 160)
-        for body in (world.robot_body, *world.bodies.values()):
+        for body in (world.arm().body, *world.bodies.values()):
             rows, columns = numpy.nonzero(things == body)
             assert len(rows) > 3
             if body != world.bodies["table"]:

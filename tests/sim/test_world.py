@@ -193,7 +193,7 @@ def test_solutions_are_checked_by_forward_kinematics(idle: sim.World) -> None:
             )
             joints = arm.solve_ik(pose)
             assert joints is not None
-            tip = idle.kinematics.tip(arm.limb, joints)
+            tip = arm.kinematics.tip(arm.limb, joints)
             assert math.dist(tip[0], pose[0]) < 2e-4
             assert transforms.angle_between(tip[1], pose[1]) < 1e-3
 
@@ -319,7 +319,7 @@ def test_a_world_takes_what_was_configured_and_is_found() -> None:
 def test_a_robot_whose_file_or_joints_do_not_exist() -> None:
     with pytest.raises(FileNotFoundError, match=r"no robot description `no\.urdf`"):
         sim.robots.from_urdf("no.urdf", limbs=())
-    limb = sim.robots.Limb(name="arm", joints=("elbow",), tip="tip", home=(0.0,), fingers=())
+    limb = sim.robots.Limb(name="arm", joints=("elbow",), tip="tip", home=(0.0,))
     robot = sim.robots.from_urdf("franka_panda/panda.urdf", limbs=(limb,))
     with pytest.raises(sim.UnknownNameError, match="no joint `elbow`; known: `panda_joint1`"):
         sim.World(robot=robot)
@@ -332,7 +332,6 @@ def test_another_robot_of_another_file() -> None:
         joints=joints,
         tip="lbr_iiwa_link_7",
         home=(0.0, 0.5, 0.0, -1.4, 0.0, 1.2, 0.0),
-        fingers=(),
     )
     robot = sim.robots.from_urdf("kuka_iiwa/model.urdf", limbs=(limb,))
     with sim.World(seed=0, robot=robot) as world:

@@ -65,7 +65,8 @@ def run(
     def observe(event: dict[str, Any]) -> None:
         events.append({key: value for key, value in event.items() if key != "t"})
 
-    with silent_smach(), sim.World(seed=seed, faults=faults) as world:
+    robot, scene = ROBOTS.get(example, (None, None))
+    with silent_smach(), sim.World(robot=robot, scene=scene, seed=seed, faults=faults) as world:
         machine = program(example, replaced)()
         trace.attach(machine, "sm", observe)
         world.attach(machine, "sm")
@@ -84,5 +85,16 @@ def run(
         )
 
 
+ROBOTS: Mapping[str, tuple[str, Path | None]] = {
+    "10_baxter_pick_and_place": ("baxter", None),
+    "11_baxter_stacking": ("baxter", None),
+    "12_dual_arm_stacking": ("baxter", EXAMPLES / "12_dual_arm_stacking" / "table.yml"),
+    "13_recovery": ("baxter", EXAMPLES / "13_recovery" / "table.yml"),
+}
+"""The robot and the scene of each example that has no Panda."""
+
 PICK_AND_PLACE = ("08_pick_and_place", {"block": "goal_pose"})
 STACKING = ("09_stacking", {"first": "goal_pose", "second": "top_pose"})
+BAXTER_STACKING = ("11_baxter_stacking", {"first": "goal_pose", "second": "top_pose"})
+DUAL_ARM = ("12_dual_arm_stacking", {"first": "goal_pose", "second": "top_pose"})
+RECOVERY = ("13_recovery", {"block": "goal_pose"})

@@ -58,7 +58,7 @@ def test_another_robot_is_not_replaced_by_the_simulated_arm(
     assert main([command[0], moving(tmp_path, "kuka.urdf"), *command[1:]]) == 1
     written = capsys.readouterr()
     assert written.out == ""
-    assert "error[SM601]: not supported in Python: the simulated arm is the panda" in written.err
+    assert "error[SM601]: not supported in Python: the robot `" in written.err
     assert "main.yml:3:8" in written.err
 
 

@@ -73,6 +73,8 @@ class Progress:
                 self._line(path, f"{self._paint(_RED, 'error')}: {event['message']}")
             elif kind == "preempt" and "/" not in path:
                 self._line(path, self._paint(_YELLOW, "asked to stop"))
+            elif kind == "fault":
+                self._line(path, self._paint(_YELLOW, f"injected fault: {event['fault']}"))
 
     def _show_containers(self, path: str) -> None:
         """Write the start lines of the containers around a state, once for each of their visits."""

@@ -71,8 +71,11 @@ def attach(
     *,
     clock: Callable[[], float] = time.monotonic,
     paths: Mapping[str, str] = {},
-) -> None:
+) -> Callable[..., None]:
     """Trace a built machine: `observe` is called with every event from now on.
+
+    The function that is returned records an event of something else, such as a simulation: its
+    arguments are the name of the event, its path, and its other fields by keyword.
 
     `name` is the path of the machine itself, `sources` the places of states in the script by path,
     `clock` returns seconds. `paths` are paths to show in place of those of states that SMACH's
@@ -88,6 +91,7 @@ def attach(
             known = InstrumentedState(state, recorder, instrumented)
             instrumented[id(state)] = known
         known.places.append((None if parent is None else instrumented[id(parent)], label))
+    return recorder.emit
 
 
 def script(

@@ -12,7 +12,6 @@ from __future__ import annotations
 from smachac.diagnostics.diagnostic import Report
 from smachac.frontend.loader import Library
 from smachac.ir.nodes import Checked, StateType
-from smachac.ir.robot import BUILT_IN, SIMULATED, same_joints
 from smachac.targets import BuildContext, Files, OptionError, Target, stem
 from smachac.targets.errors import unsupported_by_target
 from smachac.targets.python.class_reader import declared
@@ -37,15 +36,14 @@ def emit(machine: Checked, context: BuildContext, report: Report) -> Files:
 
 
 def _moves_another_arm(machine: Checked, report: Report) -> bool:
-    """Whether the program would move the simulated arm in place of the robot that the script names,
-    which is reported."""
-    robot, simulated = machine.robot, BUILT_IN[SIMULATED]
-    if robot is None or same_joints(robot, simulated):
+    """Whether the script names a robot that the simulation cannot move, which is reported."""
+    robot = machine.robot
+    if robot is None or robot.description:
         return False
     if not any(type_.simulation for type_ in machine.state_types.values()):
         return False
-    message = f"the simulated arm is the {simulated.name}, and the robot `{robot.name}` cannot be"
-    help = "use state types of your own for this robot; `smachac run --mock` tests the script"
+    message = f"the robot `{robot.name}` has no description of its arms: it cannot be"
+    help = "describe its arms in a YAML file, and name that file: `robot: arm.yml`"
     report.append(
         unsupported_by_target(robot.span, "Python", f"{message} simulated", help, (robot.name,))
     )

@@ -135,6 +135,7 @@ def _text(
     code, function_code = indent(lines, "    "), "\n\n\n".join(built)
     variables: dict[str, object] = {
         **{variable.name: plain(variable.value.data) for variable in machine.variables},
+        **_simulated_robot(machine),
         **container_variables(machine.root, None, "", machine.root.name),
         **headers(inside),
         **texts,
@@ -198,6 +199,15 @@ def _frame(text: str, parts: Iterable[str]) -> tuple[str, dict[str, str]]:
             text = text.replace(part, statement, 1)
             left_out[statement] = part
     return text, left_out
+
+
+def _simulated_robot(machine: Machine) -> dict[str, object]:
+    """The variable `robot` of a base that runs in the simulation, where it is another one than the
+    script names: a URDF file with the joints of a built-in robot."""
+    base, robot = machine.state_types.get(machine.base), machine.robot
+    if base is None or not base.simulation or robot is None or not robot.description:
+        return {}
+    return {"robot": plain(robot.description)}
 
 
 def _rendered(

@@ -7,10 +7,12 @@ import random
 import signal
 import sys
 import threading
+import time
 import traceback
-from collections.abc import Callable, Iterator, Sequence
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from contextlib import contextmanager
 from dataclasses import dataclass
+from functools import partial
 from pathlib import Path
 from types import FrameType, ModuleType
 from typing import Any
@@ -18,6 +20,7 @@ from typing import Any
 from smachac.ir.nodes import Machine
 from smachac.ir.script_paths import script_paths
 from smachac.ir.traversal import walk
+from smachac.robots.faults import Fault
 from smachac.runtime.smach.failures import one_line
 
 Event = dict[str, Any]
@@ -55,33 +58,42 @@ def execute(
     seed: int = 0,
     gui: bool = False,
     record: Path | None = None,
+    faults: Sequence[Fault] = (),
     on_preempt: Callable[[], None] = lambda: None,
     on_interrupt: Callable[..., Any] = signal.default_int_handler,
 ) -> RunResult:
     """Run the module `text`; the result has no events, which `observe` receives.
 
     `folders` are those from which the program may import modules of the user (`module_folders` of
-    frontend/files.py). `observe` gets every event of the trace, with paths of the script. Ctrl-C
-    requests the machine to preempt and calls `on_preempt`; a second one calls the signal handler
-    `on_interrupt`. Exceptions of the program are not caught.
+    frontend/files.py), and where it finds descriptions of robots and scenes. `observe` gets every
+    event of the trace, with paths of the script; `faults` are injected into the simulation, and are
+    events of the trace. Ctrl-C requests the machine to preempt and calls `on_preempt`; a second one
+    calls the signal handler `on_interrupt`. Exceptions of the program are not caught.
     """
     from smachac.runtime.tracing import trace
 
     random.seed(seed)
     with loaded(name, text, *folders) as module:
-        if record is not None or gui or "smachac.sim" in sys.modules:
-            from smachac import sim
-
-            sim.configure(seed=seed, gui=gui, record=record)
         built: list[Any] = []
+        emits: list[Callable[..., None]] = []
+        settings = {
+            "seed": seed,
+            "gui": gui,
+            "record": record,
+            "faults": faults,
+            "on_event": partial(_record_fault, machine, emits),
+            "folders": folders,
+        }
 
         def watch(root: Any) -> None:
             if observe is not None:
                 name, shown = machine.root.name, script_paths(machine.root)
-                trace.attach(root, name, observe, places(machine), paths=shown)
+                at = places(machine)
+                emits.append(trace.attach(root, name, observe, at, clock=_clock(), paths=shown))
             built.append(root)
 
         with (
+            _simulation(settings),
             _watching(module, watch) as outcomes,
             quiet(module["smach"], _print_log),
             _preempting(built, on_preempt, on_interrupt),
@@ -91,6 +103,44 @@ def execute(
             outcome=outcomes[0] if outcomes else outcome,
             userdata=_userdata(built[-1]) if built else None,
         )
+
+
+def _clock() -> Callable[[], float]:
+    """The clock of a trace: that of the simulated world, if the program has opened one."""
+    simulation = sys.modules.get("smachac.sim")
+    world = simulation.open_world() if simulation is not None else None
+    return time.monotonic if world is None else lambda: world.time
+
+
+@contextmanager
+def _simulation(settings: Mapping[str, Any]) -> Iterator[None]:
+    """The settings of the simulated worlds that a program opens, if it imports the simulation."""
+    wanted = settings["record"] is not None or settings["gui"]
+    if not wanted and "smachac.sim" not in sys.modules:
+        yield
+        return
+    from smachac import sim
+
+    sim.configure(**settings)
+    try:
+        yield
+    finally:
+        sim.configure()
+
+
+def _record_fault(machine: Machine, emits: Sequence[Callable[..., None]], event: Any) -> None:
+    """Record an injected fault, an event of the simulated world, in the trace of the machine.
+
+    `during` are the paths of the active states, `sim_time` the simulated time (s).
+    """
+    from smachac import sim
+
+    if event.name == "fault":
+        shown = script_paths(machine.root)
+        during = [shown.get(path, path) for path in sim.world().caption.split(" + ")]
+        for emit in emits:
+            name = machine.root.name
+            emit("fault", name, fault=event.text, during=during, sim_time=event.time)
 
 
 def _userdata(root: Any) -> dict[str, object]:

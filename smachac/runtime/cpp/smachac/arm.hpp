@@ -86,6 +86,11 @@ public:
   virtual bool load(const Model &model, const Pose &pose) = 0;
   /// The distance between a body and a pose in metres; empty if the body does not exist.
   virtual std::optional<double> distance(const std::string &body, const Pose &pose) = 0;
+  /// The pose of a body; empty if the body does not exist.
+  virtual std::optional<Pose> pose(const std::string &body) {
+    (void)body;
+    return std::nullopt;
+  }
   /// Whether a body is upright and does not move.
   virtual bool at_rest(const std::string &body) = 0;
 };
@@ -276,6 +281,31 @@ private:
   World &world_;
   std::string body_;
   double tolerance_;
+};
+
+/// State type: reads the present pose of a body.
+class ReadBodyPoseState {
+public:
+  enum class Outcome { succeeded, aborted };
+  struct Out {
+    Key<Pose> &pose;
+  };
+  static constexpr std::uint32_t smachac_interface = 0xa1f0b5e1U;
+
+  ReadBodyPoseState(World &world, std::string body) : world_(world), body_(std::move(body)) {}
+
+  Outcome execute(Out out) {
+    const std::optional<Pose> pose = world_.pose(body_);
+    if (!pose.has_value()) {
+      return Outcome::aborted;
+    }
+    out.pose = *pose;
+    return Outcome::succeeded;
+  }
+
+private:
+  World &world_;
+  std::string body_;
 };
 
 /// State type: loads a model into the world.

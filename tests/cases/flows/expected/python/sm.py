@@ -317,7 +317,7 @@ def build():
 
 def main():
     """Run the state machine once in a simulated world and return its outcome."""
-    with sim.World(robot=sim.robots.panda()) as world:
+    with sim.World(robot="panda") as world:
         sm = build()
         world.attach(sm, "sm")
         outcome = sm.execute()

@@ -465,7 +465,7 @@ def build_place_block():
 
 def main():
     """Run the state machine once in a simulated world and return its outcome."""
-    with sim.World(robot=sim.robots.panda()) as world:
+    with sim.World(robot="panda") as world:
         pick_and_place = build()
         world.attach(pick_and_place, "pick_and_place")
         outcome = pick_and_place.execute()

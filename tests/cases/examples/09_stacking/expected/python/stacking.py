@@ -550,7 +550,7 @@ def build_place_block(body):
 
 def main():
     """Run the state machine once in a simulated world and return its outcome."""
-    with sim.World(robot=sim.robots.panda()) as world:
+    with sim.World(robot="panda") as world:
         stacking = build()
         world.attach(stacking, "stacking")
         outcome = stacking.execute()

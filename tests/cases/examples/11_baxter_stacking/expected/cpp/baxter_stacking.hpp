@@ -1,0 +1,1080 @@
+// Made by smachac 0.1.0 from main.yml (sha256 b55aad0ebc1feef8).
+#pragma once
+
+#include "smachac/arm.hpp"
+#include "smachac/smachac.hpp"
+
+// A class with more outcomes than its interface is an error at every warning level.
+#if defined(__GNUC__)
+#pragma GCC diagnostic push
+#pragma GCC diagnostic error "-Wswitch"
+#endif
+
+static_assert(::smachac::LoadModelState::smachac_interface == 0x8fbc7534U,
+              "smachac::LoadModelState was written for another LoadModelState.yml: compare them, then set smachac_interface");
+static_assert(std::is_same_v<decltype(::smachac::LoadModelState::In::pose), const smachac::Pose &>,
+              "smachac::LoadModelState::In::pose must be const smachac::Pose &");
+static_assert(std::is_same_v<decltype(::smachac::LoadModelState::In::reference_frame), const std::optional<std::string> &>,
+              "smachac::LoadModelState::In::reference_frame must be const std::optional<std::string> &");
+static_assert(std::is_same_v<decltype(::smachac::LoadModelState::Out::pose), smachac::Key<smachac::Pose> &>,
+              "smachac::LoadModelState::Out::pose must be smachac::Key<smachac::Pose> &");
+
+static_assert(::smachac::GripperState::smachac_interface == 0xf6784b1fU,
+              "smachac::GripperState was written for another GripperState.yml: compare them, then set smachac_interface");
+static_assert(std::is_same_v<decltype(::smachac::GripperState::Out::width), smachac::Key<double> &>,
+              "smachac::GripperState::Out::width must be smachac::Key<double> &");
+
+static_assert(::smachac::PoseToJointPositionsState::smachac_interface == 0xb36feb04U,
+              "smachac::PoseToJointPositionsState was written for another PoseToJointPositionsState.yml: compare them, then set smachac_interface");
+static_assert(std::is_same_v<decltype(::smachac::PoseToJointPositionsState::In::pose), const smachac::Pose &>,
+              "smachac::PoseToJointPositionsState::In::pose must be const smachac::Pose &");
+static_assert(std::is_same_v<decltype(::smachac::PoseToJointPositionsState::In::offset), const std::optional<smachac::Pose> &>,
+              "smachac::PoseToJointPositionsState::In::offset must be const std::optional<smachac::Pose> &");
+static_assert(std::is_same_v<decltype(::smachac::PoseToJointPositionsState::Out::joints), smachac::Key<std::vector<double>> &>,
+              "smachac::PoseToJointPositionsState::Out::joints must be smachac::Key<std::vector<double>> &");
+
+static_assert(::smachac::MoveToJointPositionsState::smachac_interface == 0x1e53a7a2U,
+              "smachac::MoveToJointPositionsState was written for another MoveToJointPositionsState.yml: compare them, then set smachac_interface");
+static_assert(std::is_same_v<decltype(::smachac::MoveToJointPositionsState::In::positions), const std::vector<double> &>,
+              "smachac::MoveToJointPositionsState::In::positions must be const std::vector<double> &");
+
+static_assert(::smachac::MoveAlongState::smachac_interface == 0xf86fdf91U,
+              "smachac::MoveAlongState was written for another MoveAlongState.yml: compare them, then set smachac_interface");
+static_assert(std::is_same_v<decltype(::smachac::MoveAlongState::In::pose), const smachac::Pose &>,
+              "smachac::MoveAlongState::In::pose must be const smachac::Pose &");
+static_assert(std::is_same_v<decltype(::smachac::MoveAlongState::In::offset), const std::optional<smachac::Pose> &>,
+              "smachac::MoveAlongState::In::offset must be const std::optional<smachac::Pose> &");
+
+static_assert(::smachac::CheckGraspState::smachac_interface == 0x13d26e9fU,
+              "smachac::CheckGraspState was written for another CheckGraspState.yml: compare them, then set smachac_interface");
+
+static_assert(::smachac::CheckPlacedState::smachac_interface == 0xe69f2892U,
+              "smachac::CheckPlacedState was written for another CheckPlacedState.yml: compare them, then set smachac_interface");
+static_assert(std::is_same_v<decltype(::smachac::CheckPlacedState::In::pose), const smachac::Pose &>,
+              "smachac::CheckPlacedState::In::pose must be const smachac::Pose &");
+static_assert(std::is_same_v<decltype(::smachac::CheckPlacedState::Out::error), smachac::Key<double> &>,
+              "smachac::CheckPlacedState::Out::error must be smachac::Key<double> &");
+
+// Place the block in the gripper and check where it lies.
+namespace baxter_stacking::PICK_AND_PLACE_SECOND::PLACE_BLOCK { // pick_and_place.yml:12
+
+enum class Outcome : std::uint8_t {
+  succeeded,
+  aborted,
+  preempted,
+};
+
+constexpr const char *name(Outcome outcome) {
+  constexpr const char *names[] = {"succeeded", "aborted", "preempted"};
+  return names[static_cast<std::size_t>(outcome)];
+}
+
+struct Userdata {
+  smachac::Key<std::vector<double>> hover_joints;
+  smachac::Key<std::optional<smachac::Pose>> offset;
+  smachac::Key<double> placing_error;
+  smachac::Key<double> width;
+};
+
+struct UserdataView {
+  Userdata &own_;
+  const smachac::Key<smachac::Pose> &hover_offset;
+  const smachac::Key<smachac::Pose> &place_pose;
+};
+
+struct States {
+  States(smachac::Arm &arm, smachac::World &world)
+      : PLAN_HOVER(arm, std::optional<std::string>{std::string("left")}, true),
+        MOVE_TO_HOVER(arm, std::optional<std::string>{std::string("left")}, 1.0),
+        MOVE_DOWN(arm, std::optional<std::string>{std::string("left")}, true, 1.0),
+        OPEN_GRIPPER(arm, std::optional<std::string>{std::string("left")}, std::string("open")),
+        MOVE_UP(arm, std::optional<std::string>{std::string("left")}, true, 1.0),
+        CHECK_PLACED(world, std::string("second"), 0.001) {}
+
+  ::smachac::PoseToJointPositionsState PLAN_HOVER;
+  ::smachac::MoveToJointPositionsState MOVE_TO_HOVER;
+  ::smachac::MoveAlongState MOVE_DOWN;
+  ::smachac::GripperState OPEN_GRIPPER;
+  ::smachac::MoveAlongState MOVE_UP;
+  ::smachac::CheckPlacedState CHECK_PLACED;
+};
+
+enum class State : std::size_t {
+  PLAN_HOVER,
+  MOVE_TO_HOVER,
+  MOVE_DOWN,
+  OPEN_GRIPPER,
+  MOVE_UP,
+  CHECK_PLACED,
+};
+
+inline constexpr smachac::Place places[] = {
+    {"baxter_stacking/PICK_AND_PLACE_SECOND/PLACE_BLOCK/PLAN_HOVER", "place_block.yml:9"},
+    {"baxter_stacking/PICK_AND_PLACE_SECOND/PLACE_BLOCK/MOVE_TO_HOVER", "place_block.yml:16"},
+    {"baxter_stacking/PICK_AND_PLACE_SECOND/PLACE_BLOCK/MOVE_DOWN", "place_block.yml:22"},
+    {"baxter_stacking/PICK_AND_PLACE_SECOND/PLACE_BLOCK/OPEN_GRIPPER", "place_block.yml:29"},
+    {"baxter_stacking/PICK_AND_PLACE_SECOND/PLACE_BLOCK/MOVE_UP", "place_block.yml:35"},
+    {"baxter_stacking/PICK_AND_PLACE_SECOND/PLACE_BLOCK/CHECK_PLACED", "place_block.yml:42"},
+};
+
+template <class Run>
+[[gnu::always_inline]] inline Outcome execute(States &states, const UserdataView &ud, Run &run) {
+  State state = State::PLAN_HOVER;
+  SMACHAC_TRY {
+    switch (state) {
+    case State::PLAN_HOVER: // place_block.yml:9
+      run.enter(places, state);
+      switch (run.wrote(states.PLAN_HOVER.execute({smachac::need(ud.place_pose, "pose"), smachac::convert<std::optional<smachac::Pose>>(ud.hover_offset.unchecked())}, {run.out(ud.own_.hover_joints)}), smachac::Output{"joints", ud.own_.hover_joints})) {
+      case ::smachac::PoseToJointPositionsState::Outcome::succeeded:
+        run.go(places, state, "succeeded", State::MOVE_TO_HOVER);
+        goto MOVE_TO_HOVER;
+      case ::smachac::PoseToJointPositionsState::Outcome::aborted:
+        return run.end(places, state, "aborted", Outcome::aborted);
+      }
+      break;
+    case State::MOVE_TO_HOVER: // place_block.yml:16
+    MOVE_TO_HOVER:
+      run.enter(places, state);
+      switch (states.MOVE_TO_HOVER.execute({smachac::need(ud.own_.hover_joints, "positions")}, run.stop_for(places, state))) {
+      case ::smachac::MoveToJointPositionsState::Outcome::succeeded:
+        run.go(places, state, "succeeded", State::MOVE_DOWN);
+        goto MOVE_DOWN;
+      case ::smachac::MoveToJointPositionsState::Outcome::aborted:
+        return run.end_asked(places, state, "aborted", Outcome::aborted);
+      case ::smachac::MoveToJointPositionsState::Outcome::preempted:
+        return run.end_asked(places, state, "preempted", Outcome::preempted);
+      }
+      break;
+    case State::MOVE_DOWN: // place_block.yml:22
+    MOVE_DOWN:
+      run.enter(places, state);
+      switch (states.MOVE_DOWN.execute({smachac::need(ud.place_pose, "pose"), smachac::maybe<std::optional<smachac::Pose>>(ud.own_.offset)}, run.stop_for(places, state))) {
+      case ::smachac::MoveAlongState::Outcome::succeeded:
+        run.go(places, state, "succeeded", State::OPEN_GRIPPER);
+        goto OPEN_GRIPPER;
+      case ::smachac::MoveAlongState::Outcome::aborted:
+        return run.end_asked(places, state, "aborted", Outcome::aborted);
+      case ::smachac::MoveAlongState::Outcome::preempted:
+        return run.end_asked(places, state, "preempted", Outcome::preempted);
+      }
+      break;
+    case State::OPEN_GRIPPER: // place_block.yml:29
+    OPEN_GRIPPER:
+      run.enter(places, state);
+      switch (run.wrote(states.OPEN_GRIPPER.execute({run.out(ud.own_.width)}, run.stop_for(places, state)), smachac::Output{"width", ud.own_.width})) {
+      case ::smachac::GripperState::Outcome::succeeded:
+        run.go(places, state, "succeeded", State::MOVE_UP);
+        goto MOVE_UP;
+      case ::smachac::GripperState::Outcome::aborted:
+        return run.end_asked(places, state, "aborted", Outcome::aborted);
+      case ::smachac::GripperState::Outcome::preempted:
+        return run.end_asked(places, state, "preempted", Outcome::preempted);
+      }
+      break;
+    case State::MOVE_UP: // place_block.yml:35
+    MOVE_UP:
+      run.enter(places, state);
+      switch (states.MOVE_UP.execute({smachac::need(ud.place_pose, "pose"), smachac::convert<std::optional<smachac::Pose>>(ud.hover_offset.unchecked())}, run.stop_for(places, state))) {
+      case ::smachac::MoveAlongState::Outcome::succeeded:
+        run.go(places, state, "succeeded", State::CHECK_PLACED);
+        goto CHECK_PLACED;
+      case ::smachac::MoveAlongState::Outcome::aborted:
+        return run.end_asked(places, state, "aborted", Outcome::aborted);
+      case ::smachac::MoveAlongState::Outcome::preempted:
+        return run.end_asked(places, state, "preempted", Outcome::preempted);
+      }
+      break;
+    case State::CHECK_PLACED: // place_block.yml:42
+    CHECK_PLACED:
+      run.enter(places, state);
+      switch (run.wrote(states.CHECK_PLACED.execute({smachac::need(ud.place_pose, "pose")}, {run.out(ud.own_.placing_error)}), smachac::Output{"error", ud.own_.placing_error})) {
+      case ::smachac::CheckPlacedState::Outcome::succeeded:
+        return run.end(places, state, "succeeded", Outcome::succeeded);
+      case ::smachac::CheckPlacedState::Outcome::aborted:
+        return run.end(places, state, "aborted", Outcome::aborted);
+      }
+      break;
+    default:
+      smachac::never();
+    }
+    run.no_outcome(places, state);
+  }
+  SMACHAC_CATCH { run.failed(places, state); }
+}
+
+} // namespace baxter_stacking::PICK_AND_PLACE_SECOND::PLACE_BLOCK
+
+// Grasp a block from above and lift it.
+namespace baxter_stacking::PICK_AND_PLACE_SECOND::PICK_BLOCK { // pick_and_place.yml:8
+
+enum class Outcome : std::uint8_t {
+  succeeded,
+  aborted,
+  preempted,
+};
+
+constexpr const char *name(Outcome outcome) {
+  constexpr const char *names[] = {"succeeded", "aborted", "preempted"};
+  return names[static_cast<std::size_t>(outcome)];
+}
+
+struct Userdata {
+  smachac::Key<std::vector<double>> hover_joints;
+  smachac::Key<std::optional<smachac::Pose>> offset;
+  smachac::Key<double> width;
+};
+
+struct UserdataView {
+  Userdata &own_;
+  const smachac::Key<smachac::Pose> &hover_offset;
+  const smachac::Key<smachac::Pose> &pick_pose;
+};
+
+struct States {
+  explicit States(smachac::Arm &arm)
+      : OPEN_GRIPPER(arm, std::optional<std::string>{std::string("left")}, std::string("open")),
+        PLAN_HOVER(arm, std::optional<std::string>{std::string("left")}, true),
+        MOVE_TO_HOVER(arm, std::optional<std::string>{std::string("left")}, 1.0),
+        MOVE_DOWN(arm, std::optional<std::string>{std::string("left")}, true, 1.0),
+        CLOSE_GRIPPER(arm, std::optional<std::string>{std::string("left")}, std::string("close")),
+        LIFT(arm, std::optional<std::string>{std::string("left")}, true, 1.0),
+        CHECK_GRASP(arm, std::optional<std::string>{std::string("left")}, std::optional<std::string>{std::string("second")}) {}
+
+  ::smachac::GripperState OPEN_GRIPPER;
+  ::smachac::PoseToJointPositionsState PLAN_HOVER;
+  ::smachac::MoveToJointPositionsState MOVE_TO_HOVER;
+  ::smachac::MoveAlongState MOVE_DOWN;
+  ::smachac::GripperState CLOSE_GRIPPER;
+  ::smachac::MoveAlongState LIFT;
+  ::smachac::CheckGraspState CHECK_GRASP;
+};
+
+enum class State : std::size_t {
+  OPEN_GRIPPER,
+  PLAN_HOVER,
+  MOVE_TO_HOVER,
+  MOVE_DOWN,
+  CLOSE_GRIPPER,
+  LIFT,
+  CHECK_GRASP,
+};
+
+inline constexpr smachac::Place places[] = {
+    {"baxter_stacking/PICK_AND_PLACE_SECOND/PICK_BLOCK/OPEN_GRIPPER", "pick_block.yml:8"},
+    {"baxter_stacking/PICK_AND_PLACE_SECOND/PICK_BLOCK/PLAN_HOVER", "pick_block.yml:14"},
+    {"baxter_stacking/PICK_AND_PLACE_SECOND/PICK_BLOCK/MOVE_TO_HOVER", "pick_block.yml:21"},
+    {"baxter_stacking/PICK_AND_PLACE_SECOND/PICK_BLOCK/MOVE_DOWN", "pick_block.yml:27"},
+    {"baxter_stacking/PICK_AND_PLACE_SECOND/PICK_BLOCK/CLOSE_GRIPPER", "pick_block.yml:34"},
+    {"baxter_stacking/PICK_AND_PLACE_SECOND/PICK_BLOCK/LIFT", "pick_block.yml:40"},
+    {"baxter_stacking/PICK_AND_PLACE_SECOND/PICK_BLOCK/CHECK_GRASP", "pick_block.yml:47"},
+};
+
+template <class Run>
+[[gnu::always_inline]] inline Outcome execute(States &states, const UserdataView &ud, Run &run) {
+  State state = State::OPEN_GRIPPER;
+  SMACHAC_TRY {
+    switch (state) {
+    case State::OPEN_GRIPPER: // pick_block.yml:8
+      run.enter(places, state);
+      switch (run.wrote(states.OPEN_GRIPPER.execute({run.out(ud.own_.width)}, run.stop_for(places, state)), smachac::Output{"width", ud.own_.width})) {
+      case ::smachac::GripperState::Outcome::succeeded:
+        run.go(places, state, "succeeded", State::PLAN_HOVER);
+        goto PLAN_HOVER;
+      case ::smachac::GripperState::Outcome::aborted:
+        return run.end_asked(places, state, "aborted", Outcome::aborted);
+      case ::smachac::GripperState::Outcome::preempted:
+        return run.end_asked(places, state, "preempted", Outcome::preempted);
+      }
+      break;
+    case State::PLAN_HOVER: // pick_block.yml:14
+    PLAN_HOVER:
+      run.enter(places, state);
+      switch (run.wrote(states.PLAN_HOVER.execute({ud.pick_pose.unchecked(), smachac::convert<std::optional<smachac::Pose>>(ud.hover_offset.unchecked())}, {run.out(ud.own_.hover_joints)}), smachac::Output{"joints", ud.own_.hover_joints})) {
+      case ::smachac::PoseToJointPositionsState::Outcome::succeeded:
+        run.go(places, state, "succeeded", State::MOVE_TO_HOVER);
+        goto MOVE_TO_HOVER;
+      case ::smachac::PoseToJointPositionsState::Outcome::aborted:
+        return run.end(places, state, "aborted", Outcome::aborted);
+      }
+      break;
+    case State::MOVE_TO_HOVER: // pick_block.yml:21
+    MOVE_TO_HOVER:
+      run.enter(places, state);
+      switch (states.MOVE_TO_HOVER.execute({smachac::need(ud.own_.hover_joints, "positions")}, run.stop_for(places, state))) {
+      case ::smachac::MoveToJointPositionsState::Outcome::succeeded:
+        run.go(places, state, "succeeded", State::MOVE_DOWN);
+        goto MOVE_DOWN;
+      case ::smachac::MoveToJointPositionsState::Outcome::aborted:
+        return run.end_asked(places, state, "aborted", Outcome::aborted);
+      case ::smachac::MoveToJointPositionsState::Outcome::preempted:
+        return run.end_asked(places, state, "preempted", Outcome::preempted);
+      }
+      break;
+    case State::MOVE_DOWN: // pick_block.yml:27
+    MOVE_DOWN:
+      run.enter(places, state);
+      switch (states.MOVE_DOWN.execute({ud.pick_pose.unchecked(), smachac::maybe<std::optional<smachac::Pose>>(ud.own_.offset)}, run.stop_for(places, state))) {
+      case ::smachac::MoveAlongState::Outcome::succeeded:
+        run.go(places, state, "succeeded", State::CLOSE_GRIPPER);
+        goto CLOSE_GRIPPER;
+      case ::smachac::MoveAlongState::Outcome::aborted:
+        return run.end_asked(places, state, "aborted", Outcome::aborted);
+      case ::smachac::MoveAlongState::Outcome::preempted:
+        return run.end_asked(places, state, "preempted", Outcome::preempted);
+      }
+      break;
+    case State::CLOSE_GRIPPER: // pick_block.yml:34
+    CLOSE_GRIPPER:
+      run.enter(places, state);
+      switch (run.wrote(states.CLOSE_GRIPPER.execute({run.out(ud.own_.width)}, run.stop_for(places, state)), smachac::Output{"width", ud.own_.width})) {
+      case ::smachac::GripperState::Outcome::succeeded:
+        run.go(places, state, "succeeded", State::LIFT);
+        goto LIFT;
+      case ::smachac::GripperState::Outcome::aborted:
+        return run.end_asked(places, state, "aborted", Outcome::aborted);
+      case ::smachac::GripperState::Outcome::preempted:
+        return run.end_asked(places, state, "preempted", Outcome::preempted);
+      }
+      break;
+    case State::LIFT: // pick_block.yml:40
+    LIFT:
+      run.enter(places, state);
+      switch (states.LIFT.execute({ud.pick_pose.unchecked(), smachac::convert<std::optional<smachac::Pose>>(ud.hover_offset.unchecked())}, run.stop_for(places, state))) {
+      case ::smachac::MoveAlongState::Outcome::succeeded:
+        run.go(places, state, "succeeded", State::CHECK_GRASP);
+        goto CHECK_GRASP;
+      case ::smachac::MoveAlongState::Outcome::aborted:
+        return run.end_asked(places, state, "aborted", Outcome::aborted);
+      case ::smachac::MoveAlongState::Outcome::preempted:
+        return run.end_asked(places, state, "preempted", Outcome::preempted);
+      }
+      break;
+    case State::CHECK_GRASP: // pick_block.yml:47
+    CHECK_GRASP:
+      run.enter(places, state);
+      switch (states.CHECK_GRASP.execute()) {
+      case ::smachac::CheckGraspState::Outcome::succeeded:
+        return run.end(places, state, "succeeded", Outcome::succeeded);
+      case ::smachac::CheckGraspState::Outcome::aborted:
+        return run.end(places, state, "aborted", Outcome::aborted);
+      }
+      break;
+    default:
+      smachac::never();
+    }
+    run.no_outcome(places, state);
+  }
+  SMACHAC_CATCH { run.failed(places, state); }
+}
+
+} // namespace baxter_stacking::PICK_AND_PLACE_SECOND::PICK_BLOCK
+
+// Pick a block up and place it.
+namespace baxter_stacking::PICK_AND_PLACE_SECOND { // main.yml:66
+
+enum class Outcome : std::uint8_t {
+  succeeded,
+  aborted,
+  preempted,
+};
+
+constexpr const char *name(Outcome outcome) {
+  constexpr const char *names[] = {"succeeded", "aborted", "preempted"};
+  return names[static_cast<std::size_t>(outcome)];
+}
+
+struct Userdata {
+  PICK_BLOCK::Userdata PICK_BLOCK_;
+  PLACE_BLOCK::Userdata PLACE_BLOCK_;
+};
+
+struct UserdataView {
+  Userdata &own_;
+  const smachac::Key<smachac::Pose> &hover_offset;
+  const smachac::Key<smachac::Pose> &pick_pose;
+  const smachac::Key<smachac::Pose> &place_pose;
+};
+
+struct States {
+  States(smachac::Arm &arm, smachac::World &world)
+      : PICK_BLOCK_(arm),
+        PLACE_BLOCK_(arm, world) {}
+
+  PICK_BLOCK::States PICK_BLOCK_;
+  PLACE_BLOCK::States PLACE_BLOCK_;
+};
+
+enum class State : std::size_t {
+  PICK_BLOCK,
+  PLACE_BLOCK,
+};
+
+inline constexpr smachac::Place places[] = {
+    {"baxter_stacking/PICK_AND_PLACE_SECOND/PICK_BLOCK", "pick_and_place.yml:8"},
+    {"baxter_stacking/PICK_AND_PLACE_SECOND/PLACE_BLOCK", "pick_and_place.yml:12"},
+};
+
+template <class Run>
+[[gnu::always_inline]] inline Outcome execute(States &states, const UserdataView &ud, Run &run) {
+  State state = State::PICK_BLOCK;
+  SMACHAC_TRY {
+    switch (state) {
+    case State::PICK_BLOCK: // pick_and_place.yml:8
+      run.enter(places, state);
+      switch (PICK_BLOCK::execute(states.PICK_BLOCK_, {ud.own_.PICK_BLOCK_, ud.hover_offset, ud.pick_pose}, run)) {
+      case PICK_BLOCK::Outcome::succeeded:
+        run.go(places, state, "succeeded", State::PLACE_BLOCK);
+        goto PLACE_BLOCK;
+      case PICK_BLOCK::Outcome::aborted:
+        return run.end_asked(places, state, "aborted", Outcome::aborted);
+      case PICK_BLOCK::Outcome::preempted:
+        return run.end_asked(places, state, "preempted", Outcome::preempted);
+      }
+      break;
+    case State::PLACE_BLOCK: // pick_and_place.yml:12
+    PLACE_BLOCK:
+      run.enter(places, state);
+      switch (PLACE_BLOCK::execute(states.PLACE_BLOCK_, {ud.own_.PLACE_BLOCK_, ud.hover_offset, ud.place_pose}, run)) {
+      case PLACE_BLOCK::Outcome::succeeded:
+        return run.end_asked(places, state, "succeeded", Outcome::succeeded);
+      case PLACE_BLOCK::Outcome::aborted:
+        return run.end_asked(places, state, "aborted", Outcome::aborted);
+      case PLACE_BLOCK::Outcome::preempted:
+        return run.end_asked(places, state, "preempted", Outcome::preempted);
+      }
+      break;
+    default:
+      smachac::never();
+    }
+    run.no_outcome(places, state);
+  }
+  SMACHAC_CATCH { run.failed(places, state); }
+}
+
+} // namespace baxter_stacking::PICK_AND_PLACE_SECOND
+
+// Place the block in the gripper and check where it lies.
+namespace baxter_stacking::PICK_AND_PLACE_FIRST::PLACE_BLOCK { // pick_and_place.yml:12
+
+enum class Outcome : std::uint8_t {
+  succeeded,
+  aborted,
+  preempted,
+};
+
+constexpr const char *name(Outcome outcome) {
+  constexpr const char *names[] = {"succeeded", "aborted", "preempted"};
+  return names[static_cast<std::size_t>(outcome)];
+}
+
+struct Userdata {
+  smachac::Key<std::vector<double>> hover_joints;
+  smachac::Key<std::optional<smachac::Pose>> offset;
+  smachac::Key<double> placing_error;
+  smachac::Key<double> width;
+};
+
+struct UserdataView {
+  Userdata &own_;
+  const smachac::Key<smachac::Pose> &hover_offset;
+  const smachac::Key<smachac::Pose> &place_pose;
+};
+
+struct States {
+  States(smachac::Arm &arm, smachac::World &world)
+      : PLAN_HOVER(arm, std::optional<std::string>{std::string("left")}, true),
+        MOVE_TO_HOVER(arm, std::optional<std::string>{std::string("left")}, 1.0),
+        MOVE_DOWN(arm, std::optional<std::string>{std::string("left")}, true, 1.0),
+        OPEN_GRIPPER(arm, std::optional<std::string>{std::string("left")}, std::string("open")),
+        MOVE_UP(arm, std::optional<std::string>{std::string("left")}, true, 1.0),
+        CHECK_PLACED(world, std::string("first"), 0.001) {}
+
+  ::smachac::PoseToJointPositionsState PLAN_HOVER;
+  ::smachac::MoveToJointPositionsState MOVE_TO_HOVER;
+  ::smachac::MoveAlongState MOVE_DOWN;
+  ::smachac::GripperState OPEN_GRIPPER;
+  ::smachac::MoveAlongState MOVE_UP;
+  ::smachac::CheckPlacedState CHECK_PLACED;
+};
+
+enum class State : std::size_t {
+  PLAN_HOVER,
+  MOVE_TO_HOVER,
+  MOVE_DOWN,
+  OPEN_GRIPPER,
+  MOVE_UP,
+  CHECK_PLACED,
+};
+
+inline constexpr smachac::Place places[] = {
+    {"baxter_stacking/PICK_AND_PLACE_FIRST/PLACE_BLOCK/PLAN_HOVER", "place_block.yml:9"},
+    {"baxter_stacking/PICK_AND_PLACE_FIRST/PLACE_BLOCK/MOVE_TO_HOVER", "place_block.yml:16"},
+    {"baxter_stacking/PICK_AND_PLACE_FIRST/PLACE_BLOCK/MOVE_DOWN", "place_block.yml:22"},
+    {"baxter_stacking/PICK_AND_PLACE_FIRST/PLACE_BLOCK/OPEN_GRIPPER", "place_block.yml:29"},
+    {"baxter_stacking/PICK_AND_PLACE_FIRST/PLACE_BLOCK/MOVE_UP", "place_block.yml:35"},
+    {"baxter_stacking/PICK_AND_PLACE_FIRST/PLACE_BLOCK/CHECK_PLACED", "place_block.yml:42"},
+};
+
+template <class Run>
+[[gnu::always_inline]] inline Outcome execute(States &states, const UserdataView &ud, Run &run) {
+  State state = State::PLAN_HOVER;
+  SMACHAC_TRY {
+    switch (state) {
+    case State::PLAN_HOVER: // place_block.yml:9
+      run.enter(places, state);
+      switch (run.wrote(states.PLAN_HOVER.execute({ud.place_pose.unchecked(), smachac::convert<std::optional<smachac::Pose>>(ud.hover_offset.unchecked())}, {run.out(ud.own_.hover_joints)}), smachac::Output{"joints", ud.own_.hover_joints})) {
+      case ::smachac::PoseToJointPositionsState::Outcome::succeeded:
+        run.go(places, state, "succeeded", State::MOVE_TO_HOVER);
+        goto MOVE_TO_HOVER;
+      case ::smachac::PoseToJointPositionsState::Outcome::aborted:
+        return run.end(places, state, "aborted", Outcome::aborted);
+      }
+      break;
+    case State::MOVE_TO_HOVER: // place_block.yml:16
+    MOVE_TO_HOVER:
+      run.enter(places, state);
+      switch (states.MOVE_TO_HOVER.execute({smachac::need(ud.own_.hover_joints, "positions")}, run.stop_for(places, state))) {
+      case ::smachac::MoveToJointPositionsState::Outcome::succeeded:
+        run.go(places, state, "succeeded", State::MOVE_DOWN);
+        goto MOVE_DOWN;
+      case ::smachac::MoveToJointPositionsState::Outcome::aborted:
+        return run.end_asked(places, state, "aborted", Outcome::aborted);
+      case ::smachac::MoveToJointPositionsState::Outcome::preempted:
+        return run.end_asked(places, state, "preempted", Outcome::preempted);
+      }
+      break;
+    case State::MOVE_DOWN: // place_block.yml:22
+    MOVE_DOWN:
+      run.enter(places, state);
+      switch (states.MOVE_DOWN.execute({ud.place_pose.unchecked(), smachac::maybe<std::optional<smachac::Pose>>(ud.own_.offset)}, run.stop_for(places, state))) {
+      case ::smachac::MoveAlongState::Outcome::succeeded:
+        run.go(places, state, "succeeded", State::OPEN_GRIPPER);
+        goto OPEN_GRIPPER;
+      case ::smachac::MoveAlongState::Outcome::aborted:
+        return run.end_asked(places, state, "aborted", Outcome::aborted);
+      case ::smachac::MoveAlongState::Outcome::preempted:
+        return run.end_asked(places, state, "preempted", Outcome::preempted);
+      }
+      break;
+    case State::OPEN_GRIPPER: // place_block.yml:29
+    OPEN_GRIPPER:
+      run.enter(places, state);
+      switch (run.wrote(states.OPEN_GRIPPER.execute({run.out(ud.own_.width)}, run.stop_for(places, state)), smachac::Output{"width", ud.own_.width})) {
+      case ::smachac::GripperState::Outcome::succeeded:
+        run.go(places, state, "succeeded", State::MOVE_UP);
+        goto MOVE_UP;
+      case ::smachac::GripperState::Outcome::aborted:
+        return run.end_asked(places, state, "aborted", Outcome::aborted);
+      case ::smachac::GripperState::Outcome::preempted:
+        return run.end_asked(places, state, "preempted", Outcome::preempted);
+      }
+      break;
+    case State::MOVE_UP: // place_block.yml:35
+    MOVE_UP:
+      run.enter(places, state);
+      switch (states.MOVE_UP.execute({ud.place_pose.unchecked(), smachac::convert<std::optional<smachac::Pose>>(ud.hover_offset.unchecked())}, run.stop_for(places, state))) {
+      case ::smachac::MoveAlongState::Outcome::succeeded:
+        run.go(places, state, "succeeded", State::CHECK_PLACED);
+        goto CHECK_PLACED;
+      case ::smachac::MoveAlongState::Outcome::aborted:
+        return run.end_asked(places, state, "aborted", Outcome::aborted);
+      case ::smachac::MoveAlongState::Outcome::preempted:
+        return run.end_asked(places, state, "preempted", Outcome::preempted);
+      }
+      break;
+    case State::CHECK_PLACED: // place_block.yml:42
+    CHECK_PLACED:
+      run.enter(places, state);
+      switch (run.wrote(states.CHECK_PLACED.execute({ud.place_pose.unchecked()}, {run.out(ud.own_.placing_error)}), smachac::Output{"error", ud.own_.placing_error})) {
+      case ::smachac::CheckPlacedState::Outcome::succeeded:
+        return run.end(places, state, "succeeded", Outcome::succeeded);
+      case ::smachac::CheckPlacedState::Outcome::aborted:
+        return run.end(places, state, "aborted", Outcome::aborted);
+      }
+      break;
+    default:
+      smachac::never();
+    }
+    run.no_outcome(places, state);
+  }
+  SMACHAC_CATCH { run.failed(places, state); }
+}
+
+} // namespace baxter_stacking::PICK_AND_PLACE_FIRST::PLACE_BLOCK
+
+// Grasp a block from above and lift it.
+namespace baxter_stacking::PICK_AND_PLACE_FIRST::PICK_BLOCK { // pick_and_place.yml:8
+
+enum class Outcome : std::uint8_t {
+  succeeded,
+  aborted,
+  preempted,
+};
+
+constexpr const char *name(Outcome outcome) {
+  constexpr const char *names[] = {"succeeded", "aborted", "preempted"};
+  return names[static_cast<std::size_t>(outcome)];
+}
+
+struct Userdata {
+  smachac::Key<std::vector<double>> hover_joints;
+  smachac::Key<std::optional<smachac::Pose>> offset;
+  smachac::Key<double> width;
+};
+
+struct UserdataView {
+  Userdata &own_;
+  const smachac::Key<smachac::Pose> &hover_offset;
+  const smachac::Key<smachac::Pose> &pick_pose;
+};
+
+struct States {
+  explicit States(smachac::Arm &arm)
+      : OPEN_GRIPPER(arm, std::optional<std::string>{std::string("left")}, std::string("open")),
+        PLAN_HOVER(arm, std::optional<std::string>{std::string("left")}, true),
+        MOVE_TO_HOVER(arm, std::optional<std::string>{std::string("left")}, 1.0),
+        MOVE_DOWN(arm, std::optional<std::string>{std::string("left")}, true, 1.0),
+        CLOSE_GRIPPER(arm, std::optional<std::string>{std::string("left")}, std::string("close")),
+        LIFT(arm, std::optional<std::string>{std::string("left")}, true, 1.0),
+        CHECK_GRASP(arm, std::optional<std::string>{std::string("left")}, std::optional<std::string>{std::string("first")}) {}
+
+  ::smachac::GripperState OPEN_GRIPPER;
+  ::smachac::PoseToJointPositionsState PLAN_HOVER;
+  ::smachac::MoveToJointPositionsState MOVE_TO_HOVER;
+  ::smachac::MoveAlongState MOVE_DOWN;
+  ::smachac::GripperState CLOSE_GRIPPER;
+  ::smachac::MoveAlongState LIFT;
+  ::smachac::CheckGraspState CHECK_GRASP;
+};
+
+enum class State : std::size_t {
+  OPEN_GRIPPER,
+  PLAN_HOVER,
+  MOVE_TO_HOVER,
+  MOVE_DOWN,
+  CLOSE_GRIPPER,
+  LIFT,
+  CHECK_GRASP,
+};
+
+inline constexpr smachac::Place places[] = {
+    {"baxter_stacking/PICK_AND_PLACE_FIRST/PICK_BLOCK/OPEN_GRIPPER", "pick_block.yml:8"},
+    {"baxter_stacking/PICK_AND_PLACE_FIRST/PICK_BLOCK/PLAN_HOVER", "pick_block.yml:14"},
+    {"baxter_stacking/PICK_AND_PLACE_FIRST/PICK_BLOCK/MOVE_TO_HOVER", "pick_block.yml:21"},
+    {"baxter_stacking/PICK_AND_PLACE_FIRST/PICK_BLOCK/MOVE_DOWN", "pick_block.yml:27"},
+    {"baxter_stacking/PICK_AND_PLACE_FIRST/PICK_BLOCK/CLOSE_GRIPPER", "pick_block.yml:34"},
+    {"baxter_stacking/PICK_AND_PLACE_FIRST/PICK_BLOCK/LIFT", "pick_block.yml:40"},
+    {"baxter_stacking/PICK_AND_PLACE_FIRST/PICK_BLOCK/CHECK_GRASP", "pick_block.yml:47"},
+};
+
+template <class Run>
+[[gnu::always_inline]] inline Outcome execute(States &states, const UserdataView &ud, Run &run) {
+  State state = State::OPEN_GRIPPER;
+  SMACHAC_TRY {
+    switch (state) {
+    case State::OPEN_GRIPPER: // pick_block.yml:8
+      run.enter(places, state);
+      switch (run.wrote(states.OPEN_GRIPPER.execute({run.out(ud.own_.width)}, run.stop_for(places, state)), smachac::Output{"width", ud.own_.width})) {
+      case ::smachac::GripperState::Outcome::succeeded:
+        run.go(places, state, "succeeded", State::PLAN_HOVER);
+        goto PLAN_HOVER;
+      case ::smachac::GripperState::Outcome::aborted:
+        return run.end_asked(places, state, "aborted", Outcome::aborted);
+      case ::smachac::GripperState::Outcome::preempted:
+        return run.end_asked(places, state, "preempted", Outcome::preempted);
+      }
+      break;
+    case State::PLAN_HOVER: // pick_block.yml:14
+    PLAN_HOVER:
+      run.enter(places, state);
+      switch (run.wrote(states.PLAN_HOVER.execute({ud.pick_pose.unchecked(), smachac::convert<std::optional<smachac::Pose>>(ud.hover_offset.unchecked())}, {run.out(ud.own_.hover_joints)}), smachac::Output{"joints", ud.own_.hover_joints})) {
+      case ::smachac::PoseToJointPositionsState::Outcome::succeeded:
+        run.go(places, state, "succeeded", State::MOVE_TO_HOVER);
+        goto MOVE_TO_HOVER;
+      case ::smachac::PoseToJointPositionsState::Outcome::aborted:
+        return run.end(places, state, "aborted", Outcome::aborted);
+      }
+      break;
+    case State::MOVE_TO_HOVER: // pick_block.yml:21
+    MOVE_TO_HOVER:
+      run.enter(places, state);
+      switch (states.MOVE_TO_HOVER.execute({smachac::need(ud.own_.hover_joints, "positions")}, run.stop_for(places, state))) {
+      case ::smachac::MoveToJointPositionsState::Outcome::succeeded:
+        run.go(places, state, "succeeded", State::MOVE_DOWN);
+        goto MOVE_DOWN;
+      case ::smachac::MoveToJointPositionsState::Outcome::aborted:
+        return run.end_asked(places, state, "aborted", Outcome::aborted);
+      case ::smachac::MoveToJointPositionsState::Outcome::preempted:
+        return run.end_asked(places, state, "preempted", Outcome::preempted);
+      }
+      break;
+    case State::MOVE_DOWN: // pick_block.yml:27
+    MOVE_DOWN:
+      run.enter(places, state);
+      switch (states.MOVE_DOWN.execute({ud.pick_pose.unchecked(), smachac::maybe<std::optional<smachac::Pose>>(ud.own_.offset)}, run.stop_for(places, state))) {
+      case ::smachac::MoveAlongState::Outcome::succeeded:
+        run.go(places, state, "succeeded", State::CLOSE_GRIPPER);
+        goto CLOSE_GRIPPER;
+      case ::smachac::MoveAlongState::Outcome::aborted:
+        return run.end_asked(places, state, "aborted", Outcome::aborted);
+      case ::smachac::MoveAlongState::Outcome::preempted:
+        return run.end_asked(places, state, "preempted", Outcome::preempted);
+      }
+      break;
+    case State::CLOSE_GRIPPER: // pick_block.yml:34
+    CLOSE_GRIPPER:
+      run.enter(places, state);
+      switch (run.wrote(states.CLOSE_GRIPPER.execute({run.out(ud.own_.width)}, run.stop_for(places, state)), smachac::Output{"width", ud.own_.width})) {
+      case ::smachac::GripperState::Outcome::succeeded:
+        run.go(places, state, "succeeded", State::LIFT);
+        goto LIFT;
+      case ::smachac::GripperState::Outcome::aborted:
+        return run.end_asked(places, state, "aborted", Outcome::aborted);
+      case ::smachac::GripperState::Outcome::preempted:
+        return run.end_asked(places, state, "preempted", Outcome::preempted);
+      }
+      break;
+    case State::LIFT: // pick_block.yml:40
+    LIFT:
+      run.enter(places, state);
+      switch (states.LIFT.execute({ud.pick_pose.unchecked(), smachac::convert<std::optional<smachac::Pose>>(ud.hover_offset.unchecked())}, run.stop_for(places, state))) {
+      case ::smachac::MoveAlongState::Outcome::succeeded:
+        run.go(places, state, "succeeded", State::CHECK_GRASP);
+        goto CHECK_GRASP;
+      case ::smachac::MoveAlongState::Outcome::aborted:
+        return run.end_asked(places, state, "aborted", Outcome::aborted);
+      case ::smachac::MoveAlongState::Outcome::preempted:
+        return run.end_asked(places, state, "preempted", Outcome::preempted);
+      }
+      break;
+    case State::CHECK_GRASP: // pick_block.yml:47
+    CHECK_GRASP:
+      run.enter(places, state);
+      switch (states.CHECK_GRASP.execute()) {
+      case ::smachac::CheckGraspState::Outcome::succeeded:
+        return run.end(places, state, "succeeded", Outcome::succeeded);
+      case ::smachac::CheckGraspState::Outcome::aborted:
+        return run.end(places, state, "aborted", Outcome::aborted);
+      }
+      break;
+    default:
+      smachac::never();
+    }
+    run.no_outcome(places, state);
+  }
+  SMACHAC_CATCH { run.failed(places, state); }
+}
+
+} // namespace baxter_stacking::PICK_AND_PLACE_FIRST::PICK_BLOCK
+
+// Pick a block up and place it.
+namespace baxter_stacking::PICK_AND_PLACE_FIRST { // main.yml:60
+
+enum class Outcome : std::uint8_t {
+  succeeded,
+  aborted,
+  preempted,
+};
+
+constexpr const char *name(Outcome outcome) {
+  constexpr const char *names[] = {"succeeded", "aborted", "preempted"};
+  return names[static_cast<std::size_t>(outcome)];
+}
+
+struct Userdata {
+  PICK_BLOCK::Userdata PICK_BLOCK_;
+  PLACE_BLOCK::Userdata PLACE_BLOCK_;
+};
+
+struct UserdataView {
+  Userdata &own_;
+  const smachac::Key<smachac::Pose> &hover_offset;
+  const smachac::Key<smachac::Pose> &pick_pose;
+  const smachac::Key<smachac::Pose> &place_pose;
+};
+
+struct States {
+  States(smachac::Arm &arm, smachac::World &world)
+      : PICK_BLOCK_(arm),
+        PLACE_BLOCK_(arm, world) {}
+
+  PICK_BLOCK::States PICK_BLOCK_;
+  PLACE_BLOCK::States PLACE_BLOCK_;
+};
+
+enum class State : std::size_t {
+  PICK_BLOCK,
+  PLACE_BLOCK,
+};
+
+inline constexpr smachac::Place places[] = {
+    {"baxter_stacking/PICK_AND_PLACE_FIRST/PICK_BLOCK", "pick_and_place.yml:8"},
+    {"baxter_stacking/PICK_AND_PLACE_FIRST/PLACE_BLOCK", "pick_and_place.yml:12"},
+};
+
+template <class Run>
+[[gnu::always_inline]] inline Outcome execute(States &states, const UserdataView &ud, Run &run) {
+  State state = State::PICK_BLOCK;
+  SMACHAC_TRY {
+    switch (state) {
+    case State::PICK_BLOCK: // pick_and_place.yml:8
+      run.enter(places, state);
+      switch (PICK_BLOCK::execute(states.PICK_BLOCK_, {ud.own_.PICK_BLOCK_, ud.hover_offset, ud.pick_pose}, run)) {
+      case PICK_BLOCK::Outcome::succeeded:
+        run.go(places, state, "succeeded", State::PLACE_BLOCK);
+        goto PLACE_BLOCK;
+      case PICK_BLOCK::Outcome::aborted:
+        return run.end_asked(places, state, "aborted", Outcome::aborted);
+      case PICK_BLOCK::Outcome::preempted:
+        return run.end_asked(places, state, "preempted", Outcome::preempted);
+      }
+      break;
+    case State::PLACE_BLOCK: // pick_and_place.yml:12
+    PLACE_BLOCK:
+      run.enter(places, state);
+      switch (PLACE_BLOCK::execute(states.PLACE_BLOCK_, {ud.own_.PLACE_BLOCK_, ud.hover_offset, ud.place_pose}, run)) {
+      case PLACE_BLOCK::Outcome::succeeded:
+        return run.end_asked(places, state, "succeeded", Outcome::succeeded);
+      case PLACE_BLOCK::Outcome::aborted:
+        return run.end_asked(places, state, "aborted", Outcome::aborted);
+      case PLACE_BLOCK::Outcome::preempted:
+        return run.end_asked(places, state, "preempted", Outcome::preempted);
+      }
+      break;
+    default:
+      smachac::never();
+    }
+    run.no_outcome(places, state);
+  }
+  SMACHAC_CATCH { run.failed(places, state); }
+}
+
+} // namespace baxter_stacking::PICK_AND_PLACE_FIRST
+
+// Stack two blocks on the mark.
+namespace baxter_stacking { // main.yml:2
+
+enum class Outcome : std::uint8_t {
+  succeeded,
+  aborted,
+  preempted,
+};
+
+constexpr const char *name(Outcome outcome) {
+  constexpr const char *names[] = {"succeeded", "aborted", "preempted"};
+  return names[static_cast<std::size_t>(outcome)];
+}
+
+struct Userdata {
+  smachac::Key<double> first_error;
+  smachac::Key<smachac::Pose> first_pose{smachac::Pose{smachac::Point{0.665, 0.15, -0.13}, smachac::Quaternion{0.0, 0.0, 0.0, 1.0}}};
+  smachac::Key<smachac::Pose> goal_pose{smachac::Pose{smachac::Point{0.665, 0.15, -0.13}, smachac::Quaternion{0.0, 0.0, 0.0, 1.0}}};
+  smachac::Key<double> gripper_width;
+  smachac::Key<smachac::Pose> hover_offset{smachac::Pose{smachac::Point{0.0, 0.0, 0.12}, smachac::Quaternion{0.0, 0.0, 0.0, 1.0}}};
+  smachac::Key<std::optional<std::string>> reference_frame;
+  smachac::Key<smachac::Pose> second_pose{smachac::Pose{smachac::Point{0.665, 0.15, -0.13}, smachac::Quaternion{0.0, 0.0, 0.0, 1.0}}};
+  smachac::Key<std::string> table_frame{std::string("world")};
+  smachac::Key<smachac::Pose> table_pose{smachac::Pose{smachac::Point{1.0, 0.0, 0.0}, smachac::Quaternion{0.0, 0.0, 0.0, 1.0}}};
+  smachac::Key<smachac::Pose> top_pose;
+  PICK_AND_PLACE_FIRST::Userdata PICK_AND_PLACE_FIRST_;
+  PICK_AND_PLACE_SECOND::Userdata PICK_AND_PLACE_SECOND_;
+};
+
+namespace types {
+
+/// main.yml:51
+struct PLAN_STACK {
+  enum class Outcome : std::uint8_t {
+    succeeded,
+  };
+
+  template <class Run>
+  Outcome execute(Userdata &ud, Run &run) {
+    run.write("top_pose", ud.top_pose, smachac::Pose{smachac::Point{ud.goal_pose.unchecked().position.x, ud.goal_pose.unchecked().position.y, ud.goal_pose.unchecked().position.z + 0.05}, ud.goal_pose.unchecked().orientation});
+    return Outcome::succeeded;
+  }
+};
+
+} // namespace types
+
+struct States {
+  States(smachac::World &world, smachac::Arm &arm)
+      : LOAD_TABLE(world, std::string("cafe_table"), std::optional<std::string>{}, std::optional<std::string>{}, std::array<double, 3>{{0.0, 0.0, 0.0}}, std::map<std::string, double>{}),
+        LOAD_FIRST(world, std::string("block"), std::optional<std::string>{}, std::optional<std::string>{std::string("first")}, std::array<double, 3>{{0.08, 0.2, 3.1416}}, std::map<std::string, double>{}),
+        LOAD_SECOND(world, std::string("block"), std::optional<std::string>{}, std::optional<std::string>{std::string("second")}, std::array<double, 3>{{0.08, 0.2, 3.1416}}, std::map<std::string, double>{{std::string("first"), 0.13}}),
+        LOAD_MARK(world, std::string("goal"), std::optional<std::string>{}, std::optional<std::string>{}, std::array<double, 3>{{0.08, 0.2, 0.0}}, std::map<std::string, double>{{std::string("first"), 0.13}, {std::string("second"), 0.13}}),
+        PICK_AND_PLACE_FIRST_(arm, world),
+        PICK_AND_PLACE_SECOND_(arm, world),
+        CHECK_FIRST(world, std::string("first"), 0.001),
+        LET_GO(arm, std::optional<std::string>{std::string("left")}, std::string("open")) {}
+
+  ::smachac::LoadModelState LOAD_TABLE;
+  ::smachac::LoadModelState LOAD_FIRST;
+  ::smachac::LoadModelState LOAD_SECOND;
+  ::smachac::LoadModelState LOAD_MARK;
+  // The second block goes on top of the first, one edge length (0.05 m) higher.
+  types::PLAN_STACK PLAN_STACK{};
+  PICK_AND_PLACE_FIRST::States PICK_AND_PLACE_FIRST_;
+  PICK_AND_PLACE_SECOND::States PICK_AND_PLACE_SECOND_;
+  // The second block must not have moved the first.
+  ::smachac::CheckPlacedState CHECK_FIRST;
+  ::smachac::GripperState LET_GO;
+};
+
+enum class State : std::size_t {
+  LOAD_TABLE,
+  LOAD_FIRST,
+  LOAD_SECOND,
+  LOAD_MARK,
+  PLAN_STACK,
+  PICK_AND_PLACE_FIRST,
+  PICK_AND_PLACE_SECOND,
+  CHECK_FIRST,
+  LET_GO,
+};
+
+inline constexpr smachac::Place places[] = {
+    {"baxter_stacking/LOAD_TABLE", "main.yml:11"},
+    {"baxter_stacking/LOAD_FIRST", "main.yml:20"},
+    {"baxter_stacking/LOAD_SECOND", "main.yml:30"},
+    {"baxter_stacking/LOAD_MARK", "main.yml:41"},
+    {"baxter_stacking/PLAN_STACK", "main.yml:51"},
+    {"baxter_stacking/PICK_AND_PLACE_FIRST", "main.yml:60"},
+    {"baxter_stacking/PICK_AND_PLACE_SECOND", "main.yml:66"},
+    {"baxter_stacking/CHECK_FIRST", "main.yml:72"},
+    {"baxter_stacking/LET_GO", "main.yml:81"},
+};
+
+template <class Run>
+[[gnu::always_inline]] inline Outcome execute(States &states, Userdata &ud, Run &run) {
+  State state = State::LOAD_TABLE;
+  SMACHAC_TRY {
+    switch (state) {
+    case State::LOAD_TABLE: // main.yml:11
+      run.enter(places, state);
+      switch (run.wrote(states.LOAD_TABLE.execute({ud.table_pose.unchecked(), smachac::convert<std::optional<std::string>>(ud.table_frame.unchecked())}, {run.out(ud.table_pose)}), smachac::Output{"pose", ud.table_pose})) {
+      case ::smachac::LoadModelState::Outcome::succeeded:
+        run.go(places, state, "succeeded", State::LOAD_FIRST);
+        goto LOAD_FIRST;
+      case ::smachac::LoadModelState::Outcome::aborted:
+        return run.end(places, state, "aborted", Outcome::aborted);
+      }
+      break;
+    case State::LOAD_FIRST: // main.yml:20
+    LOAD_FIRST:
+      run.enter(places, state);
+      switch (run.wrote(states.LOAD_FIRST.execute({ud.first_pose.unchecked(), smachac::maybe<std::optional<std::string>>(ud.reference_frame)}, {run.out(ud.first_pose)}), smachac::Output{"pose", ud.first_pose})) {
+      case ::smachac::LoadModelState::Outcome::succeeded:
+        run.go(places, state, "succeeded", State::LOAD_SECOND);
+        goto LOAD_SECOND;
+      case ::smachac::LoadModelState::Outcome::aborted:
+        return run.end(places, state, "aborted", Outcome::aborted);
+      }
+      break;
+    case State::LOAD_SECOND: // main.yml:30
+    LOAD_SECOND:
+      run.enter(places, state);
+      switch (run.wrote(states.LOAD_SECOND.execute({ud.second_pose.unchecked(), smachac::maybe<std::optional<std::string>>(ud.reference_frame)}, {run.out(ud.second_pose)}), smachac::Output{"pose", ud.second_pose})) {
+      case ::smachac::LoadModelState::Outcome::succeeded:
+        run.go(places, state, "succeeded", State::LOAD_MARK);
+        goto LOAD_MARK;
+      case ::smachac::LoadModelState::Outcome::aborted:
+        return run.end(places, state, "aborted", Outcome::aborted);
+      }
+      break;
+    case State::LOAD_MARK: // main.yml:41
+    LOAD_MARK:
+      run.enter(places, state);
+      switch (run.wrote(states.LOAD_MARK.execute({ud.goal_pose.unchecked(), smachac::maybe<std::optional<std::string>>(ud.reference_frame)}, {run.out(ud.goal_pose)}), smachac::Output{"pose", ud.goal_pose})) {
+      case ::smachac::LoadModelState::Outcome::succeeded:
+        run.go(places, state, "succeeded", State::PLAN_STACK);
+        goto PLAN_STACK;
+      case ::smachac::LoadModelState::Outcome::aborted:
+        return run.end(places, state, "aborted", Outcome::aborted);
+      }
+      break;
+    case State::PLAN_STACK: // main.yml:51
+    PLAN_STACK:
+      run.enter(places, state);
+      switch (states.PLAN_STACK.execute(ud, run)) {
+      case types::PLAN_STACK::Outcome::succeeded:
+        run.go(places, state, "succeeded", State::PICK_AND_PLACE_FIRST);
+        goto PICK_AND_PLACE_FIRST;
+      }
+      break;
+    case State::PICK_AND_PLACE_FIRST: // main.yml:60
+    PICK_AND_PLACE_FIRST:
+      run.enter(places, state);
+      switch (PICK_AND_PLACE_FIRST::execute(states.PICK_AND_PLACE_FIRST_, {ud.PICK_AND_PLACE_FIRST_, ud.hover_offset, ud.first_pose, ud.goal_pose}, run)) {
+      case PICK_AND_PLACE_FIRST::Outcome::succeeded:
+        run.go(places, state, "succeeded", State::PICK_AND_PLACE_SECOND);
+        goto PICK_AND_PLACE_SECOND;
+      case PICK_AND_PLACE_FIRST::Outcome::aborted:
+        run.go(places, state, "aborted", State::LET_GO);
+        goto LET_GO;
+      case PICK_AND_PLACE_FIRST::Outcome::preempted:
+        return run.end_asked(places, state, "preempted", Outcome::preempted);
+      }
+      break;
+    case State::PICK_AND_PLACE_SECOND: // main.yml:66
+    PICK_AND_PLACE_SECOND:
+      run.enter(places, state);
+      switch (PICK_AND_PLACE_SECOND::execute(states.PICK_AND_PLACE_SECOND_, {ud.PICK_AND_PLACE_SECOND_, ud.hover_offset, ud.second_pose, ud.top_pose}, run)) {
+      case PICK_AND_PLACE_SECOND::Outcome::succeeded:
+        run.go(places, state, "succeeded", State::CHECK_FIRST);
+        goto CHECK_FIRST;
+      case PICK_AND_PLACE_SECOND::Outcome::aborted:
+        run.go(places, state, "aborted", State::LET_GO);
+        goto LET_GO;
+      case PICK_AND_PLACE_SECOND::Outcome::preempted:
+        return run.end_asked(places, state, "preempted", Outcome::preempted);
+      }
+      break;
+    case State::CHECK_FIRST: // main.yml:72
+    CHECK_FIRST:
+      run.enter(places, state);
+      switch (run.wrote(states.CHECK_FIRST.execute({ud.goal_pose.unchecked()}, {run.out(ud.first_error)}), smachac::Output{"error", ud.first_error})) {
+      case ::smachac::CheckPlacedState::Outcome::succeeded:
+        return run.end(places, state, "succeeded", Outcome::succeeded);
+      case ::smachac::CheckPlacedState::Outcome::aborted:
+        run.go(places, state, "aborted", State::LET_GO);
+        goto LET_GO;
+      }
+      break;
+    case State::LET_GO: // main.yml:81
+    LET_GO:
+      run.enter(places, state);
+      switch (run.wrote(states.LET_GO.execute({run.out(ud.gripper_width)}, run.stop_for(places, state)), smachac::Output{"width", ud.gripper_width})) {
+      case ::smachac::GripperState::Outcome::succeeded:
+        return run.end_asked(places, state, "succeeded", Outcome::aborted);
+      case ::smachac::GripperState::Outcome::aborted:
+        return run.end_asked(places, state, "aborted", Outcome::aborted);
+      case ::smachac::GripperState::Outcome::preempted:
+        return run.end_asked(places, state, "preempted", Outcome::preempted);
+      }
+      break;
+    default:
+      smachac::never();
+    }
+    run.no_outcome(places, state);
+  }
+  SMACHAC_CATCH { run.failed(places, state); }
+}
+
+/// Runs the machine once. The observer receives all events of the run; it may be null.
+inline Outcome run(States &states, Userdata &ud, smachac::Observer *observer,
+                   smachac::Stop &stop) {
+  if (observer == nullptr) {
+    smachac::Run alone{stop};
+    return execute(states, ud, alone);
+  }
+  smachac::WatchedRun watched(*observer, stop);
+  watched.start({"baxter_stacking", "main.yml:2"});
+  return watched.finish(execute(states, ud, watched));
+}
+
+} // namespace baxter_stacking
+
+#if defined(__GNUC__)
+#pragma GCC diagnostic pop
+#endif

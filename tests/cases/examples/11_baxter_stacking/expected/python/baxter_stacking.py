@@ -1,0 +1,562 @@
+# Made by smachac 0.1.0 from main.yml (sha256 b55aad0ebc1feef8).
+"""Stack two blocks on the mark."""
+
+from smachac import sim
+
+try:
+    import smach
+except ImportError:  # without SMACH: smachac.runtime has the same names
+    from smachac.runtime import smach
+
+
+def outcome_of(state, result):
+    """The outcome of a skill; unless it is `succeeded`, the reason is logged."""
+    if result.outcome == "preempted":
+        state.service_preempt()
+    if result.outcome != "succeeded":
+        smach.logwarn(f"{type(state).__name__}: {result.reason}")
+    return result.outcome
+
+
+def optional(userdata, key):
+    """The value of a userdata key, or None if the key is absent."""
+    if key in userdata:
+        return userdata[key]
+    return None
+
+
+def stoppable_again(machine):
+    """Let a machine pass on a second stop request while the same container in it runs."""
+    request, children = machine.request_preempt, machine.get_children
+
+    def request_preempt():
+        again = machine.preempt_requested() and getattr(smach, "compat", True)
+        request()
+        for label in machine.get_active_states() if again else ():
+            if hasattr(children().get(label), "get_children"):
+                children()[label].request_preempt()
+
+    machine.request_preempt = request_preempt
+    return machine
+
+
+class LoadModelState(smach.State):
+    """Adds a model to the simulated world."""
+
+    def __init__(
+        self, model_name, model_path=None, body=None, spread=(0, 0, 0), apart=None
+    ):
+        super().__init__(
+            outcomes=["succeeded", "aborted"],
+            input_keys=["pose", "reference_frame"],
+            output_keys=["pose"],
+        )
+        self.model_name = model_name
+        self.model_path = model_path
+        self.body = body or model_name
+        self.spread = spread
+        self.apart = apart
+
+    def execute(self, userdata):
+        world = sim.world()
+        frame = optional(userdata, "reference_frame") or "base"
+        pose = sim.scattered(world, userdata["pose"], self.spread, self.apart)
+        result = world.load(self.model_name, pose, self.body, self.model_path, frame)
+        userdata["pose"] = pose
+        return outcome_of(self, result)
+
+
+class CallbacksState(smach.State):
+    """Calls functions of the userdata and writes each result to an output key."""
+
+    def __init__(self, callbacks=(), input_keys=(), output_keys=()):
+        super().__init__(
+            outcomes=["succeeded"],
+            input_keys=list(input_keys),
+            output_keys=list(output_keys),
+        )
+        self.callbacks = callbacks
+
+    def execute(self, userdata):
+        for key in sorted(self.callbacks):
+            function = self.callbacks[key]
+            if not smach.has_smach_interface(function):
+                userdata[key] = function(userdata)
+            else:  # the function writes its output keys
+                inputs = function.get_registered_input_keys()
+                outputs = function.get_registered_output_keys()
+                function(smach.Remapper(userdata, inputs, outputs, {}))
+        return "succeeded"
+
+
+class GripperState(smach.State):
+    """Opens or closes a gripper."""
+
+    def __init__(self, command, limb=None):
+        super().__init__(
+            outcomes=["succeeded", "aborted", "preempted"],
+            output_keys=["width"],
+        )
+        self.command = command
+        self.limb = limb
+
+    def execute(self, userdata):
+        result = sim.world().arm(self.limb).grip(self.command, self.preempt_requested)
+        userdata["width"] = result.value
+        return outcome_of(self, result)
+
+
+class PoseToJointPositionsState(smach.State):
+    """Computes the joint positions for a tool pose (inverse kinematics)."""
+
+    def __init__(self, limb=None, grasp=False):
+        super().__init__(
+            outcomes=["succeeded", "aborted"],
+            input_keys=["pose", "offset"],
+            output_keys=["joints"],
+        )
+        self.limb = limb
+        self.grasp = grasp
+
+    def execute(self, userdata):
+        arm = sim.world().arm(self.limb)
+        pose = userdata["pose"]
+        if self.grasp:
+            pose = arm.grasp_pose(pose)
+        joints = arm.solve_ik(pose, optional(userdata, "offset"))
+        if joints is None:
+            smach.logwarn(f"PoseToJointPositionsState: {pose[0]} is out of reach")
+            return "aborted"
+        userdata["joints"] = joints
+        return "succeeded"
+
+
+class MoveToJointPositionsState(smach.State):
+    """Moves one arm to joint positions along a straight line in joint space."""
+
+    def __init__(self, limb=None, speed=1.0):
+        super().__init__(
+            outcomes=["succeeded", "aborted", "preempted"],
+            input_keys=["positions"],
+        )
+        self.limb = limb
+        self.speed = speed
+
+    def execute(self, userdata):
+        arm = sim.world().arm(self.limb)
+        positions = userdata["positions"]
+        result = arm.move_to_joints(positions, self.speed, self.preempt_requested)
+        return outcome_of(self, result)
+
+
+class MoveAlongState(smach.State):
+    """Moves the tool along a straight line to a pose."""
+
+    def __init__(self, limb=None, grasp=False, speed=1.0):
+        super().__init__(
+            outcomes=["succeeded", "aborted", "preempted"],
+            input_keys=["pose", "offset"],
+        )
+        self.limb = limb
+        self.grasp = grasp
+        self.speed = speed
+
+    def execute(self, userdata):
+        arm = sim.world().arm(self.limb)
+        pose = userdata["pose"]
+        if self.grasp:
+            pose = arm.grasp_pose(pose)
+        offset = optional(userdata, "offset")
+        result = arm.move_along(pose, offset, self.speed, self.preempt_requested)
+        return outcome_of(self, result)
+
+
+class CheckGraspState(smach.State):
+    """Checks that the gripper holds a body."""
+
+    def __init__(self, limb=None, body=None):
+        super().__init__(outcomes=["succeeded", "aborted"])
+        self.limb = limb
+        self.body = body
+
+    def execute(self, userdata):
+        return outcome_of(self, sim.world().arm(self.limb).check_grasp(self.body))
+
+
+class CheckPlacedState(smach.State):
+    """Checks that a body lies upright and at rest at its goal pose."""
+
+    def __init__(self, body, tolerance=0.002):
+        super().__init__(
+            outcomes=["succeeded", "aborted"],
+            input_keys=["pose"],
+            output_keys=["error"],
+        )
+        self.body = body
+        self.tolerance = tolerance
+
+    def execute(self, userdata):
+        world = sim.world()
+        result = sim.check_placed(world, self.body, userdata["pose"], self.tolerance)
+        userdata["error"] = result.value
+        if result.value is not None:
+            print(f"placing error of {self.body}: {1000 * result.value:.2f} mm")
+        return outcome_of(self, result)
+
+
+def build():
+    """Build the state machine `baxter_stacking`."""
+    # main.yml:2
+    baxter_stacking = stoppable_again(
+        smach.StateMachine(outcomes=["succeeded", "aborted", "preempted"]),
+    )
+    baxter_stacking.userdata.hover_offset = [[0.0, 0.0, 0.12], [0.0, 0.0, 0.0, 1.0]]
+    baxter_stacking.userdata.table_pose = [[1.0, 0.0, 0.0], [0.0, 0.0, 0.0, 1.0]]
+    baxter_stacking.userdata.table_frame = "world"
+    baxter_stacking.userdata.first_pose = [[0.665, 0.15, -0.13], [0.0, 0.0, 0.0, 1.0]]
+    baxter_stacking.userdata.second_pose = [[0.665, 0.15, -0.13], [0.0, 0.0, 0.0, 1.0]]
+    baxter_stacking.userdata.goal_pose = [[0.665, 0.15, -0.13], [0.0, 0.0, 0.0, 1.0]]
+    with baxter_stacking:
+        # main.yml:11
+        smach.StateMachine.add(
+            "LOAD_TABLE",
+            LoadModelState(model_name="cafe_table"),
+            transitions={"succeeded": "LOAD_FIRST", "aborted": "aborted"},
+            remapping={"pose": "table_pose", "reference_frame": "table_frame"},
+        )
+
+        # main.yml:20
+        smach.StateMachine.add(
+            "LOAD_FIRST",
+            LoadModelState(
+                model_name="block",
+                body="first",
+                spread=[0.08, 0.2, 3.1416],
+            ),
+            transitions={"succeeded": "LOAD_SECOND", "aborted": "aborted"},
+            remapping={"pose": "first_pose"},
+        )
+
+        # main.yml:30
+        smach.StateMachine.add(
+            "LOAD_SECOND",
+            LoadModelState(
+                model_name="block",
+                body="second",
+                spread=[0.08, 0.2, 3.1416],
+                apart={"first": 0.13},
+            ),
+            transitions={"succeeded": "LOAD_MARK", "aborted": "aborted"},
+            remapping={"pose": "second_pose"},
+        )
+
+        # main.yml:41
+        smach.StateMachine.add(
+            "LOAD_MARK",
+            LoadModelState(
+                model_name="goal",
+                spread=[0.08, 0.2, 0.0],
+                apart={"first": 0.13, "second": 0.13},
+            ),
+            transitions={"succeeded": "PLAN_STACK", "aborted": "aborted"},
+            remapping={"pose": "goal_pose"},
+        )
+
+        # main.yml:51
+        # The second block goes on top of the first, one edge length (0.05 m) higher.
+        smach.StateMachine.add(
+            "PLAN_STACK",
+            CallbacksState(
+                callbacks={
+                    "top_pose": lambda ud: [
+                        [
+                            ud.goal_pose[0][0],
+                            ud.goal_pose[0][1],
+                            ud.goal_pose[0][2] + 0.05,
+                        ],
+                        ud.goal_pose[1],
+                    ],
+                },
+                input_keys=["goal_pose"],
+                output_keys=["top_pose"],
+            ),
+            transitions={"succeeded": "PICK_AND_PLACE_FIRST"},
+        )
+
+        # main.yml:60
+        smach.StateMachine.add(
+            "PICK_AND_PLACE_FIRST",
+            build_pick_and_place(body="first"),
+            transitions={
+                "succeeded": "PICK_AND_PLACE_SECOND",
+                "aborted": "LET_GO",
+                "preempted": "preempted",
+            },
+            remapping={
+                "pick_pose": "first_pose",
+                "place_pose": "goal_pose",
+                "hover_offset": "hover_offset",
+            },
+        )
+
+        # main.yml:66
+        smach.StateMachine.add(
+            "PICK_AND_PLACE_SECOND",
+            build_pick_and_place(body="second"),
+            transitions={
+                "succeeded": "CHECK_FIRST",
+                "aborted": "LET_GO",
+                "preempted": "preempted",
+            },
+            remapping={
+                "pick_pose": "second_pose",
+                "place_pose": "top_pose",
+                "hover_offset": "hover_offset",
+            },
+        )
+
+        # main.yml:72
+        # The second block must not have moved the first.
+        smach.StateMachine.add(
+            "CHECK_FIRST",
+            CheckPlacedState(body="first", tolerance=0.001),
+            transitions={"succeeded": "succeeded", "aborted": "LET_GO"},
+            remapping={"pose": "goal_pose", "error": "first_error"},
+        )
+
+        # main.yml:81
+        smach.StateMachine.add(
+            "LET_GO",
+            GripperState(limb="left", command="open"),
+            transitions={
+                "succeeded": "aborted",
+                "aborted": "aborted",
+                "preempted": "preempted",
+            },
+            remapping={"width": "gripper_width"},
+        )
+    return baxter_stacking
+
+
+def build_pick_and_place(body):
+    """Build the state machine of `pick_and_place.yml`.
+
+    Pick a block up and place it.
+    """
+    sm_pick_and_place = stoppable_again(
+        smach.StateMachine(
+            outcomes=["succeeded", "aborted", "preempted"],
+            input_keys=["pick_pose", "place_pose", "hover_offset"],
+        ),
+    )
+    with sm_pick_and_place:
+        # pick_and_place.yml:8
+        smach.StateMachine.add(
+            "PICK_BLOCK",
+            build_pick_block(body=body),
+            transitions={
+                "succeeded": "PLACE_BLOCK",
+                "aborted": "aborted",
+                "preempted": "preempted",
+            },
+        )
+
+        # pick_and_place.yml:12
+        smach.StateMachine.add(
+            "PLACE_BLOCK",
+            build_place_block(body=body),
+            transitions={
+                "succeeded": "succeeded",
+                "aborted": "aborted",
+                "preempted": "preempted",
+            },
+        )
+    return sm_pick_and_place
+
+
+def build_pick_block(body):
+    """Build the state machine of `pick_block.yml`.
+
+    Grasp a block from above and lift it.
+    """
+    sm_pick_block = smach.StateMachine(
+        outcomes=["succeeded", "aborted", "preempted"],
+        input_keys=["pick_pose", "hover_offset"],
+    )
+    with sm_pick_block:
+        # pick_block.yml:8
+        smach.StateMachine.add(
+            "OPEN_GRIPPER",
+            GripperState(limb="left", command="open"),
+            transitions={
+                "succeeded": "PLAN_HOVER",
+                "aborted": "aborted",
+                "preempted": "preempted",
+            },
+        )
+
+        # pick_block.yml:14
+        smach.StateMachine.add(
+            "PLAN_HOVER",
+            PoseToJointPositionsState(limb="left", grasp=True),
+            transitions={"succeeded": "MOVE_TO_HOVER", "aborted": "aborted"},
+            remapping={
+                "pose": "pick_pose",
+                "offset": "hover_offset",
+                "joints": "hover_joints",
+            },
+        )
+
+        # pick_block.yml:21
+        smach.StateMachine.add(
+            "MOVE_TO_HOVER",
+            MoveToJointPositionsState(limb="left"),
+            transitions={
+                "succeeded": "MOVE_DOWN",
+                "aborted": "aborted",
+                "preempted": "preempted",
+            },
+            remapping={"positions": "hover_joints"},
+        )
+
+        # pick_block.yml:27
+        smach.StateMachine.add(
+            "MOVE_DOWN",
+            MoveAlongState(limb="left", grasp=True),
+            transitions={
+                "succeeded": "CLOSE_GRIPPER",
+                "aborted": "aborted",
+                "preempted": "preempted",
+            },
+            remapping={"pose": "pick_pose"},
+        )
+
+        # pick_block.yml:34
+        smach.StateMachine.add(
+            "CLOSE_GRIPPER",
+            GripperState(limb="left", command="close"),
+            transitions={
+                "succeeded": "LIFT",
+                "aborted": "aborted",
+                "preempted": "preempted",
+            },
+        )
+
+        # pick_block.yml:40
+        smach.StateMachine.add(
+            "LIFT",
+            MoveAlongState(limb="left", grasp=True),
+            transitions={
+                "succeeded": "CHECK_GRASP",
+                "aborted": "aborted",
+                "preempted": "preempted",
+            },
+            remapping={"pose": "pick_pose", "offset": "hover_offset"},
+        )
+
+        # pick_block.yml:47
+        smach.StateMachine.add(
+            "CHECK_GRASP",
+            CheckGraspState(limb="left", body=body),
+            transitions={"succeeded": "succeeded", "aborted": "aborted"},
+        )
+    return sm_pick_block
+
+
+def build_place_block(body):
+    """Build the state machine of `place_block.yml`.
+
+    Place the block in the gripper and check where it lies.
+    """
+    sm_place_block = smach.StateMachine(
+        outcomes=["succeeded", "aborted", "preempted"],
+        input_keys=["place_pose", "hover_offset"],
+    )
+    with sm_place_block:
+        # place_block.yml:9
+        smach.StateMachine.add(
+            "PLAN_HOVER",
+            PoseToJointPositionsState(limb="left", grasp=True),
+            transitions={"succeeded": "MOVE_TO_HOVER", "aborted": "aborted"},
+            remapping={
+                "pose": "place_pose",
+                "offset": "hover_offset",
+                "joints": "hover_joints",
+            },
+        )
+
+        # place_block.yml:16
+        smach.StateMachine.add(
+            "MOVE_TO_HOVER",
+            MoveToJointPositionsState(limb="left"),
+            transitions={
+                "succeeded": "MOVE_DOWN",
+                "aborted": "aborted",
+                "preempted": "preempted",
+            },
+            remapping={"positions": "hover_joints"},
+        )
+
+        # place_block.yml:22
+        smach.StateMachine.add(
+            "MOVE_DOWN",
+            MoveAlongState(limb="left", grasp=True),
+            transitions={
+                "succeeded": "OPEN_GRIPPER",
+                "aborted": "aborted",
+                "preempted": "preempted",
+            },
+            remapping={"pose": "place_pose"},
+        )
+
+        # place_block.yml:29
+        smach.StateMachine.add(
+            "OPEN_GRIPPER",
+            GripperState(limb="left", command="open"),
+            transitions={
+                "succeeded": "MOVE_UP",
+                "aborted": "aborted",
+                "preempted": "preempted",
+            },
+        )
+
+        # place_block.yml:35
+        smach.StateMachine.add(
+            "MOVE_UP",
+            MoveAlongState(limb="left", grasp=True),
+            transitions={
+                "succeeded": "CHECK_PLACED",
+                "aborted": "aborted",
+                "preempted": "preempted",
+            },
+            remapping={"pose": "place_pose", "offset": "hover_offset"},
+        )
+
+        # place_block.yml:42
+        smach.StateMachine.add(
+            "CHECK_PLACED",
+            CheckPlacedState(body=body, tolerance=0.001),
+            transitions={"succeeded": "succeeded", "aborted": "aborted"},
+            remapping={"pose": "place_pose", "error": "placing_error"},
+        )
+    return sm_place_block
+
+
+def main():
+    """Run the state machine once in a simulated world and return its outcome."""
+    with sim.World(robot="baxter") as world:
+        baxter_stacking = build()
+        world.attach(baxter_stacking, "baxter_stacking")
+        outcome = baxter_stacking.execute()
+        print(f"simulated time: {world.time:.2f} s")
+        for name in world.bodies:
+            x, y, z = world.pose(name)[0]
+            rest = "at rest" if world.at_rest(name) else "moving"
+            print(f"{name}: x {x:.4f} m, y {y:.4f} m, z {z:.4f} m, {rest}")
+    return outcome
+
+
+if __name__ == "__main__":
+    outcome = main()
+    print(f"outcome: {outcome}")
+    raise SystemExit(outcome is None)

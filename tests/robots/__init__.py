@@ -1,0 +1,1 @@
+"""Tests of the descriptions of robots and scenes."""

@@ -1,0 +1,171 @@
+"""Descriptions of robots, scenes and faults: what is read, and the place of each mistake."""
+
+from __future__ import annotations
+
+import copy
+from typing import Any
+
+import pytest
+
+from smachac.robots import description, scene
+from smachac.robots.description import Description, Station, UrdfJoint
+from smachac.robots.fields import DataError
+from smachac.robots.files import BUILT_IN, built_in, plain
+
+ROBOT = """
+name: arm
+urdf: arm.urdf
+arms:
+  left:
+    joints: [a, b]
+    tool: {link: hand, offset: [0, 0, 0.1]}
+    home: [0.0, 1.0]
+    gripper:
+      joints: {f: {open: 0.04}}
+      width: {open: 0.08, closed: 0}
+"""
+JOINTS = {"a": UrdfJoint(-1, 1, True), "b": UrdfJoint(-2, 2, True), "f": UrdfJoint(0, 0.04, False)}
+LINKS = ("base", "hand")
+
+
+def changed(text: str, place: tuple[str | int, ...], value: Any) -> Any:
+    """The data of a YAML text with another value at a place; None removes the key."""
+    data = plain(text)
+    inner = data
+    for step in place[:-1]:
+        inner = inner[step]
+    if value is None:
+        del inner[place[-1]]
+    else:
+        inner[place[-1]] = value
+    return data
+
+
+def mistake(data: Any) -> DataError | None:
+    """The first mistake in the description of a robot with the joints and links above."""
+    try:
+        found = description.read(copy.deepcopy(data))
+        assert isinstance(found, Description)
+        description.check(found, JOINTS, LINKS)
+    except DataError as error:
+        return error
+    return None
+
+
+def test_a_description() -> None:
+    found = description.read(plain(ROBOT))
+    assert isinstance(found, Description)
+    (limb,) = found.limbs
+    assert limb.offset == ((0.0, 0.0, 0.1), (0.0, 0.0, 0.0, 1.0))
+    assert limb.gripper is not None
+    assert limb.gripper.width == (0.0, 0.08)
+    assert mistake(plain(ROBOT)) is None
+
+
+LEFT = ("arms", "left")
+MISTAKES: list[tuple[tuple[str | int, ...], Any, tuple[str | int, ...], str]] = [
+    (("name",), None, (), "the key `name` is missing"),
+    (("arms", "left", "joint"), [], (*LEFT, "joint"), "the key `joint` is unknown"),
+    ((*LEFT, "joints", 1), "bb", (*LEFT, "joints", 1), "the URDF file has no joint `bb`"),
+    ((*LEFT, "tool", "link"), "hnad", (*LEFT, "tool"), "the URDF file has no link `hnad`"),
+    ((*LEFT, "home"), [0.0], (*LEFT, "home"), "`home` has 1 items, but the arm has 2 joints"),
+    ((*LEFT, "home", 1), 57.0, (*LEFT, "home", 1), "`b` is 57 rad, outside its limits -2 to 2"),
+    ((*LEFT, "home", 1), "high", (*LEFT, "home", 1), "a number is expected, not 'high'"),
+    (
+        (*LEFT, "gripper", "joints", "f", "open"),
+        40,
+        (*LEFT, "gripper", "joints", "f", "open"),
+        "`f` is 40 m, outside its limits 0 to 0.04",
+    ),
+    (
+        (*LEFT, "gripper", "width", "open"),
+        80,
+        (*LEFT, "gripper", "width", "open"),
+        "a gripper that opens 80 m wide is larger than an arm",
+    ),
+    (("base",), [[0, 0, 400], [0, 0, 0, 1]], ("base", 0, 2), "400 m is farther away than 20 m"),
+    (("base",), [[0, 0], [0, 0, 0, 1]], ("base", 0), "three numbers are expected, not 2"),
+    (("stand",), {"size": [1]}, ("stand", "size"), "two numbers are expected, not 1"),
+]
+
+
+@pytest.mark.parametrize(("place", "value", "where", "message"), MISTAKES)
+def test_a_mistake_has_its_place(
+    place: tuple[str | int, ...], value: Any, where: tuple[str | int, ...], message: str
+) -> None:
+    found = mistake(changed(ROBOT, place, value))
+    assert found is not None
+    assert (found.place, found.message) == (where, message)
+
+
+def test_a_wrong_unit_has_help() -> None:
+    wrong = {
+        (*LEFT, "home", 1): (57.0, "angles are in radians, not in degrees"),
+        (*LEFT, "gripper", "joints", "f", "open"): (
+            40,
+            "lengths are in metres, not in millimetres",
+        ),
+    }
+    for place, (value, help) in wrong.items():
+        found = mistake(changed(ROBOT, place, value))
+        assert found is not None
+        assert found.help == help
+
+
+def test_a_station_has_parts() -> None:
+    found = description.read(
+        plain("{name: two, parts: {near: {robot: panda}, far: {robot: iiwa, base: [1, 0, 0]}}}")
+    )
+    assert isinstance(found, Station)
+    assert [part.name for part in found.parts] == ["near", "far"]
+    assert description.limb_names("near", ["arm"]) == ("near",)
+    assert description.limb_names("b", ["left", "right"]) == ("b_left", "b_right")
+
+
+@pytest.mark.parametrize("name", BUILT_IN)
+def test_the_built_in_robots_are_read(name: str) -> None:
+    found = built_in(name)
+    assert isinstance(found, Description)
+    assert found.name == name
+
+
+SCENE = """
+bodies:
+  table: {model: table, frame: world}
+  block: {model: block, pose: [0.5, 0, 0.025], spread: [0.1, 0.1, 1], colour: [1, 0, 0]}
+  cap: {size: [0.1, 0.1, 0.02], mass: 0.1, pose: [0, 0, 0.1], frame: block, apart: {table: 0.2}}
+"""
+
+
+def test_a_scene() -> None:
+    table, block, cap = scene.read(plain(SCENE))
+    assert (table.frame, block.frame, cap.frame) == ("world", "base", "block")
+    assert block.colour == (1.0, 0.0, 0.0)
+    assert cap.box is not None
+    assert cap.box.mass == 0.1
+    assert cap.apart == (("table", 0.2),)
+
+
+@pytest.mark.parametrize(
+    ("place", "value", "where", "message"),
+    [
+        (("bodies", "block", "model"), "blok", ("bodies", "block", "model"), "no model `blok`"),
+        (("bodies", "cap", "frame"), "lid", ("bodies", "cap", "frame"), "no frame `lid`"),
+        (("bodies", "cap", "apart"), {"lid": 1}, ("bodies", "cap", "apart", "lid"), "no body"),
+        (("bodies", "cap", "size"), [100, 1, 1], ("bodies", "cap", "size", 0), "100 m is farther"),
+        (("bodies", "cap", "size"), None, ("bodies", "cap"), "a `model`, a `path` or a `size`"),
+        (("bodies", "block", "mass"), 1, ("bodies", "block", "mass"), "`mass` needs `size`"),
+        (
+            ("bodies", "block", "colour"),
+            [255, 0, 0],
+            ("bodies", "block", "colour", 0),
+            "a part of a colour is from 0 to 1",
+        ),
+    ],
+)
+def test_a_mistake_in_a_scene_has_its_place(
+    place: tuple[str | int, ...], value: Any, where: tuple[str | int, ...], message: str
+) -> None:
+    with pytest.raises(DataError, match=message) as found:
+        scene.read(changed(SCENE, place, value))
+    assert found.value.place == where
