@@ -15,11 +15,13 @@ from smachac.ir.nodes import Checked, StateType
 from smachac.ir.robot import BUILT_IN, SIMULATED, same_joints
 from smachac.targets import BuildContext, Files, OptionError, Target, stem
 from smachac.targets.errors import unsupported_by_target
+from smachac.targets.python import ros
 from smachac.targets.python.class_reader import declared
 
 OPTIONS = {
     "comments": "yes: print the comment blocks of templates (default: no)",
     "introspection": "yes: print the introspection server of ROS programs (default: no)",
+    "ros": "1 or 2: the version of ROS (default: that of the project file, else 2)",
 }
 
 
@@ -27,12 +29,15 @@ def emit(machine: Checked, context: BuildContext, report: Report) -> Files:
     """The module of a machine: `<name>.py`."""
     from smachac.targets.python.module import module_text
 
+    ros.version(context)
     for name, value in context.options.items():
-        if value not in ("yes", "no"):
+        if name != "ros" and value not in ("yes", "no"):
             raise OptionError(f"`{name}` must be `yes` or `no`, not `{value}`")
     if _moves_another_arm(machine, report):
         return {}
-    text = module_text(machine, context, report)
+    found = [*ros.unsupported(machine, ros.version(context))]
+    report.extend(found)
+    text = None if found else module_text(machine, context, report)
     return {} if text is None else {f"{stem(machine)}.py": text}
 
 

@@ -1,0 +1,156 @@
+"""Programs for ROS 2: the node, its parameters, and what states get."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import pytest
+
+import smachac
+
+ROOT = Path(__file__).parents[2]
+
+HEAD = """
+name: sm
+template: {base}
+outcomes: [succeeded, aborted, preempted]
+params: {params}
+states:
+"""
+
+
+def program(folder: Path, states: str, *, base: str = "ROSBase", params: str = "{}") -> str:
+    """The program of a script with these states."""
+    path = folder / "main.yml"
+    path.write_text(HEAD.format(base=base, params=params) + states, encoding="utf-8")
+    (text,) = smachac.compile(path, "python").values()
+    return text
+
+
+WAIT = """
+  - WAIT:
+      template: WaitForMsgState
+      topic: [params, topic]
+      msg_type: std_msgs/String
+      timeout: [params, patience]
+      transitions: {succeeded: succeeded, aborted: aborted, preempted: preempted}
+"""
+
+CALL = """
+  - CALL:
+      template: ServiceState
+      service_namespace: call
+      service: %s
+      %s
+      transitions: {succeeded: succeeded, aborted: aborted, preempted: preempted}
+"""
+
+SLEEP = """
+  - SLEEP:
+      template: SleepState
+      time: 0
+      transitions: {succeeded: succeeded, preempted: preempted}
+"""
+
+GRASP = """
+  - GRASP: {template: Grasp, transitions: {done: succeeded}}
+"""
+
+
+def test_the_script_of_the_docs_is_compiled(tmp_path: Path) -> None:
+    text = (ROOT / "docs/ros.md").read_text("utf-8")
+    path = tmp_path / "patrol.yml"
+    path.write_text(text.split("```yaml\n")[1].split("```")[0], encoding="utf-8")
+    assert "import rclpy" in smachac.compile(path, "python")["patrol.py"]
+
+
+def test_params_are_parameters_of_the_node(tmp_path: Path) -> None:
+    text = program(tmp_path, WAIT, params="{topic: battery, patience: 5, node: x}")
+    # `patience` is a float in the interface; nothing looks up `node`
+    assert 'def build(node, topic="battery", patience=5.0):' in text
+    assert "WaitForMsgState(node, topic, String, timeout=patience)" in text
+    assert "build(node, **values)" in text
+
+
+def test_a_parameter_has_another_name_than_the_node(tmp_path: Path) -> None:
+    states = WAIT.replace("[params, topic]", "[params, node]")
+    text = program(tmp_path, states, params="{node: battery, patience: 5.0}")
+    assert 'def build(node, node_="battery", patience=5.0):' in text
+
+
+def test_params_of_sub_scripts_are_followed(tmp_path: Path) -> None:
+    (tmp_path / "wait.yml").write_text(
+        "- INNER:\n    template: StateMachine\n    outcomes: [succeeded, aborted, preempted]\n"
+        "    states:\n" + WAIT.replace("\n", "\n    "),
+        encoding="utf-8",
+    )
+    states = """
+  - {0}:
+      script: wait
+      params: {{topic: [params, topic], patience: {1}}}
+      transitions: {{succeeded: {2}, aborted: aborted, preempted: preempted}}
+"""
+    calls = states.format("A", "5.0", "B") + states.format("B", "6.0", "succeeded")
+    text = program(tmp_path, calls, params="{topic: battery}")
+    assert 'def build(node, topic="battery"):' in text
+    assert "build_wait(node, " in text
+    assert "topic=topic" in text
+    assert '"battery"' not in text.partition("def build(")[0]
+
+
+def test_a_param_inside_a_text_keeps_its_value(tmp_path: Path) -> None:
+    states = WAIT.replace("[params, topic]", "['/', [params, topic]]")
+    text = program(tmp_path, states, params="{topic: battery, patience: 5.0}")
+    assert "def build(node, patience=5.0):" in text
+    assert '"/battery"' in text
+
+
+@pytest.mark.parametrize(
+    ("service", "more", "printed"),
+    [
+        ("std_srvs/SetBool", "request: {data: true}", 'filled(SetBool.Request(), {"data": True})'),
+        (
+            "std_srvs.srv.SetBool",
+            "request: SetBoolRequest(data=True)",
+            "SetBool.Request(data=True)",
+        ),
+        (
+            "std_srvs/srv/SetBool",
+            "request: SetBool.Request(data=True)",
+            "SetBool.Request(data=True)",
+        ),
+    ],
+)
+def test_requests(service: str, more: str, printed: str, tmp_path: Path) -> None:
+    text = program(tmp_path, CALL % (service, more))
+    assert f"request={printed}" in text
+    assert "from std_srvs.srv import SetBool\n" in text
+
+
+def test_a_class_of_the_user_gets_the_node(tmp_path: Path) -> None:
+    (tmp_path / "templates").mkdir()
+    (tmp_path / "templates" / "Grasp.yml").write_text(
+        'name: Grasp\noutcomes: {done: {}}\ncode: {python: "robot:Grasp"}\n', encoding="utf-8"
+    )
+    code = (
+        "import smach\n\n\nclass Grasp(smach.State):\n    def __init__(self{parameter}):\n"
+        "        super().__init__(outcomes=['done'])\n\n    def execute(self, userdata):\n"
+        "        return 'done'\n"
+    )
+    (tmp_path / "robot.py").write_text(code.format(parameter=", node"), encoding="utf-8")
+    assert "Grasp(node)" in program(tmp_path, GRASP, base="Base")
+    (tmp_path / "robot.py").write_text(code.format(parameter=""), encoding="utf-8")
+    text = program(tmp_path, GRASP, base="Base")
+    assert "Grasp()" in text
+    assert "rclpy" not in text
+
+
+def test_a_script_without_ros_is_no_node(tmp_path: Path) -> None:
+    text = program(tmp_path, SLEEP, base="Base")
+    assert "def build():" in text
+    assert "def main():" in text
+    assert "node" not in text
+
+
+def test_outcomes_of_failure_end_with_exit_code_1(tmp_path: Path) -> None:
+    assert 'failures=["aborted", "preempted"]' in program(tmp_path, SLEEP)
