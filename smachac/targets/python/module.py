@@ -36,7 +36,7 @@ from smachac.targets.python.parameters import (
     ros_parameters,
 )
 from smachac.targets.python.python2 import modern, parsed
-from smachac.targets.python.ros import template_finder, version
+from smachac.targets.python.ros import is_node, template_finder, version
 from smachac.targets.python.smacha_context import TESTS, container_variables, filters, plain
 from smachac.targets.python.states import (
     NO_BODY,
@@ -47,7 +47,6 @@ from smachac.targets.python.states import (
     is_printed_by_template,
     joined,
     lost,
-    needs_node,
 )
 from smachac.targets.python.stop_requests import stop_functions, wrappers
 from smachac.targets.python.template_sources import uses_own_templates
@@ -104,7 +103,7 @@ def module_text(machine: Machine, context: BuildContext, report: Report) -> str 
     for plan in (functions, one_function):
         module = ModuleParts(blocks, context, machine.state_types, ros)
         module.plan = plan(machine, partial(is_printed_by_template, module))
-        module.node = needs_node(machine, module)
+        module.node = is_node(machine, context.library, ros)
         module.wrappers = wrappers(machine)
         try:
             text = _text(machine, context, module, whole=plan is one_function)
@@ -194,8 +193,8 @@ def _program_template(
 ) -> str:
     """The template of the program: that of the base, unless the code of its states needs a node or
     adds code around the run."""
-    is_node = module.node if module.ros == 2 else any(map(_needs_node, parts))
-    if template == "Program.tpl.py" and is_node:
+    node = module.node if module.ros == 2 else any(map(_needs_node, parts))
+    if template == "Program.tpl.py" and node:
         template = "ROSProgram.tpl.py"
     if template in ONE_FUNCTION and any(texts[name] for name in PREPENDED):
         template = ONE_FUNCTION[template]
@@ -248,19 +247,19 @@ def _rendered(
         return text
     can_be = module.ros == 1 and "node" in module.blocks.names(template)
     can_be = can_be and "init_node" not in text
-    is_node = can_be and _needs_node(text)
-    more = NODE_IMPORTS[module.ros] if is_node else []
+    node = can_be and _needs_node(text)
+    more = NODE_IMPORTS[module.ros] if node else []
     names = Names()
     for tree in (modern(text).tree, *map(parsed, more)):
         if isinstance(tree, ast.Module):
             names.add(tree)
     lacking = unbound_names(names, module.ros, ["smach", "smach_ros"])
-    if not lacking and not is_node:
+    if not lacking and not node:
         return text
     again = {
         **variables,
         "imports": _separate(import_lines([*imports, *lacking, *more]), own),
-        "is_node": is_node,
+        "is_node": node,
         "defined_headers": printed,
     }
     return module.blocks.render_whole(template, again)

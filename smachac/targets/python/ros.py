@@ -129,6 +129,24 @@ def other_version(span: Span, name: str, ros: Ros) -> Diagnostic:
     return unsupported_by_target(span, f"Python for ROS {ros}", message, help, (name,))
 
 
+def is_node(machine: Machine, library: Library, ros: Ros) -> bool:
+    """Whether a program for ROS 2 is a node: its base is one, or a state gets the node."""
+    types = [machine.state_types[name] for name in [machine.base] if name in machine.state_types]
+    types += [type_ for type_ in machine.state_types.values() if type_.kind == "state"]
+    return any(takes_node(type_, library, ros) for type_ in types)
+
+
+def takes_node(type_: StateType, library: Library, ros: Ros) -> bool:
+    """Whether the states of a type get the node of ROS 2: the built-in types for ROS 2, and classes
+    of the user whose first parameter is `node`."""
+    code = type_.code.get("python", f"{type_.name}.tpl.py")
+    if ros == 1:
+        return False
+    if ":" in code:
+        return has_node_parameter(type_)
+    return library.own_template(code) is None and library.template(f"ros2/{code}") is not None
+
+
 def has_node_parameter(type_: StateType) -> bool:
     """Whether the class of a state type has a first parameter `node` that is no variable."""
     facts = type_.class_facts

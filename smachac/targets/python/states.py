@@ -48,7 +48,7 @@ from smachac.targets.python.formatter import (
     names,
 )
 from smachac.targets.python.functions import ITEMS, Function, Place, variable_name
-from smachac.targets.python.ros import has_node_parameter
+from smachac.targets.python.ros import takes_node
 from smachac.targets.python.smacha_context import (
     CodeText,
     adding,
@@ -405,9 +405,14 @@ def _used(leaf: Leaf, module: ModuleParts) -> UsedType:
         return module.used[leaf.type]
     type_ = module.state_types.get(leaf.type) or StateType(name=leaf.type, open=True)
     code = type_.code.get("python", f"{leaf.type}.tpl.py")
+    node = takes_node(type_, module.context.library, module.ros)
     if ":" in code:
         own = module.classes.setdefault(code, _own_name(code.partition(":")[2], leaf.type, module))
-        used = UsedType(type=type_, class_name=own, takes_node=takes_node(type_, module))
+        used = UsedType(
+            type=type_,
+            class_name=own,
+            takes_node=node,
+        )
     elif module.blocks.source(code) is None:
         message = f"the state type `{leaf.type}` has no code for Python"
         help = f"add the template `{code}`, or name a class under `code` in `{leaf.type}.yml`"
@@ -419,7 +424,7 @@ def _used(leaf: Leaf, module: ModuleParts) -> UsedType:
             class_name=_class_name(leaf.type),
             template=code,
             whole="body" in found,
-            takes_node=takes_node(type_, module),
+            takes_node=node,
         )
         if not used.whole:
             variables: dict[str, object] = {
@@ -430,26 +435,6 @@ def _used(leaf: Leaf, module: ModuleParts) -> UsedType:
     module.used[leaf.type] = used
     module.names.named.add(used.class_name)
     return used
-
-
-def takes_node(type_: StateType, module: ModuleParts) -> bool:
-    """Whether the states of a type get the node of ROS 2: the built-in types for ROS 2, and classes
-    of the user whose first parameter is `node`."""
-    if module.ros == 1:
-        return False
-    code = type_.code.get("python", f"{type_.name}.tpl.py")
-    library = module.context.library
-    if ":" not in code:
-        own = library.own_template(code) is not None
-        return not own and library.template(f"ros2/{code}") is not None
-    return has_node_parameter(type_)
-
-
-def needs_node(machine: Machine, module: ModuleParts) -> bool:
-    """Whether a program for ROS 2 is a node: its base is one, or a state gets the node."""
-    types = [machine.state_types[name] for name in [machine.base] if name in machine.state_types]
-    types += [type_ for type_ in machine.state_types.values() if type_.kind == "state"]
-    return any(takes_node(type_, module) for type_ in types)
 
 
 def _own_name(class_name: str, type_: str, module: ModuleParts) -> str:
