@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from pathlib import Path
+from textwrap import indent
 
 import pytest
 
@@ -57,11 +58,15 @@ GRASP = """
 """
 
 
-def test_the_script_of_the_docs_is_compiled(tmp_path: Path) -> None:
+def test_the_state_of_the_docs_is_that_of_the_example() -> None:
     text = (ROOT / "docs/ros.md").read_text("utf-8")
-    path = tmp_path / "patrol.yml"
-    path.write_text(text.split("```yaml\n")[1].split("```")[0], encoding="utf-8")
-    assert "import rclpy" in smachac.compile(path, "python")["patrol.py"]
+    state = text.split("```yaml\n")[1].split("```")[0]
+    script = (ROOT / "examples/ros2_mobile_base/patrol.yml").read_text("utf-8")
+    assert indent(state, 8 * " ") in script
+
+
+def test_the_example_has_no_finding() -> None:
+    assert smachac.check(ROOT / "examples/ros2_mobile_base/patrol.yml") == []
 
 
 def test_params_are_parameters_of_the_node(tmp_path: Path) -> None:

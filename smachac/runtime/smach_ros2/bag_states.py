@@ -6,9 +6,8 @@ from collections.abc import Sequence
 from typing import Any, ClassVar
 from weakref import WeakKeyDictionary
 
-from smachac.runtime.smach_ros2.bags import Recordings
-
 from smachac.runtime import smach
+from smachac.runtime.smach_ros2.bags import Recordings
 from smachac.runtime.smach_ros2.publish_states import optional
 
 

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import inspect
 from collections.abc import Callable, Mapping, Sequence
+from contextlib import suppress
 from typing import Any
 
 from smachac.runtime.smach_ros2 import ros
@@ -48,7 +49,9 @@ def _declare(node: Any, name: str, default: Any, allowed: Sequence[Any]) -> Any:
     except errors.InvalidParameterTypeException:
         if not isinstance(default, float):
             raise
-        value = float(node.declare_parameter(name, int(default), descriptor).value)
+        with suppress(errors.InvalidParameterTypeException):  # the first message names the type
+            return float(node.declare_parameter(name, int(default), descriptor).value)
+        raise
     if allowed and value not in allowed:
         raise errors.InvalidParameterValueException(name, value, limits)
     return list(value) if isinstance(value, Sequence) and not isinstance(value, str) else value

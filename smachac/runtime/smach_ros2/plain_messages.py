@@ -7,9 +7,8 @@ import struct
 from collections.abc import Mapping, Sequence
 from typing import Any
 
-from smachac.runtime.smach_ros2.interfaces import message_class
-
 from smachac.runtime.smach_ros2 import ros
+from smachac.runtime.smach_ros2.interfaces import message_class
 from smachac.runtime.smach_ros2.message_fields import filled, is_message
 
 Vector = tuple[float, float, float]

@@ -7,12 +7,11 @@ from collections.abc import Callable, Sequence
 from typing import Any, ClassVar
 from weakref import WeakKeyDictionary
 
+from smachac.runtime import smach
 from smachac.runtime.smach_ros2.interfaces import message_class
+from smachac.runtime.smach_ros2.plain_messages import parse_message
 from smachac.runtime.smach_ros2.qos import profile
 from smachac.runtime.smach_ros2.topics import Publications
-
-from smachac.runtime import smach
-from smachac.runtime.smach_ros2.plain_messages import parse_message
 
 
 def optional(userdata: Any, key: str, default: Any = None) -> Any:

@@ -7,13 +7,12 @@ from collections.abc import Sequence
 from typing import Any
 from weakref import WeakKeyDictionary
 
-from smachac.runtime.smach_ros2.transform import Transforms
-
 from smachac.runtime import smach
 from smachac.runtime.smach_ros2 import ros
 from smachac.runtime.smach_ros2.message_fields import filled
 from smachac.runtime.smach_ros2.plain_messages import parse_message, transformed
 from smachac.runtime.smach_ros2.publish_states import optional, write_keys
+from smachac.runtime.smach_ros2.transform import Transforms
 
 
 def look_up(state: Any, target: str, source: str) -> Any:
