@@ -124,3 +124,26 @@ def test_the_commands_of_the_docs(graph2: Graph, tmp_path: Path) -> None:
         made.unlink(missing_ok=True)
     assert done.returncode == 0, done.stderr
     assert done.stdout.endswith("outcome: docked\n")
+
+
+def test_a_package_is_built_by_colcon_and_runs(graph2: Graph, tmp_path: Path) -> None:
+    folder = tmp_path / "src" / "patrol"
+    files = smachac.compile(EXAMPLE / "patrol.yml", "python", options={"package": "true"})
+    for name, text in files.items():
+        (folder / name).parent.mkdir(parents=True, exist_ok=True)
+        (folder / name).write_text(text, encoding="utf-8")
+    colcon = Path(PYTHON).with_name("colcon")
+    built = subprocess.run(
+        [colcon, "build"], cwd=tmp_path, env=graph2.environment,
+        capture_output=True, text=True, check=False,
+    )  # fmt: skip
+    assert built.returncode == 0, built.stderr
+    installed = tmp_path / "install" / "patrol"
+    index = installed / "share" / "ament_index" / "resource_index" / "packages" / "patrol"
+    assert index.is_file()
+    assert (installed / "share" / "patrol" / "launch" / "patrol.launch.py").is_file()
+    base(graph2, "speed:=10.0")
+    command = f"source {tmp_path}/install/setup.bash && exec {installed}/lib/patrol/patrol"
+    program = graph2._launch(["bash", "-c", command])
+    assert program.end() == 0, program.output
+    assert program.output.endswith("outcome: docked\n")

@@ -2,12 +2,15 @@
 
 from __future__ import annotations
 
+import ast
+import re
 from pathlib import Path
 from textwrap import indent
 
 import pytest
 
 import smachac
+from smachac.targets import OptionError
 
 ROOT = Path(__file__).parents[2]
 
@@ -159,3 +162,40 @@ def test_a_script_without_ros_is_no_node(tmp_path: Path) -> None:
 
 def test_outcomes_of_failure_end_with_exit_code_1(tmp_path: Path) -> None:
     assert 'failures=["aborted", "preempted"]' in program(tmp_path, SLEEP)
+
+
+def test_a_package(tmp_path: Path) -> None:
+    path = tmp_path / "main.yml"
+    params = "{topic: battery, patience: 5, deep: [1.0, 2.0]}"
+    path.write_text(HEAD.format(base="ROSBase", params=params) + WAIT, encoding="utf-8")
+    files = smachac.compile(path, "python", options={"package": "true"})
+    assert list(files) == [
+        *("sm/sm.py", "sm/__init__.py", "package.xml", "setup.py", "setup.cfg"),
+        *("resource/sm", "launch/sm.launch.py"),
+    ]
+    assert files["sm/sm.py"] == smachac.compile(path, "python")["sm.py"]
+    needed = re.findall("<exec_depend>(.*)</exec_depend>", files["package.xml"])
+    assert needed == ["rclpy", "std_msgs"]
+    launch = files["launch/sm.launch.py"]
+    ast.parse(launch)
+    assert 'DeclareLaunchArgument("patience", default_value="5.0")' in launch
+    assert 'LaunchConfiguration("patience"), value_type=float' in launch
+    named = smachac.compile(path, "python", options={"package": "robot_patrol"})
+    assert "robot_patrol/sm.py" in named
+    assert '"sm = robot_patrol.sm:run_node"' in named["setup.py"]
+
+
+@pytest.mark.parametrize(
+    ("base", "options", "message"),
+    [
+        ("ROSBase", {"package": "My Robot"}, "`package` must be `true` or match"),
+        ("ROSBase", {"package": "true", "ros": "1"}, "needs a node of ROS 2"),
+        ("Base", {"package": "true"}, "needs a node of ROS 2"),
+        ("ROSBase", {"ros": "3"}, "`ros` must be `1` or `2`"),
+    ],
+)
+def test_wrong_options(base: str, options: dict[str, str], message: str, tmp_path: Path) -> None:
+    path = tmp_path / "main.yml"
+    path.write_text(HEAD.format(base=base, params="{}") + SLEEP, encoding="utf-8")
+    with pytest.raises(OptionError, match=message):
+        smachac.compile(path, "python", options=options)

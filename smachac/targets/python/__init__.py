@@ -11,16 +11,18 @@ from __future__ import annotations
 
 from smachac.diagnostics.diagnostic import Report
 from smachac.frontend.loader import Library
-from smachac.ir.nodes import Checked, StateType
+from smachac.ir.nodes import Checked, Machine, StateType
 from smachac.ir.robot import BUILT_IN, SIMULATED, same_joints
 from smachac.targets import BuildContext, Files, OptionError, Target, stem
 from smachac.targets.errors import unsupported_by_target
 from smachac.targets.python import ros
 from smachac.targets.python.class_reader import declared
+from smachac.targets.python.package import package_name
 
 OPTIONS = {
     "comments": "yes: print the comment blocks of templates (default: no)",
     "introspection": "yes: print the introspection server of ROS programs (default: no)",
+    "package": "true, or NAME: a package for colcon (ament_python); ROS 2 only",
     "ros": "1 or 2: the version of ROS (default: that of the project file, else 2)",
 }
 
@@ -28,17 +30,35 @@ OPTIONS = {
 def emit(machine: Checked, context: BuildContext, report: Report) -> Files:
     """The module of a machine: `<name>.py`."""
     from smachac.targets.python.module import module_text
+    from smachac.targets.python.package import package_files
+    from smachac.targets.python.parameters import RESERVED, ros_parameters
 
-    ros.version(context)
-    for name, value in context.options.items():
-        if name != "ros" and value not in ("yes", "no"):
+    for name in ("comments", "introspection"):
+        value = context.options.get(name, "no")
+        if value not in ("yes", "no"):
             raise OptionError(f"`{name}` must be `yes` or `no`, not `{value}`")
+    version = ros.version(context)
+    package = _package(machine, context, version)
     if _moves_another_arm(machine, report):
         return {}
-    found = [*ros.unsupported(machine, ros.version(context))]
+    found = [*ros.unsupported(machine, version)]
     report.extend(found)
     text = None if found else module_text(machine, context, report)
-    return {} if text is None else {f"{stem(machine)}.py": text}
+    if text is None:
+        return {}
+    if package:
+        return package_files(machine, package, text, ros_parameters(machine, RESERVED).declared)
+    return {f"{stem(machine)}.py": text}
+
+
+def _package(machine: Machine, context: BuildContext, version: ros.Ros) -> str:
+    """The name of the package of the options; empty if there is none. Raises OptionError."""
+    value = context.options.get("package", "false")
+    if value == "false":
+        return ""
+    if not ros.is_node(machine, context.library, version):
+        raise OptionError("`package` needs a node of ROS 2: a script with the base `ROSBase`")
+    return package_name(value, machine)
 
 
 def _moves_another_arm(machine: Checked, report: Report) -> bool:
