@@ -147,3 +147,52 @@ def test_a_package_is_built_by_colcon_and_runs(graph2: Graph, tmp_path: Path) ->
     program = graph2._launch(["bash", "-c", command])
     assert program.end() == 0, program.output
     assert program.output.endswith("outcome: docked\n")
+
+
+SERVED = """
+name: machine
+template: ROSBase
+outcomes: [succeeded, aborted, preempted]
+input_keys: [order]
+output_keys: [sequence]
+states:
+  - COUNT:
+      template: CallbacksState
+      input_keys: [order]
+      output_keys: [sequence]
+      callbacks: {sequence: 'lambda ud: list(range(ud.order))'}
+      transitions: {succeeded: LONG}
+  - LONG:
+      template: ConditionalOutcomeState
+      input_keys: [order]
+      outcomes: [long, failed, short]
+      callbacks: {long: 'lambda ud: ud.order > 9', failed: 'lambda ud: ud.order > 5'}
+      default_outcome: short
+      transitions: {long: SLEEP, failed: aborted, short: succeeded}
+  - SLEEP:
+      template: SleepState
+      time: 1000
+      transitions: {succeeded: succeeded, preempted: preempted}
+"""
+
+
+def test_a_machine_is_offered_as_an_action(graph2: Graph, tmp_path: Path) -> None:
+    path = tmp_path / "machine.yml"
+    path.write_text(SERVED, encoding="utf-8")
+    options = {"action": "test_msgs/action/Fibonacci"}
+    (text,) = smachac.compile(path, "python", options=options).values()
+    program = graph2.start(text)
+    caller = graph2.node("caller")
+    caller.say("3")
+    caller.expect("ended succeeded [0, 1, 2]")
+    caller.say("6")
+    caller.expect("ended aborted")
+    caller.say("10")
+    caller.expect("accepted")
+    program.expect("'LONG':'long'-->'SLEEP'")
+    caller.say("cancel")
+    caller.expect("ended canceled")
+    caller.say("2")
+    caller.expect("ended succeeded [0, 1]")
+    program.send(signal.SIGINT)
+    assert program.end() == 0, program.output

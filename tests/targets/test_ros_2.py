@@ -191,6 +191,8 @@ def test_a_package(tmp_path: Path) -> None:
         ("ROSBase", {"package": "My Robot"}, "`package` must be `true` or match"),
         ("ROSBase", {"package": "true", "ros": "1"}, "needs a node of ROS 2"),
         ("Base", {"package": "true"}, "needs a node of ROS 2"),
+        ("Base", {"action": "my_msgs/action/Fetch"}, "needs a node of ROS 2"),
+        ("ROSBase", {"action": "Fetch"}, "must be a type such as"),
         ("ROSBase", {"ros": "3"}, "`ros` must be `1` or `2`"),
     ],
 )
@@ -199,3 +201,14 @@ def test_wrong_options(base: str, options: dict[str, str], message: str, tmp_pat
     path.write_text(HEAD.format(base=base, params="{}") + SLEEP, encoding="utf-8")
     with pytest.raises(OptionError, match=message):
         smachac.compile(path, "python", options=options)
+
+
+def test_a_machine_as_an_action(tmp_path: Path) -> None:
+    path = tmp_path / "main.yml"
+    path.write_text(HEAD.format(base="ROSBase", params="{}") + SLEEP, encoding="utf-8")
+    text = smachac.compile(path, "python", options={"action": "my_msgs/Fetch"})["sm.py"]
+    assert "from my_msgs.action import Fetch\n" in text
+    assert 'succeeded_outcomes=["succeeded"],' in text
+    assert 'aborted_outcomes=["aborted"],' in text
+    assert 'preempted_outcomes=["preempted"],' in text
+    assert "serving.serve(node, sm)" in text

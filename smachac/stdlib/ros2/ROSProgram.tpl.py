@@ -1,19 +1,24 @@
 {% extends "Program.tpl.py" %}
+{% set result = "" if ros_action else "outcome = " %}
 {%- block imports %}
 
 try:
     import smach
-{%- if smach_ros or introspection %}
+{%- if smach_ros or introspection or ros_action %}
     import smach_ros
 {%- endif %}
 except ImportError:  # without SMACH: smachac.runtime has the same names
     from smachac.runtime import smach
-{%- if smach_ros or introspection %}
+{%- if smach_ros or introspection or ros_action %}
     from smachac.runtime import smach_ros2 as smach_ros
 {%- endif %}
 {%- endblock %}
 {%- block main %}
+{%- if ros_action %}
+    """Offer the state machine as an action until a signal ends the node."""
+{%- else %}
     """Run the state machine once in a ROS node and return its outcome."""
+{%- endif %}
     node = program.start_node({{ node_name | default(name) | literal }}, arguments)
     try:
 {%- if ros_values %}
@@ -24,28 +29,36 @@ except ImportError:  # without SMACH: smachac.runtime has the same names
         server = smach_ros.IntrospectionServer({{ node_name | default(name) | literal }}, {{ sm_name }}, {{ ("/" ~ name) | literal }})
         server.start()
         try:
-            return program.run(node, {{ sm_name }})
+            {{ ros_run | indent(12) }}
         finally:
             server.stop()
 {%- else %}
-        return program.run(node, {{ sm_name }})
+        {{ ros_run | indent(8) }}
 {%- endif %}
     finally:
         program.stop_node(node)
 {%- endblock %}
 {%- block end -%}
 def run_node():
+{%- if ros_action %}
+    """Run the node and return the exit code."""
+{%- else %}
     """Run the node, print the outcome and return the exit code for it."""
+{%- endif %}
 {%- if ros_values %}
     try:
-        outcome = {{ function_name | default("main") }}()
+        {{ result }}{{ function_name | default("main") }}()
     except parameters.ParameterError as error:
         raise SystemExit(str(error)) from None
 {%- else %}
-    outcome = {{ function_name | default("main") }}()
+    {{ result }}{{ function_name | default("main") }}()
 {%- endif %}
+{%- if ros_action %}
+    return 0
+{%- else %}
     print(f"outcome: {outcome}")
     return program.exit_code(outcome, failures={{ ros_failures }})
+{%- endif %}
 
 
 if __name__ == "__main__":

@@ -22,6 +22,7 @@ from smachac.targets.python.package import package_name
 OPTIONS = {
     "comments": "yes: print the comment blocks of templates (default: no)",
     "introspection": "yes: print the introspection server of ROS programs (default: no)",
+    "action": "TYPE: offer the machine as an action of that type; ROS 2 only",
     "package": "true, or NAME: a package for colcon (ament_python); ROS 2 only",
     "ros": "1 or 2: the version of ROS (default: that of the project file, else 2)",
 }

@@ -17,7 +17,7 @@ from smachac.targets.python import structure
 from smachac.targets.python.functions import Plan
 from smachac.targets.python.imports import Names
 from smachac.targets.python.python2 import modern, parsed
-from smachac.targets.python.ros import other_modules, other_version
+from smachac.targets.python.ros import RosType, other_modules, other_version
 from smachac.targets.python.smacha_context import Headers
 from smachac.targets.templates.engine import BlockError, Blocks, Page
 
@@ -71,7 +71,8 @@ class ModuleParts:
     `wrappers` are the functions around containers, by path. `own_templates` are the files of the
     user's templates for containers, by type. `names` are those in the printed code. `faults` are
     the findings about templates, without duplicates. `ros` is the version of ROS; `node`: the
-    functions of the module have the node of ROS 2 as a parameter.
+    functions of the module have the node of ROS 2 as a parameter. `action`: the type of the action
+    that it offers the machine as.
     """
 
     blocks: Blocks
@@ -79,6 +80,7 @@ class ModuleParts:
     state_types: Mapping[str, StateType]
     ros: Ros = 1
     node: bool = False
+    action: RosType | None = None
     plan: Plan = field(default_factory=dict)
     wrappers: Mapping[str, str] = field(default_factory=dict)
     fresh: Callable[[str, str], str] = field(default_factory=structure.variable_names)

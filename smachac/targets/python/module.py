@@ -36,7 +36,7 @@ from smachac.targets.python.parameters import (
     ros_parameters,
 )
 from smachac.targets.python.python2 import modern, parsed
-from smachac.targets.python.ros import is_node, template_finder, version
+from smachac.targets.python.ros import action_type, is_node, template_finder, version
 from smachac.targets.python.smacha_context import TESTS, container_variables, filters, plain
 from smachac.targets.python.states import (
     NO_BODY,
@@ -98,12 +98,14 @@ def module_text(machine: Machine, context: BuildContext, report: Report) -> str 
     )
     ros = version(context)
     find = template_finder(context.library, ros)
+    action = action_type(machine, context)
     blocks = Blocks(find, filters=filters(ros), tests=TESTS, shown=shown)
     text, faults = None, report[:0]
     for plan in (functions, one_function):
         module = ModuleParts(blocks, context, machine.state_types, ros)
         module.plan = plan(machine, partial(is_printed_by_template, module))
         module.node = is_node(machine, context.library, ros)
+        module.action = action
         module.wrappers = wrappers(machine)
         try:
             text = _text(machine, context, module, whole=plan is one_function)
@@ -167,7 +169,7 @@ def _text(
         "defined_headers": module.defined_headers,
         "smach_ros": any(_uses(part, _SMACH_ROS) for part in parts),
         "introspection": context.options.get("introspection", "no") == "yes",
-        **(node_variables(machine, settable) if module.node else NO_NODE),
+        **(node_variables(machine, settable, root, module.action) if module.node else NO_NODE),
     }
     text = _rendered(template, variables, imports, own, module) + "\n"
     own_code = uses_own_templates(machine, context.library) and built and not whole
@@ -206,6 +208,9 @@ def _node_imports(template: str, settable: RosParameters, module: ModuleParts) -
     if template not in ("ROSProgram.tpl.py", "ROSBase.tpl.py"):
         return []
     more = ["from smachac.runtime.smach_ros2 import parameters"] if settable.declared else []
+    if module.action is not None:
+        more.append(f"from {module.action.package}.action import {module.action.name}")
+        more.append("from smachac.runtime.smach_ros2 import serving")
     return [*NODE_IMPORTS[module.ros], *more]
 
 

@@ -23,8 +23,10 @@ from smachac.targets.python.formatter import (
     literal,
     mapping,
     names,
+    string,
 )
 from smachac.targets.python.functions import Place
+from smachac.targets.python.ros import RosType
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -133,9 +135,12 @@ NO_NODE: Mapping[str, object] = {"build_parameters": "", "main_parameters": ""}
 """The same variables for a program without a node of ROS 2."""
 
 
-def node_variables(machine: Machine, settable: RosParameters) -> dict[str, object]:
+def node_variables(
+    machine: Machine, settable: RosParameters, root: str, action: RosType | None
+) -> dict[str, object]:
     """The variables of the template of a node: the parameters of its functions, the values that its
-    parameters may have, and the outcomes of failure."""
+    parameters may have, the statements that run the machine in the variable `root`, and the
+    outcomes of failure."""
     outcomes = [each.name for each in machine.root.outcomes]
     failures = [name for name in outcomes if is_failure(name) or name == PREEMPTED]
     given = (("", f"{each.name}={flat(literal(each.default))}") for each in settable.declared)
@@ -153,4 +158,29 @@ def node_variables(machine: Machine, settable: RosParameters) -> dict[str, objec
         "main_parameters": "arguments=None",
         "ros_values": values if settable.declared else "",
         "ros_failures": flat(names(failures)),
+        "ros_action": action is not None,
+        "ros_run": _serving(machine, root, action)
+        if action
+        else f"return program.run(node, {root})",
     }
+
+
+def _serving(machine: Machine, root: str, action: RosType) -> str:
+    """The statements that offer a machine as an action."""
+    outcomes = [each.name for each in machine.root.outcomes]
+    failures = [name for name in outcomes if is_failure(name)]
+    good = [name for name in outcomes if name not in (*failures, PREEMPTED)]
+    server = call(
+        "smach_ros.ActionServerWrapper",
+        [
+            *(("", each) for each in ("node", string(machine.root.name), action.name, root)),
+            ("succeeded_outcomes=", names(good)),
+            ("aborted_outcomes=", names(failures)),
+            ("preempted_outcomes=", names([PREEMPTED] if PREEMPTED in outcomes else [])),
+            ("expand_goal_slots=", "True"),
+            ("pack_result_slots=", "True"),
+            ("path_slot=", f"serving.text_field({action.name}.Feedback)"),
+        ],
+    )
+    made = laid_out(server, WIDTH - 8, len("wrapper = "))
+    return f"wrapper = {made}\nwrapper.run_server()\nserving.serve(node, {root})"

@@ -47,6 +47,20 @@ def version(context: BuildContext) -> Ros:
             raise OptionError(f"`ros` must be `1` or `2`, not `{other}`")
 
 
+def action_type(machine: Machine, context: BuildContext) -> RosType | None:
+    """The type of the action that a node offers its machine as, by the option. Raises
+    OptionError."""
+    value = context.options.get("action")
+    if value is None:
+        return None
+    found = ros_type(value, "action", 2)
+    if found is None:
+        raise OptionError(f"`action` must be a type such as `my_msgs/action/Fetch`, not `{value}`")
+    if not is_node(machine, context.library, version(context)):
+        raise OptionError("`action` needs a node of ROS 2: a script with the base `ROSBase`")
+    return found
+
+
 def template_finder(library: Library, ros: Ros) -> Callable[[str], Source | None]:
     """A function that finds templates: those of the user, then those for a version of ROS, then the
     other built-in ones."""
