@@ -49,7 +49,7 @@ class Value:
 VariableRole = Literal[
     "", "callbacks", "conditions", "function", "duration", "steps", "limb", "grasp", "frame",
     "output_function", "service_type", "action_type", "request", "response", "goal", "result",
-    "joint_speed",
+    "joint_speed", "qos",
 ]  # fmt: skip
 """The meaning of a variable's value for a state (docs/state_types.md, Facts)."""
 

@@ -212,3 +212,28 @@ def test_a_machine_as_an_action(tmp_path: Path) -> None:
     assert 'aborted_outcomes=["aborted"],' in text
     assert 'preempted_outcomes=["preempted"],' in text
     assert "serving.serve(node, sm)" in text
+
+
+@pytest.mark.parametrize(
+    ("qos", "fault"),
+    [
+        ("sensor_data", ""),
+        ("5", ""),
+        ("{reliability: best_effort, durability: transient_local, depth: 1}", ""),
+        ("null", ""),
+        ("sensors", "no preset `sensors`"),
+        ("0", "a positive number"),
+        ("{reliability: maybe}", "reliability is reliable or best_effort"),
+        ("{dept: 5}", "no policy `dept`"),
+        ("{depth: [1]}", "a positive number"),
+        ("[sensor_data]", "a positive number"),
+    ],
+)
+def test_the_quality_of_service_is_checked(qos: str, fault: str, tmp_path: Path) -> None:
+    path = tmp_path / "main.yml"
+    states = WAIT.replace("timeout:", f"qos: {qos}\n      timeout:")
+    params = "{topic: battery, patience: 5}"
+    path.write_text(HEAD.format(base="ROSBase", params=params) + states, encoding="utf-8")
+    found = [item for item in smachac.check(path) if item.code == "SM004"]
+    assert len(found) == bool(fault)
+    assert all(fault in item.message for item in found)

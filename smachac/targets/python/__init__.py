@@ -10,7 +10,7 @@ smacha_context.py has their variables.
 from __future__ import annotations
 
 from smachac.diagnostics.diagnostic import Report
-from smachac.frontend.loader import Library
+from smachac.frontend.loader import Library, Ros
 from smachac.ir.nodes import Checked, Machine, StateType
 from smachac.ir.robot import BUILT_IN, SIMULATED, same_joints
 from smachac.targets import BuildContext, Files, OptionError, Target, stem
@@ -52,7 +52,7 @@ def emit(machine: Checked, context: BuildContext, report: Report) -> Files:
     return {f"{stem(machine)}.py": text}
 
 
-def _package(machine: Machine, context: BuildContext, version: ros.Ros) -> str:
+def _package(machine: Machine, context: BuildContext, version: Ros) -> str:
     """The name of the package of the options; empty if there is none. Raises OptionError."""
     value = context.options.get("package", "false")
     if value == "false":

@@ -19,7 +19,6 @@ from smachac.ir.nodes import (
     Expression,
     Iterator,
     Leaf,
-    Machine,
     Node,
     StateType,
     Variable,
