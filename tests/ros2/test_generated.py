@@ -196,3 +196,43 @@ def test_a_machine_is_offered_as_an_action(graph2: Graph, tmp_path: Path) -> Non
     caller.expect("ended succeeded [0, 1]")
     program.send(signal.SIGINT)
     assert program.end() == 0, program.output
+
+
+def test_a_managed_node(graph2: Graph, tmp_path: Path) -> None:
+    path = tmp_path / "machine.yml"
+    script = (EXAMPLE / "patrol.yml").read_text("utf-8").replace("name: patrol", "name: machine")
+    path.write_text(script, encoding="utf-8")
+    (text,) = smachac.compile(path, "python", options={"lifecycle": "true"}).values()
+    robot = base(graph2, "speed:=0.1")
+    program = graph2.start(text, "--ros-args", "-p", "patience:=60.0")
+    manager = graph2.node("manager")
+    for _ in range(2):
+        for step in ("configure", "activate"):
+            manager.say(step)
+            manager.expect(f"{step} done")
+        robot.expect("drive to")
+        for step in ("deactivate", "cleanup"):
+            manager.say(step)
+            manager.expect(f"{step} done")
+        robot.expect("cancelled")
+    manager.say("shutdown")
+    manager.expect("shutdown done")
+    assert program.end() == 1, program.output
+    assert program.output.endswith("outcome: preempted\n")
+
+
+def test_a_managed_node_with_a_wrong_parameter_is_not_configured(
+    graph2: Graph, tmp_path: Path
+) -> None:
+    path = tmp_path / "machine.yml"
+    script = (EXAMPLE / "patrol.yml").read_text("utf-8").replace("name: patrol", "name: machine")
+    path.write_text(script, encoding="utf-8")
+    (text,) = smachac.compile(path, "python", options={"lifecycle": "true"}).values()
+    program = graph2.start(text, "--ros-args", "-p", "patience:=long")
+    manager = graph2.node("manager")
+    manager.say("configure")
+    manager.expect("configure failed")
+    manager.say("unconfigured")
+    manager.expect("is unconfigured")
+    program.send(signal.SIGINT)
+    assert program.end() == 1, program.output

@@ -193,6 +193,9 @@ def test_a_package(tmp_path: Path) -> None:
         ("Base", {"package": "true"}, "needs a node of ROS 2"),
         ("Base", {"action": "my_msgs/action/Fetch"}, "needs a node of ROS 2"),
         ("ROSBase", {"action": "Fetch"}, "must be a type such as"),
+        ("Base", {"lifecycle": "true"}, "needs a node of ROS 2"),
+        ("ROSBase", {"lifecycle": "on"}, "must be `true` or `false`"),
+        ("ROSBase", {"lifecycle": "true", "action": "a/B"}, "exclude each other"),
         ("ROSBase", {"ros": "3"}, "`ros` must be `1` or `2`"),
     ],
 )
@@ -237,3 +240,15 @@ def test_the_quality_of_service_is_checked(qos: str, fault: str, tmp_path: Path)
     found = [item for item in smachac.check(path) if item.code == "SM004"]
     assert len(found) == bool(fault)
     assert all(fault in item.message for item in found)
+
+
+def test_a_managed_node(tmp_path: Path) -> None:
+    path = tmp_path / "main.yml"
+    params = "{topic: battery, patience: 5}"
+    path.write_text(HEAD.format(base="ROSBase", params=params) + WAIT, encoding="utf-8")
+    text = smachac.compile(path, "python", options={"lifecycle": "true"})["sm.py"]
+    assert 'program.start_node("sm", arguments, kind, build=configured)' in text
+    assert "return program.run(node, node)" in text
+    path.write_text(HEAD.format(base="ROSBase", params="{}") + SLEEP, encoding="utf-8")
+    text = smachac.compile(path, "python", options={"lifecycle": "true"})["sm.py"]
+    assert 'program.start_node("sm", arguments, kind, build=build)' in text

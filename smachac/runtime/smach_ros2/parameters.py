@@ -36,7 +36,9 @@ def declared(
 
 
 def _declare(node: Any, name: str, default: Any, allowed: Sequence[Any]) -> Any:
-    """Declare one parameter; its value."""
+    """Declare one parameter, unless it is declared; its value."""
+    if node.has_parameter(name):
+        return _plain(node.get_parameter(name).value)
     limits = f"one of {', '.join(map(str, allowed))}" if allowed else ""
     errors = ros.load("rclpy.exceptions")
     descriptor = ros.load("rcl_interfaces.msg").ParameterDescriptor(
@@ -54,4 +56,9 @@ def _declare(node: Any, name: str, default: Any, allowed: Sequence[Any]) -> Any:
         raise
     if allowed and value not in allowed:
         raise errors.InvalidParameterValueException(name, value, limits)
+    return _plain(value)
+
+
+def _plain(value: Any) -> Any:
+    """A value without the array types of rclpy."""
     return list(value) if isinstance(value, Sequence) and not isinstance(value, str) else value

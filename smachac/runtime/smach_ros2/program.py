@@ -11,16 +11,18 @@ from smachac.runtime.smach_ros2.node import SmachNode
 from smachac.runtime.smach_ros2.signals import GRACE, PreemptHandler
 
 
-def start_node(name: str, args: list[str] | None = None, **kwargs: Any) -> SmachNode:
+def start_node(
+    name: str, args: list[str] | None = None, node_class: Any = SmachNode, **kwargs: Any
+) -> Any:
     """Initialize rclpy and start a node that a thread spins.
 
     rclpy gets no signal handlers, because they end the node before goals can be cancelled: see
     `run`. `args` are the arguments of the program (default: sys.argv); other arguments are those of
-    rclpy.node.Node.
+    `node_class`.
     """
     options = ros.load("rclpy.signals").SignalHandlerOptions
     ros.rclpy.init(args=args, signal_handler_options=options.NO)
-    node = SmachNode(name, **kwargs)
+    node = node_class(name, **kwargs)
     node.start()
     return node
 
@@ -47,7 +49,7 @@ def _execute(machine: Any) -> str | None:
     return outcome
 
 
-def stop_node(node: SmachNode) -> None:
+def stop_node(node: Any) -> None:
     """Stop the thread of a node, destroy the node and shut rclpy down."""
     node.stop()
     node.destroy_node()

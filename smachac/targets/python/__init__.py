@@ -23,6 +23,7 @@ OPTIONS = {
     "comments": "yes: print the comment blocks of templates (default: no)",
     "introspection": "yes: print the introspection server of ROS programs (default: no)",
     "action": "TYPE: offer the machine as an action of that type; ROS 2 only",
+    "lifecycle": "true: a managed node (configure, activate, deactivate); ROS 2 only",
     "package": "true, or NAME: a package for colcon (ament_python); ROS 2 only",
     "ros": "1 or 2: the version of ROS (default: that of the project file, else 2)",
 }
@@ -39,6 +40,7 @@ def emit(machine: Checked, context: BuildContext, report: Report) -> Files:
         if value not in ("yes", "no"):
             raise OptionError(f"`{name}` must be `yes` or `no`, not `{value}`")
     version = ros.version(context)
+    _check_lifecycle(machine, context, version)
     package = _package(machine, context, version)
     if _moves_another_arm(machine, report):
         return {}
@@ -50,6 +52,20 @@ def emit(machine: Checked, context: BuildContext, report: Report) -> Files:
     if package:
         return package_files(machine, package, text, ros_parameters(machine, RESERVED).declared)
     return {f"{stem(machine)}.py": text}
+
+
+def _check_lifecycle(machine: Machine, context: BuildContext, version: Ros) -> None:
+    """Raises OptionError if the option `lifecycle` is wrong or fits neither script nor options."""
+    value = context.options.get("lifecycle", "false")
+    if value not in ("true", "false"):
+        raise OptionError(f"`lifecycle` must be `true` or `false`, not `{value}`")
+    if value == "false":
+        return
+    if not ros.is_node(machine, context.library, version):
+        raise OptionError("`lifecycle` needs a node of ROS 2: a script with the base `ROSBase`")
+    for other in ("action", "introspection"):
+        if context.options.get(other, "no") != "no":
+            raise OptionError(f"`lifecycle` and `{other}` exclude each other: choose one")
 
 
 def _package(machine: Machine, context: BuildContext, version: Ros) -> str:

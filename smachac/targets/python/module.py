@@ -36,7 +36,7 @@ from smachac.targets.python.parameters import (
     ros_parameters,
 )
 from smachac.targets.python.python2 import modern, parsed
-from smachac.targets.python.ros import action_type, is_node, template_finder, version
+from smachac.targets.python.ros import action_type, is_managed, is_node, template_finder, version
 from smachac.targets.python.smacha_context import TESTS, container_variables, filters, plain
 from smachac.targets.python.states import (
     NO_BODY,
@@ -169,7 +169,7 @@ def _text(
         "defined_headers": module.defined_headers,
         "smach_ros": any(_uses(part, _SMACH_ROS) for part in parts),
         "introspection": context.options.get("introspection", "no") == "yes",
-        **(node_variables(machine, settable, root, module.action) if module.node else NO_NODE),
+        **(_node_variables(machine, settable, root, module)),
     }
     text = _rendered(template, variables, imports, own, module) + "\n"
     own_code = uses_own_templates(machine, context.library) and built and not whole
@@ -203,11 +203,23 @@ def _program_template(
     return template
 
 
+def _node_variables(
+    machine: Machine, settable: RosParameters, root: str, module: ModuleParts
+) -> Mapping[str, object]:
+    """The variables of the template for a node."""
+    if not module.node:
+        return NO_NODE
+    lifecycle = is_managed(module.context)
+    return node_variables(machine, settable, root, module.action, lifecycle=lifecycle)
+
+
 def _node_imports(template: str, settable: RosParameters, module: ModuleParts) -> list[str]:
     """The imports of the code that starts the node."""
     if template not in ("ROSProgram.tpl.py", "ROSBase.tpl.py"):
         return []
     more = ["from smachac.runtime.smach_ros2 import parameters"] if settable.declared else []
+    if module.node and is_managed(module.context):
+        more.append("from smachac.runtime.smach_ros2 import lifecycle")
     if module.action is not None:
         more.append(f"from {module.action.package}.action import {module.action.name}")
         more.append("from smachac.runtime.smach_ros2 import serving")

@@ -136,7 +136,7 @@ NO_NODE: Mapping[str, object] = {"build_parameters": "", "main_parameters": ""}
 
 
 def node_variables(
-    machine: Machine, settable: RosParameters, root: str, action: RosType | None
+    machine: Machine, settable: RosParameters, root: str, action: RosType | None, *, lifecycle: bool
 ) -> dict[str, object]:
     """The variables of the template of a node: the parameters of its functions, the values that its
     parameters may have, the statements that run the machine in the variable `root`, and the
@@ -159,6 +159,7 @@ def node_variables(
         "ros_values": values if settable.declared else "",
         "ros_failures": flat(names(failures)),
         "ros_action": action is not None,
+        "ros_lifecycle": lifecycle,
         "ros_run": _serving(machine, root, action)
         if action
         else f"return program.run(node, {root})",

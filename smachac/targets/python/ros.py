@@ -61,6 +61,11 @@ def action_type(machine: Machine, context: BuildContext) -> RosType | None:
     return found
 
 
+def is_managed(context: BuildContext) -> bool:
+    """Whether the options want a managed node, with a lifecycle."""
+    return context.options.get("lifecycle") == "true"
+
+
 def template_finder(library: Library, ros: Ros) -> Callable[[str], Source | None]:
     """A function that finds templates: those of the user, then those for a version of ROS, then the
     other built-in ones."""
