@@ -35,12 +35,24 @@ def filled(message: Any, values: Any) -> Any:
         if name not in kinds:
             raise ValueError(f"{_name(message)} has no field `{name}`: it has {', '.join(kinds)}")
         try:
-            setattr(message, name, _value(kinds[name], value, getattr(message, name)))
-        except AssertionError:  # rclpy checks the types of fields with `assert`
+            _set(message, name, _value(kinds[name], value, getattr(message, name)))
+        except AssertionError:  # messages check the types of fields with `assert`
             raise TypeError(_misfit(message, name, kinds[name], value)) from None
         except (TypeError, ValueError) as error:
             raise type(error)(f"{_misfit(message, name, kinds[name], value)}: {error}") from None
     return message
+
+
+def _set(message: Any, name: str, value: Any) -> None:
+    """Set a field. The message checks the type, which newer messages do on request only."""
+    checks = getattr(message, "_check_fields", None)
+    if checks is False:
+        message._check_fields = True
+    try:
+        setattr(message, name, value)
+    finally:
+        if checks is False:
+            message._check_fields = False
 
 
 def filled_field(message: Any, name: str, value: Any) -> None:
