@@ -19,7 +19,7 @@ from smachac.diagnostics.source import Source, Span
 from smachac.frontend.errors import references, suppressions
 from smachac.frontend.errors import script as script_errors
 from smachac.frontend.files import disk_library, read_source
-from smachac.frontend.loader import Library
+from smachac.frontend.loader import ROS_VERSIONS, Library
 from smachac.frontend.lower import lower
 from smachac.frontend.resolve import resolve
 from smachac.frontend.script import Script
@@ -177,7 +177,11 @@ def template_faults(machine: Machine, library: Library) -> Report:
     if not uses_own_templates(machine, library):
         return []
     found: Report = []
-    TARGET.emit(Checked(machine), BuildContext(library=library, options={}), found)
+    for ros in dict.fromkeys((library.ros, *ROS_VERSIONS)):
+        found = []
+        context = BuildContext(library=library, options={"ros": str(ros)})
+        if TARGET.emit(Checked(machine), context, found):
+            break
     return [item for item in found if item.code in TEMPLATE_CODES]
 
 

@@ -9,7 +9,7 @@ import sys
 from argparse import Namespace
 
 from smachac.commands.arguments import FORMAT, as_path, search_folders
-from smachac.commands.output import FINDINGS, OK, usage
+from smachac.commands.output import FINDINGS, OK, shown, usage
 
 TYPE_CHECKING = False  # annotations only: `--help` imports none of this
 if TYPE_CHECKING:
@@ -74,7 +74,34 @@ def migrate_command(arguments: Namespace) -> int:
         scripts = []
     files = list(_files(scripts, templates, disk, arguments))
     sys.stdout.write(render_migration(files, arguments.format))
+    sys.stdout.flush()
+    if len(folders) == 1:
+        _write_settings(folders[0])
     return FINDINGS if any(file.fails for file in files) else OK
+
+
+SETTINGS = """\
+# Scripts of SMACHA are for ROS 1; docs/migrating.md tells how to cross to ROS 2.
+ros = 1
+"""
+
+
+def _write_settings(folder: Path) -> None:
+    """Create the project file of a SMACHA project, which has none."""
+    from smachac.commands.files import present_files, write_files
+    from smachac.commands.writing import PartlyWrittenError
+    from smachac.frontend.files import has_project
+
+    files = {"smachac.toml": SETTINGS}
+    try:
+        if present_files(folder, files) or has_project(folder / "main.yml"):
+            return
+        (path,) = write_files(folder, files)
+    except (OSError, PartlyWrittenError) as error:
+        words = getattr(error, "strerror", None) or error
+        print(f"cannot create {shown(folder)}/smachac.toml: {words}", file=sys.stderr)
+        return
+    print(f"created {shown(path)} (ros = 1)", file=sys.stderr)
 
 
 def template_files(folder: Path) -> Iterator[Path]:
@@ -178,6 +205,7 @@ def _report(
     library = disk_library(
         path,
         report,
+        ros=1,  # as all of SMACHA
         scripts=[*arguments.scripts, *_near(path, scripts)],
         templates=[*arguments.templates, *_near(path, templates)],
         disk=disk,

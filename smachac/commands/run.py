@@ -48,6 +48,8 @@ examples:
   smachac run main.yml --mock scenario.yml --orders 100   try 100 orders of concurrent branches
   smachac run main.yml --faults faults.yml       inject faults into the simulation
   smachac run main.yml --expect succeeded        fail if the outcome is another one (CI)
+  smachac run main.yml --ros                     run it as a ROS node, here and now
+  smachac run main.yml --ros --ros-args -p speed:=0.2 -r __ns:=/robot_1
 
 exit codes: 0 the machine ended with an outcome (the one of --expect), 1 the run failed or the
 script has errors, 2 wrong usage, 70 a bug in smachac, 130 interrupted
@@ -62,6 +64,9 @@ def run_arguments(parser: argparse.ArgumentParser) -> None:
                         help="make a film of the simulated arm: .gif or .mp4")  # fmt: skip
     parser.add_argument("--trace", type=as_path, metavar="FILE",
                         help="write every event to FILE, as JSON lines")  # fmt: skip
+    parser.add_argument("--ros", action="store_true", help="run it as a ROS node")
+    parser.add_argument("--ros-args", nargs=argparse.REMAINDER, metavar="...",
+                        help="with --ros: the arguments of the node, at the end")  # fmt: skip
     parser.add_argument("--seed", type=int, default=0,
                         help="seed of the simulation and random states (default: 0)")  # fmt: skip
     parser.add_argument("--faults", type=as_path, metavar="FILE",
@@ -92,6 +97,10 @@ def run_command(arguments: Namespace) -> int:
         return usage("--schedule and --orders need --mock: the turns of threads cannot be chosen")
     if arguments.mock is not None and (record is not None or arguments.gui or arguments.faults):
         return usage(NO_ARM)
+    if arguments.mock is not None and arguments.ros:
+        return usage("--ros runs a node, --mock plays a scenario: choose one")
+    if arguments.ros_args is not None and not arguments.ros:
+        return usage("--ros-args needs --ros")
     for option, path, is_ours in (
         ("trace", arguments.trace, _is_trace),
         ("record", record, _is_film),
@@ -134,6 +143,7 @@ def _run_program(arguments: Namespace, analysis: Analysis) -> int:
     """Generate the Python program and run it; the exit code."""
     from smachac.driver import compile_script
     from smachac.targets.python import TARGET
+    from smachac.targets.python.ros import is_node
 
     files, report = compile_script(analysis, TARGET)
     print_report(without_notes(report), arguments, sys.stderr)
@@ -143,6 +153,12 @@ def _run_program(arguments: Namespace, analysis: Analysis) -> int:
     simulated = any(type_.simulation for type_ in machine.state_types.values())
     if (arguments.gui or arguments.record or arguments.faults) and not simulated:
         return usage(NO_ARM)
+    node = is_node(machine, library, library.ros)
+    if node and not arguments.ros:
+        return usage("this script is a ROS node: --ros runs it, --mock plays a scenario")
+    if arguments.ros and library.ros == 2 and not node:
+        return usage("this script is no ROS node: run it without --ros")
+    arguments.node = ["--ros-args", *(arguments.ros_args or [])] if node else None
     faults: tuple[Fault, ...] | None = ()
     if arguments.faults is not None:
         found: Report = []
@@ -349,6 +365,7 @@ def perform(
             gui=arguments.gui,
             record=arguments.record,
             faults=faults,
+            arguments=arguments.node,
             on_preempt=lambda: print(
                 "preemption requested: the states stop; Ctrl-C again ends at once", file=sys.stderr
             ),

@@ -226,6 +226,8 @@ SETTINGS = """\
 #:schema schemas/project.json
 # Folders with sub-scripts and state types (docs/ci.md describes all settings).
 templates = ["templates"]
+# Generated nodes are for ROS 2; 1 is for a ROS 1 distribution such as Noetic (docs/ros.md).
+ros = 2
 """
 
 HOOKS = """\

@@ -13,12 +13,14 @@ from smachac.diagnostics.severities import Policy
 from smachac.diagnostics.source import Source, Span
 from smachac.diagnostics.wording import listed
 from smachac.frontend.errors.script import too_big, unreadable_file
+from smachac.frontend.loader import DEFAULT_ROS, ROS_VERSIONS, Ros
 
 SETTINGS: Mapping[str, str] = {
     "scripts": "Folders with sub-scripts, relative to this file.",
     "templates": "Folders with state types: their interfaces and templates.",
     "code": "Folders with the Python modules and C++ headers of state types.",
     "exclude": "Patterns of files to exclude when a folder is checked or formatted.",
+    "ros": "The version of ROS of generated programs: 1 or 2.",
     "severity": 'Severities by code, or by the beginning of codes: SM204 = "error".',
 }
 """The settings of a project file, with their descriptions."""
@@ -40,13 +42,15 @@ LONGEST_KEY = 200
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Project:
     """The settings of a project file: search folders, absolute or relative to the working folder;
-    patterns of files to exclude when a folder is checked, relative to `folder`; severities."""
+    patterns of files to exclude when a folder is checked, relative to `folder`; the version of ROS
+    of generated programs; severities."""
 
     folder: Path = Path()
     scripts: tuple[Path, ...] = ()
     templates: tuple[Path, ...] = ()
     code: tuple[Path, ...] = ()
     exclude: tuple[str, ...] = ()
+    ros: Ros = DEFAULT_ROS
     policy: Policy = field(default_factory=Policy)
 
 
@@ -80,13 +84,19 @@ def read_project(
         return None
     folders: dict[str, tuple[Path, ...]] = {}
     texts: dict[str, tuple[str, ...]] = {}
-    policy = Policy()
+    policy, ros = Policy(), DEFAULT_ROS
     for key, value in settings.items():
         if key not in SETTINGS:
             message = f"`{key}` is not a setting of smachac"
             _wrong(source, key, message, _near(key, SETTINGS), report, ("setting", key))
         elif key == "severity":
             policy = Policy(severities=_severities(source, value, report, codes))
+        elif key == "ros":
+            if value is True or value not in ROS_VERSIONS:
+                help = "write `ros = 2`, or `ros = 1` for a ROS 1 distribution such as Noetic"
+                _wrong(source, key, "`ros` must be 1 or 2", help, report, ("ros",))
+            else:
+                ros = value
         elif not isinstance(value, list) or not all(isinstance(item, str) for item in value):
             kind = "patterns" if key == "exclude" else "folders"
             message = f"`{key}` must be a list of {kind}"
@@ -102,6 +112,7 @@ def read_project(
         templates=folders.get("templates", ()),
         code=folders.get("code", ()),
         exclude=texts.get("exclude", ()),
+        ros=ros,
         policy=policy,
     )
 

@@ -17,7 +17,7 @@ from smachac.diagnostics.diagnostic import Code, Diagnostic, Report, did_you_mea
 from smachac.diagnostics.source import Source, Span
 from smachac.frontend.config import Project, read_project
 from smachac.frontend.errors.script import too_big, unreadable_file
-from smachac.frontend.loader import Library
+from smachac.frontend.loader import Library, Ros
 from smachac.frontend.yaml_tree import Tree, parse
 
 PACKAGE = Path(__file__).parent.parent
@@ -244,6 +244,12 @@ def find_project(
     return Project()
 
 
+def has_project(main: Path) -> bool:
+    """Whether `find_project` finds a project file for a script."""
+    report: Report = []
+    return find_project(main, report) != Project() or bool(report)
+
+
 def _inside_repository(project: Project, source: Source, report: Report) -> Project:
     """The project without the search folders outside its git repository, or outside its own folder
     if there is none."""
@@ -283,6 +289,7 @@ def disk_library(
     *,
     scripts: Sequence[Path] = (),
     templates: Sequence[Path] = (),
+    ros: Ros | None = None,
     disk: Disk | None = None,
     codes: Mapping[str, Code] | None = None,
 ) -> Library:
@@ -292,7 +299,8 @@ def disk_library(
     `scripts`; templates in `templates`, the project's `templates`, `templates/` beside the main
     script, and the built-in folders; modules and headers of the user in the project's `code`, the
     folder of the main script and its `include/`; message definitions of ROS as `definitions`
-    describes. No file outside these folders is read. `codes`: see `read_project`.
+    describes. No file outside these folders is read. `ros` replaces the version of ROS of the
+    project. `codes`: see `read_project`.
     """
     disk = disk or Disk()
     project = find_project(main, report, disk, codes)
@@ -336,6 +344,7 @@ def disk_library(
         script_names=lambda caller: _stems(script_folders(caller), (".yml", ".yaml")),
         template_names=lambda: _stems(template_folders[:-1], (".tpl.py", ".tpl", ".yml")),
         parse=disk.parse,
+        ros=project.ros if ros is None else ros,
         policy=project.policy,
         robot=lambda name: _robot_file(name, disk, report),
     )

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, field
+from typing import Literal
 
 from smachac.diagnostics.diagnostic import (
     Report,
@@ -11,6 +12,12 @@ from smachac.diagnostics.diagnostic import (
 from smachac.diagnostics.severities import Policy
 from smachac.diagnostics.source import Source
 from smachac.frontend.yaml_tree import Tree, parse
+
+Ros = Literal[1, 2]
+"""A major version of ROS, for which programs are generated."""
+
+ROS_VERSIONS: tuple[Ros, ...] = (1, 2)
+DEFAULT_ROS: Ros = 2
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -23,9 +30,9 @@ class Library:
     by path (`my_robot/grasp.hpp`); `code_names(folder)` the names of files and folders in a folder
     of such code; `definitions(path)` all message definitions of ROS with a path, such as
     `std_srvs/srv/Trigger.srv`, in the order of the searched folders. The lists of folders and names
-    are for messages. `policy` has the severities of the project. `parse` may return one tree for
-    all scripts that share a text. `robot(file)` returns a description or URDF file of a built-in
-    robot, or a file of PyBullet's data.
+    are for messages. `ros` and `policy` are the version of ROS and the severities of the project.
+    `parse` may return one tree for all scripts that share a text. `robot(file)` returns a
+    description or URDF file of a built-in robot, or a file of PyBullet's data.
     """
 
     script: Callable[[str, str], Source | None]
@@ -39,6 +46,7 @@ class Library:
     script_names: Callable[[str], Sequence[str]] = lambda caller: ()
     template_names: Callable[[], Sequence[str]] = lambda: ()
     parse: Callable[[Source, Report], Tree | None] = parse
+    ros: Ros = DEFAULT_ROS
     policy: Policy = field(default_factory=Policy)
     robot: Callable[[str], Source | None] = lambda file: None
 
@@ -69,6 +77,7 @@ def memory_library(files: Mapping[str, str], built_in: Library) -> Library:
             *built_in.template_names(),
         ],
         robot=built_in.robot,
+        ros=built_in.ros,
     )
 
 

@@ -65,6 +65,7 @@ def lower(script: Script) -> Machine:
         definitions=script.definitions,
         unused=script.unused,
         properties=script.properties,
+        params=script.params,
         state_types=script.state_types,
     )
 

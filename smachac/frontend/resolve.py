@@ -49,8 +49,9 @@ from smachac.frontend.state_fields import Entries, accepts, read_fields, with_me
 from smachac.frontend.state_types import find_state_type
 from smachac.frontend.type_annotations import Aliases, read_aliases, typed
 from smachac.frontend.unused import Mark, Uses
+from smachac.frontend.values import as_value
 from smachac.frontend.yaml_tree import Entry, Map, Scalar, Seq, Tree, known_wrong
-from smachac.ir.nodes import Preset, StateType
+from smachac.ir.nodes import Param, Preset, StateType
 
 MAX_STATES = 1_000_000
 """The most states of a script with its sub-scripts."""
@@ -155,6 +156,7 @@ class _Resolver:
             definitions=definitions_of(base, self.library),
             unused=self.uses.unused(self.report),
             properties=properties_of(entries.get("properties"), source, self.library, self.report),
+            params=_params(entries.get("params")),
             state_types={name: type_ for name, type_ in self.types.items() if type_ is not None},
         )
 
@@ -448,6 +450,15 @@ def _remapping_in_iterator(span: Span) -> Diagnostic:
     message = "the state of an Iterator cannot have a remapping: it uses the Iterator's keys"
     help = "rename the keys, or put the state into a StateMachine and remap there"
     return wrong_shape(span, message, help, arguments=("remapping",))
+
+
+def _params(entry: Entry | None) -> tuple[Param, ...]:
+    """The params of the main script that have values of their own."""
+    if entry is None or not isinstance(entry.value, Map):
+        return ()
+    return tuple(
+        Param(name=str(each.key.value), value=as_value(each.value)) for each in entry.value.entries
+    )
 
 
 def _unknown(name: Word, transitions: Pairs, around: _Environment) -> State:

@@ -12,7 +12,7 @@ from typing import NamedTuple, TypeAlias
 from smachac.diagnostics.source import Source, Span, Word
 from smachac.frontend.schema import FieldOwner
 from smachac.ir.message_types import Definitions
-from smachac.ir.nodes import Outcome, Preset, StateType, Unused, Value, Variable
+from smachac.ir.nodes import Outcome, Param, Preset, StateType, Unused, Value, Variable
 from smachac.ir.properties import Property
 from smachac.ir.robot import Robot
 from smachac.ir.types import Type
@@ -135,4 +135,5 @@ class Script:
     definitions: Definitions = field(default_factory=dict)
     unused: tuple[Unused, ...] = ()
     properties: tuple[Property, ...] = ()
+    params: tuple[Param, ...] = ()
     state_types: Mapping[str, StateType] = field(default_factory=dict)

@@ -21,7 +21,7 @@ from smachac.frontend.script import Keys, State
 from smachac.frontend.sugar import NAMES, is_own, read_sugar
 from smachac.frontend.unquoted import check_name, check_unquoted
 from smachac.frontend.values import as_value, as_written
-from smachac.frontend.yaml_tree import Entry, is_known_wrong
+from smachac.frontend.yaml_tree import Entry, Map, Scalar, Tree, is_known_wrong
 from smachac.ir.nodes import Key, Outcome, StateType, Struct, Value, Variable
 from smachac.ir.types import ANY
 
@@ -207,6 +207,23 @@ def _check_unquoted(entries: Entries, owner: FieldOwner, type_: StateType, repor
     for name, variable in type_.variables.items():
         if variable.unquoted and name in entries:
             check_unquoted(entries[name].value, variable.unquoted, report)
+        if variable.role == "qos" and name in entries:
+            _check_qos(entries[name].value, report)
+
+
+def _check_qos(tree: Tree, report: Report) -> None:
+    """The quality of service of a topic of ROS 2: a preset, a depth, or policies."""
+    from smachac.runtime.ros2_qos import faults
+
+    value: object = ()  # a list is none
+    if isinstance(tree, Scalar):
+        value = tree.value
+    elif isinstance(tree, Map):
+        value = {str(each.key.value): getattr(each.value, "value", ()) for each in tree.entries}
+    for fault in faults(value):
+        help = "write a preset such as `sensor_data`, a depth, or policies such as"
+        help += " `{reliability: best_effort, durability: volatile, depth: 5}`"
+        report.append(wrong_shape(tree.span, fault, help, arguments=("qos", fault)))
 
 
 def _written(name: Word, entries: Entries, scope: Scope) -> Iterator[Variable]:

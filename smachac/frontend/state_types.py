@@ -336,6 +336,7 @@ def _variable(name: str, tree: Tree, report: Report) -> VariableType:
         unquoted=_unquoted(tree, report),
         arguments=_arguments(tree, role, report),
         returns=_returns(tree, role, report),
+        ros=_ros_versions(tree),
     )
 
 
@@ -360,6 +361,21 @@ def _returns(tree: Tree, role: VariableRole, report: Report) -> FunctionResult:
     message, help = "`returns` is one of `value`, `outcome`", did_you_mean(word.text, _RESULTS)
     report.append(wrong_shape(word.span, message, help, arguments=("returns", word.text)))
     return ""
+
+
+def _ros_versions(tree: Tree) -> dict[str, int]:
+    """The version of ROS that a variable needs, by value; under the empty name, for any value."""
+    entry = tree.get("ros") if isinstance(tree, Map) else None
+    if entry is None:
+        return {}
+    pairs = [("", entry.value)]
+    if isinstance(entry.value, Map):
+        pairs = [(str(each.key.value), each.value) for each in entry.value.entries]
+    return {
+        value: version.value
+        for value, version in pairs
+        if isinstance(version, Scalar) and isinstance(version.value, int)
+    }
 
 
 def _unquoted(tree: Tree, report: Report) -> str:

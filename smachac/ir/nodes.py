@@ -49,7 +49,7 @@ class Value:
 VariableRole = Literal[
     "", "callbacks", "conditions", "function", "duration", "steps", "limb", "grasp", "frame",
     "output_function", "service_type", "action_type", "request", "response", "goal", "result",
-    "joint_speed", "grip",
+    "joint_speed", "grip", "qos",
 ]  # fmt: skip
 """The meaning of a variable's value for a state (docs/state_types.md, Facts)."""
 
@@ -354,6 +354,7 @@ class VariableType:
     unquoted: str = ""
     arguments: tuple[str, ...] | None = None
     returns: FunctionResult = ""
+    ros: Mapping[str, int] = field(default_factory=dict, compare=False, repr=False)
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -405,6 +406,14 @@ class StateType:
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
+class Param:
+    """A param of a script. The values that look it up have its span."""
+
+    name: str
+    value: Value
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
 class Machine:
     """A whole program: the outermost container and the data of the base template.
 
@@ -412,8 +421,8 @@ class Machine:
     `manifest`, and those of its interface). `source` is the name of the script without its folder,
     `digest` a SHA-256 over the texts of the script and its sub-scripts. `robot`, `unused`,
     `properties` and `definitions`, those of messages of ROS, are for rules; of the targets only
-    `dot` uses properties. `state_types` are the
-    interfaces of its states and of its base, by name.
+    `dot` uses properties. `params` are those of the main script. `state_types` are the interfaces
+    of its states and of its base, by name.
     """
 
     root: StateMachine
@@ -425,6 +434,7 @@ class Machine:
     unused: tuple[Unused, ...] = field(default=(), compare=False, repr=False)
     properties: tuple[Property, ...] = field(default=(), compare=False, repr=False)
     definitions: Definitions = field(default_factory=dict, compare=False, repr=False)
+    params: tuple[Param, ...] = field(default=(), compare=False, repr=False)
     state_types: Mapping[str, StateType] = field(default_factory=dict, compare=False, repr=False)
 
 

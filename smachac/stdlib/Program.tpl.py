@@ -22,7 +22,7 @@ except ImportError:  # without SMACH: smachac.runtime has the same names
 {%- endfor %}
 
 
-def build():
+def build({{ build_parameters }}):
     """Build the state machine `{{ name | docstring }}`."""
 {%- if main_def %}
     {{ main_def | indent(4) }}
@@ -36,14 +36,16 @@ def build():
 {%- endif %}
 
 
-def {{ function_name | default("main") }}():
+def {{ function_name | default("main") }}({{ main_parameters }}):
 {%- block main %}
     """Run the state machine once and return its outcome."""
     return build().execute()
 {%- endblock %}
 
 
+{% block end -%}
 if __name__ == "__main__":
     outcome = {{ function_name | default("main") }}()
     print(f"outcome: {outcome}")
     raise SystemExit(outcome is None)
+{%- endblock %}

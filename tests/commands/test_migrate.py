@@ -292,3 +292,18 @@ def test_a_file_is_no_folder(tmp_path: Path, capsys: pytest.CaptureFixture[str])
 
 def test_a_report_on_nothing() -> None:
     assert render_migration([], "text").endswith("0 places mean something else here\n")
+
+
+def test_a_project_of_smacha_is_for_ros_1(
+    tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    (tmp_path / ".git").mkdir()
+    (tmp_path / "main.yml").write_text("name: sm\noutcomes: [a]\nstates: []\n", encoding="utf-8")
+    main(["migrate", str(tmp_path)])
+    assert "smachac.toml (ros = 1)" in capsys.readouterr().err
+    settings = tmp_path / "smachac.toml"
+    assert "\nros = 1\n" in settings.read_text("utf-8")
+    settings.write_text("ros = 2\n", encoding="utf-8")
+    main(["migrate", str(tmp_path)])
+    assert capsys.readouterr().err == ""
+    assert settings.read_text("utf-8") == "ros = 2\n"

@@ -73,7 +73,7 @@ def outcome(graph: Graph, folder: Path, states: str) -> str:
 def test_the_script_of_the_docs_runs(graph: Graph, tmp_path: Path) -> None:
     text = (ROOT / "docs/ros.md").read_text("utf-8")
     path = tmp_path / "fetch.yml"
-    path.write_text(text.split("```yaml\n")[1].split("```")[0], encoding="utf-8")
+    path.write_text("# fetch" + text.split("# fetch")[1].split("```")[0], encoding="utf-8")
     (program,) = smachac.compile(path, "python").values()
     graph.node("action_server")
     graph.node("service_server")

@@ -10,6 +10,7 @@ from typing import Any
 
 from smachac.runtime import smach
 from smachac.runtime.smach import State
+from smachac.runtime.smach_ros2.message_fields import filled_field
 from smachac.runtime.state_callbacks import Callback, is_outcome
 
 
@@ -38,7 +39,7 @@ class Outgoing:
             if hasattr(message, "_check_fields"):  # otherwise a wrong type is converted or crashes
                 message._check_fields = True
             for slot in self.slots:
-                setattr(message, slot, ud[slot])
+                filled_field(message, slot, ud[slot])
             changed = None if self.callback is None else self.callback(ud, message)
         except Exception:
             smach.logerr(f"nothing is sent to '{self.name}':\n{traceback.format_exc()}")

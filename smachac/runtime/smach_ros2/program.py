@@ -11,14 +11,16 @@ from smachac.runtime.smach_ros2.node import SmachNode
 from smachac.runtime.smach_ros2.signals import GRACE, PreemptHandler
 
 
-def start_node(name: str, args: list[str] | None = None, **kwargs: Any) -> Any:
+def start_node(
+    name: str, args: list[str] | None = None, node_class: Any = SmachNode, **kwargs: Any
+) -> Any:
     """Initialize rclpy and start a node that a thread spins.
 
     From now on SIGINT and SIGTERM preempt the machine of `run`; rclpy gets no signal handlers,
     because they end the node before goals can be cancelled. `args` are the arguments of the program
-    (default: sys.argv); other arguments are those of rclpy.node.Node.
+    (default: sys.argv); other arguments are those of `node_class`.
     """
-    return start(lambda: SmachNode(name, **kwargs), args)
+    return start(lambda: node_class(name, **kwargs), args)
 
 
 def start(make: Callable[[], Any], args: list[str] | None = None) -> Any:

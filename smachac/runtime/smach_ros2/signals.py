@@ -27,6 +27,7 @@ class PreemptHandler:
 
     Attributes:
         grace: seconds that the machines have to end.
+        shuts_down: whether rclpy is shut down when machines have ended that other threads execute.
         is_executing: whether the program is about to execute a machine, or executes one.
     """
 
@@ -37,7 +38,7 @@ class PreemptHandler:
         self._signalled = False
         self._changing = threading.Lock()
         self._context = context
-        self._shuts_down = shuts_down
+        self.shuts_down = shuts_down
         self._pipe = os.pipe()
         os.set_blocking(self._pipe[1], False)
         self._thread = threading.Thread(target=self._wait, name="signals", daemon=True)
@@ -92,7 +93,7 @@ class PreemptHandler:
                 main = threading.main_thread().ident
                 is_main = any(is_executed_by(main, machine) for machine in machines)
                 self._preempt(machines)
-                if self._shuts_down and not is_main:
+                if self.shuts_down and not is_main:
                     self._context.try_shutdown()
                 return
 

@@ -10,29 +10,71 @@ smacha_context.py has their variables.
 from __future__ import annotations
 
 from smachac.diagnostics.diagnostic import Report
-from smachac.frontend.loader import Library
-from smachac.ir.nodes import Checked, StateType
+from smachac.frontend.loader import Library, Ros
+from smachac.ir.nodes import Checked, Machine, StateType
 from smachac.targets import BuildContext, Files, OptionError, Target, stem
 from smachac.targets.errors import unsupported_by_target
+from smachac.targets.python import ros
 from smachac.targets.python.class_reader import declared
+from smachac.targets.python.package import package_name
 
 OPTIONS = {
     "comments": "yes: print the comment blocks of templates (default: no)",
     "introspection": "yes: print the introspection server of ROS programs (default: no)",
+    "action": "TYPE: offer the machine as an action of that type; ROS 2 only",
+    "lifecycle": "true: a managed node (configure, activate, deactivate); ROS 2 only",
+    "package": "true, or NAME: a package for colcon (ament_python); ROS 2 only",
+    "ros": "1 or 2: the version of ROS (default: that of the project file, else 2)",
 }
 
 
 def emit(machine: Checked, context: BuildContext, report: Report) -> Files:
     """The module of a machine: `<name>.py`."""
     from smachac.targets.python.module import module_text
+    from smachac.targets.python.package import package_files
+    from smachac.targets.python.parameters import RESERVED, ros_parameters
 
-    for name, value in context.options.items():
+    for name in ("comments", "introspection"):
+        value = context.options.get(name, "no")
         if value not in ("yes", "no"):
             raise OptionError(f"`{name}` must be `yes` or `no`, not `{value}`")
+    version = ros.version(context)
+    _check_lifecycle(machine, context, version)
+    package = _package(machine, context, version)
     if _moves_another_arm(machine, report):
         return {}
-    text = module_text(machine, context, report)
-    return {} if text is None else {f"{stem(machine)}.py": text}
+    found = [*ros.unsupported(machine, version)]
+    report.extend(found)
+    text = None if found else module_text(machine, context, report)
+    if text is None:
+        return {}
+    if package:
+        return package_files(machine, package, text, ros_parameters(machine, RESERVED).declared)
+    return {f"{stem(machine)}.py": text}
+
+
+def _check_lifecycle(machine: Machine, context: BuildContext, version: Ros) -> None:
+    """Raises OptionError if the option `lifecycle` is wrong or fits neither script nor options."""
+    value = context.options.get("lifecycle", "false")
+    if value not in ("true", "false"):
+        raise OptionError(f"`lifecycle` must be `true` or `false`, not `{value}`")
+    if value == "false":
+        return
+    if not ros.is_node(machine, context.library, version):
+        raise OptionError("`lifecycle` needs a node of ROS 2: a script with the base `ROSBase`")
+    for other in ("action", "introspection"):
+        if context.options.get(other, "no") != "no":
+            raise OptionError(f"`lifecycle` and `{other}` exclude each other: choose one")
+
+
+def _package(machine: Machine, context: BuildContext, version: Ros) -> str:
+    """The name of the package of the options; empty if there is none. Raises OptionError."""
+    value = context.options.get("package", "false")
+    if value == "false":
+        return ""
+    if not ros.is_node(machine, context.library, version):
+        raise OptionError("`package` needs a node of ROS 2: a script with the base `ROSBase`")
+    return package_name(value, machine)
 
 
 def _moves_another_arm(machine: Checked, report: Report) -> bool:

@@ -9,6 +9,7 @@ from dataclasses import dataclass, field, replace
 from smachac.diagnostics.diagnostic import Diagnostic, Related, Report, identity
 from smachac.diagnostics.source import Span
 from smachac.frontend.errors.references import template_error
+from smachac.frontend.loader import Ros
 from smachac.ir.nodes import Node, StateType
 from smachac.targets import BuildContext
 from smachac.targets.errors import defined_twice, python_2_code
@@ -16,6 +17,7 @@ from smachac.targets.python import structure
 from smachac.targets.python.functions import Plan
 from smachac.targets.python.imports import Names
 from smachac.targets.python.python2 import modern, parsed
+from smachac.targets.python.ros import RosType, other_modules, other_version
 from smachac.targets.python.smacha_context import Headers
 from smachac.targets.templates.engine import BlockError, Blocks, Page
 
@@ -41,13 +43,15 @@ class UsedType:
     """A state type in this module: its class and the template that defines it.
 
     `whole`: the template has a block `body`, as SMACHA's have, so that it is rendered for each
-    state; other templates are rendered once.
+    state; other templates are rendered once. `takes_node`: the first argument of the class is the
+    node of ROS 2.
     """
 
     type: StateType
     class_name: str
     template: str = ""
     whole: bool = False
+    takes_node: bool = False
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -66,12 +70,17 @@ class ModuleParts:
     `plan` holds the containers that functions build, and `functions` those functions, by their key.
     `wrappers` are the functions around containers, by path. `own_templates` are the files of the
     user's templates for containers, by type. `names` are those in the printed code. `faults` are
-    the findings about templates, without duplicates.
+    the findings about templates, without duplicates. `ros` is the version of ROS; `node`: the
+    functions of the module have the node of ROS 2 as a parameter. `action`: the type of the action
+    that it offers the machine as.
     """
 
     blocks: Blocks
     context: BuildContext
     state_types: Mapping[str, StateType]
+    ros: Ros = 1
+    node: bool = False
+    action: RosType | None = None
     plan: Plan = field(default_factory=dict)
     wrappers: Mapping[str, str] = field(default_factory=dict)
     fresh: Callable[[str, str], str] = field(default_factory=structure.variable_names)
@@ -137,6 +146,7 @@ class ModuleParts:
             self.note(python_2_code(span, old.strip(), new.strip()))
         if isinstance(tree, ast.Module):
             self.names.add(tree)
+            self._other_version(tree, text, page, block, node)
         else:
             words = getattr(tree, "msg", None) or str(tree) or "it is nested too deeply"
             number = getattr(tree, "lineno", None) or 1
@@ -147,6 +157,16 @@ class ModuleParts:
             help = f"correct the printed line `{line.strip()}`"
             self.fault(BlockError(template_error(span, message, help, (block, line.strip()))), node)
         return text
+
+    def _other_version(
+        self, tree: ast.Module, text: str, page: Page, block: str, node: Node
+    ) -> None:
+        """Report code of a template of the user for the other version of ROS."""
+        if self.context.library.own_template(page.file) is None:
+            return
+        for line, name in other_modules(tree, self.ros):
+            span = self._place(page, block, text.splitlines()[line - 1]) or node.span
+            self.note(other_version(span, name, self.ros))
 
     def _place(self, page: Page, block: str, line: str) -> Span | None:
         """The place of a printed line in a template; if it is not found, the place of the block."""

@@ -10,6 +10,7 @@ from smachac.frontend.loader import Library
 from smachac.ir.class_facts import ClassFacts, ClassFault
 from smachac.ir.nodes import StateType
 from smachac.targets.interface_check import Declared
+from smachac.targets.python.ros import has_node_parameter
 
 
 def declared(type_: StateType, library: Library) -> Declared | None:
@@ -19,7 +20,8 @@ def declared(type_: StateType, library: Library) -> Declared | None:
         return None
     code = type_.code.get("python", "")
     name = code if ":" in code or facts.name is None else facts.name.text
-    faults = (*_certain(type_, facts), *_constructor_faults(type_, facts))
+    node = library.ros == 2 and has_node_parameter(type_)
+    faults = (*_certain(type_, facts), *_constructor_faults(type_, facts, node))
     if facts.name is None:
         return Declared(name=name, span=NOWHERE, faults=faults)
     return Declared(
@@ -40,10 +42,10 @@ def _certain(type_: StateType, facts: ClassFacts) -> Iterator[ClassFault]:
             yield fault
 
 
-def _constructor_faults(type_: StateType, facts: ClassFacts) -> Iterator[ClassFault]:
+def _constructor_faults(type_: StateType, facts: ClassFacts, node: bool) -> Iterator[ClassFault]:
     """The variables of an interface that the constructor does not accept, and the parameters that
-    it requires and never gets. A program passes the variables that a script sets, by their names
-    (states.py)."""
+    it requires and never gets. A program passes the variables that a script sets, by their names,
+    and the `node` of ROS 2 to a class with this parameter (states.py)."""
     if facts.name is None or facts.parameters is None:
         return
     known = {each.word.text for each in facts.parameters}
@@ -55,6 +57,7 @@ def _constructor_faults(type_: StateType, facts: ClassFacts) -> Iterator[ClassFa
         meant.add(near)
         word = facts.name._replace(text=name)
         yield ClassFault(kind="no parameter", name=word, near=near)
+    passed |= {"node"} if node else set()
     passed |= type_.given | ({"outcomes"} if type_.optional else set())
     for each in facts.parameters:
         name = each.word.text

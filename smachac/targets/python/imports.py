@@ -8,12 +8,17 @@ from collections.abc import Iterable, Iterator, Mapping
 from dataclasses import dataclass, field
 from textwrap import indent
 
+from smachac.frontend.loader import Ros
 from smachac.ir.nodes import Machine
 from smachac.ir.traversal import expressions, walk
 from smachac.targets.python.formatter import WIDTH, laid_out, names
 
-ROS_MODULES = ("rospy", "roslib", "rospkg", "rostopic", "actionlib", "tf2_ros")
-"""Modules that SMACHA's bases imported in every program."""
+ROS_MODULES: Mapping[Ros, tuple[str, ...]] = {
+    1: ("rospy", "roslib", "rospkg", "rostopic", "actionlib", "tf2_ros"),
+    2: ("rclpy", "tf2_ros"),
+}
+"""Modules of ROS that code may use without an import: those that SMACHA's bases imported in every
+program, and their successors."""
 
 MESSAGES = {
     "geometry_msgs.msg": (
@@ -63,7 +68,8 @@ def with_fallback(text: str, tree: ast.Module) -> str:
 
 def importable() -> set[str]:
     """The names that a program may use without importing them."""
-    return {"smach", "smach_ros", *ROS_MODULES, *_MODULE_OF}
+    modules = (name for names in ROS_MODULES.values() for name in names)
+    return {"smach", "smach_ros", *modules, *_MODULE_OF}
 
 
 def import_lines(texts: Iterable[str]) -> str:
@@ -168,15 +174,16 @@ class Names:
                     self.bound.update(each.asname or each.name.partition(".")[0] for each in names)
 
 
-def unbound_names(names: Names, also: Iterable[str] = ()) -> list[str]:
+def unbound_names(names: Names, ros: Ros, also: Iterable[str] = ()) -> list[str]:
     """Imports for names that code uses and does not bind: modules by their attributes
     (`rospy.loginfo`), messages by their names (`Point()`); `also` are further modules. `import *`
     binds the names in MESSAGES; from a module that is not listed there it may bind any message."""
     used, named, bound = names.used, names.named, names.bound
-    modules = sys.stdlib_module_names | {*ROS_MODULES, *also}
+    known = ROS_MODULES[ros]
+    modules = sys.stdlib_module_names | {*known, *also}
     found = [f"import {name}" for name in sorted(used - bound) if name in modules]
     unknown = any(module not in MESSAGES for module in names.everything)
-    if unknown or not any(name in used | named | bound for name in (*ROS_MODULES, "smach_ros")):
+    if unknown or not any(name in used | named | bound for name in (*known, "smach_ros")):
         return found
     return found + [
         f"from {_MODULE_OF[name]} import {name}"

@@ -4,12 +4,13 @@ from __future__ import annotations
 
 import ast
 import re
-from collections.abc import Iterable
+from collections.abc import Iterable, Mapping
 from functools import partial
 from textwrap import indent
 
 from smachac.diagnostics.diagnostic import Report, has_errors
 from smachac.frontend.errors.references import template_error
+from smachac.frontend.loader import Ros
 from smachac.ir.nodes import Machine
 from smachac.ir.traversal import walk
 from smachac.targets import BuildContext, made_by
@@ -27,8 +28,16 @@ from smachac.targets.python.imports import (
     unbound_names,
     with_fallback,
 )
+from smachac.targets.python.parameters import (
+    NO_NODE,
+    RESERVED,
+    RosParameters,
+    node_variables,
+    ros_parameters,
+)
 from smachac.targets.python.python2 import modern, parsed
-from smachac.targets.python.smacha_context import FILTERS, TESTS, container_variables, plain
+from smachac.targets.python.ros import action_type, is_managed, is_node, template_finder, version
+from smachac.targets.python.smacha_context import TESTS, container_variables, filters, plain
 from smachac.targets.python.states import (
     NO_BODY,
     EmittedContainer,
@@ -51,8 +60,11 @@ MOST_BRACKETS = 80
 """The most brackets of code that is never nested too deeply for Python, which allows 200 levels: a
 value of the script that contains the code has up to 100."""
 
-NODE_IMPORTS = [f"import {name}" for name in ("os", "rospy", "signal", "threading", "time")]
-"""The imports of ROSNode.tpl.py."""
+NODE_IMPORTS: Mapping[Ros, list[str]] = {
+    1: [f"import {name}" for name in ("os", "rospy", "signal", "threading", "time")],
+    2: ["from smachac.runtime.smach_ros2 import program"],
+}
+"""The imports of a program that is a node, by version of ROS."""
 
 CATCHING = '''def error_as_outcome(state, outcome):
     """Let a state end with an outcome where it would raise an exception, which is logged."""
@@ -84,11 +96,16 @@ def module_text(machine: Machine, context: BuildContext, report: Report) -> str 
         if context.options.get(option, "no") == "yes"
         for name in names
     )
-    blocks = Blocks(context.library.template, filters=FILTERS, tests=TESTS, shown=shown)
+    ros = version(context)
+    find = template_finder(context.library, ros)
+    action = action_type(machine, context)
+    blocks = Blocks(find, filters=filters(ros), tests=TESTS, shown=shown)
     text, faults = None, report[:0]
     for plan in (functions, one_function):
-        module = ModuleParts(blocks, context, machine.state_types)
+        module = ModuleParts(blocks, context, machine.state_types, ros)
         module.plan = plan(machine, partial(is_printed_by_template, module))
+        module.node = is_node(machine, context.library, ros)
+        module.action = action
         module.wrappers = wrappers(machine)
         try:
             text = _text(machine, context, module, whole=plan is one_function)
@@ -108,7 +125,11 @@ def _text(
     unless it is planned so (`whole`)."""
     template = _base_template(machine, context, module)
     root = module.fresh(machine.root.name, "")
-    inside = EmittedContainer(node=machine.root, variable=root, path=machine.root.name, depth=1)
+    settable = ros_parameters(machine, RESERVED) if module.node and not whole else RosParameters()
+    name, places = machine.root.name, settable.places
+    inside = EmittedContainer(
+        node=machine.root, variable=root, path=name, depth=1, parameters=places
+    )
     states = children(inside, module)
     if has_errors(module.faults):
         return None
@@ -123,15 +144,10 @@ def _text(
     built = [function.text for function in module.functions.values()]
     needed, own = class_imports(module.classes, context.levels)
     parts = [*texts.values(), own, lines, *built]
-    if template == "Program.tpl.py" and any(map(_needs_node, parts)):
-        template = "ROSProgram.tpl.py"
-    if template in ONE_FUNCTION and any(texts[name] for name in PREPENDED):
-        template = ONE_FUNCTION[template]
+    template = _program_template(template, parts, texts, module)
     expressions = expression_texts(machine)
     module.names.bound.add(root)
-    imports = [*_imports(expressions, module), *needed]
-    if template in ("ROSProgram.tpl.py", "ROSBase.tpl.py"):
-        imports += NODE_IMPORTS
+    imports = [*_imports(expressions, module), *needed, *_node_imports(template, settable, module)]
     code, function_code = indent(lines, "    "), "\n\n\n".join(built)
     variables: dict[str, object] = {
         **{variable.name: plain(variable.value.data) for variable in machine.variables},
@@ -154,6 +170,7 @@ def _text(
         "defined_headers": module.defined_headers,
         "smach_ros": any(_uses(part, _SMACH_ROS) for part in parts),
         "introspection": context.options.get("introspection", "no") == "yes",
+        **(_node_variables(machine, settable, root, module)),
     }
     text = _rendered(template, variables, imports, own, module) + "\n"
     own_code = uses_own_templates(machine, context.library) and built and not whole
@@ -174,13 +191,49 @@ def _text(
     return tidy
 
 
+def _program_template(
+    template: str, parts: Iterable[str], texts: Mapping[str, str], module: ModuleParts
+) -> str:
+    """The template of the program: that of the base, unless the code of its states needs a node or
+    adds code around the run."""
+    node = module.node if module.ros == 2 else any(map(_needs_node, parts))
+    if template == "Program.tpl.py" and node:
+        template = "ROSProgram.tpl.py"
+    if template in ONE_FUNCTION and any(texts[name] for name in PREPENDED):
+        template = ONE_FUNCTION[template]
+    return template
+
+
+def _node_variables(
+    machine: Machine, settable: RosParameters, root: str, module: ModuleParts
+) -> Mapping[str, object]:
+    """The variables of the template for a node."""
+    if not module.node:
+        return NO_NODE
+    lifecycle = is_managed(module.context)
+    return node_variables(machine, settable, root, module.action, lifecycle=lifecycle)
+
+
+def _node_imports(template: str, settable: RosParameters, module: ModuleParts) -> list[str]:
+    """The imports of the code that starts the node."""
+    if template not in ("ROSProgram.tpl.py", "ROSBase.tpl.py"):
+        return []
+    more = ["from smachac.runtime.smach_ros2 import parameters"] if settable.declared else []
+    if module.node and is_managed(module.context):
+        more.append("from smachac.runtime.smach_ros2 import lifecycle")
+    if module.action is not None:
+        more.append(f"from {module.action.package}.action import {module.action.name}")
+        more.append("from smachac.runtime.smach_ros2 import serving")
+    return [*NODE_IMPORTS[module.ros], *more]
+
+
 def _imports(expressions: list[str], module: ModuleParts) -> list[str]:
     """The imports that templates print, and those that the code of the script and of templates
     needs."""
     trees = [tree for tree in map(parsed, expressions) if isinstance(tree, ast.Module)]
     for tree in trees:
         module.names.add(tree)
-    needed = unbound_names(module.names)
+    needed = unbound_names(module.names, module.ros)
     return [*module.buffers["imports"], *standard_imports(trees), *needed]
 
 
@@ -219,20 +272,21 @@ def _rendered(
     text = module.blocks.render_whole(template, variables)
     if template in ONE_FUNCTION:
         return text
-    can_be = "node" in module.blocks.names(template) and "init_node" not in text
-    is_node = can_be and _needs_node(text)
-    more = NODE_IMPORTS if is_node else []
+    can_be = module.ros == 1 and "node" in module.blocks.names(template)
+    can_be = can_be and "init_node" not in text
+    node = can_be and _needs_node(text)
+    more = NODE_IMPORTS[module.ros] if node else []
     names = Names()
     for tree in (modern(text).tree, *map(parsed, more)):
         if isinstance(tree, ast.Module):
             names.add(tree)
-    lacking = unbound_names(names, ["smach", "smach_ros"])
-    if not lacking and not is_node:
+    lacking = unbound_names(names, module.ros, ["smach", "smach_ros"])
+    if not lacking and not node:
         return text
     again = {
         **variables,
         "imports": _separate(import_lines([*imports, *lacking, *more]), own),
-        "is_node": is_node,
+        "is_node": node,
         "defined_headers": printed,
     }
     return module.blocks.render_whole(template, again)

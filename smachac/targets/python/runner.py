@@ -12,7 +12,7 @@ import traceback
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from contextlib import contextmanager
 from dataclasses import dataclass
-from functools import partial
+from functools import partial, wraps
 from pathlib import Path
 from types import FrameType, ModuleType
 from typing import Any
@@ -61,6 +61,7 @@ def execute(
     faults: Sequence[Fault] = (),
     on_preempt: Callable[[], None] = lambda: None,
     on_interrupt: Callable[..., Any] = signal.default_int_handler,
+    arguments: Sequence[str] | None = None,
 ) -> RunResult:
     """Run the module `text`; the result has no events, which `observe` receives.
 
@@ -68,11 +69,13 @@ def execute(
     frontend/files.py), and where it finds descriptions of robots and scenes. `observe` gets every
     event of the trace, with paths of the script; `faults` are injected into the simulation, and are
     events of the trace. Ctrl-C requests the machine to preempt and calls `on_preempt`; a second one
-    calls the signal handler `on_interrupt`. Exceptions of the program are not caught.
+    calls the signal handler `on_interrupt`. `arguments` are those of a node of ROS 2, which handles
+    Ctrl-C itself. Exceptions of the program are not caught.
     """
     from smachac.runtime.tracing import trace
 
     random.seed(seed)
+    given = [["smachac", *arguments]] if arguments is not None else []
     with loaded(name, text, *folders) as module:
         built: list[Any] = []
         emits: list[Callable[..., None]] = []
@@ -98,7 +101,7 @@ def execute(
             quiet(module["smach"], _print_log),
             _preempting(built, on_preempt, on_interrupt),
         ):
-            outcome: str | None = module[main_function(machine)]()
+            outcome: str | None = module[main_function(machine)](*given)
         return RunResult(
             outcome=outcomes[0] if outcomes else outcome,
             userdata=_userdata(built[-1]) if built else None,
@@ -160,8 +163,9 @@ def _watching(module: dict[str, Any], watch: Callable[[Any], None]) -> Iterator[
     build = module.get("build")
     if build is not None:
 
-        def watched_build() -> Any:
-            root = build()
+        @wraps(build)  # a node declares the parameters of its signature
+        def watched_build(*arguments: Any, **keywords: Any) -> Any:
+            root = build(*arguments, **keywords)
             watch(root)
             return root
 

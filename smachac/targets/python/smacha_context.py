@@ -5,12 +5,15 @@ from __future__ import annotations
 import hashlib
 import re
 from collections.abc import Callable, Iterable, Mapping
+from functools import partial
 from typing import Any
 
+from smachac.frontend.loader import Ros
 from smachac.ir.nodes import Concurrence, Container, Data, Expression, Leaf, Node, Struct, Variable
 from smachac.ir.traversal import own_outcomes, remapping
 from smachac.targets.python import structure
 from smachac.targets.python.formatter import call, docstring, flat, literal, string
+from smachac.targets.python.ros import replaced_names, ros_type
 
 
 class CodeText(str):
@@ -115,29 +118,60 @@ TESTS: Mapping[str, Callable[..., Any]] = {
 }
 
 
-def ros_class(value: object) -> CodeText:
+def ros_class(ros: Ros, value: object, module: str) -> CodeText:
     """The class that a ROS type names: `Trigger` of `std_srvs/Trigger`, `std_srvs.srv.Trigger`."""
-    return CodeText(re.split(r"[/.]", str(value))[-1])
+    found = ros_type(str(value), module, ros)
+    return CodeText(found.name if found is not None else value)
 
 
-def ros_import(
-    value: object, part: str, ending: str = "", other: str = "", code: object = ""
-) -> str:
-    """The import of a ROS type with a package name; empty for other types.
-
-    `code` may use a related class, such as `TestGoal` of `TestAction`: `other` replaces `ending`.
-    """
-    words = re.split(r"[/.]", str(value))
-    if len(words) < 2 or not all(word.isidentifier() for word in words):
+def ros_import(ros: Ros, value: object, module: str, code: object = "") -> str:
+    """The import of a ROS type with a package name; empty for other types. `code` may use a related
+    class of ROS 1, such as `TestGoal` beside `TestAction`."""
+    found = ros_type(str(value), module, ros)
+    if found is None:
         return ""
-    beside = words[-1].removesuffix(ending) + other
-    names = [words[-1], *([beside] if isinstance(code, str) and f"{beside}(" in code else [])]
-    return f"from {words[0]}.{part} import {', '.join(names)}"
+    text = code if isinstance(code, str) else ""
+    parts = RELATED.get(module, ()) if ros == 1 else ()
+    short = found.name.removesuffix("Action") if module == "action" else found.name
+    names = [found.name, *(f"{short}{part}" for part in parts if f"{short}{part}(" in text)]
+    return f"from {found.package}.{found.module} import {', '.join(names)}"
+
+
+def ros_code(ros: Ros, code: object, value: object, module: str) -> object:
+    """Code with the names that the parts of a ROS type have in a version of ROS: `TestGoal` in ROS
+    1, `Test.Goal` in ROS 2."""
+    found = ros_type(str(value), module, ros)
+    if found is None or not isinstance(code, CodeText):
+        return code
+    short = found.name.removesuffix("Action") if module == "action" else found.name
+    pairs = [(f"{short}{part}", f"{short}.{part}") for part in RELATED.get(module, ())]
+    names = {new: old for old, new in pairs} if ros == 1 else dict(pairs)
+    return CodeText(replaced_names(code, names))
+
+
+def ros_fields(value: object, message: str) -> object:
+    """A message with the fields of a mapping: the code `filled(Test.Goal(), {...})`."""
+    if not isinstance(value, Mapping):
+        return value
+    return CodeText(f"filled({message}(), {as_literal(value)})")
+
+
+RELATED = {"srv": ("Request", "Response"), "action": ("Goal", "Result", "Feedback")}
+"""The parts of services and actions, which are messages."""
+
+
+def filters(ros: Ros) -> dict[str, Callable[..., Any]]:
+    """The filters of templates, for a version of ROS."""
+    return {
+        **FILTERS,
+        "ros_class": partial(ros_class, ros),
+        "ros_import": partial(ros_import, ros),
+        "ros_code": partial(ros_code, ros),
+        "ros_fields": ros_fields,
+    }
 
 
 FILTERS: Mapping[str, Callable[..., Any]] = {
-    "ros_class": ros_class,
-    "ros_import": ros_import,
     "exptostr": without_ticks,
     "literal": as_literal,
     "code": lambda value: CodeText(value) if isinstance(value, str) else value,

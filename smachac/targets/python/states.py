@@ -13,7 +13,16 @@ from smachac.analysis.code_slots import called_with_userdata
 from smachac.frontend import schema
 from smachac.frontend.errors.references import template_error
 from smachac.ir.leaf import variable_of
-from smachac.ir.nodes import Container, Data, Expression, Iterator, Leaf, Node, StateType, Variable
+from smachac.ir.nodes import (
+    Container,
+    Data,
+    Expression,
+    Iterator,
+    Leaf,
+    Node,
+    StateType,
+    Variable,
+)
 from smachac.ir.traversal import own_outcomes
 from smachac.targets.python import structure
 from smachac.targets.python.add_call import NotAddedError, adapted
@@ -38,7 +47,13 @@ from smachac.targets.python.formatter import (
     names,
 )
 from smachac.targets.python.functions import ITEMS, Function, Place, variable_name
-from smachac.targets.python.smacha_context import adding, container_variables, state_variables
+from smachac.targets.python.ros import takes_node
+from smachac.targets.python.smacha_context import (
+    CodeText,
+    adding,
+    container_variables,
+    state_variables,
+)
 from smachac.targets.templates.engine import BlockError, Page
 
 _PRESET = re.compile(r"\s*\w+\.userdata\.(\w+) = ")
@@ -289,10 +304,11 @@ def _called(node: Container, parent: EmittedContainer, path: str, module: Module
     }
     # A function for one call alone takes the parameters of the function around it.
     parameters = parameters or outer
-    arguments = {
+    arguments: dict[str, Doc] = {
         parameter: outer.get(place) or literal(planned.arguments[parameter])
         for place, parameter in parameters.items()
     }
+    node_parameter = ["node"] if module.node else []
     if function.key not in module.functions:
         name = module.fresh(function.word, "build_")
         module.functions[function.key] = PrintedFunction(name=name)  # its place in the order
@@ -300,10 +316,13 @@ def _called(node: Container, parent: EmittedContainer, path: str, module: Module
         inside = EmittedContainer(
             node=node, variable=variable, path=path, depth=1, parameters=parameters
         )
-        text = _function(name, [*arguments], inside, function, module)
+        text = _function(name, [*node_parameter, *arguments], inside, function, module)
         module.functions[function.key] = PrintedFunction(name=name, text=text)
     name, depth = module.functions[function.key].name, parent.depth + 1
-    made = call(name, [(f"{parameter}=", value) for parameter, value in arguments.items()])
+    given = [("", each) for each in node_parameter]
+    made = call(
+        name, [*given, *((f"{parameter}=", value) for parameter, value in arguments.items())]
+    )
     doc = node.doc if node.doc != function.doc else ""
     added = structure.add(node, parent.node, structure.made(node, made), depth)
     return f"{structure.notes(node, depth, doc)}\n{added}"
@@ -332,7 +351,7 @@ def _leaf(leaf: Leaf, inside: EmittedContainer, path: str, module: ModuleParts) 
     used = _used(leaf, module)
     if used.whole:
         return _whole(leaf, inside, path, used, module)
-    arguments: structure.Arguments = []
+    arguments: structure.Arguments = [("", "node")] if used.takes_node else []
     dropped = len(own_outcomes(leaf)) < len(used.type.outcomes)
     if "outcomes" in used.type.given or (used.type.optional and dropped):
         arguments.append(("outcomes=", names(own_outcomes(leaf))))
@@ -385,9 +404,14 @@ def _used(leaf: Leaf, module: ModuleParts) -> UsedType:
         return module.used[leaf.type]
     type_ = module.state_types.get(leaf.type) or StateType(name=leaf.type, open=True)
     code = type_.code.get("python", f"{leaf.type}.tpl.py")
+    node = takes_node(type_, module.context.library, module.ros)
     if ":" in code:
         own = module.classes.setdefault(code, _own_name(code.partition(":")[2], leaf.type, module))
-        used = UsedType(type=type_, class_name=own)
+        used = UsedType(
+            type=type_,
+            class_name=own,
+            takes_node=node,
+        )
     elif module.blocks.source(code) is None:
         message = f"the state type `{leaf.type}` has no code for Python"
         help = f"add the template `{code}`, or name a class under `code` in `{leaf.type}.yml`"
@@ -399,6 +423,7 @@ def _used(leaf: Leaf, module: ModuleParts) -> UsedType:
             class_name=_class_name(leaf.type),
             template=code,
             whole="body" in found,
+            takes_node=node,
         )
         if not used.whole:
             variables: dict[str, object] = {
@@ -438,6 +463,8 @@ def _whole(
     own = module.context.library.own_template(used.template) is not None
     variables = state_variables(leaf, inside.node, inside.variable, path)
     variables["defined_headers"] = module.defined_headers
+    for name in [name for name in variables if (path, name) in inside.parameters]:
+        variables[name] = CodeText(inside.parameters[path, name])
     if not own:  # built-in templates take the keys of the interface beside those of the script
         variables["inputs"] = [key.name for key in leaf.inputs]
     called = _called_first(leaf, used, module)

@@ -10,6 +10,7 @@ from smachac.frontend.loader import Library
 from smachac.frontend.state_types import TEMPLATE_FILES
 from smachac.ir.nodes import Machine
 from smachac.ir.traversal import walk
+from smachac.targets.python.ros import template_finder
 
 _OTHERS = re.compile(r"\{%[-+]?\s*(?:extends|include|import|from)\s+[\"']([^\"']+)[\"']")
 
@@ -17,12 +18,13 @@ _OTHERS = re.compile(r"\{%[-+]?\s*(?:extends|include|import|from)\s+[\"']([^\"']
 def template_sources(machine: Machine, library: Library) -> Iterator[tuple[str, Source]]:
     """The templates of the base and the state types of a machine, and those that they extend,
     include or import: each once, with its file name."""
+    find = template_finder(library, library.ros)
     types = {machine.base, *(node.type for _, node in walk(machine.root))}
     seen = set[str]()
     todo = [file for name in sorted(types) for file in _files(name, machine)]
     while todo:
         file = todo.pop()
-        source = library.template(file) if file not in seen else None
+        source = find(file) if file not in seen else None
         seen.add(file)
         if source is not None:
             yield file, source

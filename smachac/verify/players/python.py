@@ -13,6 +13,7 @@ from typing import Any
 from smachac.ir.nodes import Machine
 from smachac.runtime.tracing import trace
 from smachac.targets.python.runner import failure_text, hidden, loaded, places, quiet
+from smachac.verify.players.ros_stand_ins import built, ros_stand_ins
 from smachac.verify.test_case import Event, Player, TestCase, UnplayableError, record_read
 
 
@@ -27,11 +28,12 @@ def player(name: str, text: str, machine: Machine, *, folders: Sequence[Path]) -
     def play(cases: Sequence[TestCase]) -> Iterator[list[Event]]:
         with (
             _unplayable_errors(),
+            ros_stand_ins(text, machine),
             loaded(name, text, *folders) as module,
             quiet(module["smach"], hidden),
         ):
             for case in cases:
-                yield trace_of(module["build"](), machine.root.name, case, sources)
+                yield trace_of(built(module["build"]), machine.root.name, case, sources)
 
     return play
 
@@ -48,16 +50,16 @@ def _unplayable_errors() -> Iterator[None]:
         raise UnplayableError(words) from error
 
 
-def trace_of(built: Any, name: str, case: TestCase, sources: dict[str, str]) -> list[Event]:
+def trace_of(machine: Any, name: str, case: TestCase, sources: dict[str, str]) -> list[Event]:
     """The trace of one run; an error that ends the run is an event of it."""
     events: list[Event] = []
     for key, value in case.userdata.items():
-        built.userdata[key] = value
+        machine.userdata[key] = value
     strict = trace.StrictScript(case.reads, partial(record_read, events), case.most)
-    trace.script(built, name, case.rows, strict)
-    trace.attach(built, name, events.append, sources)
+    trace.script(machine, name, case.rows, strict)
+    trace.attach(machine, name, events.append, sources)
     if case.stopped:
-        built.request_preempt()
+        machine.request_preempt()
     with suppress(Exception):
-        built.execute()
+        machine.execute()
     return events

@@ -24,6 +24,7 @@ from smachac.runtime.tracing.instrument import is_container
 from smachac.targets.python.runner import hidden, loaded, places, quiet
 from smachac.verify.file_faults import FileFault, unplayable
 from smachac.verify.players.python import trace_of
+from smachac.verify.players.ros_stand_ins import built, ros_stand_ins
 from smachac.verify.test_case import Event, Player, TestCase, UnplayableError
 
 ADDING = ("add", "add_auto", "set_contained_state")
@@ -44,7 +45,11 @@ def file_player(source: Source, machine: Machine, *, folders: Sequence[Path]) ->
     """
 
     def play(cases: Sequence[TestCase]) -> Iterator[list[Event]]:
-        with _file_faults(source, folders), ExitStack() as stack:
+        with (
+            _file_faults(source, folders),
+            ros_stand_ins(source.text, machine),
+            ExitStack() as stack,
+        ):
             for smach in _smachs():
                 stack.enter_context(quiet(smach, hidden))
             added: Lines = {}
@@ -53,10 +58,10 @@ def file_player(source: Source, machine: Machine, *, folders: Sequence[Path]) ->
                     loaded(source.name, source.text, *folders, importable=True)
                 )
                 build = _build_function(source, module)
-                built = build()
-            if not is_container(built):
-                raise unplayable(source, [_no_machine(build, built)])
-            found = _states(built, machine.root.name)
+                root = built(build)
+            if not is_container(root):
+                raise unplayable(source, [_no_machine(build, root)])
+            found = _states(root, machine.root.name)
             labels = {path: path.rpartition("/")[2] for path in found}
             lines = {
                 path: added.get((id(state), labels[path]), (0, None))[0]
@@ -69,7 +74,7 @@ def file_player(source: Source, machine: Machine, *, folders: Sequence[Path]) ->
             stem = Path(source.name).name
             sources = {path: f"{stem}:{line}" for path, line in lines.items() if line}
             for number, case in enumerate(cases):
-                yield trace_of(build() if number else built, machine.root.name, case, sources)
+                yield trace_of(built(build) if number else root, machine.root.name, case, sources)
 
     return play
 

@@ -1,0 +1,85 @@
+{% extends "Program.tpl.py" %}
+{% set result = "" if ros_action else "outcome = " %}
+{%- block imports %}
+
+try:
+    import smach
+{%- if smach_ros or introspection or ros_action %}
+    import smach_ros
+{%- endif %}
+except ImportError:  # without SMACH: smachac.runtime has the same names
+    from smachac.runtime import smach
+{%- if smach_ros or introspection or ros_action %}
+    from smachac.runtime import smach_ros2 as smach_ros
+{%- endif %}
+{%- endblock %}
+{%- block main %}
+{%- if ros_action %}
+    """Offer the state machine as an action until a signal ends the node."""
+{%- elif ros_lifecycle %}
+    """Run a managed node until it is shut down, and return the outcome of the last run."""
+{%- else %}
+    """Run the state machine once in a ROS node and return its outcome."""
+{%- endif %}
+{%- if ros_lifecycle %}
+    kind = lifecycle.LifecycleMachineNode
+    node = program.start_node({{ node_name | default(name) | literal }}, arguments, kind, build={{ "configured" if ros_values else "build" }})
+{%- else %}
+    node = program.start_node({{ node_name | default(name) | literal }}, arguments)
+{%- endif %}
+    try:
+{%- if ros_lifecycle %}
+        return program.run(node, node)
+{%- else %}
+{%- if ros_values %}
+        values = {{ ros_values | indent(8) }}
+{%- endif %}
+        {{ sm_name }} = build(node{% if ros_values %}, **values{% endif %})
+{%- if introspection %}
+        server = smach_ros.IntrospectionServer({{ node_name | default(name) | literal }}, {{ sm_name }}, {{ ("/" ~ name) | literal }})
+        server.start()
+        try:
+            {{ ros_run | indent(12) }}
+        finally:
+            server.stop()
+{%- else %}
+        {{ ros_run | indent(8) }}
+{%- endif %}
+{%- endif %}
+    finally:
+        program.stop_node(node)
+{%- endblock %}
+{%- block end -%}
+{%- if ros_lifecycle and ros_values -%}
+def configured(node):
+    """Build the state machine with the parameters of a node."""
+    values = {{ ros_values | indent(4) }}
+    return build(node, **values)
+
+
+{% endif -%}
+def run_node():
+{%- if ros_action %}
+    """Run the node and return the exit code."""
+{%- else %}
+    """Run the node, print the outcome and return the exit code for it."""
+{%- endif %}
+{%- if ros_values and not ros_lifecycle %}
+    try:
+        {{ result }}{{ function_name | default("main") }}()
+    except parameters.ParameterError as error:
+        raise SystemExit(str(error)) from None
+{%- else %}
+    {{ result }}{{ function_name | default("main") }}()
+{%- endif %}
+{%- if ros_action %}
+    return 0
+{%- else %}
+    print(f"outcome: {outcome}")
+    return program.exit_code(outcome, failures={{ ros_failures }})
+{%- endif %}
+
+
+if __name__ == "__main__":
+    raise SystemExit(run_node())
+{%- endblock %}

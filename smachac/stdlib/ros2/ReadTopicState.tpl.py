@@ -1,0 +1,3 @@
+{% block imports %}
+from smachac.runtime.smach_ros2.topics import ReadTopicState
+{% endblock %}

@@ -1,0 +1,3 @@
+{% block imports %}
+from smachac.runtime.smach_ros2.transform_states import TransformMsgState
+{% endblock %}

@@ -1,0 +1,172 @@
+"""The files beside a program that make it a package of ROS 2 (ament_python) for colcon."""
+
+from __future__ import annotations
+
+import ast
+import re
+
+from smachac.ir.nodes import Data, Machine
+from smachac.targets import Files, OptionError, made_by, stem
+from smachac.targets.python.formatter import flat, literal, string
+from smachac.targets.python.parameters import RosParameter
+
+MESSAGE_MODULES = ("msg", "srv", "action")
+
+
+def package_name(value: str, machine: Machine) -> str:
+    """The name of the package that the option gives: `true` means that of the program. Raises
+    OptionError."""
+    name = stem(machine).lower() if value == "true" else value
+    if re.fullmatch(r"[a-z][a-z0-9_]*", name) is None:
+        raise OptionError(f"`package` must be `true` or match `[a-z][a-z0-9_]*`, not `{name}`")
+    return name
+
+
+def package_files(
+    machine: Machine, name: str, text: str, parameters: tuple[RosParameter, ...]
+) -> Files:
+    """The files of a package: the program `text` first."""
+    program, mark = stem(machine), made_by(machine)
+    return {
+        f"{name}/{program}.py": text,
+        f"{name}/__init__.py": f"# {mark}\n",
+        "package.xml": _package_xml(machine, name, message_packages(text)),
+        "setup.py": _setup(machine, name, program),
+        "setup.cfg": SETTINGS.format(mark=mark, name=name),
+        f"resource/{name}": f"# {mark}\n",
+        f"launch/{program}.launch.py": _launch(machine, name, program, parameters),
+    }
+
+
+def message_packages(text: str) -> list[str]:
+    """The packages of the messages that a program imports."""
+    found = set()
+    for node in ast.parse(text).body:
+        if isinstance(node, ast.ImportFrom) and node.module is not None:
+            package, _, module = node.module.partition(".")
+            if module in MESSAGE_MODULES:
+                found.add(package)
+    return sorted(found)
+
+
+def _package_xml(machine: Machine, name: str, messages: list[str]) -> str:
+    needed = "\n".join(f"  <exec_depend>{each}</exec_depend>" for each in ["rclpy", *messages])
+    return f"""\
+<?xml version="1.0"?>
+<!-- {made_by(machine)} -->
+<package format="3">
+  <name>{name}</name>
+  <version>0.0.0</version>
+  <description>{_escaped(_summary(machine))}</description>
+  <maintainer email="todo@example.com">TODO: who keeps it</maintainer>
+  <license>TODO: its license</license>
+{needed}
+  <export>
+    <build_type>ament_python</build_type>
+  </export>
+</package>
+"""
+
+
+SETTINGS = """\
+# {mark}
+[develop]
+script_dir=$base/lib/{name}
+[install]
+install_scripts=$base/lib/{name}
+"""
+
+
+def _setup(machine: Machine, name: str, program: str) -> str:
+    return f"""\
+# {made_by(machine)}
+from setuptools import setup
+
+setup(
+    name="{name}",
+    version="0.0.0",
+    packages=["{name}"],
+    data_files=[
+        ("share/ament_index/resource_index/packages", ["resource/{name}"]),
+        ("share/{name}", ["package.xml"]),
+        ("share/{name}/launch", ["launch/{program}.launch.py"]),
+    ],
+    install_requires=["setuptools", "smachac"],
+    zip_safe=True,
+    maintainer="TODO: who keeps it",
+    maintainer_email="todo@example.com",
+    description={string(_summary(machine))},
+    license="TODO: its license",
+    entry_points={{"console_scripts": ["{program} = {name}.{program}:run_node"]}},
+)
+"""
+
+
+def _launch(machine: Machine, name: str, program: str, parameters: tuple[RosParameter, ...]) -> str:
+    """The launch file: each parameter of the node is an argument."""
+    declared = "".join(
+        f"\n            DeclareLaunchArgument({string(each.name)},"
+        f" default_value={string(_yaml(each.default))}),"
+        for each in parameters
+    )
+    given = "".join(
+        f"\n                        {string(each.name)}: ParameterValue(\n"
+        f"                            LaunchConfiguration({string(each.name)}),"
+        f" value_type={_type(each.default)}\n                        ),"
+        for each in parameters
+    )
+    lists = "from typing import List\n\n" if "List[" in given else ""
+    imports = LAUNCH_IMPORTS if parameters else ""
+    values = (
+        f"\n                parameters=[\n                    {{{given}\n                    }}\n"
+    )
+    values += "                ],"
+    return f"""\
+# {made_by(machine)}
+{lists}from launch import LaunchDescription
+{imports}from launch_ros.actions import Node
+{PARAMETER_IMPORTS if parameters else ""}
+
+def generate_launch_description():
+    return LaunchDescription(
+        [{declared}
+            Node(
+                package="{name}",
+                executable="{program}",
+                name="{program}",
+                output="screen",{values if parameters else ""}
+            ),
+        ]
+    )
+"""
+
+
+LAUNCH_IMPORTS = """\
+from launch.actions import DeclareLaunchArgument
+from launch.substitutions import LaunchConfiguration
+"""
+
+PARAMETER_IMPORTS = "from launch_ros.parameter_descriptions import ParameterValue\n"
+
+
+def _yaml(data: Data) -> str:
+    """A value as the text of a launch argument, which is YAML."""
+    if isinstance(data, bool):
+        return "true" if data else "false"
+    return data if isinstance(data, str) else flat(literal(data))
+
+
+def _type(data: Data) -> str:
+    """The type of a parameter in a launch file."""
+    if isinstance(data, tuple):
+        return f"List[{_type(data[0])}]"
+    return type(data).__name__
+
+
+def _summary(machine: Machine) -> str:
+    lines = machine.root.doc.split("\n")
+    return lines[0] or f"The state machine {machine.root.name}."
+
+
+def _escaped(text: str) -> str:
+    return text.replace("&", "&amp;").replace("<", "&lt;").replace(">", "&gt;")

@@ -1,0 +1,181 @@
+"""The two versions of ROS in generated programs: names of types, and signs of a ROS node."""
+
+from __future__ import annotations
+
+import ast
+import re
+from collections.abc import Callable, Iterable, Iterator, Mapping
+from dataclasses import dataclass
+
+from smachac.diagnostics.diagnostic import Diagnostic
+from smachac.diagnostics.source import Source, Span
+from smachac.frontend.loader import Library, Ros
+from smachac.ir.nodes import Leaf, Machine, StateType
+from smachac.ir.traversal import expressions, walk
+from smachac.targets import BuildContext, OptionError
+from smachac.targets.errors import unsupported_by_target
+from smachac.targets.python.python2 import parsed
+
+_WORDS = re.compile(r"[/.]")
+
+OTHER_MODULES = {
+    1: ("rclpy", "rclpy_action", "rclpy_lifecycle"),
+    2: ("rospy", "roslib", "rospkg", "rostopic", "actionlib", "rosbag"),
+}
+"""The Python modules that exist only in the other version of ROS."""
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class RosType:
+    """A type of ROS: its package, the module in it, and the name of its class."""
+
+    package: str
+    module: str
+    name: str
+
+
+def version(context: BuildContext) -> Ros:
+    """The version of ROS of a program: that of the option, else that of the project."""
+    match context.options.get("ros"):
+        case None:
+            return context.library.ros
+        case "1":
+            return 1
+        case "2":
+            return 2
+        case other:
+            raise OptionError(f"`ros` must be `1` or `2`, not `{other}`")
+
+
+def action_type(machine: Machine, context: BuildContext) -> RosType | None:
+    """The type of the action that a node offers its machine as, by the option. Raises
+    OptionError."""
+    value = context.options.get("action")
+    if value is None:
+        return None
+    found = ros_type(value, "action", 2)
+    if found is None:
+        raise OptionError(f"`action` must be a type such as `my_msgs/action/Fetch`, not `{value}`")
+    if not is_node(machine, context.library, version(context)):
+        raise OptionError("`action` needs a node of ROS 2: a script with the base `ROSBase`")
+    return found
+
+
+def is_managed(context: BuildContext) -> bool:
+    """Whether the options want a managed node, with a lifecycle."""
+    return context.options.get("lifecycle") == "true"
+
+
+def template_finder(library: Library, ros: Ros) -> Callable[[str], Source | None]:
+    """A function that finds templates: those of the user, then those for a version of ROS, then the
+    other built-in ones."""
+
+    def find(name: str) -> Source | None:
+        own = library.own_template(name)
+        beside = library.template(f"ros2/{name}") if ros == 2 and own is None else None
+        return own or beside or library.template(name)
+
+    return find
+
+
+def ros_type(text: str, module: str, ros: Ros) -> RosType | None:
+    """The type of a text such as `std_srvs/Trigger`, `std_srvs/srv/Trigger` or
+    `std_srvs.srv.Trigger`; None if it names no package. `module`: `msg`, `srv` or `action`.
+
+    An action of ROS 1 is the message `TestAction`, one of ROS 2 the type `Test`; either name is
+    read for both.
+    """
+    words = _WORDS.split(text)
+    if len(words) < 2 or not all(word.isidentifier() for word in words):
+        return None
+    name = words[-1]
+    if module == "action":
+        short = name.removesuffix("Action") if "action" not in words[1:-1] else name
+        if ros == 2:
+            return RosType(package=words[0], module="action", name=short or name)
+        return RosType(package=words[0], module="msg", name=f"{short}Action")
+    return RosType(package=words[0], module=module, name=name)
+
+
+def unsupported(machine: Machine, ros: Ros) -> Iterator[Diagnostic]:
+    """What a script has that only the other version of ROS supports: variables, values, code."""
+    other = 3 - ros
+    for _, node in walk(machine.root):
+        type_ = machine.state_types.get(node.type)
+        variables = type_.variables if type_ is not None else {}
+        for held in node.variables if isinstance(node, Leaf) else ():
+            known, value = variables.get(held.name), held.value.data
+            needed = known.ros if known is not None and value is not None else {}
+            if other not in (needed.get(""), needed.get(value) if isinstance(value, str) else None):
+                continue
+            shown = f"`{held.name}: {value}`" if isinstance(value, str) else f"`{held.name}`"
+            message = f"{shown} of {node.type} needs ROS {other}"
+            help = f"remove it, or set `ros = {other}` in the project file"
+            target, place = f"Python for ROS {ros}", (node.name, held.name)
+            yield unsupported_by_target(held.value.span, target, message, help, place)
+        for each in expressions(node):
+            tree = parsed(each.text.strip())
+            used = other_modules(tree, ros) if isinstance(tree, ast.Module) else ()
+            for name in dict.fromkeys(name for _, name in used):
+                yield other_version(each.span, name, ros)
+
+
+def other_modules(tree: ast.AST, ros: Ros) -> Iterator[tuple[int, str]]:
+    """The uses of modules that only the other version of ROS has: line and module."""
+    others = OTHER_MODULES[ros]
+    for node in ast.walk(tree):
+        match node:
+            case ast.Attribute(value=ast.Name(id=name, lineno=line)) if name in others:
+                yield line, name
+            case ast.Import(names=names, lineno=line):
+                yield from ((line, found) for found in _roots(names) if found in others)
+            case ast.ImportFrom(module=str(module), level=0, lineno=line):
+                root = module.partition(".")[0]
+                if root in others:
+                    yield line, root
+
+
+def _roots(names: Iterable[ast.alias]) -> Iterator[str]:
+    return (each.name.partition(".")[0] for each in names)
+
+
+def other_version(span: Span, name: str, ros: Ros) -> Diagnostic:
+    """The finding for code of the other version of ROS."""
+    other = 3 - ros
+    help = f"write it for ROS {ros}, or set `ros = {other}` in the project file"
+    help += f" (`--option ros={other}` for one build)"
+    message = f"`{name}` is a module of ROS {other}"
+    return unsupported_by_target(span, f"Python for ROS {ros}", message, help, (name,))
+
+
+def is_node(machine: Machine, library: Library, ros: Ros) -> bool:
+    """Whether a program for ROS 2 is a node: its base is one, or a state gets the node."""
+    types = [machine.state_types[name] for name in [machine.base] if name in machine.state_types]
+    types += [type_ for type_ in machine.state_types.values() if type_.kind == "state"]
+    return any(takes_node(type_, library, ros) for type_ in types)
+
+
+def takes_node(type_: StateType, library: Library, ros: Ros) -> bool:
+    """Whether the states of a type get the node of ROS 2: the built-in types for ROS 2, and classes
+    of the user whose first parameter is `node`."""
+    code = type_.code.get("python", f"{type_.name}.tpl.py")
+    if ros == 1:
+        return False
+    if ":" in code:
+        return has_node_parameter(type_)
+    return library.own_template(code) is None and library.template(f"ros2/{code}") is not None
+
+
+def has_node_parameter(type_: StateType) -> bool:
+    """Whether the class of a state type has a first parameter `node` that is no variable."""
+    facts = type_.class_facts
+    known = facts.parameters if facts is not None else None
+    first = known[0].word.text if known else ""
+    return first == "node" and "node" not in type_.variables
+
+
+def replaced_names(code: str, names: Mapping[str, str]) -> str:
+    """Python code with other names of classes, such as `Test.Goal` for `TestGoal`."""
+    for old, new in names.items():
+        code = re.sub(rf"(?<![\w.]){re.escape(old)}\b", new, code)
+    return code

@@ -1,0 +1,249 @@
+# Made by smachac 0.1.0 from main.yml (sha256 81a84a51ef7a693e).
+"""The state machine `patrol`."""
+
+import rclpy.duration
+from smachac.runtime.smach_ros2 import parameters, program
+from smachac.runtime.smach_ros2.bag_states import RecordROSBagState
+from smachac.runtime.smach_ros2.publish_states import (
+    PublishMsgState,
+    PublishObserverMsgState,
+)
+from smachac.runtime.smach_ros2.topics import ReadTopicState, WaitForMsgState
+from smachac.runtime.smach_ros2.transform_states import (
+    TF2ListenerState,
+    TransformMsgState,
+)
+from std_msgs.msg import Float32
+from std_srvs.srv import SetBool, Trigger
+from test_msgs.action import Fibonacci
+
+try:
+    import smach
+    import smach_ros
+except ImportError:  # without SMACH: smachac.runtime has the same names
+    from smachac.runtime import smach
+    from smachac.runtime import smach_ros2 as smach_ros
+
+
+def build(node, battery_topic="/battery", patience=60.0, mode="rotation"):
+    """Build the state machine `patrol`."""
+    # main.yml:2
+    patrol = smach.StateMachine(outcomes=["succeeded", "aborted", "preempted"])
+    patrol.userdata.order = 3
+    patrol.userdata.file = "run.bag"
+    patrol.userdata.topics = ["/battery"]
+    patrol.userdata.msg = [1.0, 2.0, 0.0]
+    patrol.userdata.topic = "goal"
+    patrol.userdata.frame_id = "map"
+    patrol.userdata.target = "map"
+    patrol.userdata.source = "base"
+    with patrol:
+        # main.yml:19
+        smach.StateMachine.add(
+            "RECORD",
+            RecordROSBagState(node, "start"),
+            transitions={"succeeded": "COUNT", "aborted": "aborted"},
+        )
+
+        # main.yml:23
+        smach.StateMachine.add(
+            "COUNT",
+            smach_ros.SimpleActionState(
+                node,
+                "count",
+                Fibonacci,
+                goal_slots=["order"],
+                result_slots=["sequence"],
+                exec_timeout=rclpy.duration.Duration(seconds=patience),
+                server_wait_timeout=rclpy.duration.Duration(seconds=5.0),
+            ),
+            transitions={
+                "succeeded": "COUNT_AGAIN",
+                "aborted": "aborted",
+                "preempted": "preempted",
+            },
+        )
+
+        # main.yml:32
+        smach.StateMachine.add(
+            "COUNT_AGAIN",
+            smach_ros.SimpleActionState(
+                node,
+                "count",
+                Fibonacci,
+                goal=Fibonacci.Goal(order=5),
+            ),
+            transitions={
+                "succeeded": "ENABLE",
+                "aborted": "aborted",
+                "preempted": "preempted",
+            },
+        )
+
+        # main.yml:38
+        smach.StateMachine.add(
+            "ENABLE",
+            smach_ros.ServiceState(
+                node,
+                "enable",
+                SetBool,
+                request=SetBool.Request(data=True),
+                response_slots=["message"],
+            ),
+            transitions={
+                "succeeded": "DOCK",
+                "aborted": "aborted",
+                "preempted": "preempted",
+            },
+        )
+
+        # main.yml:45
+        smach.StateMachine.add(
+            "DOCK",
+            smach_ros.ServiceState(node, "dock", Trigger),
+            transitions={
+                "succeeded": "BATTERY",
+                "aborted": "aborted",
+                "preempted": "preempted",
+            },
+        )
+
+        # main.yml:50
+        smach.StateMachine.add(
+            "BATTERY",
+            WaitForMsgState(
+                node,
+                battery_topic,
+                Float32,
+                msg_cb=lambda message, userdata: message.data > 0.2,
+                timeout=patience,
+            ),
+            transitions={
+                "succeeded": "READ",
+                "aborted": "aborted",
+                "preempted": "preempted",
+            },
+        )
+
+        # main.yml:57
+        smach.StateMachine.add(
+            "READ",
+            ReadTopicState(node, input_keys=["topic"], output_keys=["output"]),
+            transitions={
+                "succeeded": "WATCH",
+                "aborted": "aborted",
+                "preempted": "preempted",
+            },
+        )
+
+        # main.yml:62
+        smach.StateMachine.add(
+            "WATCH",
+            smach_ros.MonitorState(
+                node,
+                battery_topic,
+                Float32,
+                lambda userdata, message: message.data > 0.2,
+                max_checks=3,
+            ),
+            transitions={
+                "valid": "CHECK",
+                "invalid": "aborted",
+                "preempted": "preempted",
+            },
+        )
+
+        # main.yml:69
+        smach.StateMachine.add(
+            "CHECK",
+            smach_ros.ConditionState(
+                node,
+                lambda userdata: True,
+                poll_rate=rclpy.duration.Duration(seconds=0.1),
+                timeout=rclpy.duration.Duration(seconds=10.0),
+                max_checks=-1,
+            ),
+            transitions={"true": "FRAME", "false": "aborted", "preempted": "preempted"},
+        )
+
+        # main.yml:76
+        smach.StateMachine.add(
+            "FRAME",
+            TF2ListenerState(node),
+            transitions={
+                "succeeded": "MOVE_POINT",
+                "aborted": "aborted",
+                "preempted": "preempted",
+            },
+        )
+
+        # main.yml:79
+        smach.StateMachine.add(
+            "MOVE_POINT",
+            TransformMsgState(
+                node,
+                transform_type=mode,
+                input_keys=["msg", "frame_id"],
+                output_keys=["output_msg"],
+            ),
+            transitions={
+                "succeeded": "PUBLISH",
+                "aborted": "aborted",
+                "preempted": "preempted",
+            },
+        )
+
+        # main.yml:85
+        smach.StateMachine.add(
+            "PUBLISH",
+            PublishMsgState(
+                node,
+                "start",
+                "smacha/publish",
+                input_keys=["msg", "topic", "rate"],
+            ),
+            transitions={"succeeded": "ECHO", "aborted": "aborted"},
+        )
+
+        # main.yml:90
+        smach.StateMachine.add(
+            "ECHO",
+            PublishObserverMsgState(
+                node,
+                "add",
+                "smacha/echo",
+                sub_topic=battery_topic,
+                input_keys=["msg", "topic"],
+            ),
+            transitions={"succeeded": "succeeded", "aborted": "aborted"},
+        )
+    return patrol
+
+
+def main(arguments=None):
+    """Run the state machine once in a ROS node and return its outcome."""
+    node = program.start_node("patrol", arguments)
+    try:
+        values = parameters.declared(
+            node,
+            build,
+            choices={"mode": ["transform", "translation", "rotation"]},
+        )
+        patrol = build(node, **values)
+        return program.run(node, patrol)
+    finally:
+        program.stop_node(node)
+
+
+def run_node():
+    """Run the node, print the outcome and return the exit code for it."""
+    try:
+        outcome = main()
+    except parameters.ParameterError as error:
+        raise SystemExit(str(error)) from None
+    print(f"outcome: {outcome}")
+    return program.exit_code(outcome, failures=["aborted", "preempted"])
+
+
+if __name__ == "__main__":
+    raise SystemExit(run_node())

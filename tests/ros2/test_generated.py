@@ -1,0 +1,238 @@
+"""Programs that smachac makes for ROS 2, run as nodes: states, parameters, signals, exit codes."""
+
+from __future__ import annotations
+
+import os
+import signal
+import subprocess
+import sys
+from pathlib import Path
+
+import pytest
+
+import smachac
+from tests.ros.ros_graph import Program
+from tests.ros2.ros2_graph import PYTHON, ROOT, Graph
+
+pytestmark = pytest.mark.ros2
+
+EXAMPLE = ROOT / "examples" / "ros2_mobile_base"
+
+
+def base(graph: Graph, *parameters: str) -> Program:
+    """The simulated base of the example; it is ready."""
+    given = [text for each in parameters for text in ("-p", each)]
+    program = graph._launch([PYTHON, str(EXAMPLE / "base.py"), "--ros-args", *given])
+    program.expect("ready")
+    return program
+
+
+def patrol(graph: Graph, *arguments: str) -> Program:
+    """The program of the example, started."""
+    (text,) = smachac.compile(EXAMPLE / "patrol.yml", "python").values()
+    return graph.start(text, *arguments)
+
+
+def test_the_example_docks(graph2: Graph) -> None:
+    robot = base(graph2, "speed:=10.0")
+    program = patrol(graph2)
+    assert program.end() == 0, program.output
+    assert program.output.endswith("outcome: docked\n")
+    assert robot.output.count("drive to") == 4
+
+
+def test_a_low_battery_shortens_the_patrol(graph2: Graph) -> None:
+    robot = base(graph2, "speed:=10.0", "charge:=0.32")
+    program = patrol(graph2)
+    assert program.end() == 0, program.output
+    assert robot.output.count("drive to") == 2
+
+
+def test_an_aborted_goal_ends_with_exit_code_1(graph2: Graph) -> None:
+    base(graph2, "speed:=10.0", "range:=0.5")
+    program = patrol(graph2)
+    assert program.end() == 1, program.output
+    assert program.output.endswith("outcome: aborted\n")
+
+
+def test_parameters_are_set_before_the_machine_is_built(graph2: Graph) -> None:
+    robot = base(graph2, "speed:=0.001")
+    program = patrol(graph2, "--ros-args", "-p", "patience:=1")  # an int for a float
+    assert program.end() == 1, program.output
+    assert "outcome: aborted" in program.output
+    assert robot.output.count("drive to") == 1
+
+
+def test_a_parameter_of_a_wrong_type_ends_the_program(graph2: Graph) -> None:
+    program = patrol(graph2, "--ros-args", "-p", "patience:=long")
+    assert program.end() == 1
+    last = program.output.splitlines()[-1]
+    assert last.startswith("parameter 'patience': ")
+    assert "DOUBLE" in last
+    assert "Traceback" not in program.output
+
+
+def test_names_are_remapped(graph2: Graph) -> None:
+    (text,) = smachac.compile(EXAMPLE / "patrol.yml", "python").values()
+    base(graph2, "speed:=10.0")
+    program = graph2.start(
+        text, *("--ros-args", "-p", "battery_topic:=power", "-r", "power:=/battery")
+    )
+    assert program.end() == 0, program.output
+
+
+def test_ctrl_c_cancels_the_goal(graph2: Graph) -> None:
+    robot = base(graph2, "speed:=0.01")
+    program = patrol(graph2)
+    robot.expect("drive to")
+    program.send(signal.SIGINT)
+    assert program.end() == 1, program.output
+    assert program.output.endswith("outcome: preempted\n")
+    robot.expect("cancelled")
+
+
+def test_run_shows_progress(graph2: Graph) -> None:
+    base(graph2, "speed:=10.0")
+    script = str(EXAMPLE / "patrol.yml")
+    program = graph2._launch([PYTHON, "-m", "smachac", "run", script, "--ros"])
+    assert program.end() == 0, program.output
+    assert "  DOCK  " in program.output
+    assert program.output.endswith("outcome: docked\n")
+
+
+def test_the_commands_of_the_docs(graph2: Graph, tmp_path: Path) -> None:
+    text = (ROOT / "docs/ros.md").read_text("utf-8")
+    lines = text.split("## ROS 2\n")[1].split("```\n")[1].splitlines()
+    assert [line.split()[0] for line in lines] == ["pip", "cd", "python", "smachac", "python"]
+    packages = (ROOT / "scripts" / "ros2.txt").read_text("utf-8").split()
+    assert set(lines[0].split()[3:]) <= set(packages)
+    tools = tmp_path / "tools"
+    tools.mkdir()
+    for name, command in (("python", PYTHON), ("smachac", f"{sys.executable} -m smachac")):
+        tool = tools / name
+        tool.write_text(f'#!/bin/sh\nexec {command} "$@"\n', encoding="utf-8")
+        tool.chmod(0o755)
+    made = EXAMPLE / "patrol.py"
+    commands = [*lines[1:], "code=$?", "kill $!", "exit $code"]
+    environment = {**graph2.environment, "PATH": f"{tools}{os.pathsep}{os.environ['PATH']}"}
+    try:
+        done = subprocess.run(
+            ["bash", "-c", "\n".join(commands)],
+            cwd=ROOT, env=environment, capture_output=True, text=True, check=False,
+        )  # fmt: skip
+    finally:
+        made.unlink(missing_ok=True)
+    assert done.returncode == 0, done.stderr
+    assert done.stdout.endswith("outcome: docked\n")
+
+
+def test_a_package_is_built_by_colcon_and_runs(graph2: Graph, tmp_path: Path) -> None:
+    folder = tmp_path / "src" / "patrol"
+    files = smachac.compile(EXAMPLE / "patrol.yml", "python", options={"package": "true"})
+    for name, text in files.items():
+        (folder / name).parent.mkdir(parents=True, exist_ok=True)
+        (folder / name).write_text(text, encoding="utf-8")
+    colcon = Path(PYTHON).with_name("colcon")
+    built = subprocess.run(
+        [colcon, "build"], cwd=tmp_path, env=graph2.environment,
+        capture_output=True, text=True, check=False,
+    )  # fmt: skip
+    assert built.returncode == 0, built.stderr
+    installed = tmp_path / "install" / "patrol"
+    index = installed / "share" / "ament_index" / "resource_index" / "packages" / "patrol"
+    assert index.is_file()
+    assert (installed / "share" / "patrol" / "launch" / "patrol.launch.py").is_file()
+    base(graph2, "speed:=10.0")
+    command = f"source {tmp_path}/install/setup.bash && exec {installed}/lib/patrol/patrol"
+    program = graph2._launch(["bash", "-c", command])
+    assert program.end() == 0, program.output
+    assert program.output.endswith("outcome: docked\n")
+
+
+SERVED = """
+name: machine
+template: ROSBase
+outcomes: [succeeded, aborted, preempted]
+input_keys: [order]
+output_keys: [sequence]
+states:
+  - COUNT:
+      template: CallbacksState
+      input_keys: [order]
+      output_keys: [sequence]
+      callbacks: {sequence: 'lambda ud: list(range(ud.order))'}
+      transitions: {succeeded: LONG}
+  - LONG:
+      template: ConditionalOutcomeState
+      input_keys: [order]
+      outcomes: [long, failed, short]
+      callbacks: {long: 'lambda ud: ud.order > 9', failed: 'lambda ud: ud.order > 5'}
+      default_outcome: short
+      transitions: {long: SLEEP, failed: aborted, short: succeeded}
+  - SLEEP:
+      template: SleepState
+      time: 1000
+      transitions: {succeeded: succeeded, preempted: preempted}
+"""
+
+
+def test_a_machine_is_offered_as_an_action(graph2: Graph, tmp_path: Path) -> None:
+    path = tmp_path / "machine.yml"
+    path.write_text(SERVED, encoding="utf-8")
+    options = {"action": "test_msgs/action/Fibonacci"}
+    (text,) = smachac.compile(path, "python", options=options).values()
+    program = graph2.start(text)
+    caller = graph2.node("caller")
+    caller.say("3")
+    caller.expect("ended succeeded [0, 1, 2]")
+    caller.say("6")
+    caller.expect("ended aborted")
+    caller.say("10")
+    caller.expect("accepted")
+    program.expect("'LONG':'long'-->'SLEEP'")
+    caller.say("cancel")
+    caller.expect("ended canceled")
+    caller.say("2")
+    caller.expect("ended succeeded [0, 1]")
+    program.send(signal.SIGINT)
+    assert program.end() == 0, program.output
+
+
+def test_a_managed_node(graph2: Graph, tmp_path: Path) -> None:
+    path = tmp_path / "machine.yml"
+    script = (EXAMPLE / "patrol.yml").read_text("utf-8").replace("name: patrol", "name: machine")
+    path.write_text(script, encoding="utf-8")
+    (text,) = smachac.compile(path, "python", options={"lifecycle": "true"}).values()
+    robot = base(graph2, "speed:=0.1")
+    program = graph2.start(text, "--ros-args", "-p", "patience:=60.0")
+    manager = graph2.node("manager")
+    for _ in range(2):
+        for step in ("configure", "activate"):
+            manager.say(step)
+            manager.expect(f"{step} done")
+        robot.expect("drive to")
+        for step in ("deactivate", "cleanup"):
+            manager.say(step)
+            manager.expect(f"{step} done")
+        robot.expect("cancelled")
+    manager.say("shutdown")
+    manager.expect("shutdown done")
+    assert program.end() == 1, program.output
+    assert program.output.endswith("outcome: preempted\n")
+
+
+def test_a_managed_node_with_a_wrong_parameter_is_not_configured(
+    graph2: Graph, tmp_path: Path
+) -> None:
+    path = tmp_path / "machine.yml"
+    script = (EXAMPLE / "patrol.yml").read_text("utf-8").replace("name: patrol", "name: machine")
+    path.write_text(script, encoding="utf-8")
+    (text,) = smachac.compile(path, "python", options={"lifecycle": "true"}).values()
+    program = graph2.start(text, "--ros-args", "-p", "patience:=long")
+    manager = graph2.node("manager")
+    manager.say("configure")
+    manager.expect("configure failed")
+    manager.say("unconfigured")
+    manager.expect("is unconfigured")
+    program.send(signal.SIGINT)
+    assert program.end() == 1, program.output

@@ -1,0 +1,254 @@
+"""Programs for ROS 2: the node, its parameters, and what states get."""
+
+from __future__ import annotations
+
+import ast
+import re
+from pathlib import Path
+from textwrap import indent
+
+import pytest
+
+import smachac
+from smachac.targets import OptionError
+
+ROOT = Path(__file__).parents[2]
+
+HEAD = """
+name: sm
+template: {base}
+outcomes: [succeeded, aborted, preempted]
+params: {params}
+states:
+"""
+
+
+def program(folder: Path, states: str, *, base: str = "ROSBase", params: str = "{}") -> str:
+    """The program of a script with these states."""
+    path = folder / "main.yml"
+    path.write_text(HEAD.format(base=base, params=params) + states, encoding="utf-8")
+    (text,) = smachac.compile(path, "python").values()
+    return text
+
+
+WAIT = """
+  - WAIT:
+      template: WaitForMsgState
+      topic: [params, topic]
+      msg_type: std_msgs/String
+      timeout: [params, patience]
+      transitions: {succeeded: succeeded, aborted: aborted, preempted: preempted}
+"""
+
+CALL = """
+  - CALL:
+      template: ServiceState
+      service_namespace: call
+      service: %s
+      %s
+      transitions: {succeeded: succeeded, aborted: aborted, preempted: preempted}
+"""
+
+SLEEP = """
+  - SLEEP:
+      template: SleepState
+      time: 0
+      transitions: {succeeded: succeeded, preempted: preempted}
+"""
+
+GRASP = """
+  - GRASP: {template: Grasp, transitions: {done: succeeded}}
+"""
+
+
+def test_the_state_of_the_docs_is_that_of_the_example() -> None:
+    text = (ROOT / "docs/ros.md").read_text("utf-8")
+    state = text.split("```yaml\n")[1].split("```")[0]
+    script = (ROOT / "examples/ros2_mobile_base/patrol.yml").read_text("utf-8")
+    assert indent(state, 8 * " ") in script
+
+
+def test_the_example_has_no_finding() -> None:
+    assert smachac.check(ROOT / "examples/ros2_mobile_base/patrol.yml") == []
+
+
+def test_params_are_parameters_of_the_node(tmp_path: Path) -> None:
+    text = program(tmp_path, WAIT, params="{topic: battery, patience: 5, node: x}")
+    # `patience` is a float in the interface; nothing looks up `node`
+    assert 'def build(node, topic="battery", patience=5.0):' in text
+    assert "WaitForMsgState(node, topic, String, timeout=patience)" in text
+    assert "build(node, **values)" in text
+
+
+def test_a_parameter_has_another_name_than_the_node(tmp_path: Path) -> None:
+    states = WAIT.replace("[params, topic]", "[params, node]")
+    text = program(tmp_path, states, params="{node: battery, patience: 5.0}")
+    assert 'def build(node, node_="battery", patience=5.0):' in text
+
+
+def test_params_of_sub_scripts_are_followed(tmp_path: Path) -> None:
+    (tmp_path / "wait.yml").write_text(
+        "- INNER:\n    template: StateMachine\n    outcomes: [succeeded, aborted, preempted]\n"
+        "    states:\n" + WAIT.replace("\n", "\n    "),
+        encoding="utf-8",
+    )
+    states = """
+  - {0}:
+      script: wait
+      params: {{topic: [params, topic], patience: {1}}}
+      transitions: {{succeeded: {2}, aborted: aborted, preempted: preempted}}
+"""
+    calls = states.format("A", "5.0", "B") + states.format("B", "6.0", "succeeded")
+    text = program(tmp_path, calls, params="{topic: battery}")
+    assert 'def build(node, topic="battery"):' in text
+    assert "build_wait(node, " in text
+    assert "topic=topic" in text
+    assert '"battery"' not in text.partition("def build(")[0]
+
+
+def test_a_param_inside_a_text_keeps_its_value(tmp_path: Path) -> None:
+    states = WAIT.replace("[params, topic]", "['/', [params, topic]]")
+    text = program(tmp_path, states, params="{topic: battery, patience: 5.0}")
+    assert "def build(node, patience=5.0):" in text
+    assert '"/battery"' in text
+
+
+@pytest.mark.parametrize(
+    ("service", "more", "printed"),
+    [
+        ("std_srvs/SetBool", "request: {data: true}", 'filled(SetBool.Request(), {"data": True})'),
+        (
+            "std_srvs.srv.SetBool",
+            "request: SetBoolRequest(data=True)",
+            "SetBool.Request(data=True)",
+        ),
+        (
+            "std_srvs/srv/SetBool",
+            "request: SetBool.Request(data=True)",
+            "SetBool.Request(data=True)",
+        ),
+    ],
+)
+def test_requests(service: str, more: str, printed: str, tmp_path: Path) -> None:
+    text = program(tmp_path, CALL % (service, more))
+    assert f"request={printed}" in text
+    assert "from std_srvs.srv import SetBool\n" in text
+
+
+def test_a_class_of_the_user_gets_the_node(tmp_path: Path) -> None:
+    (tmp_path / "templates").mkdir()
+    (tmp_path / "templates" / "Grasp.yml").write_text(
+        'name: Grasp\noutcomes: {done: {}}\ncode: {python: "robot:Grasp"}\n', encoding="utf-8"
+    )
+    code = (
+        "import smach\n\n\nclass Grasp(smach.State):\n    def __init__(self{parameter}):\n"
+        "        super().__init__(outcomes=['done'])\n\n    def execute(self, userdata):\n"
+        "        return 'done'\n"
+    )
+    (tmp_path / "robot.py").write_text(code.format(parameter=", node"), encoding="utf-8")
+    assert "Grasp(node)" in program(tmp_path, GRASP, base="Base")
+    (tmp_path / "robot.py").write_text(code.format(parameter=""), encoding="utf-8")
+    text = program(tmp_path, GRASP, base="Base")
+    assert "Grasp()" in text
+    assert "rclpy" not in text
+
+
+def test_a_script_without_ros_is_no_node(tmp_path: Path) -> None:
+    text = program(tmp_path, SLEEP, base="Base")
+    assert "def build():" in text
+    assert "def main():" in text
+    assert "node" not in text
+
+
+def test_outcomes_of_failure_end_with_exit_code_1(tmp_path: Path) -> None:
+    assert 'failures=["aborted", "preempted"]' in program(tmp_path, SLEEP)
+
+
+def test_a_package(tmp_path: Path) -> None:
+    path = tmp_path / "main.yml"
+    params = "{topic: battery, patience: 5, deep: [1.0, 2.0]}"
+    path.write_text(HEAD.format(base="ROSBase", params=params) + WAIT, encoding="utf-8")
+    files = smachac.compile(path, "python", options={"package": "true"})
+    assert list(files) == [
+        *("sm/sm.py", "sm/__init__.py", "package.xml", "setup.py", "setup.cfg"),
+        *("resource/sm", "launch/sm.launch.py"),
+    ]
+    assert files["sm/sm.py"] == smachac.compile(path, "python")["sm.py"]
+    needed = re.findall("<exec_depend>(.*)</exec_depend>", files["package.xml"])
+    assert needed == ["rclpy", "std_msgs"]
+    launch = files["launch/sm.launch.py"]
+    ast.parse(launch)
+    assert 'DeclareLaunchArgument("patience", default_value="5.0")' in launch
+    assert 'LaunchConfiguration("patience"), value_type=float' in launch
+    named = smachac.compile(path, "python", options={"package": "robot_patrol"})
+    assert "robot_patrol/sm.py" in named
+    assert '"sm = robot_patrol.sm:run_node"' in named["setup.py"]
+
+
+@pytest.mark.parametrize(
+    ("base", "options", "message"),
+    [
+        ("ROSBase", {"package": "My Robot"}, "`package` must be `true` or match"),
+        ("ROSBase", {"package": "true", "ros": "1"}, "needs a node of ROS 2"),
+        ("Base", {"package": "true"}, "needs a node of ROS 2"),
+        ("Base", {"action": "my_msgs/action/Fetch"}, "needs a node of ROS 2"),
+        ("ROSBase", {"action": "Fetch"}, "must be a type such as"),
+        ("Base", {"lifecycle": "true"}, "needs a node of ROS 2"),
+        ("ROSBase", {"lifecycle": "on"}, "must be `true` or `false`"),
+        ("ROSBase", {"lifecycle": "true", "action": "a/B"}, "exclude each other"),
+        ("ROSBase", {"ros": "3"}, "`ros` must be `1` or `2`"),
+    ],
+)
+def test_wrong_options(base: str, options: dict[str, str], message: str, tmp_path: Path) -> None:
+    path = tmp_path / "main.yml"
+    path.write_text(HEAD.format(base=base, params="{}") + SLEEP, encoding="utf-8")
+    with pytest.raises(OptionError, match=message):
+        smachac.compile(path, "python", options=options)
+
+
+def test_a_machine_as_an_action(tmp_path: Path) -> None:
+    path = tmp_path / "main.yml"
+    path.write_text(HEAD.format(base="ROSBase", params="{}") + SLEEP, encoding="utf-8")
+    text = smachac.compile(path, "python", options={"action": "my_msgs/Fetch"})["sm.py"]
+    assert "from my_msgs.action import Fetch\n" in text
+    assert 'succeeded_outcomes=["succeeded"],' in text
+    assert 'aborted_outcomes=["aborted"],' in text
+    assert 'preempted_outcomes=["preempted"],' in text
+    assert "serving.serve(node, sm)" in text
+
+
+@pytest.mark.parametrize(
+    ("qos", "fault"),
+    [
+        ("sensor_data", ""),
+        ("5", ""),
+        ("{reliability: best_effort, durability: transient_local, depth: 1}", ""),
+        ("null", ""),
+        ("sensors", "no preset `sensors`"),
+        ("0", "a positive number"),
+        ("{reliability: maybe}", "reliability is reliable or best_effort"),
+        ("{dept: 5}", "no policy `dept`"),
+        ("{depth: [1]}", "a positive number"),
+        ("[sensor_data]", "a positive number"),
+    ],
+)
+def test_the_quality_of_service_is_checked(qos: str, fault: str, tmp_path: Path) -> None:
+    path = tmp_path / "main.yml"
+    states = WAIT.replace("timeout:", f"qos: {qos}\n      timeout:")
+    params = "{topic: battery, patience: 5}"
+    path.write_text(HEAD.format(base="ROSBase", params=params) + states, encoding="utf-8")
+    found = [item for item in smachac.check(path) if item.code == "SM004"]
+    assert len(found) == bool(fault)
+    assert all(fault in item.message for item in found)
+
+
+def test_a_managed_node(tmp_path: Path) -> None:
+    path = tmp_path / "main.yml"
+    params = "{topic: battery, patience: 5}"
+    path.write_text(HEAD.format(base="ROSBase", params=params) + WAIT, encoding="utf-8")
+    text = smachac.compile(path, "python", options={"lifecycle": "true"})["sm.py"]
+    assert 'program.start_node("sm", arguments, kind, build=configured)' in text
+    assert "return program.run(node, node)" in text
+    path.write_text(HEAD.format(base="ROSBase", params="{}") + SLEEP, encoding="utf-8")
+    text = smachac.compile(path, "python", options={"lifecycle": "true"})["sm.py"]
+    assert 'program.start_node("sm", arguments, kind, build=build)' in text
