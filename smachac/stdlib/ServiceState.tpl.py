@@ -1,10 +1,12 @@
 {% extends "State.tpl.py" %}
+{% if request is mapping %}{% include "MessageFields.tpl.py" %}{% endif %}
 {% block imports %}
 {{ super() }}
-{{ service | ros_import("srv", request) }}
+{{ service | ros_import("srv", request | ros_fields(service, "srv", "Request")) }}
 {% endblock imports %}
 {% block body %}
-{{ add("smach_ros.ServiceState", service_namespace, service | ros_class("srv"), request=request | ros_code(service, "srv"),
+{{ add("smach_ros.ServiceState", service_namespace, service | ros_class("srv"),
+       request=request | ros_fields(service, "srv", "Request") | ros_code(service, "srv"),
        request_slots=request_slots, request_cb=request_cb | exptostr | code, response_slots=response_slots,
        response_cb=response_cb | exptostr | code, input_keys=input_keys, output_keys=output_keys) }}
 {% endblock body %}

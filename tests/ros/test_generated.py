@@ -89,6 +89,14 @@ def test_a_service_gets_its_request_from_userdata_and_gives_its_response(
     assert output.endswith("outcome: succeeded\n")
 
 
+def test_a_request_is_a_mapping_of_fields(graph: Graph, tmp_path: Path) -> None:
+    graph.node("service_server")
+    states = CALL.format(service="answer").replace("request_slots: [data]", "request: {data: true}")
+    output = graph.run(built(tmp_path, states))
+    assert "yes" in output
+    assert output.endswith("outcome: succeeded\n")
+
+
 def test_a_service_that_crashes_in_mid_call_aborts(graph: Graph, tmp_path: Path) -> None:
     graph.node("service_server")
     assert outcome(graph, tmp_path, CALL.format(service="crash")) == "aborted"

@@ -149,10 +149,13 @@ def ros_code(ros: Ros, code: object, value: object, module: str) -> object:
     return CodeText(replaced_names(code, names))
 
 
-def ros_fields(value: object, message: str) -> object:
-    """A message with the fields of a mapping: the code `filled(Test.Goal(), {...})`."""
+def ros_fields(ros: Ros, value: object, text: object, module: str, part: str) -> object:
+    """A message with the fields of a mapping: the code `filled(Test.Goal(), {...})`, in ROS 1
+    `filled(TestGoal(), {...})`. `part` is the part of the service or action `text`."""
     if not isinstance(value, Mapping):
         return value
+    name = ros_class(ros, text, module)
+    message = f"{name}.{part}" if ros == 2 else f"{name.removesuffix('Action')}{part}"
     return CodeText(f"filled({message}(), {as_literal(value)})")
 
 
@@ -167,7 +170,7 @@ def filters(ros: Ros) -> dict[str, Callable[..., Any]]:
         "ros_class": partial(ros_class, ros),
         "ros_import": partial(ros_import, ros),
         "ros_code": partial(ros_code, ros),
-        "ros_fields": ros_fields,
+        "ros_fields": partial(ros_fields, ros),
     }
 
 

@@ -1,4 +1,4 @@
-# Made by smachac 0.1.0 from main.yml (sha256 81a84a51ef7a693e).
+# Made by smachac 0.1.0 from main.yml (sha256 b60880ba9ee335fa).
 """The state machine `patrol`."""
 
 import copy
@@ -27,7 +27,7 @@ from geometry_msgs.msg import (
 )
 from sensor_msgs.msg import PointCloud, PointCloud2, PointField
 from std_msgs.msg import Float32
-from std_srvs.srv import SetBool, SetBoolRequest, Trigger
+from std_srvs.srv import SetBool, SetBoolRequest, Trigger, TriggerRequest
 from test_msgs.msg import FibonacciAction, FibonacciGoal
 
 try:
@@ -106,6 +106,18 @@ def preempted_or_aborted(state):
         state.service_preempt()
         return "preempted"
     return "aborted"
+
+
+def filled(message, values):
+    """Set the fields of a message from a mapping, or from a list in their order."""
+    if not isinstance(values, dict):
+        values = dict(zip(message.__slots__, values))
+    for name, value in values.items():
+        field = getattr(message, name)
+        if isinstance(value, (dict, list)) and hasattr(field, "__slots__"):
+            value = filled(field, value)
+        setattr(message, name, value)
+    return message
 
 
 def parse_point(data):
@@ -740,7 +752,7 @@ def build():
             smach_ros.SimpleActionState(
                 "count",
                 FibonacciAction,
-                goal=FibonacciGoal(order=5),
+                goal=filled(FibonacciGoal(), {"order": 5}),
             ),
             transitions={
                 "succeeded": "ENABLE",
@@ -755,7 +767,7 @@ def build():
             smach_ros.ServiceState(
                 "enable",
                 SetBool,
-                request=SetBoolRequest(data=True),
+                request=filled(SetBoolRequest(), {"data": True}),
                 response_slots=["message"],
             ),
             transitions={
@@ -768,7 +780,7 @@ def build():
         # main.yml:45
         smach.StateMachine.add(
             "DOCK",
-            smach_ros.ServiceState("dock", Trigger),
+            smach_ros.ServiceState("dock", Trigger, request=TriggerRequest()),
             transitions={
                 "succeeded": "BATTERY",
                 "aborted": "aborted",
@@ -776,7 +788,7 @@ def build():
             },
         )
 
-        # main.yml:50
+        # main.yml:51
         smach.StateMachine.add(
             "BATTERY",
             WaitForMsgState(
@@ -792,7 +804,7 @@ def build():
             },
         )
 
-        # main.yml:57
+        # main.yml:58
         smach.StateMachine.add(
             "READ",
             ReadTopicState(input_keys=["topic"], output_keys=["output"]),
@@ -803,7 +815,7 @@ def build():
             },
         )
 
-        # main.yml:62
+        # main.yml:63
         smach.StateMachine.add(
             "WATCH",
             smach_ros.MonitorState(
@@ -819,7 +831,7 @@ def build():
             },
         )
 
-        # main.yml:69
+        # main.yml:70
         smach.StateMachine.add(
             "CHECK",
             smach_ros.ConditionState(
@@ -831,7 +843,7 @@ def build():
             transitions={"true": "FRAME", "false": "aborted", "preempted": "preempted"},
         )
 
-        # main.yml:76
+        # main.yml:77
         smach.StateMachine.add(
             "FRAME",
             TF2ListenerState(),
@@ -842,7 +854,7 @@ def build():
             },
         )
 
-        # main.yml:79
+        # main.yml:80
         smach.StateMachine.add(
             "MOVE_POINT",
             TransformMsgState(
@@ -857,7 +869,7 @@ def build():
             },
         )
 
-        # main.yml:85
+        # main.yml:86
         smach.StateMachine.add(
             "PUBLISH",
             PublishMsgState(
@@ -868,7 +880,7 @@ def build():
             transitions={"succeeded": "ECHO", "aborted": "aborted"},
         )
 
-        # main.yml:90
+        # main.yml:91
         smach.StateMachine.add(
             "ECHO",
             PublishObserverMsgState(

@@ -1,9 +1,10 @@
-# Made by smachac 0.1.0 from main.yml (sha256 81a84a51ef7a693e).
+# Made by smachac 0.1.0 from main.yml (sha256 b60880ba9ee335fa).
 """The state machine `patrol`."""
 
 import rclpy.duration
 from smachac.runtime.smach_ros2 import parameters, program
 from smachac.runtime.smach_ros2.bag_states import RecordROSBagState
+from smachac.runtime.smach_ros2.message_fields import filled
 from smachac.runtime.smach_ros2.publish_states import (
     PublishMsgState,
     PublishObserverMsgState,
@@ -71,7 +72,7 @@ def build(node, battery_topic="/battery", patience=60.0, mode="rotation"):
                 node,
                 "count",
                 Fibonacci,
-                goal=Fibonacci.Goal(order=5),
+                goal=filled(Fibonacci.Goal(), {"order": 5}),
             ),
             transitions={
                 "succeeded": "ENABLE",
@@ -87,7 +88,7 @@ def build(node, battery_topic="/battery", patience=60.0, mode="rotation"):
                 node,
                 "enable",
                 SetBool,
-                request=SetBool.Request(data=True),
+                request=filled(SetBool.Request(), {"data": True}),
                 response_slots=["message"],
             ),
             transitions={
@@ -100,7 +101,7 @@ def build(node, battery_topic="/battery", patience=60.0, mode="rotation"):
         # main.yml:45
         smach.StateMachine.add(
             "DOCK",
-            smach_ros.ServiceState(node, "dock", Trigger),
+            smach_ros.ServiceState(node, "dock", Trigger, request=Trigger.Request()),
             transitions={
                 "succeeded": "BATTERY",
                 "aborted": "aborted",
@@ -108,7 +109,7 @@ def build(node, battery_topic="/battery", patience=60.0, mode="rotation"):
             },
         )
 
-        # main.yml:50
+        # main.yml:51
         smach.StateMachine.add(
             "BATTERY",
             WaitForMsgState(
@@ -125,7 +126,7 @@ def build(node, battery_topic="/battery", patience=60.0, mode="rotation"):
             },
         )
 
-        # main.yml:57
+        # main.yml:58
         smach.StateMachine.add(
             "READ",
             ReadTopicState(node, input_keys=["topic"], output_keys=["output"]),
@@ -136,7 +137,7 @@ def build(node, battery_topic="/battery", patience=60.0, mode="rotation"):
             },
         )
 
-        # main.yml:62
+        # main.yml:63
         smach.StateMachine.add(
             "WATCH",
             smach_ros.MonitorState(
@@ -153,7 +154,7 @@ def build(node, battery_topic="/battery", patience=60.0, mode="rotation"):
             },
         )
 
-        # main.yml:69
+        # main.yml:70
         smach.StateMachine.add(
             "CHECK",
             smach_ros.ConditionState(
@@ -166,7 +167,7 @@ def build(node, battery_topic="/battery", patience=60.0, mode="rotation"):
             transitions={"true": "FRAME", "false": "aborted", "preempted": "preempted"},
         )
 
-        # main.yml:76
+        # main.yml:77
         smach.StateMachine.add(
             "FRAME",
             TF2ListenerState(node),
@@ -177,7 +178,7 @@ def build(node, battery_topic="/battery", patience=60.0, mode="rotation"):
             },
         )
 
-        # main.yml:79
+        # main.yml:80
         smach.StateMachine.add(
             "MOVE_POINT",
             TransformMsgState(
@@ -193,7 +194,7 @@ def build(node, battery_topic="/battery", patience=60.0, mode="rotation"):
             },
         )
 
-        # main.yml:85
+        # main.yml:86
         smach.StateMachine.add(
             "PUBLISH",
             PublishMsgState(
@@ -205,7 +206,7 @@ def build(node, battery_topic="/battery", patience=60.0, mode="rotation"):
             transitions={"succeeded": "ECHO", "aborted": "aborted"},
         )
 
-        # main.yml:90
+        # main.yml:91
         smach.StateMachine.add(
             "ECHO",
             PublishObserverMsgState(
