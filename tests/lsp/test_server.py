@@ -16,17 +16,30 @@ pytest.importorskip("pygls")
 EXAMPLES = Path(__file__).parents[2] / "examples"
 
 
-@pytest.fixture
-def folder(tmp_path: Path) -> Path:
-    shutil.copytree(EXAMPLES / "08_pick_and_place", tmp_path / "robot")
-    return (tmp_path / "robot").resolve()
+@pytest.fixture(scope="module")
+def root(tmp_path_factory: pytest.TempPathFactory) -> Path:
+    return tmp_path_factory.mktemp("workspace").resolve()
 
 
-@pytest.fixture
-def client(folder: Path) -> Iterator[Client]:
-    with Client(folder) as running:
+@pytest.fixture(scope="module")
+def server(root: Path) -> Iterator[Client]:
+    with Client(root) as running:
         yield running
         assert running.end() == ""
+
+
+@pytest.fixture
+def folder(root: Path, request: pytest.FixtureRequest) -> Path:
+    copied = root / request.node.name
+    shutil.copytree(EXAMPLES / "08_pick_and_place", copied)
+    return copied
+
+
+@pytest.fixture
+def client(server: Client, folder: Path) -> Iterator[Client]:
+    """The server, in which a test leaves no document open."""
+    yield server
+    server.close_all()
 
 
 def words(items: list[dict[str, Any]]) -> list[str]:
@@ -260,6 +273,7 @@ def test_structure(client: Client, folder: Path) -> None:
     (root,) = client.ask("textDocument/documentSymbol", **document)
     assert [each["name"] for each in root["children"]][:2] == ["LOAD_TABLE", "LOAD_BLOCK"]
     found = client.ask("workspace/symbol", query="close_gr")
+    found = [each for each in found if each["location"]["uri"].startswith(folder.as_uri())]
     assert [(each["name"], each["containerName"]) for each in found] == [
         ("CLOSE_GRIPPER", "PICK_BLOCK")
     ]
@@ -290,7 +304,7 @@ def test_formatting(client: Client, folder: Path) -> None:
     assert client.ask("textDocument/formatting", textDocument={"uri": uri}, options=options) is None
 
 
-def test_tokens_of_code(client: Client, tmp_path: Path) -> None:
+def test_tokens_of_code(client: Client) -> None:
     path = EXAMPLES.resolve() / "06_callbacks" / "main.yml"
     text = path.read_text("utf-8")
     uri = client.open(path)

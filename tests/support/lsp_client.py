@@ -36,6 +36,7 @@ class Client:
         self.complaints = ""
         self.number = 0
         self.version = 0
+        self.opened: dict[str, None] = {}
         self.diagnostics: dict[str, dict[str, Any]] = {}
         general = {"general": {"positionEncodings": list(encodings)}} if encodings else {}
         folders = [{"uri": folder.as_uri(), "name": folder.name}]
@@ -125,9 +126,16 @@ class Client:
         """Open a document; its URI."""
         self.version += 1
         text = path.read_text("utf-8") if text is None else text
+        self.opened[path.as_uri()] = None
         document = {"uri": path.as_uri(), "languageId": "yaml", "version": self.version}
         self.tell("textDocument/didOpen", textDocument={**document, "text": text})
         return path.as_uri()
+
+    def close_all(self) -> None:
+        """Close the documents that are open."""
+        for uri in self.opened:
+            self.tell("textDocument/didClose", textDocument={"uri": uri})
+        self.opened.clear()
 
     def change(self, uri: str, text: str) -> None:
         self.version += 1
