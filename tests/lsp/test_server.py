@@ -30,7 +30,7 @@ def server(root: Path) -> Iterator[Client]:
 
 @pytest.fixture
 def folder(root: Path, request: pytest.FixtureRequest) -> Path:
-    copied = root / request.node.name
+    copied: Path = root / request.node.name
     shutil.copytree(EXAMPLES / "08_pick_and_place", copied)
     return copied
 
