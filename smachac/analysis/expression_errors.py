@@ -20,7 +20,7 @@ from smachac.analysis.expression_types import (
     parsed,
     type_of,
 )
-from smachac.analysis.type_lattice import item_of, length_of, misfit, record, widened
+from smachac.analysis.type_lattice import fields, item_of, length_of, mapping, misfit, widened
 from smachac.ir.expressions import (
     Attribute,
     Binary,
@@ -65,7 +65,7 @@ class Fault:
     length: bool = False
 
 
-EMPTY = record(())
+EMPTY = mapping(())
 """The type of userdata without keys."""
 
 
@@ -112,7 +112,7 @@ def function_faults(text: str, userdata: Type) -> tuple[Fault, ...]:
 
 def always_fails(expression: Expression, userdata: Names) -> bool:
     """Whether a function of the script never gives a value, over the types of the keys it reads."""
-    found = function_faults(expression.text, record(userdata.items()))
+    found = function_faults(expression.text, mapping(userdata.items()))
     return any(each.kind == "operation" and each.always and not each.length for each in found)
 
 
@@ -227,6 +227,15 @@ class _Judge:
             return
         size = _size(owner)
         known = place.args[0] if place.name == "literal" and len(place.args) == 1 else None
+        if isinstance(known, str) and owner.name == "record" and known not in fields(owner):
+            yield Fault(
+                kind="operation",
+                expr=expr,
+                what=f"`{print_expression(expr)}` reads the field `{known}`, which `{owner}` lacks",
+                keys=self.keys(value, index),
+                word=known,
+                choices=tuple(fields(owner)),
+            )
         if isinstance(known, int) and size is not None and not -size <= known < size:
             count = f"{size} item{'s' if size != 1 else ''}"
             text = f"`{print_expression(expr)}` is out of range: `{type_text(owner)}` has {count}"
@@ -373,7 +382,7 @@ _KINDS: Mapping[str, Kinds] = {
     "str": frozenset(["text"]),
     "none": frozenset(["nothing"]),
     **dict.fromkeys(("list", "array", "tuple"), frozenset(["list"])),
-    **dict.fromkeys(("dict", "record"), frozenset(["mapping"])),
+    **dict.fromkeys(("dict", "mapping", "record"), frozenset(["mapping"])),
     **dict.fromkeys(ATTRIBUTES, frozenset(["struct"])),
 }
 
@@ -466,7 +475,7 @@ def can_be_indexed(owner: Type, index: Type) -> bool:
     if not wanted or "struct" in wanted:
         return True
     # The entries of mappings in a script have text as names.
-    named = owner.name == "record" or bool(owner.args)
+    named = owner.name in ("mapping", "record") or bool(owner.args)
     by_number = bool(known & {"text", "list"}) or not named
     return (by_number and "number" in wanted) or ("mapping" in known and "text" in wanted) or (
         "mapping" in known and not named and bool(wanted - {"list", "mapping"})

@@ -8,7 +8,7 @@ from dataclasses import dataclass, field
 from smachac.analysis.expression_errors import Fault, expression_faults, function_faults
 from smachac.analysis.expression_types import keys_read, parsed
 from smachac.analysis.type_inference import Cell, Types
-from smachac.analysis.type_lattice import join, record
+from smachac.analysis.type_lattice import join, mapping
 from smachac.ir import nodes
 from smachac.ir.leaf import functions
 from smachac.ir.nodes import Expression, Leaf, Node, Struct
@@ -32,7 +32,7 @@ class ExpressionSite:
     def faults(self) -> tuple[Fault, ...]:
         text = self.expression.text
         if self.types is not None:
-            found = function_faults(text, record(self.types.items()))
+            found = function_faults(text, mapping(self.types.items()))
         else:
             tree = parsed(text)
             found = () if tree is None else expression_faults(tree)

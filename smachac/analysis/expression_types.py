@@ -24,9 +24,9 @@ from smachac.analysis.type_lattice import (
     item_of,
     items,
     joined,
+    mapping,
     plain,
     present,
-    record,
     unit_of,
     widened,
 )
@@ -93,7 +93,7 @@ def type_of_data(data: Data, depth: int = DEEPEST) -> Type:
         case tuple():
             return _tuple((type_of_data(item, depth - 1) for item in data), len(data))
         case Struct(entries=entries):
-            return _record((name, type_of_data(item, depth - 1)) for name, item in entries)
+            return _mapping((name, type_of_data(item, depth - 1)) for name, item in entries)
     return assert_never(data)
 
 
@@ -104,10 +104,10 @@ def _tuple(of: Iterable[Type], size: int) -> Type:
     return Type("array", (widened(joined(of)), size))
 
 
-def _record(of: Iterable[tuple[str, Type]]) -> Type:
+def _mapping(of: Iterable[tuple[str, Type]]) -> Type:
     found = dict(of)
     if len(found) <= LONGEST_TUPLE:
-        return record(found.items())
+        return mapping(found.items())
     return Type("dict", (widened(joined(found.values())),))
 
 
@@ -154,7 +154,7 @@ def type_of_call(expression: Expression, userdata: Names) -> Type:
     if tree is None:
         return ANY
     body, parameters = body_of(tree)
-    keys = record(userdata.items())
+    keys = mapping(userdata.items())
     return limited(type_of(body, dict.fromkeys(parameters, keys)))
 
 
@@ -198,7 +198,7 @@ def limited(type_: Type, depth: int = DEEPEST) -> Type:
 
 
 def _attribute(owner: Type, name: str) -> Type:
-    if owner.name == "record":
+    if owner.name == "mapping":
         return fields(owner).get(name, ANY)
     return ATTRIBUTES.get(owner.name, {}).get(name, ANY)
 
@@ -229,7 +229,7 @@ def _item(owner: Type, index: Type) -> Type:
             return found[known] if -len(found) <= known < len(found) else ANY
         case "tuple" | "list" | "array":
             return item_of(owner)
-        case "record":
+        case "mapping" | "record":
             return fields(owner).get(known, ANY) if isinstance(known, str) else ANY
         case "dict":
             return inside(owner)
@@ -245,7 +245,9 @@ def _item(owner: Type, index: Type) -> Type:
 def _display(entries: tuple[tuple[Expr, Expr], ...], names: Names) -> Type:
     found = [(key, type_of(value, names)) for key, value in entries]
     if all(isinstance(key, Constant) and isinstance(key.value, str) for key, _ in found):
-        return _record((str(key.value), type_) for key, type_ in found if isinstance(key, Constant))
+        return _mapping(
+            (str(key.value), type_) for key, type_ in found if isinstance(key, Constant)
+        )
     return DICT
 
 

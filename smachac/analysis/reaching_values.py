@@ -8,7 +8,7 @@ from typing import NamedTuple
 
 from smachac.analysis.null_guards import excludes_null
 from smachac.analysis.type_inference import Cell, Clash, TypeFlow
-from smachac.analysis.type_lattice import MisfitKind
+from smachac.analysis.type_lattice import Misfit, MisfitKind
 from smachac.ir import nodes
 from smachac.ir.graph import START, Vertex, edges
 from smachac.ir.nodes import Leaf, Node, StateMachine
@@ -48,6 +48,17 @@ def last_writers(reads: Iterable[Read]) -> Iterator[tuple[Read, tuple[Vertex, ..
     for read in reads:
         if searches.visits <= MOST_VISITS:
             yield read, searches.search(read.container, read.path, read.key, read.child)
+
+
+def reaching_flows(flows: Iterable[TypeFlow]) -> list[TypeFlow]:
+    """The flows of literals whose value can be there when it is read."""
+    searches = _Searches()
+    found = []
+    for flow in flows:
+        here = Misfit("type", flow.type, flow.cell.declared)
+        clash = searches.reaching(Clash(flow=flow, cell=flow.cell, misfit=here))
+        found += [clash.flow] if clash is not None else []
+    return found
 
 
 class _Searches:

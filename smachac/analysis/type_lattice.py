@@ -1,10 +1,11 @@
 """The lattice of types: subtyping, join and meet, and the types of literals.
 
 An int fits a float, a `T` a `T?`, an enumeration a larger one or a `str`; a list of unknown length
-fits an array, a number without a unit every unit; `any` fits everything and everything fits `any`.
+fits an array, a number without a unit every unit, a record one with fewer fields; `any` fits
+everything and everything fits `any`.
 Nothing else converts. Three forms that no script can write stand for what is known of a literal:
 `Type("literal", (1, "a"))` is one of these constants, `Type("tuple", (T, U))` a list of two items,
-`Type("record", ("x", T))` a mapping with these names. They fit every type they can be written for.
+`Type("mapping", ("x", T))` a mapping with these names. They fit every type they can be written for.
 """
 
 from __future__ import annotations
@@ -39,7 +40,7 @@ def is_open(type_: Type) -> bool:
 
 
 def _is_unknown(name: str) -> bool:
-    return name not in WORDS and name not in ("tuple", "record") and not re.search("[./]", name)
+    return name not in WORDS and name not in ("tuple", "mapping") and not re.search("[./]", name)
 
 
 def inside(type_: Type) -> Type:
@@ -54,14 +55,14 @@ def items(type_: Type) -> tuple[Type, ...]:
 
 
 def fields(type_: Type) -> dict[str, Type]:
-    """The types of a record by name."""
+    """The types of the fields of a record or mapping by name."""
     pairs = zip(type_.args[::2], type_.args[1::2], strict=True)
     return {str(name): item for name, item in pairs if isinstance(item, Type)}
 
 
-def record(of: Iterable[tuple[str, Type]]) -> Type:
+def mapping(of: Iterable[tuple[str, Type]]) -> Type:
     """The type of a mapping with these names."""
-    return Type("record", tuple(part for pair in of for part in pair))
+    return Type("mapping", tuple(part for pair in of for part in pair))
 
 
 def present(type_: Type) -> Type:
@@ -97,21 +98,25 @@ def misfit(given: Type, wanted: Type) -> Misfit | None:
             return _misfit_numbers(given, wanted)
         case "tuple" | "list" | "array", "list" | "array":
             return _misfit_lists(given, wanted)
-        case "record", "dict":
+        case "mapping" | "record", "dict":
             return _first(misfit(item, inside(wanted)) for item in fields(given).values())
+        case "mapping" | "record", "record":
+            return _misfit_records(given, wanted)
+        case "dict", "record":
+            return _first(misfit(inside(given), item) for item in fields(wanted).values())
         case "dict", "dict":
             return misfit(inside(given), inside(wanted))
-        case ("tuple", "tuple") | ("record", "record") if len(given.args) == len(wanted.args):
+        case ("tuple", "tuple") | ("mapping", "mapping") if len(given.args) == len(wanted.args):
             parts = zip(items(given), items(wanted), strict=False)
             return _first(misfit(item, part) for item, part in parts)
         case "tuple", _:
             return _misfit_struct(given, wanted)
-        case "record", "PoseStamped" | "JointState":
+        case "mapping" | "record", "PoseStamped" | "JointState":
             return None
         case "list" | "array" | "dict", name if name in STRUCTS and is_open(inside(given)):
             return None
     if "/" in wanted.name or "." in wanted.name:
-        literal = given.name in ("tuple", "record")
+        literal = given.name in ("tuple", "mapping", "record")
         return None if literal or _message(given.name) == _message(wanted.name) else clash
     return clash
 
@@ -129,6 +134,15 @@ def _misfit_choice(choice: Type | int | str, wanted: Type) -> Misfit | None:
     if isinstance(choice, Type) or isinstance(choice, str) == (wanted == STR):
         return None
     return Misfit("type", Type("literal", (choice,)), wanted)
+
+
+def _misfit_records(given: Type, wanted: Type) -> Misfit | None:
+    """Fields that only the given record has are allowed; one that it lacks must be optional."""
+    own = fields(given)
+    for name, item in fields(wanted).items():
+        if name not in own and item.name != "optional" and not is_open(item):
+            return Misfit("type", given, wanted)
+    return _first(misfit(own[name], item) for name, item in fields(wanted).items() if name in own)
 
 
 def _message(name: str) -> tuple[str, ...]:
@@ -226,12 +240,17 @@ def join(one: Type, other: Type) -> Type:
             return _join_numbers(one, other)
         case [Type("tuple"), Type("tuple")] if len(one.args) == len(other.args):
             return Type("tuple", tuple(map(join, items(one), items(other))))
-        case [Type("record"), Type("record")] if one.args[::2] == other.args[::2]:
-            own = fields(other)
-            return record((name, join(item, own[name])) for name, item in fields(one).items())
+        case [Type("mapping"), Type("mapping")] if one.args[::2] == other.args[::2]:
+            return _join_fields(one, other)
+        case [Type("record"), Type("record")] if fields(one).keys() == fields(other).keys():
+            return _join_fields(one, other)
+        case [Type("mapping"), Type("record")] | [Type("record"), Type("record")] if fits(
+            one, other
+        ) or fits(other, one):
+            return other if fits(one, other) else one
         case [Type("tuple" | "list" | "array"), Type("tuple" | "list" | "array")]:
             return _join_lists(one, other)
-        case [Type("record" | "dict"), Type("record" | "dict")]:
+        case [Type("dict" | "mapping" | "record"), Type("dict" | "mapping" | "record")]:
             return Type("dict", (join(_value(one), _value(other)),))
     for low, high in ((one, other), (other, one)):
         if fits(low, high):
@@ -257,6 +276,13 @@ def _join_numbers(one: Type, other: Type) -> Type:
     return Type(name, tuple(sorted(units))) if len(units) == 1 else Type(name)
 
 
+def _join_fields(one: Type, other: Type) -> Type:
+    """The join of two records or two mappings with the same fields."""
+    own = fields(other)
+    joins = ((name, join(item, own[name])) for name, item in fields(one).items())
+    return Type(one.name, tuple(part for pair in joins for part in pair))
+
+
 def _join_lists(one: Type, other: Type) -> Type:
     item = joined(item_of(each) for each in (one, other) if length_of(each) != 0)
     size = length_of(one)
@@ -278,7 +304,7 @@ def item_of(type_: Type) -> Type:
             return joined(items(type_))
         case "list" | "array":
             return inside(type_)
-        case "record" | "str":
+        case "mapping" | "record" | "str":
             return STR
         case "dict":
             return STR if type_.args else ANY  # keys of a bare dict may be of any type
@@ -288,7 +314,8 @@ def item_of(type_: Type) -> Type:
 
 
 def _value(type_: Type) -> Type:
-    return joined(fields(type_).values()) if type_.name == "record" else inside(type_)
+    found = type_.name in ("mapping", "record")
+    return joined(fields(type_).values()) if found else inside(type_)
 
 
 def plain(type_: Type) -> Type:
@@ -301,7 +328,7 @@ def plain(type_: Type) -> Type:
             return Type("array", (joined(items(type_)), len(type_.args)))
         case "tuple":
             return LIST
-        case "record":
+        case "mapping":
             return Type("dict", (_value(type_),)) if type_.args else DICT
     return type_
 
@@ -311,7 +338,7 @@ def plain(type_: Type) -> Type:
 @lru_cache(maxsize=10_000)
 def widened(type_: Type) -> Type:
     """A type with the forms of literals in it as a script would write them."""
-    if type_.name in ("literal", "tuple", "record"):
+    if type_.name in ("literal", "tuple", "mapping"):
         return widened(plain(type_))
     return Type(type_.name, tuple(widened(a) if isinstance(a, Type) else a for a in type_.args))
 
@@ -361,7 +388,7 @@ def settled(written: Type, read: Type) -> Type:
             return settled(written, inside(read))
         case "optional", "optional":
             return optional(settled(inside(written), inside(read)))
-        case "literal" | "record", _:
+        case "literal" | "mapping", _:
             return read
         case "tuple", "list" | "array":
             item = settled(joined(items(written)), inside(read)) if written.args else inside(read)

@@ -29,6 +29,7 @@ from smachac.checks import (
     timeouts,
     types,
     userdata,
+    values,
     workspace,
 )
 from smachac.checks.rule import Rule
@@ -95,6 +96,9 @@ RULES: tuple[Rule, ...] = (
     motion.wrong_frame,
     message_fields.unknown_field,
     grip.closed_gripper,
+    values.out_of_limits,
+    values.unknown_name,
+    values.doubtful_unit,
     properties.property_fails,
     properties.property_vacuous,
     properties.unknown_event,

@@ -150,7 +150,7 @@ def resource_clash(context: Context) -> Iterator[Finding]:
 
     Wrong:
         name: sm
-        template: PyBulletBase
+        template: Base
         outcomes: [succeeded, aborted]
         userdata: {home: [0.0, -0.785, 0.0, -2.356, 0.0, 1.571, 0.785], up: [0, 0, 0, -2, 0, 2, 0]}
         states:
@@ -170,7 +170,7 @@ def resource_clash(context: Context) -> Iterator[Finding]:
 
     Right:
         name: sm
-        template: PyBulletBase
+        template: Base
         outcomes: [succeeded, aborted]
         userdata: {home: [0.0, -0.785, 0.0, -2.356, 0.0, 1.571, 0.785], up: [0, 0, 0, -2, 0, 2, 0]}
         states:

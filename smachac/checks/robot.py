@@ -4,13 +4,13 @@ from __future__ import annotations
 
 import math
 from collections.abc import Iterable, Iterator
-from dataclasses import replace
 
 from smachac.analysis.context import Context
 from smachac.analysis.type_inference import Cell, TypeFlow
 from smachac.analysis.type_lattice import inside, present, unit_of
 from smachac.checks.expressions import mixed_units
 from smachac.checks.messages import calls, did_you_mean, other_place
+from smachac.checks.number_help import decimal_commas
 from smachac.checks.rule import rule
 from smachac.checks.types import clash_findings
 from smachac.diagnostics.diagnostic import Finding, Related, Severity
@@ -72,7 +72,9 @@ def wrong_length(context: Context) -> Iterator[Finding]:
             if len(flow.value) not in lengths:
                 have = " or ".join(map(str, lengths))
                 message = f"`{flow.origin.cell.key}` has {len(flow.value)} numbers, but the arm has"
-                yield at(flow, f"{message} {have} joints", "write one number for each joint")
+                help = decimal_commas(flow.origin.span.text, lengths)
+                help = help or "write one number for each joint"
+                yield at(flow, f"{message} {have} joints", help)
 
 
 @rule("SM502", "joint-limit", Severity.ERROR)
@@ -114,13 +116,7 @@ def joint_limit(context: Context) -> Iterator[Finding]:
         assert robot is not None
         if not moves_arm(flow):
             continue
-        given = _angles(flow.value, robot)
-        wrong = [
-            (number, joint, angle)
-            for number, (joint, angle) in enumerate(given, 1)
-            if is_number(angle) and not _within(joint, as_float(angle))
-        ]
-        for number, joint, angle in wrong:
+        for number, joint, angle in joint_faults(flow, robot):
             what = f"joint {number}" if isinstance(flow.value, tuple) else f"`{joint.name}`"
             yield at(
                 flow,
@@ -132,6 +128,16 @@ def joint_limit(context: Context) -> Iterator[Finding]:
                 (str(number) if isinstance(flow.value, tuple) else joint.name,),
                 other_place(joint.span, f"the limits of `{joint.name}`"),
             )
+
+
+def joint_faults(flow: TypeFlow, robot: Robot) -> list[tuple[int, Joint, Data]]:
+    """The angles of a literal that are outside the limits of their joints, each with the number of
+    the joint."""
+    return [
+        (number, joint, angle)
+        for number, (joint, angle) in enumerate(_angles(flow.value, robot), 1)
+        if is_number(angle) and not _within(joint, as_float(angle))
+    ]
 
 
 def _within(joint: Joint, angle: float) -> bool:
@@ -290,6 +296,7 @@ def at(
     help: str | None,
     names: tuple[str, ...] = (),
     more: tuple[Related, ...] = (),
+    severity: Severity | None = None,
 ) -> Finding:
     """A finding at a literal, with the place where it is read; its arguments are the key of the
     literal and `names`."""
@@ -304,6 +311,7 @@ def at(
         arguments=(origin.cell.key, *names),
         help=help,
         related=(*related, *more, *(calls(node, origin.span) if node is not None else ())),
+        severity=severity,
         node=origin.cell.path,
     )
 
@@ -332,7 +340,8 @@ def unknown_frame(context: Context) -> Iterator[Finding]:
     the literals that a state reads as `str` from a key whose name is or ends with `frame` or
     `frame_id`, and the frame of a PoseStamped. In the simulation the frames are `base`, `world` and
     the loaded bodies, and an unknown one is an error. The rule also checks the joint names in
-    mappings of joint names to angles.
+    mappings of joint names to angles, and the values of variables and keys with `names: joint` or
+    `names: frame` in the interface.
 
     Wrong:
         name: sm
@@ -369,8 +378,7 @@ def unknown_frame(context: Context) -> Iterator[Finding]:
     if robot is None:
         return
     yield from _unknown_joints(context, robot)
-    base = context.machine.state_types.get(context.machine.base)
-    simulated = base is not None and base.simulation
+    simulated = is_simulated(context)
     known = _simulated(context, robot) if simulated else _known(robot)
     if not known:
         return
@@ -384,12 +392,9 @@ def unknown_frame(context: Context) -> Iterator[Finding]:
             if simulated:
                 help = f"its frames are {', '.join(f'`{each}`' for each in sorted(known))}"
             message = f"{where} has no frame `{name}`"
-            found = at(flow, message, did_you_mean(guess(name)) or help, (name,))
-            yield found if not simulated else _as_error(found)
-
-
-def _as_error(found: Finding) -> Finding:
-    return replace(found, severity=Severity.ERROR)
+            severity = Severity.ERROR if simulated else None
+            help = did_you_mean(guess(name)) or help
+            yield at(flow, message, help, (name,), severity=severity)
 
 
 def _known(robot: Robot) -> frozenset[str]:
@@ -399,19 +404,34 @@ def _known(robot: Robot) -> frozenset[str]:
 
 def _simulated(context: Context, robot: Robot) -> frozenset[str]:
     """The frames of the simulated world; none where code of the user may add to them."""
-    found = {"base", "world", robot.name, *robot.added, *robot.scene}
+    loaded = loaded_bodies(context)
+    if loaded is None:
+        return frozenset()
+    return frozenset({"base", "world", robot.name, *robot.added, *robot.scene, *loaded})
+
+
+def loaded_bodies(context: Context) -> frozenset[str] | None:
+    """The bodies that states add to the simulated world; None where code of the user may add some
+    or the name of one is computed."""
+    found = set()
     for _, node in context.states:
         if not isinstance(node, Leaf):
             continue
         if node.adds_frames is None:
-            return frozenset()
+            return None
         if node.adds_frames:
             given = (variable(node, name) for name in node.adds_frames)
             frame = next((value for value in given if value), None)
             if not isinstance(frame, str):
-                return frozenset()
+                return None
             found.add(frame)
     return frozenset(found)
+
+
+def is_simulated(context: Context) -> bool:
+    """Whether the program runs in the simulated world."""
+    base = context.machine.state_types.get(context.machine.base)
+    return base is not None and base.simulation
 
 
 def _frames_in(flow: TypeFlow) -> Iterator[str]:
@@ -454,17 +474,28 @@ def _unknown_joints(context: Context, robot: Robot) -> Iterator[Finding]:
     """The unknown joints in mappings of joint names to angles."""
     joints = [joint.name for joint in robot.joints]
     for flow in context.types.constants if joints else ():
-        if moves_arm(flow) and isinstance(flow.value, Struct):
-            yield from _strangers(flow, flow.value.entries, joints, robot)
+        if role_of(flow.cell) == "joint":
+            yield from _strangers(flow, names_in(flow.value), joints, robot)
+        elif moves_arm(flow) and isinstance(flow.value, Struct):
+            names = list(names_in(flow.value))
+            if not set(joints).isdisjoint(names):  # else the names are not those of joints
+                yield from _strangers(flow, names, joints, robot)
+
+
+def names_in(data: Data) -> Iterator[str]:
+    """The names in a literal: itself, the items of a list, the keys of a mapping."""
+    if isinstance(data, str):
+        yield data
+    elif isinstance(data, tuple):
+        yield from (item for item in data if isinstance(item, str))
+    elif isinstance(data, Struct):
+        yield from (name for name, _ in data.entries)
 
 
 def _strangers(
-    flow: TypeFlow, entries: Iterable[tuple[str, Data]], joints: list[str], robot: Robot
+    flow: TypeFlow, names: Iterable[str], joints: list[str], robot: Robot
 ) -> Iterator[Finding]:
-    names = [name for name, _ in entries]
-    strange = [name for name in names if name not in joints]
-    if len(strange) == len(names):
-        return  # the names are not those of joints
+    strange = dict.fromkeys(name for name in names if name not in joints)
     guess = guesser(joints)
     for name in strange:
         help = did_you_mean(guess(name)) or f"its joints are {listed(joints)}"

@@ -7,13 +7,28 @@ from collections.abc import Iterator
 from itertools import pairwise
 
 from smachac.analysis.context import Context
+from smachac.analysis.expression_types import type_of_data
 from smachac.analysis.type_inference import Cell, Clash, TypeFlow
-from smachac.analysis.type_lattice import FLOAT, fits, inside, is_open, items, widened
+from smachac.analysis.type_lattice import (
+    BOOL,
+    FLOAT,
+    fields,
+    fits,
+    inside,
+    is_open,
+    items,
+    misfit,
+    present,
+    widened,
+)
 from smachac.checks.messages import calls, did_you_mean, other_place
+from smachac.checks.number_help import decimal_commas, number_meant, sizes_of
 from smachac.checks.rule import rule
 from smachac.diagnostics.diagnostic import Finding, Related, Severity
 from smachac.diagnostics.source import NOWHERE, Span
 from smachac.diagnostics.spelling import guesser
+from smachac.diagnostics.wording import listed
+from smachac.ir.nodes import Leaf, StateType
 from smachac.ir.types import Type
 
 
@@ -24,7 +39,8 @@ def type_mismatch(context: Context) -> Iterator[Finding]:
     The state that reads it fails in the middle of the task, or uses the value with a wrong meaning.
 
     Exactly: types come from interfaces, from the script, from literals and from the results of
-    functions, and are followed through remappings and containers. An `int` fits a `float`, a `T`
+    functions, and are followed through remappings and containers. The default of a variable in an
+    interface must fit its type. An `int` fits a `float`, a `T`
     fits a `T?`, an enumeration fits one with more choices, and `any` fits every type.
 
     Wrong:
@@ -61,7 +77,37 @@ def type_mismatch(context: Context) -> Iterator[Finding]:
               outcomes: [done]
               transitions: {done: done}
     """
-    yield from clash_findings(context.clashes["type"])
+    yield from clash_findings([each for each in context.clashes["type"] if not _is_function(each)])
+    for type_ in context.machine.state_types.values():
+        yield from _wrong_defaults(type_)
+
+
+def _is_function(clash: Clash) -> bool:
+    """Whether a value is the text of a function where one is allowed, which is SM316."""
+    value, node = clash.flow.value, clash.cell.node
+    if clash.cell.role != "variable" or not isinstance(node, Leaf) or not isinstance(value, str):
+        return False
+    roles = {each.role for each in node.variables if each.name == clash.cell.key}
+    return value.lstrip().startswith("lambda") and not roles.isdisjoint(("duration", "function"))
+
+
+def _wrong_defaults(type_: StateType) -> Iterator[Finding]:
+    """The defaults of an interface that do not fit their own types."""
+    for held in type_.variables.values():
+        data = held.default.data if held.default is not None else None
+        found = misfit(type_of_data(data), held.type) if data is not None else None
+        if held.default is None or found is None:
+            continue
+        help = f"write a default that fits `{held.type}`, or correct the type"
+        if found.given.name == "literal" and present(found.wanted).name in ("int", "float"):
+            help = number_meant(str(found.given.args[0]), present(found.wanted)) or help
+        yield Finding(
+            span=held.default.span,
+            message=f"the default of `{held.name}` is {in_words(type_of_data(data))}, but its type"
+            f" is `{held.type}`",
+            arguments=(held.name, str(widened(found.given)), str(found.wanted)),
+            help=help,
+        )
 
 
 MOST_PLACES = 6
@@ -178,10 +224,28 @@ def in_words(type_: Type) -> str:
 def _part(clash: Clash) -> str:
     """The part of the value that does not fit; empty if it is the whole value."""
     given, wanted = clash.misfit.given, clash.misfit.wanted
+    missing = _missing_fields(clash)
+    if missing:
+        return f": it lacks the field{'s' if len(missing) > 1 else ''} {listed(missing)}"
     if given == clash.flow.type or clash.misfit.kind == "unit":
         return ""
     return f": {in_words(given)} does not fit `{wanted}`"
 
+
+def _missing_fields(clash: Clash) -> list[str]:
+    """The fields of a record that a mapping or another record lacks."""
+    given, wanted = clash.misfit.given, clash.misfit.wanted
+    if wanted.name != "record" or given.name not in ("mapping", "record"):
+        return []
+    return [name for name, type_ in fields(wanted).items()
+            if name not in fields(given) and type_.name != "optional"]  # fmt: skip
+
+
+FLAGS = {
+    **dict.fromkeys(("true", "yes", "on", "1"), "true"),
+    **dict.fromkeys(("false", "no", "off", "0"), "false"),
+}
+"""Words and numbers that are meant as booleans, which are `true` and `false` in YAML 1.2."""
 
 HELP = {
     "Pose": "write a pose as `[[x, y, z], [qx, qy, qz, qw]]`",
@@ -199,6 +263,18 @@ def _help(clash: Clash) -> str:
         choices = [str(choice) for choice in wanted.args]
         guess = did_you_mean(guesser(choices)(str(given.args[0])))
         return guess or f"use one of {', '.join(f'`{choice}`' for choice in choices)}"
+    for name in _missing_fields(clash):
+        others = [each for each in fields(given) if each not in fields(wanted)]
+        near = guesser(others)(name)
+        if near is not None:
+            return f"did you mean `{name}` in place of `{near}`?"
+        return (
+            f"add `{name}`, or make it optional where it is read: `{name}: {fields(wanted)[name]}?`"
+        )
+    if clash.flow.how == "value":
+        meant = _meant(clash)
+        if meant is not None:
+            return meant
     if clash.flow.how == "value" and wanted.name in HELP:
         return HELP[wanted.name]
     if given.name == "none":
@@ -211,6 +287,19 @@ def _help(clash: Clash) -> str:
         owner = _owner(clash.flow.origin.cell)
         return f"change the type in the `input_keys` of {owner}, or where it is read"
     return f"write a value that fits `{wanted}`, or change the type where it is read"
+
+
+def _meant(clash: Clash) -> str | None:
+    """The help for a literal that was meant as a number, or as a list of numbers."""
+    given, wanted = clash.misfit.given, clash.misfit.wanted
+    number = present(wanted)
+    if given.name == "literal" and number == BOOL:
+        flag = FLAGS.get(str(given.args[0]).casefold())
+        return f"write `{flag}`" if flag else None
+    if given.name == "literal" and number.name in ("int", "float"):
+        texts = [each for each in given.args if isinstance(each, str)]
+        return number_meant(texts[0], number) if texts else None
+    return decimal_commas(clash.flow.origin.span.text, sizes_of(clash.cell.declared))
 
 
 def _remaps(clash: Clash) -> Iterator[tuple[Span, str]]:

@@ -163,6 +163,16 @@ INTERFACE_FIELDS: Mapping[str, str] = {
 }
 """The fields of the interface of a state type, with their descriptions."""
 
+VALUE_FACTS: Mapping[str, str] = {
+    "min": "The least number allowed.",
+    "max": "The greatest number allowed.",
+    "exclusive": "`min` and `max` themselves are not allowed.",
+    "unit": "The unit of the number: `m/s`.",
+    "one_of": "The only words or numbers allowed.",
+    "names": "What the value is the name of: a joint, frame, limb, model or body.",
+}
+"""What an interface can state about the values of a variable or key, with descriptions."""
+
 VARIABLE_FACTS: Mapping[str, str] = {
     "type": "As float<rad>[7] or Pose.",
     "default": "The value without an entry of the script; without a default one is required.",
@@ -173,6 +183,8 @@ VARIABLE_FACTS: Mapping[str, str] = {
     "returns": "What a function in the variable returns.",
     "called_first": "Programs call the functions before the state, which does not get them.",
     "unquoted": "Programs contain the text without quotes: the shape that it must have.",
+    "ros": "The version of ROS that the variable needs, or each of its values: {x: 2}.",
+    **VALUE_FACTS,
 }
 """What an interface can state about a variable, with descriptions."""
 
@@ -182,6 +194,7 @@ KEY_FACTS: Mapping[str, str] = {
     "role": "What the key means to the state (docs/state_types.md, Facts).",
     "frame": "The frame of the pose, or the variable that names it.",
     "optional": "The state has the key only if the script lists it.",
+    **VALUE_FACTS,
 }
 """What an interface can state about a key, with descriptions."""
 

@@ -17,9 +17,16 @@ from smachac.frontend.class_reader import read_module, read_template
 from smachac.frontend.errors.script import Owner, unknown_variable, wrong_shape
 from smachac.frontend.fields import as_flag, as_map, as_name, as_names, as_outcome, as_text
 from smachac.frontend.loader import Library
-from smachac.frontend.schema import INTERFACE_FIELDS
-from smachac.frontend.type_annotations import read_type
+from smachac.frontend.schema import INTERFACE_FIELDS, KEY_FACTS, VARIABLE_FACTS
+from smachac.frontend.type_annotations import as_record, read_type
 from smachac.frontend.unquoted import VARIABLE_SHAPES, check_name, check_unquoted, is_name
+from smachac.frontend.value_facts import (
+    check_fields,
+    check_language,
+    described,
+    limits_of,
+    named,
+)
 from smachac.frontend.values import as_value
 from smachac.frontend.yaml_tree import Entry, Map, Scalar, Tree
 from smachac.ir.class_facts import ClassFacts
@@ -102,7 +109,7 @@ def _read_interface(
             owner = Owner("interface", "an interface")
             report.append(unknown_variable(word, owner, INTERFACE_FIELDS))
     if "name" in fields:
-        as_name(fields["name"], report)
+        _check_own_name(fields["name"], name, report)
     sections = {key: as_map(fields[key], report) if key in fields else () for key in _SECTIONS}
     code = _code(sections["code"], report)
     parts = ("variables", "input_keys", "output_keys", "outcomes")
@@ -145,6 +152,15 @@ def _read_interface(
     )
 
 
+def _check_own_name(tree: Tree, name: str, report: Report) -> None:
+    """Reports the name in an interface if it is not that of its file, by which scripts use it."""
+    word = as_name(tree, report)
+    if word is not None and word.text != name:
+        message = f"the interface is called `{word.text}`, but its file is `{name}.yml`"
+        help = f"write `name: {name}`, or rename the file to `{word.text}.yml`"
+        report.append(wrong_shape(word.span, message, help, arguments=("name", word.text, name)))
+
+
 def _optional_outcomes(section: Section) -> frozenset[str]:
     """Outcomes with `optional: true`."""
     return frozenset(key for key, value in _declared(section) if _is_set(value, "optional"))
@@ -175,8 +191,13 @@ _Role = TypeVar("_Role", VariableRole, KeyRole)
 
 
 def _role(tree: Tree, roles: tuple[_Role, ...], report: Report) -> _Role:
-    """The role that the entry of a key or variable gives; the empty one by default."""
+    """The role that the entry of a key or variable gives; the empty one by default. `names: frame`
+    is `role: frame`."""
     entry = tree.get("role") if isinstance(tree, Map) else None
+    what = named(tree, report) if entry is None else ""
+    for role in roles:
+        if what and role == what:
+            return role
     word = as_name(entry.value, report) if entry is not None else None
     for role in roles:
         if role == (word.text if word is not None else ""):
@@ -219,6 +240,8 @@ def _class_facts(
 def _code(section: Section, report: Report) -> dict[str, str]:
     """The code by language; a reference to a class of Python must be importable."""
     found = {}
+    for entry in section:
+        check_language(Word(str(entry.key.value), entry.key.span), report)
     for language, value in _declared(section):
         if isinstance(value, Scalar):
             found[language] = str(value.value)
@@ -304,7 +327,7 @@ def _type(tree: Tree | None, report: Report) -> Type:
     """The type that an interface gives: `{type: T}` or `T`; `any` if it cannot be read."""
     if isinstance(tree, Map):
         entry = tree.get("type")
-        tree = entry.value if entry else None
+        tree = as_record(entry.value) if entry else None
     if not isinstance(tree, Scalar) or not isinstance(tree.value, str):
         return ANY
     return read_type(tree.value, Word(tree.value, tree.span), report) or ANY
@@ -318,7 +341,10 @@ def _variables(section: Section, report: Report) -> dict[str, VariableType]:
 
 
 def _variable(name: str, tree: Tree, report: Report) -> VariableType:
-    type_ = _type(tree, report)
+    meant = check_fields(tree, f"the variable `{name}`", VARIABLE_FACTS, report)
+    role = _role(tree, _VARIABLE_ROLES, report)
+    type_ = described(_type(tree, report), tree, role, report)
+    limits = limits_of(tree, type_, role, report)
     default = tree.get("default") if isinstance(tree, Map) else None
     if default is not None and isinstance(default.value, Scalar) and default.value.value is None:
         # A variable that may be left out may also be `null`.
@@ -328,7 +354,7 @@ def _variable(name: str, tree: Tree, report: Report) -> VariableType:
         name=name,
         type=type_,
         role=role,
-        required=default is None,
+        required=default is None and "default" not in meant,
         doc=_doc(tree),
         default=as_value(default.value) if default is not None else None,
         keys=_text(tree, "keys"),
@@ -337,6 +363,7 @@ def _variable(name: str, tree: Tree, report: Report) -> VariableType:
         arguments=_arguments(tree, role, report),
         returns=_returns(tree, role, report),
         ros=_ros_versions(tree),
+        limits=limits,
     )
 
 
@@ -389,17 +416,24 @@ def _unquoted(tree: Tree, report: Report) -> str:
 
 
 def _keys(section: Section, report: Report) -> tuple[Key, ...]:
-    return tuple(
-        Key(
-            name=key,
-            type=_type(value, report),
-            doc=_doc(value),
-            role=_role(value, _KEY_ROLES, report),
-            frame=_text(value, "frame"),
-            span=value.span,
-        )
-        for key, value in _declared(section)
-        if not _is_set(value, "optional")
+    for entry in section:
+        check_fields(entry.value, f"the key `{entry.key.value}`", KEY_FACTS, report)
+    declared = _declared(section)
+    return tuple([_key(*each, report) for each in declared if not _is_set(each[1], "optional")])
+
+
+def _key(name: str, tree: Tree, report: Report) -> Key:
+    role = _role(tree, _KEY_ROLES, report)
+    type_ = described(_type(tree, report), tree, role, report)
+    limits = limits_of(tree, type_, role, report)
+    return Key(
+        name=name,
+        type=type_,
+        doc=_doc(tree),
+        role=role,
+        limits=limits,
+        frame=_text(tree, "frame"),
+        span=tree.span,
     )
 
 

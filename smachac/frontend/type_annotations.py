@@ -2,12 +2,14 @@
 
 from __future__ import annotations
 
+import json
 import re
 from collections.abc import Iterator, Mapping
 
 from smachac.diagnostics.diagnostic import Report
 from smachac.diagnostics.source import Word
-from smachac.frontend.errors.script import bad_type
+from smachac.diagnostics.spelling import guesser_of
+from smachac.frontend.errors.script import Owner, bad_type, unknown_variable
 from smachac.frontend.fields import as_pairs, is_long_form
 from smachac.frontend.yaml_tree import Entry, Map, Scalar, Tree, is_known_wrong
 from smachac.ir.types import WORDS, Type, parse_type, unknown_words
@@ -18,13 +20,14 @@ Aliases = Mapping[str, str]
 TYPED = ("input_keys", "output_keys", "userdata")
 """The fields that have types."""
 
-_WORD = re.compile(r"[A-Za-z_]\w*")
+_WORD = re.compile(r"\b[A-Za-z_]\w*\b(?!\s*:)")
+"""A word of a type that is not the name of a field."""
 
 
 def read_aliases(tree: Tree, report: Report) -> Aliases:
     """The `types:` of a script; an alias may use earlier ones."""
     found: dict[str, str] = {}
-    for key, value in as_pairs(tree, report):
+    for key, value in as_pairs(_with_records(tree), report):
         text = _filled(value.text, found)
         if read_type(text, value, report) is not None:
             found[key.text] = text
@@ -41,6 +44,27 @@ def read_type(text: str, place: Word, report: Report) -> Type | None:
     if unknown:
         report.append(bad_type(place, WORDS, unknown[0]))
     return type_
+
+
+def _with_records(tree: Tree) -> Tree:
+    """A mapping of names to types, in which records are texts."""
+    if not isinstance(tree, Map):
+        return tree
+    return Map(tuple(Entry(each.key, as_record(each.value)) for each in tree.entries), tree.span)
+
+
+def as_record(tree: Tree) -> Tree:
+    """A mapping of names to types as the text of a record type; any other tree as it is."""
+    if not isinstance(tree, Map) or not tree.entries:
+        return tree
+    parts = []
+    for entry in tree.entries:
+        value = as_record(entry.value)
+        if not isinstance(value, Scalar) or not isinstance(value.value, str):
+            return tree
+        name = str(entry.key.value)
+        parts.append(f"{name if name.isidentifier() else json.dumps(name)}: {value.value}")
+    return Scalar(f"{{{', '.join(parts)}}}", False, *tree.span)
 
 
 def typed(key: str, entry: Entry, aliases: Aliases, report: Report) -> Entry:
@@ -76,13 +100,32 @@ def type_words(key: str, tree: Tree) -> Iterator[str]:
 
 def words_of(tree: Tree) -> list[str]:
     """The words of a type, as written."""
+    tree = as_record(tree)
     if isinstance(tree, Scalar) and isinstance(tree.value, str):
         return _WORD.findall(tree.value)
     return []
 
 
+PRESET_FIELDS = ("type", "value", "doc")
+"""The fields of the long form of userdata."""
+
+_OTHER_FIELDS = {
+    "typ": "type",
+    "dtype": "type",
+    "docs": "doc",
+    "val": "value",
+    "default": "value",
+    "initial": "value",
+    **dict.fromkeys(("unit", "min", "max", "exclusive", "one_of", "names"), ""),
+}
+"""Fields that userdata does not have, with those that are meant; the others are of interfaces."""
+
+
 def _long_form(tree: Tree, aliases: Aliases, report: Report) -> Tree:
-    if not isinstance(tree, Map) or not is_long_form(tree):
+    if not isinstance(tree, Map):
+        return tree
+    tree = _respelt(tree, aliases, report)
+    if not is_long_form(tree):
         return tree
     items = tuple(
         Entry(item.key, _type(item.value, aliases, report)) if item.key.value == "type" else item
@@ -91,7 +134,48 @@ def _long_form(tree: Tree, aliases: Aliases, report: Report) -> Tree:
     return Map(items, tree.span)
 
 
+def _respelt(tree: Map, aliases: Aliases, report: Report) -> Map:
+    """The long form with its misspelt fields corrected, which are reported (SM003). Any other
+    mapping is data: it stays as it is."""
+    if is_long_form(tree) or not 2 <= len(tree.entries) <= MOST_FIELDS:
+        return tree
+    guess = guesser_of(PRESET_FIELDS)
+    meant: dict[str, Entry] = {}
+    wrong = []
+    for entry in tree.entries:
+        name = str(entry.key.value)
+        field = name if name in PRESET_FIELDS else guess.sure(name) or _OTHER_FIELDS.get(name)
+        if field is None or field in meant:
+            return tree
+        if field != name:
+            wrong.append(Word(name, entry.key.span))
+        if field:
+            key = Scalar(field, entry.key.plain, *entry.key.span)
+            meant[field] = Entry(key, entry.value)
+    if not {"type", "value"} <= meant.keys() or not _is_type(meant["type"].value, aliases):
+        return tree
+    owner = Owner("userdata", "userdata", "field")
+    for word in wrong:
+        known = [_OTHER_FIELDS[word.text]] if _OTHER_FIELDS.get(word.text) else PRESET_FIELDS
+        report.append(unknown_variable(word, owner, known))
+    return Map(tuple(meant.values()), tree.span)
+
+
+MOST_FIELDS = 8
+"""The most fields of a mapping that can be a misspelt long form."""
+
+
+def _is_type(tree: Tree, aliases: Aliases) -> bool:
+    """Whether a tree holds a type without unknown words."""
+    tree = as_record(tree)
+    if not isinstance(tree, Scalar) or not isinstance(tree.value, str):
+        return False
+    type_ = parse_type(_filled(tree.value, aliases))
+    return type_ is not None and not unknown_words(type_)
+
+
 def _type(tree: Tree, aliases: Aliases, report: Report) -> Tree:
+    tree = as_record(tree)
     if not isinstance(tree, Scalar) or not isinstance(tree.value, str) or is_known_wrong(tree):
         return tree
     text = _filled(tree.value, aliases)

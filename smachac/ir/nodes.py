@@ -7,6 +7,7 @@ a valid target stays in it and is found by a rule.
 
 from __future__ import annotations
 
+import math
 from collections.abc import Mapping
 from dataclasses import dataclass, field
 from typing import ClassVar, Literal, NamedTuple, NewType, TypeAlias
@@ -47,9 +48,10 @@ class Value:
 
 
 VariableRole = Literal[
-    "", "callbacks", "conditions", "function", "duration", "steps", "limb", "grasp", "frame",
-    "output_function", "service_type", "action_type", "request", "response", "goal", "result",
-    "joint_speed", "grip", "qos",
+    "", "callbacks", "conditions", "function", "duration", "steps", "grasp", "output_function",
+    "service_type", "action_type", "request", "response", "goal", "result", "joint_speed",
+    "grip", "qos",
+    "limb", "joint", "frame", "model", "body", "model_file",
 ]  # fmt: skip
 """The meaning of a variable's value for a state (docs/state_types.md, Facts)."""
 
@@ -60,9 +62,24 @@ DEFINITION_KINDS: Mapping[VariableRole, DefinitionKind] = {
 """The kinds of the definitions of ROS that variables name, by their roles."""
 
 KeyRole = Literal[
-    "", "argument", "result", "listed", "joint_positions", "goal_pose", "goal_offset", "frame"
-]
+    "", "argument", "result", "listed", "joint_positions", "goal_pose", "goal_offset",
+    "limb", "joint", "frame", "model", "body",
+]  # fmt: skip
 """The meaning of a userdata key for a state (docs/state_types.md, Facts)."""
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Limits:
+    """The numbers that a variable or key may have; for a list or mapping, those of its items.
+
+    `exclusive`: the bounds themselves are not allowed. `choices` are the only numbers allowed, if
+    there are any.
+    """
+
+    least: float = -math.inf
+    most: float = math.inf
+    exclusive: bool = False
+    choices: tuple[int | float, ...] = ()
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -79,7 +96,8 @@ class Variable:
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Key:
-    """A typed userdata key that a state or container declares, and its role in the interface.
+    """A typed userdata key that a state or container declares; its role and limits in the
+    interface.
 
     `frame` is the frame of its poses, if the interface names one.
     """
@@ -89,6 +107,7 @@ class Key:
     doc: str = ""
     role: KeyRole = field(default="", compare=False, repr=False)
     frame: str = field(default="", compare=False, repr=False)
+    limits: Limits | None = field(default=None, compare=False, repr=False)
     span: Span = field(compare=False, repr=False)
 
 
@@ -355,6 +374,7 @@ class VariableType:
     arguments: tuple[str, ...] | None = None
     returns: FunctionResult = ""
     ros: Mapping[str, int] = field(default_factory=dict, compare=False, repr=False)
+    limits: Limits | None = None
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)

@@ -45,3 +45,7 @@ class Robot:
     frames: frozenset[str] = frozenset()
     added: frozenset[str] = frozenset()
     span: Span = field(default=NOWHERE, compare=False, repr=False)
+
+
+MODELS = ("block", "brick", "cafe_table", "goal", "table", "wall")
+"""The models of the simulation, by name (sim/models.py)."""

@@ -20,7 +20,7 @@ LONGEST = 1000
 """Limit on the length of a type, in characters."""
 
 DEEPEST = 50
-"""Limit on the applications (`list[...]`, `?`, `of`) in one type."""
+"""Limit on the applications (`list[...]`, `?`, `of`, `{...}`) in one type."""
 
 SCALARS = ("bool", "int", "float", "str", "any", "none")
 STRUCTS = ("Point", "Quaternion", "Pose", "PoseStamped", "Transform", "JointState")
@@ -37,8 +37,9 @@ class Type:
 
     `float<rad>` is `Type("float", ("rad",))`, `list[T]` is `Type("list", (T,))`, `T[7]` is
     `Type("array", (T, 7))`, `dict[str, T]` is `Type("dict", (T,))`, `T?` is `Type("optional",
-    (T,))`, `one_of[a, b]` is `Type("one_of", ("a", "b"))`; any other type is a name alone (`bool`,
-    `Pose`, `geometry_msgs/Pose`).
+    (T,))`, `one_of[a, b]` is `Type("one_of", ("a", "b"))`, the record `{x: T, y: U}` is
+    `Type("record", ("x", T, "y", U))`; any other type is a name alone (`bool`, `Pose`,
+    `geometry_msgs/Pose`).
     """
 
     name: str
@@ -56,6 +57,9 @@ class Type:
                 return f"{item}?"
             case "one_of", choices:
                 return f"one_of[{', '.join(map(_choice, choices))}]"
+            case "record", parts if parts:
+                pairs = zip(parts[::2], parts[1::2], strict=True)
+                return "{" + ", ".join(f"{_choice(name)}: {type_}" for name, type_ in pairs) + "}"
             case name, (unit,):
                 return f"{name}<{unit}>"
         return self.name
@@ -81,7 +85,7 @@ def parse_type(text: str) -> Type | None:
     text = text.strip()
     if _WORD.fullmatch(text):
         return Type(text) if text != "one_of" else None
-    depth = text.count("[") + text.count("?") + text.count(" of ")
+    depth = text.count("[") + text.count("?") + text.count(" of ") + text.count("{")
     if len(text) > LONGEST or depth > DEEPEST:
         return None
     from lark.exceptions import LarkError
@@ -159,6 +163,19 @@ class _TypeBuilder:
 
     def optional(self, found: list[Any]) -> Type:
         return Type("optional", (_complete(found[0]),))
+
+    def record(self, found: list[Any]) -> Type:
+        names = [name for name, _ in found]
+        if len(set(names)) < len(names):
+            raise ValueError("two fields have one name")
+        return Type("record", tuple(part for name, type_ in found for part in (name, type_)))
+
+    def field(self, found: list[Any]) -> tuple[str, Type]:
+        name, type_ = found
+        return name, _complete(type_)
+
+    def field_name(self, found: list[Any]) -> str:
+        return str(found[0])
 
     def either(self, found: list[Any]) -> Type:
         return ANY

@@ -15,6 +15,7 @@ from smachac.frontend.config import LEVELS, SETTINGS
 from smachac.frontend.schema import CONTAINERS, REQUIRED, VARIABLES, FieldOwner
 from smachac.frontend.state_types import CLASS_FIELDS
 from smachac.frontend.unquoted import VARIABLE_SHAPES
+from smachac.frontend.value_facts import NAMES
 from smachac.interpreter.scenario import STEP_FIELDS
 from smachac.ir.nodes import FunctionResult, KeyRole, StateKind, VariableRole
 
@@ -23,6 +24,11 @@ Schema: TypeAlias = dict[str, Any]
 DRAFT = "http://json-schema.org/draft-07/schema#"
 
 _NAME = ["string", "number", "array"]
+
+TYPE: Schema = {
+    "description": "As float<rad>[7] or Pose; a mapping of fields to types is a record.",
+    "type": ["string", "object"],
+}
 
 SHAPES: Mapping[str, Schema] = {
     "name": {
@@ -42,7 +48,12 @@ SHAPES: Mapping[str, Schema] = {
     "map": {"type": "object"},
     "pairs": {"type": "object", "additionalProperties": {"$ref": "#/definitions/name"}},
     "rules": {"type": "object", "additionalProperties": {"$ref": "#/definitions/pairs"}},
-    "keys": {"anyOf": [{"$ref": "#/definitions/names"}, {"$ref": "#/definitions/pairs"}]},
+    "keys": {
+        "anyOf": [
+            {"$ref": "#/definitions/names"},
+            {"type": "object", "additionalProperties": {"type": [*_NAME, "object"]}},
+        ]
+    },
     "userdata": {
         "type": "object",
         "additionalProperties": {"anyOf": [{"$ref": "#/definitions/preset"}, {}]},
@@ -55,7 +66,7 @@ PRESET: Schema = {
     "required": ["value"],
     "additionalProperties": False,
     "properties": {
-        "type": {"type": "string", "description": "As float<rad>[7] or Pose."},
+        "type": TYPE,
         "value": {},
         "doc": {"type": "string"},
     },
@@ -205,7 +216,20 @@ def interface_schema() -> Schema:
         }
 
     flag, text = {"type": "boolean"}, {"type": "string"}
-    common: Schema = {"type": text, "doc": text, "optional": flag, "failure": flag}
+    number = {"type": "number"}
+    common: Schema = {
+        "type": TYPE,
+        "doc": text,
+        "optional": flag,
+        "failure": flag,
+        "frame": text,
+        "min": number,
+        "max": number,
+        "exclusive": flag,
+        "unit": text,
+        "one_of": {"type": "array", "items": {"type": ["string", "number"]}, "minItems": 1},
+        "names": {"enum": list(NAMES)},
+    }
     type_only: Schema = {"type": ["string", "null"], "description": "A type, as float<rad>[7]."}
 
     def section(of: Schema) -> Schema:

@@ -40,7 +40,7 @@ def sample_value(type_: Type, number: int) -> object:
             return _collection("list", type_.args, size, number)
         case "tuple", parts:
             return [sample_value(part, number) for part in parts if isinstance(part, Type)]
-        case "record", pairs:
+        case "mapping" | "record", pairs:
             return {
                 str(name): sample_value(part, number)
                 for name, part in zip(pairs[::2], pairs[1::2], strict=True)

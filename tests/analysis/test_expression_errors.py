@@ -11,7 +11,7 @@ from hypothesis import strategies as st
 
 from smachac.analysis.expression_errors import Fault, expression_faults, kinds
 from smachac.analysis.expression_types import type_of
-from smachac.analysis.type_lattice import record
+from smachac.analysis.type_lattice import mapping
 from smachac.interpreter.evaluator import EvaluationError, evaluate
 from smachac.ir.expressions import (
     Attribute,
@@ -73,7 +73,7 @@ FORMS = (
 
 
 def faults(expr: Expr, types: dict[str, Type]) -> tuple[Fault, ...]:
-    return expression_faults(expr, record(types.items()), ("ud",))
+    return expression_faults(expr, mapping(types.items()), ("ud",))
 
 
 def outcome(expr: Expr, values: dict[str, object]) -> object:
@@ -114,7 +114,7 @@ def is_undecided(expr: Expr, types: dict[str, Type], values: dict[str, object]) 
     operands: list[Expr] = [part for part in parts(expr) if not isinstance(part, Lambda)]
     if isinstance(expr, Call):
         operands = [*expr.arguments]
-    found = [kinds(type_of(part, {"ud": record(types.items())})) for part in operands]
+    found = [kinds(type_of(part, {"ud": mapping(types.items())})) for part in operands]
     results = [outcome(part, values) for part in operands]
     if any(len(kind) != 1 for kind in found):
         return True  # unknown, or one of several

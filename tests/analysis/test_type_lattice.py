@@ -27,9 +27,9 @@ def a(text: str) -> Type:
         return constants([int(text[1:]) if text[1:].isdigit() else text[1:]])
     if text.startswith("("):
         return Type("tuple", tuple(a(part) for part in _split(text[1:-1])))
-    if text.startswith("{"):
+    if text.startswith("{") and "," not in text:
         name, _, rest = text[1:-1].partition(":")
-        return Type("record", (name, a(rest)) if name else ())
+        return Type("mapping", (name, a(rest)) if name else ())
     found = parse_type(text)
     assert found is not None, text
     return found
@@ -62,6 +62,10 @@ list[Pose] -> list | dict[str, int] -> dict[str, float] | dict -> dict[str, Pose
 (=1, =2) -> list[float<rad>] | () -> list[Pose] | () -> str[0] | (=a, =b) -> list[one_of[a, b]]
 {x: float} -> dict[str, float] | {} -> dict | {frame: str} -> PoseStamped
 any -> Pose | Pose -> any | list[any] -> list[Pose] | Grasp -> Pose | any? -> int | list -> Pose
+{a: int, b: str} -> {b: str, a: float} | {a: int, b: str} -> {b: str, c: int?}
+{a: int, b: int} -> dict[str, float] | dict[str, int] -> {a: int, b: float}
+dict -> {a: int, b: str} | {x: =1} -> {x: float} | {x: =1} -> {x: float, y: int?}
+list[{a: int, b: str}] -> list[{a: float, b: any}] | {a: int, b: str} -> my_msgs/Pair
 geometry_msgs/Pose -> geometry_msgs/msg/Pose | geometry_msgs.msg.Pose -> geometry_msgs/Pose
 (float, float) -> my_msgs/Pair | {x: float} -> my_msgs/Point
 float<m/s^2> -> float<s^-2*m> | float<rad/s> -> float<s^-1*rad> | float<1/s> -> float<s^-1>
@@ -83,6 +87,9 @@ Pose? -> Pose | none -> Pose | str -> one_of[a, b] | one_of[a, b] -> one_of[a] |
 dict[str, str] -> dict[str, int] | dict -> list | list -> dict | (float, =a, float) -> Point
 {x: =a} -> dict[str, float] | {x: float} -> Point | {x: float} -> list | (float, float) -> str
 geometry_msgs/Pose -> geometry_msgs/Point | geometry_msgs/Pose -> Pose | =a -> std_msgs/String
+{a: int, b: str} -> {a: int, c: str} | {a: int, b: str} -> {a: str, b: str}
+{a: int, b: str} -> dict[str, int] | dict[str, str] -> {a: int, b: str} | {a: int, b: str} -> str
+{x: =1} -> {x: float, y: float} | {x: =a} -> {x: float, y: int?} | {a: int, b: str} -> list
 Transform -> Pose | float[3] -> Point | (float, float) -> Pose | str -> Pose | float -> list
 """
 

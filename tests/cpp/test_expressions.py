@@ -214,6 +214,11 @@ def test_types_of_others_have_none() -> None:
         cpp_type(type_of("list[geometry_msgs/Pose]"))
 
 
+def test_records_have_none() -> None:
+    with pytest.raises(UnportableError, match=r"C\+\+ has no type for the record `{a: int}`"):
+        cpp_type(type_of("list[{a: int}]"))
+
+
 @pytest.mark.parametrize(
     ("data", "type_", "text"),
     [

@@ -29,6 +29,14 @@ JOINTS = Type("array", (Type("float", ("rad",)), 7))
         ("list[7]", Type("array", (Type("list"), 7))),
         ("[function, str]", ANY),
         ("any", ANY),
+        (
+            "{name: str, at: Pose?}",
+            Type("record", ("name", Type("str"), "at", Type("optional", (Type("Pose"),)))),
+        ),
+        (
+            'list[{"a b": {x: int}}]',
+            Type("list", (Type("record", ("a b", Type("record", ("x", Type("int"))))),)),
+        ),
     ],
 )
 def test_a_type_is_read(text: str, type_: Type) -> None:
@@ -40,6 +48,8 @@ def test_a_type_is_read(text: str, type_: Type) -> None:
     [
         *("", "7", "a b", "list of", "set of str", "list[", "list[]", "list[str, str]", "Pose[a]"),
         *("dict[int, str]", "dict[str]", "float[-1]", "str<rad>", "float<>", "float<rad", "?"),
+        *("{}", "{a}", "{a: }", "{a: int, a: int}", "{a: int", "{1: int}", "{a: one_of}"),
+        *("{a: " * 51 + "int" + "}" * 51,),
         *("one_of", "one_of[]", "one_of?", "list[one_of]", "one_of[list[a]]", "a\nb", "int & str"),
         *("list[" * 51 + "a" + "]" * 51, "a" + "?" * 51, "list of " * 51 + "a", "a[" + "1" * 999),
     ],
@@ -53,7 +63,7 @@ def test_reading_what_is_printed_gives_the_same_type(type_: Type) -> None:
     assert parse_type(str(type_)) == type_
 
 
-@given(st.text(alphabet='ab1 []<>?,"-/.of', max_size=20))
+@given(st.text(alphabet='ab1 []<>?,"-/.of{}:', max_size=20))
 @settings(max_examples=200)
 def test_any_text_is_a_type_that_prints_or_none(text: str) -> None:
     type_ = parse_type(text)
@@ -70,6 +80,9 @@ def test_any_text_is_a_type_that_prints_or_none(text: str) -> None:
         ("dict", ()),
         ("flaot", ("flaot",)),
         ("dict of list of string", ("string",)),
+        ("{name: str, at: Pose}", ()),
+        ("list[{name: string}]", ("string",)),
+        ("record", ("record",)),
     ],
 )
 def test_words_that_name_no_type_are_found(text: str, words: tuple[str, ...]) -> None:

@@ -51,11 +51,12 @@ def types() -> st.SearchStrategy[Type]:
     quantities = st.builds(lambda unit: Type("float", (unit,)), UNITS)
     choices = st.lists(CHOICES, min_size=1, max_size=3)
     leaves = st.builds(Type, WORDS) | quantities | choices.map(lambda all: Type("one_of", (*all,)))
-    wrappers = st.sampled_from(["list", "dict", "optional", "array"])
+    wrappers = st.sampled_from(["list", "dict", "optional", "array", "record"])
 
     def wrap(item: Type, names: list[str]) -> Type:
         for name in names:
-            item = Type(name, (item, len(names)) if name == "array" else (item,))
+            more = {"array": (item, len(names)), "record": ("a", item, "b c", Type("int"))}
+            item = Type(name, more.get(name, (item,)))
         return item
 
     return st.builds(wrap, leaves, st.lists(wrappers, max_size=3))

@@ -11,6 +11,7 @@ from tests.trust import (
     mutate_names,
     mutate_properties,
     mutate_stops,
+    mutate_values,
     mutate_written_code,
 )
 from tests.trust.mutants import MUTATIONS
@@ -25,5 +26,6 @@ __all__ = [
     "mutate_names",
     "mutate_properties",
     "mutate_stops",
+    "mutate_values",
     "mutate_written_code",
 ]

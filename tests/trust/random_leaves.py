@@ -127,7 +127,9 @@ class Leaves:
             "output_keys": {inner: long_type(type_)},
             "outcomes": {GOOD: {}, BAD: {}, "preempted": {}},
             **({} if always else {"writes": {GOOD: [inner]}}),
-            "variables": {"speed": {"type": "float", "default": 1.0}},
+            "variables": {
+                "speed": {"type": "float", "unit": "m/s", "min": 0, "exclusive": True, "default": 1}
+            },
             "code": {"python": f"my_robot.states:{type_name}"},
         }
         body: Body = {"template": type_name, "remapping": remaps}

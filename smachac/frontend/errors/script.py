@@ -25,11 +25,12 @@ from smachac.diagnostics.wording import listed
 
 
 class Owner(NamedTuple):
-    """The owner of variables: its name in the language or in the script, and its name in messages,
-    such as `MoveArm` and "state type `MoveArm`"."""
+    """The owner of variables: its name in the language or in the script, its name in messages, such
+    as `MoveArm` and "state type `MoveArm`", and the word for what it has."""
 
     name: str
     text: str
+    part: str = "variable"
 
 
 @problem("SM001", "yaml-syntax", Severity.ERROR)
@@ -116,6 +117,7 @@ def unknown_variable(
     *,
     own: Iterable[str] = (),
     anything: bool = False,
+    severity: Severity | None = None,
 ) -> Finding:
     """A script sets a variable that neither the language nor the state type has.
 
@@ -138,9 +140,17 @@ def unknown_variable(
     """
     own = sorted(own)
     names = sorted([*known, *own])
-    owned = f"use one of its variables: {listed(names)}"
-    variables = owned if names else f"remove it: {owner.text} has no variables"
+    owned = f"use one of its {owner.part}s: {listed(names)}"
+    variables = owned if names else f"remove it: {owner.text} has no {owner.part}s"
     sure = Guesser(names).sure(word.text)
+    number = _number_before(word)
+    if number:
+        return Finding(
+            span=word.span,
+            message=f"`{word.text}` is not a {owner.part} of {owner.text}",
+            arguments=(word.text, owner.name),
+            help=f"a decimal comma? write `{number}.{word.text}`",
+        )
     if anything:
         return Finding(
             span=word.span,
@@ -151,10 +161,11 @@ def unknown_variable(
         )
     return Finding(
         span=word.span,
-        message=f"`{word.text}` is not a variable of {owner.text}",
+        message=f"`{word.text}` is not a {owner.part} of {owner.text}",
         arguments=(word.text, owner.name),
         help=_variable_help(word.text, sure, names, own) or variables,
         edits=respelt(word, sure),
+        severity=severity,
     )
 
 
@@ -179,6 +190,19 @@ def _variable_help(word: str, sure: str | None, names: list[str], own: list[str]
 NEAR = 0.75
 """How similar a name must be to a variable of the language that is meant, if the state type has
 variables of its own."""
+
+
+_LONGEST_NUMBER = 20
+
+
+def _number_before(word: Word) -> str:
+    """The digits before a comma in front of a word of digits: `0` in `{time: 0,5}`, where YAML
+    reads an entry `5`. Empty without them."""
+    start = word.span.start
+    text = word.span.source.text[max(0, start - _LONGEST_NUMBER) : start]
+    before = text.removesuffix(",")
+    digits = before[len(before.rstrip("0123456789")) :]
+    return digits if word.text.isdigit() and before != text else ""
 
 
 @problem("SM004", "wrong-shape", Severity.ERROR)

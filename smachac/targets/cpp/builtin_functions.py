@@ -26,7 +26,15 @@ from smachac.targets.cpp.terms import (
     shown,
     size_of,
 )
-from smachac.targets.cpp.types import FIELDS, FLOAT, INT, LISTED, STR, UnportableError
+from smachac.targets.cpp.types import (
+    FIELDS,
+    FLOAT,
+    INT,
+    LISTED,
+    STR,
+    UnportableError,
+    cpp_type,
+)
 
 Named = Mapping[str, Term]
 
@@ -41,6 +49,8 @@ def item(owner: Term, place: Term) -> Term:
         found = FLOAT if kind.name in LISTED[:2] else found
         if found is not None:
             return fixed(found, call("item", owner.present(), whole(place).text))
+    if kind.name == "record":
+        cpp_type(kind)  # raises the reason
     raise UnportableError(f"`{shown(kind)}` has no items with the index type `{shown(index)}`")
 
 

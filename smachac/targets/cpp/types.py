@@ -94,6 +94,9 @@ def cpp_type(type_: Type) -> str:
             return f"std::map<std::string, {cpp_type(item)}>"
         case "optional", (Type() as item,):
             return f"std::optional<{cpp_type(item)}>"
+    if type_.name == "record":
+        message = f"C++ has no type for the record `{type_}`"
+        raise UnportableError(message, help="declare the key as `dict[str, T]` or `any` for C++")
     message = f"the members of the type `{type_}` are unknown"
     raise UnportableError(message, help=OTHER_TYPES)
 
@@ -152,6 +155,8 @@ def _value(data: Data, type_: Type) -> str:
             return _items(data, type_)
         case name, tuple() | Struct() if name in FIELDS:
             return f"{cpp_type(type_)}{{{', '.join(_members(data, name))}}}"
+    if type_.name == "record":
+        cpp_type(type_)  # raises the reason
     raise UnportableError(f"{_shown(data)} is not of the type `{type_}`")
 
 

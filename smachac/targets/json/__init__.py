@@ -21,8 +21,8 @@ VERSION = 2
 
 
 _NOT_IN_THE_GRAPH = frozenset(
-    ["class_facts", "given", "written", "role", "built_in", "stand_in", "adds_frames", "tags",
-     "failure", "ignored", "loop_spans", "frame"]
+    ["class_facts", "given", "written", "role", "limits", "built_in", "stand_in", "adds_frames",
+     "tags", "failure", "ignored", "loop_spans", "frame"]
 )  # fmt: skip
 """Fields for rules and templates, which are not part of the state graph."""
 

@@ -1,0 +1,80 @@
+"""Help for texts that were meant as numbers: decimal commas, units, clock times, quotes."""
+
+from __future__ import annotations
+
+import math
+import re
+from collections.abc import Iterable
+
+from smachac.analysis.type_lattice import POINT, QUATERNION, inside, length_of, present, unit_of
+from smachac.ir.types import Type
+
+FACTORS = {
+    ("ms", "s"): 0.001,
+    ("min", "s"): 60.0,
+    ("h", "s"): 3600.0,
+    ("mm", "m"): 0.001,
+    ("cm", "m"): 0.01,
+    ("deg", "rad"): math.pi / 180,
+    ("°", "rad"): math.pi / 180,
+}
+"""Factors from one unit to another."""
+
+LONGEST = 1000
+"""In characters. A longer list is no list of a few numbers."""
+
+_NUMBER = r"[-+]?(?:\d+(?:\.\d*)?|\.\d+)(?:[eE][-+]?\d+)?"
+_WITH_UNIT = re.compile(rf"({_NUMBER})\s*([^\W\d]\S*|°)?")
+_COMMA = re.compile(r"([-+]?\d+),(\d+)")
+_CLOCK = re.compile(r"(\d+):([0-5]?\d)(?::([0-5]?\d))?")
+_GROUP = re.compile(r"\[([^\[\]]*)\]")
+
+
+def number_meant(text: str, wanted: Type) -> str | None:
+    """The help for a text where a number is due; None if the text looks like no number."""
+    unit, text = unit_of(wanted), text.strip()
+    found = _COMMA.fullmatch(text)
+    if found is not None:
+        return f"a decimal comma? write `{found[1]}.{found[2]}`"
+    found = _CLOCK.fullmatch(text)
+    if found is not None and unit in ("", "s"):
+        parts = [int(part) for part in found.groups() if part is not None]
+        seconds = sum(part * 60**power for power, part in enumerate(reversed(parts)))
+        return f"write the seconds: `{seconds}`"
+    found = _WITH_UNIT.fullmatch(text)
+    if found is None:
+        return None
+    given = found[2] or ""
+    if not given:
+        return f"write the number without quotes: `{found[1]}`"
+    if given == unit or not unit:
+        return f"write the number without its unit: `{found[1]}`"
+    factor = FACTORS.get((given, unit))
+    if factor is None:
+        return f"write the number in `{unit}`, without the unit"
+    return f"write the number in `{unit}`, without the unit: `{float(found[1]) * factor:.6g}`"
+
+
+def decimal_commas(text: str, sizes: Iterable[int]) -> str | None:
+    """The help for a list whose decimal commas separate items, as in `[0,5, 0,0, 0,1]`: with points
+    it has one of these sizes."""
+    for group in _GROUP.finditer(text[:LONGEST]):
+        items = [item.strip() for item in re.split(r",\s", group[1])]
+        joined = [_COMMA.fullmatch(item) for item in items]
+        plain = [re.fullmatch(_NUMBER, item) for item in items]
+        fits = all(one or other for one, other in zip(joined, plain, strict=True))
+        if len(items) in sizes and fits and any(joined):
+            first = next(found for found in joined if found)
+            return f"decimal commas? write `{first[1]}.{first[2]}` in place of `{first[0]}`"
+    return None
+
+
+def sizes_of(wanted: Type) -> tuple[int, ...]:
+    """The sizes of the lists of numbers in a literal of a type."""
+    wanted = present(wanted)
+    if wanted.name in ("Pose", "Transform"):
+        return 3, 4
+    if wanted in (POINT, QUATERNION):
+        return (3,) if wanted == POINT else (4,)
+    size = length_of(wanted)
+    return (size,) if size is not None else sizes_of(inside(wanted)) if wanted.args else ()

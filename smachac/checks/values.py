@@ -1,0 +1,367 @@
+"""Rules over literals: limits of interfaces, names of limbs, models and bodies, doubtful units."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterator, Mapping
+
+from smachac.analysis.context import Context
+from smachac.analysis.reaching_values import reaching_flows
+from smachac.analysis.type_inference import Cell, TypeFlow
+from smachac.analysis.type_lattice import inside, present, unit_of
+from smachac.checks.messages import did_you_mean
+from smachac.checks.robot import (
+    at,
+    is_simulated,
+    joint_faults,
+    loaded_bodies,
+    moves_arm,
+    names_in,
+    role_of,
+)
+from smachac.checks.rule import rule
+from smachac.diagnostics.diagnostic import Finding, Severity
+from smachac.diagnostics.spelling import guesser
+from smachac.diagnostics.wording import listed
+from smachac.ir.leaf import variable_of
+from smachac.ir.nodes import Data, Leaf, Limits, StateType, Struct
+from smachac.ir.robot import MODELS, Robot
+from smachac.ir.types import Type
+
+
+@rule("SM520", "out-of-limits", Severity.ERROR)
+def out_of_limits(context: Context) -> Iterator[Finding]:
+    """A number is outside the limits that the interface of a state type gives.
+
+    A speed of 0 never reaches its goal, and a negative waiting time has no meaning. The state
+    fails, or the robot stays where it is until a time limit ends the task.
+
+    Exactly: the limits are `min`, `max`, `exclusive` and `one_of` of a variable or an input key in
+    the interface. The rule checks the literals that reach it, through userdata, params and
+    remappings, and the defaults in the interface. In a list or mapping, each number is checked.
+
+    Wrong:
+        name: sm
+        template: PyBulletBase
+        outcomes: [done, failed]
+        userdata: {home: [0.0, -0.785, 0.0, -2.356, 0.0, 1.571, 0.785]}
+        states:
+          - MOVE:
+              template: MoveToJointPositionsState
+              speed: 0
+              remapping: {positions: home}
+              transitions: {succeeded: done, aborted: failed, preempted: failed}
+
+    Right:
+        name: sm
+        template: PyBulletBase
+        outcomes: [done, failed]
+        userdata: {home: [0.0, -0.785, 0.0, -2.356, 0.0, 1.571, 0.785]}
+        states:
+          - MOVE:
+              template: MoveToJointPositionsState
+              speed: 0.5
+              remapping: {positions: home}
+              transitions: {succeeded: done, aborted: failed, preempted: failed}
+    """
+    types = context.machine.state_types
+    limits = {name: found for name, type_ in types.items() if (found := _limits(type_))}
+    wrong = []
+    for flow in context.types.constants if limits else ():
+        held = limits.get(_type_name(context, flow.cell), {}).get((flow.cell.role, flow.cell.key))
+        if held is not None and _outside(flow.value, held):
+            wrong.append((flow, held))
+    arriving = {flow.origin for flow in reaching_flows(flow for flow, _ in wrong)}
+    for flow, held in wrong:
+        if flow.origin in arriving:
+            yield from _out_of(flow, held)
+    for type_ in types.values():
+        yield from _wrong_defaults(type_)
+
+
+def _limits(type_: StateType) -> Mapping[tuple[str, str], Limits]:
+    """The limits of a state type, by the role and the key of a cell."""
+    variables = ((("variable", each.name), each.limits) for each in type_.variables.values())
+    inputs = ((("input", each.name), each.limits) for each in type_.input_keys)
+    return {cell: limits for cell, limits in (*variables, *inputs) if limits is not None}
+
+
+def _type_name(context: Context, cell: Cell) -> str:
+    return cell.node.type if cell.node is not None else context.machine.base
+
+
+def numbers(data: Data) -> Iterator[int | float]:
+    """The numbers in a literal, at any depth."""
+    if isinstance(data, int | float) and not isinstance(data, bool):
+        yield data
+    elif isinstance(data, tuple):
+        for item in data:
+            yield from numbers(item)
+    elif isinstance(data, Struct):
+        for _, item in data.entries:
+            yield from numbers(item)
+
+
+def _outside(data: Data, limits: Limits) -> list[int | float]:
+    """The numbers in a literal that are outside of limits."""
+    return [number for number in numbers(data) if not _is_within(number, limits)]
+
+
+def _is_within(number: int | float, limits: Limits) -> bool:
+    if limits.choices and number not in limits.choices:
+        return False
+    if limits.exclusive:
+        return limits.least < number < limits.most
+    return limits.least <= number <= limits.most
+
+
+def _out_of(flow: TypeFlow, limits: Limits) -> Iterator[Finding]:
+    """One finding for each number of a literal that is outside of limits."""
+    origin, cell = flow.origin.cell, flow.cell
+    kind = "variable" if cell.role == "variable" else "key"
+    owner = f"`{cell.node.name}`" if cell.node is not None else "the base"
+    unit = unit_of(_item(cell.declared))
+    for number in dict.fromkeys(_outside(flow.value, limits)):
+        held = "is" if number == flow.value else "contains"
+        message = f"`{origin.key}` {held} {number}, but the {kind} `{cell.key}` of {owner} must be"
+        yield at(
+            flow,
+            f"{message} {in_words(limits)}",
+            f"write a number {in_words(limits)}" + (f", in {unit}" if unit else ""),
+            (str(number),),
+        )
+
+
+def in_words(limits: Limits) -> str:
+    """Limits as the end of a sentence: "greater than 0"."""
+    if limits.choices:
+        return f"one of {', '.join(f'`{each}`' for each in limits.choices)}"
+    least, most = (f"{bound:g}" for bound in (limits.least, limits.most))
+    without = ", both excluded" if limits.exclusive else ""
+    if limits.most == math.inf:
+        return f"greater than {least}" if limits.exclusive else f"{least} or greater"
+    if limits.least == -math.inf:
+        return f"less than {most}" if limits.exclusive else f"{most} or less"
+    return f"from {least} to {most}{without}"
+
+
+def _item(type_: Type) -> Type:
+    """The innermost type of the items of lists and mappings."""
+    while type_.name in ("optional", "list", "array", "dict") and type_.args:
+        type_ = inside(type_)
+    return type_
+
+
+def _wrong_defaults(type_: StateType) -> Iterator[Finding]:
+    """The defaults of an interface that are outside of its own limits."""
+    for variable in type_.variables.values():
+        if variable.default is None or variable.limits is None:
+            continue
+        for number in dict.fromkeys(_outside(variable.default.data, variable.limits)):
+            words = in_words(variable.limits)
+            yield Finding(
+                span=variable.default.span,
+                message=f"the default of `{variable.name}` is {number}, but must be {words}",
+                arguments=(variable.name, str(number)),
+                help="correct the default, or the limits beside it",
+            )
+
+
+@rule("SM521", "unknown-name", Severity.WARNING)
+def unknown_name(context: Context) -> Iterator[Finding]:
+    """A value names a limb, a model or a body that does not exist.
+
+    The state fails at its first visit, often after the robot has moved other parts of the task.
+
+    Exactly: `names: limb`, `names: model` and `names: body` of a variable or key in an interface
+    say what its values are names of. Limbs are those of a built-in robot. In the simulation, models
+    are the built-in ones, unless the state names a file, and bodies are those that LoadModelState
+    adds; there an unknown name is an error. Where code of the user may add bodies, they are not
+    checked. Names of frames and joints are SM505.
+
+    Wrong:
+        name: sm
+        template: PyBulletBase
+        outcomes: [done, failed]
+        userdata: {place: [0.5, 0.0, 0.02]}
+        states:
+          - LOAD:
+              template: LoadModelState
+              model_name: blok
+              remapping: {pose: place}
+              transitions: {succeeded: done, aborted: failed}
+
+    Right:
+        name: sm
+        template: PyBulletBase
+        outcomes: [done, failed]
+        userdata: {place: [0.5, 0.0, 0.02]}
+        states:
+          - LOAD:
+              template: LoadModelState
+              model_name: block
+              remapping: {pose: place}
+              transitions: {succeeded: done, aborted: failed}
+    """
+    known = _known_things(context)
+    wrong = []
+    for flow in context.types.constants if known else ():
+        role = role_of(flow.cell)
+        if role == "model" and _names_a_file(flow.cell):
+            continue
+        if any(name not in known[role] for name in names_in(flow.value) if role in known):
+            wrong.append(flow)
+    severity = Severity.ERROR if is_simulated(context) else None
+    for flow in reaching_flows(wrong):
+        role = role_of(flow.cell)
+        guess = guesser(sorted(known[role]))
+        for name in dict.fromkeys(names_in(flow.value)):
+            if name not in known[role]:
+                help = did_you_mean(guess(name)) or _things_in_words(role, known[role])
+                yield at(flow, f"there is no {role} `{name}`", help, (name,), severity=severity)
+
+
+def _known_things(context: Context) -> Mapping[str, frozenset[str]]:
+    """The limbs, models and bodies that are known, by role; a role without an entry is not."""
+    robot, simulated = context.machine.robot, is_simulated(context)
+    known: dict[str, frozenset[str]] = {}
+    if robot is not None and robot.limb_names and (simulated or len(robot.limb_names) > 1):
+        known["limb"] = frozenset(robot.limb_names)
+    bodies = loaded_bodies(context) if simulated and robot is not None else None
+    if bodies is not None and robot is not None:
+        known["body"] = bodies | robot.added | robot.scene
+    if simulated:
+        known["model"] = frozenset(MODELS)
+    return known
+
+
+def _things_in_words(role: str, known: frozenset[str]) -> str:
+    if known:
+        return f"use one of {listed(known)}"
+    return f"add a state that loads the {role} before this state"
+
+
+def _names_a_file(cell: Cell) -> bool:
+    """Whether the state of a cell names the file of its model."""
+    held = variable_of(cell.node, "model_file") if isinstance(cell.node, Leaf) else None
+    return held is not None and held.value.data is not None
+
+
+FULL_TURN = 2 * math.pi
+
+FARTHEST = 10.0
+"""In metres: no arm reaches so far, and no body of the simulation is so far from it."""
+
+POINTS = frozenset(["Point", "Pose", "Transform"])
+
+
+@rule("SM522", "doubtful-unit", Severity.WARNING)
+def doubtful_unit(context: Context) -> Iterator[Finding]:
+    """A number is so large that it seems to be in degrees or millimetres.
+
+    smachac counts in radians and metres. Ninety radians turn a joint fourteen times, and a point at
+    500 metres is out of reach, so the arm stops at a limit or the skill fails.
+
+    Exactly: reported are joint positions of more than a full turn that a state reads as
+    `list[float<rad>]`, `float<rad>[N]` or, by joint names, `dict[str, float<rad>]`; whole numbers
+    of more than 2 pi under any other type in `rad`; and coordinates of more than 10 metres that a
+    state that uses the simulated world, or claims an arm or a gripper, reads as `Point`, `Pose` or
+    `Transform`. Where the robot is known, SM502 reports what is outside the limits of a joint, and
+    this rule multiples of 5 rad for a joint without limits.
+
+    Wrong:
+        name: sm
+        template: Base
+        outcomes: [done]
+        userdata: {home: [0, -45, 0, -135, 0, 90, 45]}
+        states:
+          - MOVE:
+              template: ScriptedState
+              input_keys: {joints: "float<rad>[7]"}
+              remapping: {joints: home}
+              outcomes: [done]
+              transitions: {done: done}
+
+    Right:
+        name: sm
+        template: Base
+        outcomes: [done]
+        userdata: {home: [0.0, -0.785, 0.0, -2.356, 0.0, 1.571, 0.785]}
+        states:
+          - MOVE:
+              template: ScriptedState
+              input_keys: {joints: "float<rad>[7]"}
+              remapping: {joints: home}
+              outcomes: [done]
+              transitions: {done: done}
+    """
+    types = context.machine.state_types
+    simulated = frozenset(name for name, type_ in types.items() if type_.simulation)
+    constants = context.types.constants
+    wrong = [each for each in constants if _degrees(each) or _millimetres(each, simulated)]
+    flows: dict[TypeFlow, list[TypeFlow]] = {}
+    for flow in reaching_flows(wrong):
+        flows.setdefault(flow.origin, []).append(flow)
+    for alike in flows.values():
+        yield from _doubtful(alike, simulated, context.machine.robot)
+
+
+def _doubtful(
+    flows: list[TypeFlow], simulated: frozenset[str], robot: Robot | None
+) -> Iterator[Finding]:
+    """The finding for a literal that seems to be in another unit; `flows` lead to its readers."""
+    flow = flows[0]
+    degrees = _degrees(flow)
+    joints = [each for each in flows if robot is not None and moves_arm(each)]
+    if degrees and joints:
+        assert robot is not None
+        # A joint without limits may turn several times, but hardly by 90 rad.
+        faults = any(joint_faults(each, robot) for each in joints)
+        degrees = [] if faults else [angle for angle in degrees if angle % 5 == 0]
+        if not degrees:
+            return
+    if degrees:
+        value, unit, meant = degrees[0], "radians", "degrees"
+        help = f"if it is in degrees, write {math.radians(value):.4f}"
+    else:
+        value, unit, meant = _millimetres(flow, simulated)[0], "metres", "millimetres"
+        help = f"if it is in millimetres, write {value / 1000:g}"
+    held = "is" if value == flow.value else "contains"
+    message = f"`{flow.origin.cell.key}` {held} {value}, which is read in {unit}"
+    yield at(flow, f"{message}: is it in {meant}?", help, (str(value), unit))
+
+
+def _degrees(flow: TypeFlow) -> list[int | float]:
+    """The angles in a literal that seem to be in degrees."""
+    wanted = present(flow.cell.declared)
+    if unit_of(_item(wanted)) != "rad" or _in_other_unit(flow):
+        return []
+    joints = wanted.name in ("list", "array", "dict")
+    large = [each for each in numbers(flow.value) if FULL_TURN < abs(each) < math.inf]
+    return [each for each in large if joints or float(each).is_integer()]
+
+
+def _in_other_unit(flow: TypeFlow) -> bool:
+    """Whether the script declares another unit on the way of a literal, which SM504 reports."""
+    before = flow.before
+    while before is not None:
+        if unit_of(_item(before.cell.declared)) not in ("", "rad"):
+            return True
+        before = before.before
+    return False
+
+
+def _millimetres(flow: TypeFlow, simulated: frozenset[str]) -> list[int | float]:
+    """The coordinates in a literal that seem to be in millimetres. `simulated` are the state types
+    that use the simulated world."""
+    node, wanted = flow.cell.node, present(flow.cell.declared)
+    if wanted.name not in POINTS or not isinstance(node, Leaf) or flow.cell.role == "output":
+        return []
+    parts = [claim.partition(".")[0] for claim in node.claims]
+    in_reach = "arm" in parts or "gripper" in parts or role_of(flow.cell) == "goal_pose"
+    in_reach = in_reach or node.type in simulated
+    value = flow.value
+    point = value[0] if isinstance(value, tuple) and len(value) == 2 else value
+    if not in_reach or not isinstance(point, tuple):
+        return []
+    return [each for each in numbers(point) if FARTHEST < abs(each) < math.inf]

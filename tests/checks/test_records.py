@@ -1,0 +1,130 @@
+"""Records: mappings whose fields have types, in scripts and interfaces."""
+
+from __future__ import annotations
+
+import pytest
+
+from smachac.diagnostics.diagnostic import Diagnostic, Severity
+from tests.trust.project_text import analysed
+
+SCRIPT = """
+name: sm
+outcomes: [done]
+types: {{Item: {{name: str, shelf: "one_of[left, right]", at: Pose?}}}}
+userdata: {{item: {value}}}
+states:
+  - READ:
+      template: CallbacksState
+      input_keys: {{item: {type}}}
+      output_keys: [label]
+      callbacks: {{label: 'lambda ud: {code}'}}
+      transitions: {{succeeded: SHOW}}
+  - SHOW: {{template: PrintUserdataState, input_keys: [label], transitions: {{succeeded: done}}}}
+"""
+BOLT = "{name: bolt, shelf: left}"
+
+
+def findings(value: str = BOLT, type: str = "Item", code: str = "ud.item") -> list[Diagnostic]:
+    text = SCRIPT.format(value=value, type=type, code=code)
+    report = analysed({"main.yml": text}).report
+    loud = [item for item in report if item.severity is not Severity.INFO]
+    return [item for item in loud if item.code != "SM306"]  # `Item` is not used everywhere
+
+
+@pytest.mark.parametrize(
+    ("value", "type_"),
+    [
+        (BOLT, "Item"),
+        ("{name: bolt, shelf: left, at: null}", "Item"),
+        ("{name: bolt, shelf: left, at: [1, 2, 3], more: 4}", "Item"),
+        ("{type: Item, value: {shelf: right, name: nut}}", "Item"),
+        ("{type: {name: str, shelf: str}, value: {shelf: a, name: b}}", "{name: str}"),
+        ("{type: Item, value: {name: b, shelf: left}}", "'dict[str, any]'"),
+        ("[{name: bolt, shelf: left}]", "'list[Item]'"),
+        ("{name: bolt, shelf: left}", "{name: str, shelf: str}"),
+        ("{at: {x: 1, y: 2.5}}", "{at: {x: float, y: float}}"),
+        ("{a: 1, b: 2}", "'{a: int, b: float<m>}'"),
+    ],
+)
+def test_what_fits_a_record(value: str, type_: str) -> None:
+    assert findings(value, type_) == []
+
+
+@pytest.mark.parametrize(
+    ("value", "type_", "help"),
+    [
+        ("{name: bolt}", "Item", "add `shelf`"),
+        ("{name: bolt, shlef: left}", "Item", "did you mean `shelf` in place of `shlef`?"),
+        ("{name: bolt, shelf: lft}", "Item", "did you mean `left`?"),
+        ("{name: 1, shelf: left}", "Item", ""),
+        ("{name: bolt, shelf: left, at: 3}", "Item", ""),
+        ("bolt", "Item", ""),
+        ("[bolt, left]", "Item", ""),
+        ("[{name: bolt, shelf: left}, {name: nut}]", "'list[Item]'", "add `shelf`"),
+        ("{type: {name: str}, value: {name: bolt}}", "Item", "add `shelf`"),
+        ("{type: {a: float<m>}, value: {a: 1}}", "'{a: float<mm>}'", ""),
+    ],
+)
+def test_what_does_not_fit_a_record(value: str, type_: str, help: str) -> None:
+    (found,) = findings(value, type_)
+    assert found.code in ("SM304", "SM504")
+    assert (found.help or "").startswith(help)
+
+
+@pytest.mark.parametrize(
+    ("code", "fault"),
+    [
+        ('ud.item["shelf"] + "_"', ""),
+        ('ud.item["at"]', ""),
+        ('len(ud.item["name"])', ""),
+        ('ud.item["shlef"]', "shelf"),
+        ('ud.item["name"] + 1', "convert"),
+        ("ud.item.shelf", "write `ud.item['shelf']`"),
+        ("ud.item[0]", "use text as the index"),
+    ],
+)
+def test_code_over_a_record(code: str, fault: str) -> None:
+    found = findings(code=code)
+    assert [item.code for item in found] == (["SM311"] if fault else [])
+    assert all(fault in (item.help or "") for item in found)
+
+
+@pytest.mark.parametrize(
+    ("type_", "code"),
+    [("{name: string}", "SM017"), ("'{name: }'", "SM017"), ("{name: [str]}", "SM004")],
+)
+def test_what_is_no_record(type_: str, code: str) -> None:
+    assert code in [item.code for item in findings(type=type_)]
+
+
+def test_the_names_of_fields_are_no_aliases() -> None:
+    """An alias `name` is not meant where a field has this name."""
+    text = SCRIPT.format(value=BOLT, type="Item", code="ud.item")
+    text = text.replace("types: {", "types: {name: int, ")
+    report = analysed({"main.yml": text}).report
+    unused = [item.span.text for item in report if item.code == "SM306"]
+    assert [item.code for item in report if item.code == "SM304"] == []
+    assert unused == ["name"]
+
+
+def test_a_record_in_an_interface() -> None:
+    script = """
+    name: sm
+    outcomes: [done]
+    userdata: {item: {name: bolt, shelf: a}}
+    states:
+      - PICK: {template: Pick, box: {wide: 1, hihg: 2}, transitions: {ok: done}}
+    """
+    interface = """
+    name: Pick
+    variables: {box: {type: {wide: float, high: float}, default: {wide: 1.0}}}
+    input_keys: {item: {type: {name: str, shelf: int}}}
+    outcomes: {ok: {}}
+    """
+    report = analysed({"main.yml": script, "templates/Pick.yml": interface}).report
+    found = [(item.code, item.span.text) for item in report if item.code == "SM304"]
+    assert sorted(found) == [
+        ("SM304", "{name: bolt, shelf: a}"),
+        ("SM304", "{wide: 1, hihg: 2}"),
+        ("SM304", "{wide: 1.0}"),
+    ]
