@@ -156,6 +156,25 @@ def test_a_program_that_ends_without_a_shutdown_ends_cleanly(graph2: Graph) -> N
     assert "outcome: succeeded" in program.output
 
 
+def test_an_executor_may_use_an_action_client_that_is_being_made(graph2: Graph) -> None:
+    output = graph2.run(
+        START
+        + """
+add = node.add_waitable
+
+def used_at_once(waitable):
+    add(waitable)
+    print("entities:", waitable.get_num_entities().num_clients)
+
+node.add_waitable = used_at_once
+smach_ros.SimpleActionState(node, "work", Fibonacci)
+rclpy.shutdown()
+left()
+"""
+    )
+    assert "entities: 3" in output
+
+
 def test_limits_are_in_simulated_time(graph2: Graph) -> None:
     server = graph2.node("server")
     program = graph2.start(

@@ -60,7 +60,17 @@ if TYPE_CHECKING:
 
         def on_shutdown(self, state: Any) -> Any: ...
 
+    class ActionClient:
+        """The class rclpy.action.ActionClient."""
+
+        def __init__(self, node: Any, action_type: Any, name: str, **kwargs: Any) -> None: ...
+
+        def send_goal_async(self, *args: Any, **kwargs: Any) -> Any: ...
+
+        def __getattr__(self, name: str) -> Any: ...
+
 else:
+    ActionClient = load("rclpy.action").ActionClient
     Node = load("rclpy.node").Node
     LifecycleNode = load("rclpy.lifecycle").LifecycleNode
 

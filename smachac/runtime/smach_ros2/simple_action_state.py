@@ -19,6 +19,32 @@ ACCEPT_LIMIT = 10.0
 """Seconds within which a server has to accept or reject a goal."""
 
 
+class GoalClient(ros.ActionClient):
+    """An action client without two races of rclpy 9 between a program and its executor.
+
+    rclpy gives the client to the executor before its lock exists, and registers a goal after the
+    lock was released, so that a quick answer gets lost. Here the lock exists from the start, can be
+    locked twice by one thread, and is held until the goal is registered.
+    """
+
+    def __init__(self, *args: Any, **kwargs: Any) -> None:
+        self._reentrant_lock = threading.RLock()
+        super().__init__(*args, **kwargs)
+
+    @property
+    def _lock(self) -> threading.RLock:
+        return self._reentrant_lock
+
+    @_lock.setter
+    def _lock(self, lock: object) -> None:
+        """Keep the own lock; the constructor of rclpy sets another one."""
+
+    def send_goal_async(self, *args: Any, **kwargs: Any) -> Any:
+        """Send a goal; the future of its handle."""
+        with self._reentrant_lock:
+            return super().send_goal_async(*args, **kwargs)
+
+
 class SimpleActionState(RosState):
     """Sends a goal and waits for its end; ends as succeeded, aborted or preempted.
 
@@ -101,7 +127,7 @@ class SimpleActionState(RosState):
         self._exec_timeout = ros.limit(exec_timeout)
         self._preempt_timeout = ros.seconds(preempt_timeout)
         self._server_wait_timeout = ros.seconds(server_wait_timeout)
-        self._client = _action_client(node, action_spec, action_name)
+        self._client = GoalClient(node, action_spec, action_name, callback_group=ros.own_group())
         self._server = watch_action(node, action_name)
 
     def execute(self, ud: Any) -> str:
@@ -132,11 +158,9 @@ class SimpleActionState(RosState):
         """Send a goal; its handle if the server accepts it. None otherwise, which is logged."""
         self._server.start()
         try:
-            # rclpy must not take the response before the request is registered.
-            with self._client._lock:
-                sent = self._client.send_goal_async(
-                    goal, feedback_callback=lambda message: self._on_feedback(ud, message.feedback)
-                )
+            sent = self._client.send_goal_async(
+                goal, feedback_callback=lambda message: self._on_feedback(ud, message.feedback)
+            )
         except (TypeError, ros.invalid_handle()) as error:
             smach.logerr(f"no goal can be sent to action '{self._name}': {error!r}")
             return None
@@ -190,13 +214,6 @@ class SimpleActionState(RosState):
         if status == known.STATUS_CANCELED and self._is_preempted():
             return "preempted"
         return "aborted"
-
-
-def _action_client(node: Any, spec: Any, name: str) -> Any:
-    """An action client whose lock may be held during `send_goal_async`, which locks it again."""
-    client = ros.load("rclpy.action").ActionClient(node, spec, name, callback_group=ros.own_group())
-    client._lock = threading.RLock()
-    return client
 
 
 def _cancel_if_accepted(sent: Any) -> None:
