@@ -7,10 +7,11 @@ from __future__ import annotations
 
 import json
 import os
-from collections.abc import Iterable, Iterator, Mapping, Sequence
+from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from pathlib import Path
 
+from smachac.analysis.context import Context
 from smachac.diagnostics.diagnostic import Diagnostic, Report, identity, in_order
 from smachac.diagnostics.source import Source, Word
 from smachac.driver import CODES, Analysis, MachineCheck, analyse, read_machine
@@ -19,6 +20,7 @@ from smachac.frontend.files import Disk, disk_library
 from smachac.frontend.loader import Library
 from smachac.frontend.suppressions import Suppression
 from smachac.frontend.yaml_tree import Seq
+from smachac.ir.nodes import Machine
 from smachac.ir.recursion import deep_recursion
 from smachac.ir.traversal import remapping
 
@@ -65,6 +67,7 @@ def check_scripts(
     scripts: Sequence[Path] = (),
     templates: Sequence[Path] = (),
     extra: MachineCheck | None = None,
+    make_context: Callable[[Machine], Context] = Context,
 ) -> Batch:
     """Check scripts by all rules and by `extra`: sub-scripts through their callers, or alone.
 
@@ -82,9 +85,11 @@ def check_scripts(
                 path, report, scripts=scripts, templates=templates, disk=disk, codes=CODES
             )
             if called:
-                analyses[str(path)] = analyse(source, library, report, extra, render=True)
+                analyses[str(path)] = analyse(
+                    source, library, report, extra, render=True, make_context=make_context
+                )
             else:
-                analyses[str(path)] = analyse_alone(source, library, report)
+                analyses[str(path)] = analyse_alone(source, library, report, make_context)
         uses[str(path)] = frozenset(disk.asked)
 
     for path in paths:
@@ -128,7 +133,12 @@ def _report_unused_allowances(analyses: Mapping[str, Analysis], reports: dict[st
         reports[name] = [*reports[name], *unused_allowances(words)]
 
 
-def analyse_alone(source: Source, library: Library, report: Report) -> Analysis:
+def analyse_alone(
+    source: Source,
+    library: Library,
+    report: Report,
+    make_context: Callable[[Machine], Context] = Context,
+) -> Analysis:
     """The analysis of a sub-script that no script calls: a script is generated that calls it.
 
     The generated script provides the keys that the sub-script needs and ends with its outcomes.
@@ -154,7 +164,7 @@ def analyse_alone(source: Source, library: Library, report: Report) -> Analysis:
             for part in (state.inputs, state.outputs)
         )
         caller = _caller(name, [outcome.name for outcome in state.outcomes], *keys)
-    found = analyse(caller, own, report)
+    found = analyse(caller, own, report, make_context=make_context)
     return replace(found, report=list(_without(caller, found.report)), checked=None)
 
 

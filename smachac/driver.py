@@ -12,6 +12,7 @@ from pathlib import Path
 from typing import NamedTuple, TypeAlias
 
 from smachac import checks
+from smachac.analysis.context import Context
 from smachac.checks import check_machine
 from smachac.diagnostics.diagnostic import Code, Diagnostic, Report, grouped, has_errors, in_order
 from smachac.diagnostics.severities import apply_severities
@@ -106,28 +107,36 @@ def analyse(
     extra: MachineCheck | None = None,
     *,
     render: bool = False,
+    make_context: Callable[[Machine], Context] = Context,
 ) -> Analysis:
     """Parse, resolve, lower and check a script, then apply suppressions and severities.
 
     Findings that are already in `report` belong to the result as well. `render`: the templates of
-    the user are rendered too, for their findings; a build does that in any case. If there is not
-    enough memory, that is the only finding.
+    the user are rendered too, for their findings; a build does that in any case. `make_context`
+    makes the context of the machine; a caller may keep it. If there is not enough memory, that is
+    the only finding.
     """
     try:
-        return _analysis(source, library, report, extra, render=render)
+        return _analysis(source, library, report, extra, make_context, render=render)
     except MemoryError:
         pass  # after this clause, the frames of the exception no longer hold the script
     return Analysis(script=source.name, report=[_out_of_memory(source)], library=library)
 
 
 def _analysis(
-    source: Source, library: Library, report: Report, extra: MachineCheck | None, *, render: bool
+    source: Source,
+    library: Library,
+    report: Report,
+    extra: MachineCheck | None,
+    make_context: Callable[[Machine], Context],
+    *,
+    render: bool,
 ) -> Analysis:
     with deep_recursion():
         script = parse_and_resolve(source, library, report)
         machine = lower(script) if script is not None else None
         if machine is not None:
-            report.extend(check_machine(machine))
+            report.extend(check_machine(machine, context=make_context(machine)))
             report.extend(code_faults(machine, library, load_target))
             report.extend(undefined_names(machine, library))
             report.extend(extra(machine) if extra is not None else ())

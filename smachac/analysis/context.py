@@ -103,7 +103,8 @@ class Context:
     @cached_property
     def mended_flow(self) -> DataFlow:
         """The data flow of the machine with misspelt names corrected."""
-        return data_flow(mended_machine(self.machine, self.containers))
+        mended = mended_machine(self.machine, self.containers)
+        return self.flow if mended is self.machine else data_flow(mended)
 
     @cached_property
     def _missing_keys(self) -> tuple[Missing, ...]:

@@ -109,9 +109,12 @@ RULES: tuple[Rule, ...] = (
 PROBLEMS = workspace.PROBLEMS
 
 
-def check_machine(machine: Machine, rules: tuple[Rule, ...] = RULES) -> Report:
-    """The findings of all rules over a machine, in the order of the rules."""
-    return list(_diagnostics(Context(machine), rules))
+def check_machine(
+    machine: Machine, rules: tuple[Rule, ...] = RULES, context: Context | None = None
+) -> Report:
+    """The findings of all rules over a machine, in the order of the rules. `context`: the context
+    of the machine, for a caller that keeps the facts which the rules need."""
+    return list(_diagnostics(context or Context(machine), rules))
 
 
 def _diagnostics(context: Context, rules: tuple[Rule, ...]) -> Iterator[Diagnostic]:

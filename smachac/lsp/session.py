@@ -195,10 +195,9 @@ class Session:
         if self.is_interface(path):
             return self._check_interface(path)
         roots = self.roots(path)
-        batch = check_scripts([Path(root) for root in roots], self.disk)
+        batch = self._check_scripts(roots)
         if not any(path in (root, *batch.uses[root]) for root in batch.reports):
-            batch = check_scripts([Path(path)], self.disk)  # its callers do not call it any more
-        self._note(batch)
+            batch = self._check_scripts([path])  # its callers do not call it any more
         found: dict[str, Report] = {root: [] for root in batch.reports}
         found |= {path: []}
         for item in in_order(batch.report):
@@ -231,12 +230,22 @@ class Session:
         return [each for each in self.open if each != path
                 and (each in roots or any(each in self._uses[root] for root in roots))]  # fmt: skip
 
-    def _note(self, batch: Batch) -> None:
+    def _check_scripts(self, roots: list[str]) -> Batch:
+        """Check scripts, and keep their machines with the facts that the rules computed."""
+        made: list[Context] = []
+
+        def make_context(machine: Machine) -> Context:
+            made.append(Context(machine))
+            return made[-1]
+
+        batch = check_scripts([Path(root) for root in roots], self.disk, make_context=make_context)
         for root, analysis in batch.analyses.items():
             self._uses[root] = batch.uses[root]
             machine = analysis.machine
-            self._contexts[root] = analysis, Context(machine) if machine is not None else None
+            context = next((each for each in made if each.machine is machine), None)
+            self._contexts[root] = analysis, context
         self._views.clear()
+        return batch
 
     def view(self, path: str) -> View | None:
         """A text as answers need it; None if there is no such file."""
