@@ -228,7 +228,8 @@ def _known_things(context: Context) -> Mapping[str, frozenset[str]]:
     if robot is not None and robot.limb_names and (simulated or len(robot.limb_names) > 1):
         known["limb"] = frozenset(robot.limb_names)
     bodies = loaded_bodies(context) if simulated and robot is not None else None
-    if bodies is not None and robot is not None:
+    scene = any(each.name == "scene" and each.value.data for each in context.machine.variables)
+    if bodies is not None and robot is not None and (robot.scene or not scene):
         known["body"] = bodies | robot.added | robot.scene
     if simulated:
         known["model"] = frozenset(MODELS)

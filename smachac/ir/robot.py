@@ -47,5 +47,5 @@ class Robot:
     span: Span = field(default=NOWHERE, compare=False, repr=False)
 
 
-MODELS = ("block", "brick", "cafe_table", "goal", "table", "wall")
+MODELS = ("block", "brick", "cafe_table", "corner_block", "goal", "table", "wall")
 """The models of the simulation, by name (sim/models.py)."""
