@@ -88,7 +88,7 @@ def test_a_preempt_request_cancels_the_goal_and_waits_for_its_end(graph2: Graph)
         START
         + """
 state = goal_state(4, result_slots=["sequence"])
-after(1.0, state.request_preempt)
+on_line(state.request_preempt)
 ud = smach.UserData()
 report("preempted", state.execute(ud), list(ud.sequence))
 report("again", goal_state(1).execute(ud))
@@ -97,6 +97,7 @@ report("before", state.execute(ud))
 """
     )
     server.expect("goal 4")
+    program.say("preempt")
     server.expect("cancel 4")
     server.expect("goal 1")
     assert program.end() == 0, program.output

@@ -83,12 +83,12 @@ def test_a_call_that_ends_in_time_after_a_preempt_request_is_used(graph2: Graph)
         + """
 state = smach_ros.ServiceState(node, "hang", Trigger, response_slots=["message"])
 ud = smach.UserData()
-after(0.3, state.request_preempt)
-after(0.4, lambda: report("requested"))
+on_line(state.request_preempt)
 report("late", state.execute(ud), ud.message, state.preempt_requested())
 """
     )
     server.expect("called")
+    program.say("preempt")
     program.expect("requested")
     server.say("release")
     assert program.end() == 0, program.output

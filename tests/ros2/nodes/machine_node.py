@@ -1,6 +1,7 @@
 """What the programs of the tests share: a node, names, and a report at the end."""
 
 import atexit
+import sys
 import threading
 from collections.abc import Callable
 from typing import Any
@@ -24,6 +25,7 @@ __all__ = [
     "after",
     "goal_state",
     "node",
+    "on_line",
     "program",
     "report",
     "smach",
@@ -43,6 +45,17 @@ def after(seconds: float, action: Callable[[], object]) -> None:
     timer = threading.Timer(seconds, action)
     timer.daemon = True
     timer.start()
+
+
+def on_line(action: Callable[[], object]) -> None:
+    """Perform an action when a line comes on the input, and report it."""
+
+    def wait() -> None:
+        sys.stdin.readline()
+        action()
+        report("requested")
+
+    threading.Thread(target=wait, daemon=True).start()
 
 
 def goal_state(order: int, **arguments: Any) -> Any:
