@@ -129,8 +129,8 @@ def _closed_before(context: Context, leaves: Mapping[str, Leaf], path: str) -> _
     graph = context.routes.graph
     resources = set(context.claims.get(path, {}))
     start: tuple[Event, bool] = ((path, ""), False)
-    seen = {start}
-    todo = [start]
+    seen: set[tuple[Event, bool]] = {start}
+    todo: list[tuple[Event, bool]] = [start]
     closed: dict[str, None] = {}
     moved: dict[str, None] = {}
     for event, has_moved in todo:
