@@ -5,6 +5,7 @@ from __future__ import annotations
 import re
 from collections.abc import Iterator
 
+from smachac.frontend.files import find_project
 from tests.trust.project_text import MAIN, ROOT, Project, read
 from tests.trust.random_projects import correct_project
 
@@ -13,14 +14,14 @@ ALLOWED = "allowances"
 
 
 def texts_by_hand() -> Iterator[tuple[str, dict[str, str]]]:
-    """Examples and cases as texts by file, with the sub-scripts of examples that others use."""
-    shared = sorted((ROOT / "examples").glob("*/*.yml"))
+    """Examples and cases as texts by file, with the sub-scripts that they share."""
     for folder in ("examples", "tests/cases"):
         for main in sorted((ROOT / folder).glob("*/main.yml")):
             here = main.parent
             if here.name.startswith("bad_") or here.name == ALLOWED:
                 continue
-            paths = [path for path in shared if path.name != MAIN and folder == "examples"]
+            shared = [path for each in find_project(main, []).scripts for path in each.glob("*.yml")]
+            paths = sorted(path for path in shared if path.name != MAIN)
             paths += [*sorted(here.glob("*.yml")), *sorted(here.glob("templates/*"))]
             name = {path: path.name for path in paths}
             name |= {path: f"templates/{path.name}" for path in here.glob("templates/*")}
@@ -43,7 +44,7 @@ def written_by_hand() -> Iterator[tuple[str, Project]]:
 def called(file: str, files: dict[str, str]) -> bool:
     stem = file.removesuffix(".yml")
     return any(
-        re.search(rf"\b(script|S): {re.escape(stem)}\b", text)
+        re.search(rf"\b(script|S): {re.escape(stem)}\b|\bscene: {re.escape(file)}\b", text)
         for other, text in files.items()
         if other != file
     )
