@@ -57,8 +57,9 @@ def test_the_built_in_arm_has_speed_limits(speed: str, wrong: bool) -> None:
     )
 
 
-def test_a_robot_without_speed_limits_is_not_judged() -> None:
-    assert faults(MOVE.format(head="robot: baxter", speed="speed: 99.0"), "SM510") == []
+def test_the_fastest_joint_counts() -> None:
+    (found,) = faults(MOVE.format(head="robot: baxter", speed="speed: 99.0"), "SM510")
+    assert found == ("99.0", "`speed` is 99 rad/s, but no joint of `baxter` is faster than 4 rad/s")
 
 
 @pytest.mark.parametrize(

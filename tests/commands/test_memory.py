@@ -65,7 +65,7 @@ def test_an_exhausted_memory_is_a_finding_in_every_format(tmp_path: Path) -> Non
     code = (
         "import sys\n"
         "import smachac.driver as driver\n"
-        "def exhausted(*words): raise MemoryError\n"
+        "def exhausted(*words, **more): raise MemoryError\n"
         "driver.check_machine = exhausted\n"
         "from smachac.commands.cli import main\n"
         "sys.exit(main(['check', 'main.yml', '--format', 'json']))\n"

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+import re
 import sys
 from pathlib import Path
 
@@ -262,9 +263,7 @@ def test_what_the_user_has_comes_first(
     (tmp_path / "more" / "SleepState.yml").write_text("name: SleepState\ndoc: Ours.\n")
     assert main(["states", "--templates", "more"]) == 0
     listed = capsys.readouterr().out
-    assert listed.startswith(
-        "state types (of this project)\n  Mine\n  SleepState                 Ours.\n"
-    )
+    assert re.match(r"state types \(of this project\)\n  Mine\n  SleepState +Ours\.\n", listed)
     assert listed.count("  SleepState ") == 1
     assert main(["states", "Mine", "--templates", "more"]) == 0
     assert "anything goes" in capsys.readouterr().out

@@ -150,7 +150,7 @@ def test_lowering_reads_no_yaml() -> None:
     assert not {f"smachac.frontend.{name}" for name in readers} & seen
 
 
-def test_state_types_are_looked_up_in_three_places() -> None:
+def test_state_types_are_looked_up_in_few_places() -> None:
     modules = (path.relative_to(ROOT) for path in sorted((ROOT / "smachac").rglob("*.py")))
     users = [
         str(path)
@@ -162,6 +162,9 @@ def test_state_types_are_looked_up_in_three_places() -> None:
         "smachac/commands/new.py",
         "smachac/commands/states.py",
         "smachac/frontend/resolve.py",
+        "smachac/lsp/completion.py",
+        "smachac/lsp/facts.py",
+        "smachac/lsp/session.py",
     ]
 
 

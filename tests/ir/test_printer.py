@@ -273,7 +273,15 @@ def test_the_grammar_has_every_kind_and_every_field_of_it() -> None:
     names = {field.name for kind in (Machine, *kinds) for field in dataclasses.fields(kind)}
     places = {"span", "via", *(name for name in names if name.endswith(("_span", "_spans")))}
     in_the_head = {"name", "type", "children", "root"}
-    in_other_files = {"class_facts", "properties", "robot", "state_types", "unused", "written"}
+    in_other_files = {
+        "class_facts",
+        "params",
+        "properties",
+        "robot",
+        "state_types",
+        "unused",
+        "written",
+    }
     in_other_files |= {"adds_frames", "built_in", "definitions", "stand_in"}  # only for rules
     statements = {rule.alias for rule in grammar.rules if rule.origin.name == "statement"}
     assert names - places - in_the_head - in_other_files == statements

@@ -185,7 +185,9 @@ def test_the_encoding_stays(encoding: str, tmp_path: Path) -> None:
 
 
 def test_a_fix_that_shows_more_errors_is_not_written(folder: Path) -> None:
-    text = BAD.replace("transitions: {there", "transition: {there").replace("lfit", "lift")
+    state = "template: SleepStat, tiem: 1, lenght: 2, hieght: 3, widht: 4"
+    text = BAD.replace("script: lfit", state).replace("up: done", "succeeded: done")
+    text = text.replace("sliped: abroted", "slipped: aborted")
     (folder / "main.yml").write_text(text)
     assert main(["check", "main.yml", "--fix"]) == 1
     assert (folder / "main.yml").read_text() == text

@@ -47,7 +47,15 @@ def test_golden_layout(before: Path, spelling: str) -> None:
     assert lay_out(found, spelling) == found
 
 
-@pytest.mark.parametrize("path", sorted((ROOT.parent / "examples").glob("*/*.yml")), ids=str)
+EXAMPLES = [
+    path
+    for path in sorted((ROOT.parent / "examples").glob("*/*.yml"))
+    if "template:" in path.read_text("utf-8")  # scenes and faults are not scripts
+    and path.parent.name != "10_baxter_pick_and_place"  # in the layout of the paper
+]
+
+
+@pytest.mark.parametrize("path", EXAMPLES, ids=lambda path: f"{path.parent.name}/{path.stem}")
 def test_the_examples_are_laid_out(path: Path) -> None:
     assert lay_out(path.read_text("utf-8")) == path.read_text("utf-8")
 

@@ -20,7 +20,9 @@ def texts_by_hand() -> Iterator[tuple[str, dict[str, str]]]:
             here = main.parent
             if here.name.startswith("bad_") or here.name == ALLOWED:
                 continue
-            shared = [path for each in find_project(main, []).scripts for path in each.glob("*.yml")]
+            shared = [
+                path for each in find_project(main, []).scripts for path in each.glob("*.yml")
+            ]
             paths = sorted(path for path in shared if path.name != MAIN)
             paths += [*sorted(here.glob("*.yml")), *sorted(here.glob("templates/*"))]
             name = {path: path.name for path in paths}

@@ -73,7 +73,8 @@ def importable() -> set[str]:
 
 
 def import_lines(texts: Iterable[str]) -> str:
-    """Imports without duplicates: modules, then names of modules, then other statements."""
+    """Imports without duplicates, those of the standard library first: modules, then names of
+    modules; then other statements."""
     modules: set[str] = set()
     members: dict[str, set[str]] = {}
     others: dict[str, None] = {}
@@ -91,9 +92,18 @@ def import_lines(texts: Iterable[str]) -> str:
                 members.setdefault(module, set()).update(map(ast.unparse, node.names))
             elif isinstance(node, ast.Import):
                 modules.update(map(ast.unparse, node.names))
-    lines = [f"import {name}" for name in sorted(modules)]
-    lines += [_from_import(module, sorted(members[module])) for module in sorted(members)]
-    return "\n".join([*lines, *filter(None, others)])
+    sections: tuple[list[str], list[str]] = [], []
+    for name in sorted(modules):
+        sections[_is_installed(name)].append(f"import {name}")
+    for module in sorted(members):
+        sections[_is_installed(module)].append(_from_import(module, sorted(members[module])))
+    sections[1].extend(filter(None, others))
+    return "\n\n".join("\n".join(lines) for lines in sections if lines)
+
+
+def _is_installed(module: str) -> bool:
+    """Whether a module, `os.path as path`, is not one of the standard library."""
+    return module.partition(" ")[0].partition(".")[0] not in sys.stdlib_module_names
 
 
 NOT_FOUND = """\

@@ -1,4 +1,4 @@
-# Made by smachac 0.1.0 from main.yml (sha256 b55aad0ebc1feef8).
+# Made by smachac 0.1.0 from main.yml (sha256 84b4d8fd5c8d62ce).
 """Stack two blocks on the mark."""
 
 from smachac import sim

@@ -1,4 +1,4 @@
-// Made by smachac 0.1.0 from main.yml (sha256 ed0523dbfb601952).
+// Made by smachac 0.1.0 from main.yml (sha256 a04773f8ab211e87).
 #pragma once
 
 #include "smachac/arm.hpp"

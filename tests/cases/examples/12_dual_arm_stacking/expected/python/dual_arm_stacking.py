@@ -1,4 +1,4 @@
-# Made by smachac 0.1.0 from main.yml (sha256 ed0523dbfb601952).
+# Made by smachac 0.1.0 from main.yml (sha256 a04773f8ab211e87).
 """Pick two blocks with both arms at once and stack them on the mark."""
 
 from smachac import sim

@@ -1,4 +1,4 @@
-// Made by smachac 0.1.0 from main.yml (sha256 2e930ac2e026e438).
+// Made by smachac 0.1.0 from main.yml (sha256 429970c082ff5f57).
 #pragma once
 
 #include "smachac/arm.hpp"
@@ -626,8 +626,8 @@ enum class State : std::size_t {
 inline constexpr smachac::Place places[] = {
     {"recovery/RIGHT/TRY/FIND_BLOCK", "try_arm.yml:17", "recovery/RIGHT/TRY/TRY/FIND_BLOCK", "recovery/RIGHT/TRY"},
     {"recovery/RIGHT/TRY/CARRY (timeout)", "try_arm.yml:23", "recovery/RIGHT/TRY/TRY/CARRY", "recovery/RIGHT/TRY"},
-    {"recovery/RIGHT/TRY/LET_GO", "try_arm.yml:30", "recovery/RIGHT/TRY/TRY/LET_GO", "recovery/RIGHT/TRY"},
-    {"recovery/RIGHT/TRY/RETREAT", "try_arm.yml:37", "recovery/RIGHT/TRY/TRY/RETREAT", "recovery/RIGHT/TRY"},
+    {"recovery/RIGHT/TRY/LET_GO", "try_arm.yml:32", "recovery/RIGHT/TRY/TRY/LET_GO", "recovery/RIGHT/TRY"},
+    {"recovery/RIGHT/TRY/RETREAT", "try_arm.yml:39", "recovery/RIGHT/TRY/TRY/RETREAT", "recovery/RIGHT/TRY"},
 };
 
 template <class Run>
@@ -662,7 +662,7 @@ template <class Run>
         goto LET_GO;
       }
       break;
-    case State::LET_GO: // try_arm.yml:30
+    case State::LET_GO: // try_arm.yml:32
     LET_GO:
       run.enter(places, state);
       switch (run.wrote(states.LET_GO.execute({run.out(ud.own_.gripper_width)}, run.stop_for(places, state)), smachac::Output{"width", ud.own_.gripper_width})) {
@@ -676,7 +676,7 @@ template <class Run>
         return run.end_asked(places, state, "preempted", Outcome::preempted);
       }
       break;
-    case State::RETREAT: // try_arm.yml:37
+    case State::RETREAT: // try_arm.yml:39
     RETREAT:
       run.enter(places, state);
       switch (states.RETREAT.execute({smachac::convert<std::vector<double>>(ud.home.unchecked())}, run.stop_for(places, state))) {
@@ -821,7 +821,7 @@ enum class State : std::size_t {
 
 inline constexpr smachac::Place places[] = {
     {"recovery/RIGHT/TRY (retry)", "try_arm.yml:10", "recovery/RIGHT/TRY", "recovery/RIGHT"},
-    {"recovery/RIGHT/HOME", "try_arm.yml:43"},
+    {"recovery/RIGHT/HOME", "try_arm.yml:45"},
 };
 
 template <class Run>
@@ -841,7 +841,7 @@ inline Outcome execute(States &states, const UserdataView &ud, Run &run) {
         return run.end_asked(places, state, "exhausted", Outcome::exhausted);
       }
       break;
-    case State::HOME: // try_arm.yml:43
+    case State::HOME: // try_arm.yml:45
     HOME:
       run.enter(places, state);
       switch (states.HOME.execute({smachac::convert<std::vector<double>>(ud.home.unchecked())}, run.stop_for(places, state))) {
@@ -1438,8 +1438,8 @@ enum class State : std::size_t {
 inline constexpr smachac::Place places[] = {
     {"recovery/LEFT/TRY/FIND_BLOCK", "try_arm.yml:17", "recovery/LEFT/TRY/TRY/FIND_BLOCK", "recovery/LEFT/TRY"},
     {"recovery/LEFT/TRY/CARRY (timeout)", "try_arm.yml:23", "recovery/LEFT/TRY/TRY/CARRY", "recovery/LEFT/TRY"},
-    {"recovery/LEFT/TRY/LET_GO", "try_arm.yml:30", "recovery/LEFT/TRY/TRY/LET_GO", "recovery/LEFT/TRY"},
-    {"recovery/LEFT/TRY/RETREAT", "try_arm.yml:37", "recovery/LEFT/TRY/TRY/RETREAT", "recovery/LEFT/TRY"},
+    {"recovery/LEFT/TRY/LET_GO", "try_arm.yml:32", "recovery/LEFT/TRY/TRY/LET_GO", "recovery/LEFT/TRY"},
+    {"recovery/LEFT/TRY/RETREAT", "try_arm.yml:39", "recovery/LEFT/TRY/TRY/RETREAT", "recovery/LEFT/TRY"},
 };
 
 template <class Run>
@@ -1474,7 +1474,7 @@ template <class Run>
         goto LET_GO;
       }
       break;
-    case State::LET_GO: // try_arm.yml:30
+    case State::LET_GO: // try_arm.yml:32
     LET_GO:
       run.enter(places, state);
       switch (run.wrote(states.LET_GO.execute({run.out(ud.own_.gripper_width)}, run.stop_for(places, state)), smachac::Output{"width", ud.own_.gripper_width})) {
@@ -1488,7 +1488,7 @@ template <class Run>
         return run.end_asked(places, state, "preempted", Outcome::preempted);
       }
       break;
-    case State::RETREAT: // try_arm.yml:37
+    case State::RETREAT: // try_arm.yml:39
     RETREAT:
       run.enter(places, state);
       switch (states.RETREAT.execute({smachac::convert<std::vector<double>>(ud.home.unchecked())}, run.stop_for(places, state))) {
@@ -1633,7 +1633,7 @@ enum class State : std::size_t {
 
 inline constexpr smachac::Place places[] = {
     {"recovery/LEFT/TRY (retry)", "try_arm.yml:10", "recovery/LEFT/TRY", "recovery/LEFT"},
-    {"recovery/LEFT/HOME", "try_arm.yml:43"},
+    {"recovery/LEFT/HOME", "try_arm.yml:45"},
 };
 
 template <class Run>
@@ -1653,7 +1653,7 @@ inline Outcome execute(States &states, const UserdataView &ud, Run &run) {
         return run.end_asked(places, state, "exhausted", Outcome::exhausted);
       }
       break;
-    case State::HOME: // try_arm.yml:43
+    case State::HOME: // try_arm.yml:45
     HOME:
       run.enter(places, state);
       switch (states.HOME.execute({smachac::convert<std::vector<double>>(ud.home.unchecked())}, run.stop_for(places, state))) {

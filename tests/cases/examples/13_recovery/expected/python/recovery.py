@@ -1,7 +1,8 @@
-# Made by smachac 0.1.0 from main.yml (sha256 2e930ac2e026e438).
+# Made by smachac 0.1.0 from main.yml (sha256 429970c082ff5f57).
 """Pick and place a block in spite of faults."""
 
 import threading
+
 from smachac import sim
 
 try:
@@ -381,7 +382,7 @@ def build_try_arm(limb):
             },
         )
 
-        # try_arm.yml:43
+        # try_arm.yml:45
         smach.StateMachine.add(
             "HOME",
             MoveToJointPositionsState(limb=limb),
@@ -462,7 +463,7 @@ def build_try(limb):
                 },
             )
 
-            # try_arm.yml:30
+            # try_arm.yml:32
             smach.StateMachine.add(
                 "LET_GO",
                 GripperState(limb=limb, command="open"),
@@ -474,7 +475,7 @@ def build_try(limb):
                 remapping={"width": "gripper_width"},
             )
 
-            # try_arm.yml:37
+            # try_arm.yml:39
             smach.StateMachine.add(
                 "RETREAT",
                 MoveToJointPositionsState(limb=limb),

@@ -3,16 +3,17 @@
 
 import copy
 import os
-import roslib.message
-import rospy
 import signal
 import struct
 import subprocess
 import sys
-import tf2_geometry_msgs
-import tf2_ros
 import threading
 import time
+
+import roslib.message
+import rospy
+import tf2_geometry_msgs
+import tf2_ros
 from geometry_msgs.msg import (
     Point,
     Point32,
