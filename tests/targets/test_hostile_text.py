@@ -39,6 +39,7 @@ VALUES = {
     "msg_type": "std_msgs/String",
     "time": 1,
     "command": "open",
+    "cond_cb": "lambda *given: True",
 }
 
 QUICK = {"Base", "CallbacksState", "GripperState", "SleepState", "WriteCSVFileState"}

@@ -70,7 +70,7 @@ def name_an_arm_that_the_robot_lacks(subject: Subject) -> Mutant | None:
     moves = ("MoveToJointPositionsState", "MoveAlongState", "GripperState")
     found = [site for site in subject.sites() if site.template in moves]
     site = subject.pick(site for site in found if subject.machine.base == "PyBulletBase")
-    return None if site is None else changed(site, "limb", "left", "SM521")
+    return None if site is None else changed(site, "limb", "middle", "SM521")
 
 
 @mutation
