@@ -179,14 +179,20 @@ prepare_ros2() {
 }
 
 # Builds the interface packages of the tests into .venv-ros2/interfaces. The wheels name folders of
-# the machine that built them, which cmake refuses.
+# the machine that built them, which cmake refuses. ament splits paths at spaces, so a link without
+# them takes the place of such a folder.
 build_interfaces() {
-  local root=$PWD/.venv-ros2 package site include
+  local here=$PWD root package site include
+  if [[ $here == *[^A-Za-z0-9_./-]* ]]; then
+    here=${TMPDIR:-/tmp}/smachac-$(cksum <<<"$PWD" | cut -d' ' -f1)
+    ln -sfn "$PWD" "$here"
+  fi
+  root=$here/.venv-ros2
   site=$("$root/bin/python" -c 'import sysconfig; print(sysconfig.get_path("purelib"))')
   include=$("$root/bin/python" -c 'import sysconfig; print(sysconfig.get_path("include"))')
   grep -rlZ /opt/python "$root/share" --include='*.cmake' | xargs -0r sed -i -E \
     "s#/opt/python/[^;\"]*/site-packages#$site#g; s#/opt/python/[^;\"]*/include/python[0-9.]+#$include#g"
-  for package in "$1"/*/; do
+  for package in "$here/$1"/*/; do
     rm -rf "$root/build"
     PATH=$root/bin:$PATH AMENT_PREFIX_PATH=$root CMAKE_PREFIX_PATH=$root \
       cmake -S "$package" -B "$root/build" -DCMAKE_INSTALL_PREFIX="$root/interfaces" \
@@ -194,6 +200,7 @@ build_interfaces() {
     PATH=$root/bin:$PATH AMENT_PREFIX_PATH=$root cmake --build "$root/build" --target install -j 2 || return 1
   done
   rm -rf "$root/build"
+  [[ $here == "$PWD" ]] || rm -f "$here"
 }
 
 level=${1:-}

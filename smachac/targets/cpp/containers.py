@@ -485,6 +485,9 @@ def _rules(plan: ContainerPlan, node: Concurrence) -> Lines:
             if not tests:
                 return [*lines, end]
             lines += [*_test(tests), f"  {end}", "}"]
+    if not node.default_outcome and node.rules:
+        # The rules cover every combination, or SM401 is reported: C++ needs a last statement.
+        return [*lines, f"return {plan.own_outcome(node.rules[-1].outcome)};"]
     return [*lines, f"return {plan.own_outcome(node.default_outcome)};"]
 
 

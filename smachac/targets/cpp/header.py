@@ -217,10 +217,7 @@ def _userdata(plan: Plan, scope: ContainerScope) -> Lines:
                 value = f"{{{cpp_value(presets[key].value.data, type_)}}}"
             except UnportableError as error:
                 plan.refuse(presets[key].value.span, error, key)
-        try:
-            lines.append(f"  smachac::Key<{cpp_type(type_)}> {identifier(key)}{value};")
-        except UnportableError:
-            continue  # reported by plan
+        lines.append(f"  smachac::Key<{cpp_type(type_)}> {identifier(key)}{value};")
     for child in scope.node.children:
         if not isinstance(child, Leaf):
             lines.append(f"  {identifier(child.name)}::Userdata {member(child)};")
