@@ -52,18 +52,17 @@ class _Use(NamedTuple):
 
 @rule("SM512", "unknown-field", Severity.ERROR)
 def unknown_field(context: Context) -> Iterator[Finding]:
-    """A state uses a field or a message type that does not exist, or gives a field a value of
-    another type.
+    """A state uses a field or type of a message that does not exist, or a value of another type.
 
     The state fails when it runs: the goal or the request is never sent, or its function stops at
     the name.
 
     Exactly: fields in lists of keys, in mappings and lists of values, in calls of the class of the
     message, and in functions that receive the message, at any depth. The definitions of messages,
-    services and actions (`.msg`, `.srv`, `.action`) are searched in packages in
-    the folders of `code` in the project file, in the folder of the script and in those above it up
-    to the root of the repository, in AMENT_PREFIX_PATH, in ROS_PACKAGE_PATH and beside the Python
-    that runs smachac. Where there is none, nothing is checked; but a type is reported if its
+    services and actions (`.msg`, `.srv`, `.action`) are searched in packages in the folders of
+    `code` in the project file, in the folder of the script and in those above it up to the root of
+    the repository, in AMENT_PREFIX_PATH, in ROS_PACKAGE_PATH and beside the Python that runs
+    smachac. Where there is none, nothing is checked; but a type is reported if its
     package has other types of its kind. Where several are found, such as those of ROS 1 and ROS 2,
     a finding holds for all of them.
 

@@ -31,8 +31,8 @@ class Library:
     of such code; `definitions(path)` all message definitions of ROS with a path, such as
     `std_srvs/srv/Trigger.srv`, in the order of the searched folders; `definition_names(folder)` the
     names of the files in all folders with a path, such as `std_srvs/srv`. The lists of folders and
-    names are for messages. `ros` and `policy` are the version of ROS and the severities of the project.
-    `parse` may return one tree for all scripts that share a text. `robot(file)` returns a
+    names are for messages. `ros` and `policy` are the version of ROS and the severities of the
+    project. `parse` may return one tree for all scripts that share a text. `robot(file)` returns a
     description or URDF file of a built-in robot, or a file of PyBullet's data.
     """
 

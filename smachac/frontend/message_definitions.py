@@ -96,12 +96,13 @@ def definitions_of(base: State, library: Library) -> Definitions:
     """The definitions of the types that the states of a script name, and those of the messages in
     their fields."""
     found: dict[tuple[DefinitionKind, str], tuple[Definition, ...]] = {}
-    todo = list(_named_types(base))
+    todo: list[tuple[DefinitionKind, str]] = list(_named_types(base))
     while todo:
         kind, text = todo.pop()
         if (kind, text) not in found:
             found[kind, text] = find_definitions(text, kind, library)
-            todo += [("msg", name) for each in found[kind, text] for name in _nested(each)]
+            for each in found[kind, text]:
+                todo.extend(("msg", name) for name in _nested(each))
     return {key: each for key, each in found.items() if each}
 
 
@@ -125,7 +126,7 @@ def _nested(definition: Definition) -> list[str]:
     return [each.type.name for each in fields if each.type.name not in PRIMITIVES]
 
 
-def missing_definitions_of(base: State, library: Library) -> MissingDefinitions:
+def missing_definitions_of(base: State, found: Definitions, library: Library) -> MissingDefinitions:
     """The types in the states of a script whose package has types of their kind, but not these.
 
     Types that ROS 1 makes of an action, such as `TestActionGoal`, and those with a definition in
@@ -134,7 +135,7 @@ def missing_definitions_of(base: State, library: Library) -> MissingDefinitions:
     missing: dict[tuple[DefinitionKind, str], tuple[str, ...]] = {}
     for kind, text in _named_types(base):
         word = type_name(text, kind)
-        if word is None or (kind != "srv" and _MADE.search(word.name)):
+        if (kind, text) in found or word is None or (kind != "srv" and _MADE.search(word.name)):
             continue
         files = library.definition_names(f"{word.package}/{kind}")
         names = {each.removesuffix(f".{kind}") for each in files if each.endswith(f".{kind}")}

@@ -149,12 +149,13 @@ class _Resolver:
         robot = None if is_wrong else robot_of(base, source, self.library, self.report)
         if "types" in entries:
             self.uses.aliases(entries["types"].value, self.report)
+        definitions = definitions_of(base, self.library)
         return Script(
             base=base,
             sources=tuple(self.sources),
             robot=robot,
-            definitions=definitions_of(base, self.library),
-            missing_definitions=missing_definitions_of(base, self.library),
+            definitions=definitions,
+            missing_definitions=missing_definitions_of(base, definitions, self.library),
             unused=self.uses.unused(self.report),
             properties=properties_of(entries.get("properties"), source, self.library, self.report),
             params=_params(entries.get("params")),
