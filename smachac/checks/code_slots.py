@@ -20,6 +20,7 @@ from smachac.analysis.code_slots import (
 from smachac.analysis.context import Context
 from smachac.analysis.expression_errors import kinds, type_text
 from smachac.analysis.expression_types import type_of_call
+from smachac.analysis.message_code import content_of
 from smachac.checks.messages import calls, did_you_mean
 from smachac.checks.rule import rule
 from smachac.diagnostics.diagnostic import Edit, Finding, Severity
@@ -27,6 +28,7 @@ from smachac.diagnostics.source import Span
 from smachac.diagnostics.spelling import guesser
 from smachac.diagnostics.wording import listed
 from smachac.ir.code_places import node_place, node_range, place_in
+from smachac.ir.message_types import TEXTS, FieldType
 from smachac.ir.nodes import Expression, Leaf, Node
 from smachac.ir.traversal import outcome_names
 from smachac.ir.types import ANY, Type
@@ -291,7 +293,8 @@ def wrong_result(context: Context) -> Iterator[Finding]:
 
     Exactly: a result that is None in conditions, durations and callbacks (there only that of a
     method that changes a value); text as a duration; a text that is not an outcome of the state in
-    a function that returns its outcome. A warning if only some runs give this result, or if the
+    a function that returns its outcome, or there a field of the message that is no text by its
+    definition (SM512). A warning if only some runs give this result, or if the
     type of the value is not known.
 
     Wrong:
@@ -327,7 +330,7 @@ def wrong_result(context: Context) -> Iterator[Finding]:
             continue
         found = results(tree)
         for result in found:
-            fault = _outcome_fault(node, slot, result)
+            fault = _outcome_fault(context, node, slot, result)
             if slot.returns == "value":
                 fault = _value_fault(context, path, node, slot, result)
             if fault is None:
@@ -400,13 +403,36 @@ def _type(context: Context, path: str, node: Node, slot: CodeSlot, value: ast.ex
     return type_of_call(code, keys)
 
 
-def _outcome_fault(node: Node, slot: CodeSlot, result: ast.expr) -> Fault | None:
+def _outcome_fault(context: Context, node: Node, slot: CodeSlot, result: ast.expr) -> Fault | None:
     """The fault of a result that must be an outcome."""
-    if not isinstance(node, Leaf) or not isinstance(result, ast.Constant) or result.value is None:
+    if not isinstance(node, Leaf) or slot.returns != "outcome":
         return None
     names = outcome_names(node)
-    if result.value in names or slot.returns != "outcome" or not names:
+    if not names:
+        return None
+    help = f"return one of its outcomes: {listed(names)}"
+    if not isinstance(result, ast.Constant):
+        wanted = _field_type(context, node, slot, result)
+        if not wanted:
+            return None
+        what = f"`{ast.unparse(result)}`, a `{wanted}`, which is not an outcome of `{node.name}`"
+        return what, help, True
+    if result.value is None or result.value in names:
         return None
     guess = guesser(names)(result.value) if isinstance(result.value, str) else None
-    help = did_you_mean(guess) or f"return one of its outcomes: {listed(names)}"
-    return f"`{result.value!r}`, which is not an outcome of `{node.name}`", help, True
+    what = f"`{result.value!r}`, which is not an outcome of `{node.name}`"
+    return what, did_you_mean(guess) or help, True
+
+
+def _field_type(context: Context, leaf: Leaf, slot: CodeSlot, result: ast.expr) -> str:
+    """The type of a result that is a message, or a field of one and no text; else empty."""
+    content = content_of(slot, leaf, result, context.machine.definitions)
+    texts = [each for each in content if isinstance(each, FieldType) and _is_text(each)]
+    if not content or texts:
+        return ""
+    first = content[0]
+    return str(first) if isinstance(first, FieldType) else first.name
+
+
+def _is_text(field: FieldType) -> bool:
+    return field.name in TEXTS and not field.array

@@ -8,23 +8,38 @@ import warnings
 from collections.abc import Iterator, Sequence
 from typing import NamedTuple
 
+from smachac.analysis.code_slots import CodeSlot, code_slots
 from smachac.analysis.context import Context
+from smachac.analysis.message_code import MOST_CODE, field_reads, leaf_definitions
 from smachac.analysis.type_lattice import fits, present
+from smachac.checks.message_values import value_faults
 from smachac.checks.messages import calls, did_you_mean
 from smachac.checks.rule import rule
 from smachac.diagnostics.diagnostic import Finding, Related, Severity
 from smachac.diagnostics.source import Span, Word
 from smachac.diagnostics.spelling import guesser
 from smachac.diagnostics.wording import listed
+from smachac.ir.code_places import attribute_place, node_place
 from smachac.ir.leaf import type_text, variable_of
-from smachac.ir.message_types import PARTS, Definition, DefinitionKind, Message, userdata_type
-from smachac.ir.nodes import DEFINITION_KINDS, Expression, Leaf, Struct, Variable
+from smachac.ir.message_types import (
+    PARTS,
+    Definitions,
+    Message,
+    MissingDefinitions,
+    userdata_type,
+)
+from smachac.ir.nodes import DEFINITION_KINDS, Expression, Leaf, Variable
 from smachac.ir.types import Type
 
 SCALARS = frozenset(["bool", "int", "float", "str", "literal", "one_of"])
 
-MOST_CODE = 10_000
-"""The longest message in code that is read, in characters."""
+METHODS = frozenset(
+    ["serialize", "deserialize", "serialize_numpy", "deserialize_numpy"]  # ROS 1
+) | {"SLOT_TYPES", "get_fields_and_field_types"}
+"""The names of a message in Python that are no fields."""
+
+_SHORT_VALUE = re.compile(r"""['"]?\s*:\s*('[^'\n]*'|"[^"\n]*"|\[[^\[\]\n]*\]|[^\s,\[\]{}#]+)""")
+"""A text in quotes, a list or a word after the name of a field."""
 
 
 class _Use(NamedTuple):
@@ -37,15 +52,19 @@ class _Use(NamedTuple):
 
 @rule("SM512", "unknown-field", Severity.ERROR)
 def unknown_field(context: Context) -> Iterator[Finding]:
-    """A state uses a field that the message does not have, or gives it a value of another type.
+    """A state uses a field or type of a message that does not exist, or a value of another type.
 
-    The state fails when it runs: the goal or the request is never sent.
+    The state fails when it runs: the goal or the request is never sent, or its function stops at
+    the name.
 
-    Exactly: the definitions of services and actions (`.srv`, `.action`) are searched in packages in
-    the folders of `code` in the project file, in the folder of the script and in those above it up
-    to the root of the repository, in AMENT_PREFIX_PATH, in ROS_PACKAGE_PATH and beside the Python
-    that runs smachac. Where there is none, nothing is checked. Where several are found, such as
-    those of ROS 1 and ROS 2, a finding holds for all of them.
+    Exactly: fields in lists of keys, in mappings and lists of values, in calls of the class of the
+    message, and in functions that receive the message, at any depth. The definitions of messages,
+    services and actions (`.msg`, `.srv`, `.action`) are searched in packages in the folders of
+    `code` in the project file, in the folder of the script and in those above it up to the root of
+    the repository, in AMENT_PREFIX_PATH, in ROS_PACKAGE_PATH and beside the Python that runs
+    smachac. Where there is none, nothing is checked; but a type is reported if its
+    package has other types of its kind. Where several are found, such as those of ROS 1 and ROS 2,
+    a finding holds for all of them.
 
     Wrong:
         name: sm
@@ -83,41 +102,122 @@ def unknown_field(context: Context) -> Iterator[Finding]:
         ---
         bool held
     """
-    if not context.machine.definitions:
+    found, missing = context.machine.definitions, context.machine.missing_definitions
+    if not found and not missing:
         return
     for path, node in context.states:
-        if isinstance(node, Leaf):
-            for kind, definitions in _definitions(context, node):
-                for held in node.variables:
-                    if held.role in PARTS[kind]:
-                        messages = [each.part(held.role) for each in definitions]
-                        yield from _faults(context, path, node, held, messages)
+        if not isinstance(node, Leaf):
+            continue
+        yield from _missing_types(path, node, missing)
+        for kind, definitions in leaf_definitions(node, found):
+            for held in node.variables:
+                if held.role in PARTS[kind]:
+                    messages = [each.part(held.role) for each in definitions]
+                    yield from _faults(context, path, node, held, messages)
+                    yield from _wrong_values(path, node, held, messages, found)
+        for slot in code_slots(node, context.machine.state_types):
+            yield from _wrong_reads(path, node, slot, found)
 
 
-def _definitions(
-    context: Context, leaf: Leaf
-) -> Iterator[tuple[DefinitionKind, tuple[Definition, ...]]]:
-    """The definitions of the types that a state names."""
+def _missing_types(path: str, leaf: Leaf, missing: MissingDefinitions) -> Iterator[Finding]:
+    """Types that a state names and that their packages do not have."""
     for role, kind in DEFINITION_KINDS.items():
         named = variable_of(leaf, role)
-        found = context.machine.definitions
-        if named is not None and (kind, type_text(named)) in found:
-            yield kind, found[kind, type_text(named)]
+        names = missing.get((kind, type_text(named))) if named is not None else None
+        if named is None or names is None:
+            continue
+        parts = re.split(r"[/.]", type_text(named).strip())
+        what = {"msg": "message", "srv": "service", "action": "action"}[kind]
+        yield Finding(
+            span=_word(parts[-1], named.value.span).span,
+            message=f"the package `{parts[0]}` has no {what} `{parts[-1]}`",
+            arguments=(parts[0], parts[-1]),
+            help=did_you_mean(guesser(names)(parts[-1])) or f"it has {listed(names)}",
+            related=calls(leaf, named.value.span),
+            node=path,
+        )
+
+
+def _wrong_reads(path: str, leaf: Leaf, slot: CodeSlot, found: Definitions) -> Iterator[Finding]:
+    """Fields that a function uses and that its messages do not have."""
+    for messages, place, name in field_reads(slot, leaf, found):
+        known = {each.name for message in messages for each in message.fields}
+        constants = {each.name for message in messages for each in message.constants}
+        if (
+            name.startswith("_")
+            or name in METHODS
+            or {name, name.rstrip("_")} & (known | constants)
+        ):
+            continue
+        span = node_place(slot.code, place)
+        if isinstance(place, ast.Attribute):
+            span = attribute_place(slot.code, place)
+        yield _unknown_field(path, leaf, Word(name, span), messages)
+
+
+def _wrong_values(
+    path: str, leaf: Leaf, held: Variable, messages: Sequence[Message], found: Definitions
+) -> Iterator[Finding]:
+    """Values that do not fit the fields of a message, or are for fields that it does not have."""
+    data, span = held.value.data, held.value.span
+    if isinstance(data, tuple) and all(isinstance(each, str) for each in data):
+        return  # the names of keys
+    if isinstance(data, tuple) and all(len(data) != len(each.fields) for each in messages):
+        first = messages[0]
+        counts = f"{len(data)} values, but {_described(first)} has {len(first.fields)} fields"
+        help = "write a mapping of the fields"
+        yield _finding(path, leaf, Word("", span), f"the list has {counts}", help, messages)
+        return
+    faults = [list(value_faults(data, each, found)) for each in messages]
+    for names, message, wanted in faults[0] if all(faults) else ():
+        if wanted is None:
+            yield _unknown_field(path, leaf, _field_word(names, span), (message,))
+            continue
+        text = f"the value of `{names[-1]}` does not fit: the field of {_described(message)} is"
+        word = Word(names[-1], _value_span(_field_word(names, span).span, span))
+        yield _finding(path, leaf, word, f"{text} `{wanted}`", None, (message,))
+
+
+def _unknown_field(path: str, leaf: Leaf, word: Word, messages: Sequence[Message]) -> Finding:
+    names = sorted({each.name for message in messages for each in message.fields})
+    known = f"its fields are {listed(names)}" if names else "it has no fields"
+    help = did_you_mean(guesser(names)(word.text)) or known
+    message = f"{_described(messages[0])} has no field `{word.text}`"
+    return _finding(path, leaf, word, message, help, messages)
+
+
+def _field_word(names: Sequence[str], span: Span) -> Word:
+    """The last of the names of nested fields, in its place inside the others."""
+    place, whole = span, span
+    for name in names:
+        word = _word(name, place, ":")
+        if word.span == place:  # the values are a list
+            return Word(names[-1], whole)
+        whole = word.span
+        place = Span(span.source, whole.end, span.end)
+    return Word(names[-1], whole)
+
+
+def _value_span(name: Span, value: Span) -> Span:
+    """The value after the name of a field, if it is short; else the name."""
+    if name == value:
+        return name
+    after = Span(value.source, name.end, value.end)
+    found = _SHORT_VALUE.match(after.text)
+    if found is None:
+        return name
+    return Span(after.source, after.start + found.start(1), after.start + found.end(1))
 
 
 def _faults(
     context: Context, path: str, leaf: Leaf, held: Variable, messages: Sequence[Message]
 ) -> Iterator[Finding]:
     names = {each.name for message in messages for each in message.fields}
-    guess = guesser(sorted(names))
     inputs = {key.name for key in leaf.inputs}
     for use in _uses(held, messages):
         name = use.word.text
         if name not in names:
-            known = f"its fields are {listed(names)}" if names else "it has no fields"
-            message = f"{_described(messages[0])} has no field `{name}`"
-            help = did_you_mean(guess(name)) or known
-            yield _finding(path, leaf, use.word, message, help, messages)
+            yield _unknown_field(path, leaf, use.word, messages)
         elif use.key and name in inputs:
             given = present(context.types.inputs[path, name])
             fields = [message.field(name) for message in messages]
@@ -145,7 +245,7 @@ def _described(message: Message) -> str:
 
 
 def _finding(
-    path: str, leaf: Leaf, word: Word, message: str, help: str, messages: Sequence[Message]
+    path: str, leaf: Leaf, word: Word, message: str, help: str | None, messages: Sequence[Message]
 ) -> Finding:
     places = [each.fields[0].span for each in messages if each.fields][:1]
     return Finding(
@@ -162,17 +262,13 @@ def _finding(
 
 
 def _uses(held: Variable, messages: Sequence[Message]) -> Iterator[_Use]:
-    """The names of fields in the value of a variable: a list of keys, a mapping of the fields, or
-    a call of the class of the message."""
+    """The names of fields in the value of a variable: a list of keys, or a call of the class of
+    the message."""
     span = held.value.span
     match held.value.data:
-        case tuple() as names:
+        case tuple() as names if all(isinstance(each, str) for each in names):
             for name in names:
-                if isinstance(name, str):
-                    yield _Use(_word(name, span), key=True)
-        case Struct(entries=entries):
-            for name, _ in entries:
-                yield _Use(_word(name, span), key=False)
+                yield _Use(_word(str(name), span), key=True)
         case Expression(text=text):
             for name in _keywords(text, messages):
                 yield _Use(_word(name, span, "="), key=False)

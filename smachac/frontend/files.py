@@ -332,13 +332,17 @@ def disk_library(
         path = _found(name, folders, ("",), disk, refuse)
         return disk.read(path, report) if path else None
 
+    def message_folders() -> list[Path]:
+        return [*project.code, *_package_folders(main)]
+
     return Library(
         script=script,
         template=template,
         own_template=lambda name: template(name, template_folders[: -len(BUILT_IN)]),
         code=lambda name: template(name, code_folders),
         code_names=lambda name: _names_in(name, code_folders),
-        definitions=lambda path: definitions(path, [*project.code, *_package_folders(main)], disk),
+        definitions=lambda path: definitions(path, message_folders(), disk),
+        definition_names=lambda folder: definition_names(folder, message_folders()),
         script_folders=lambda caller: [str(folder) for folder in script_folders(caller)],
         template_folders=lambda: [str(folder) for folder in template_folders[: -len(BUILT_IN)]],
         script_names=lambda caller: _stems(script_folders(caller), (".yml", ".yaml")),
@@ -356,6 +360,27 @@ def definitions(path: str, folders: Sequence[Path], disk: Disk) -> list[Source]:
     They are searched in packages of the user, which are in `folders` or are one of them; then in
     the packages that are installed (`installed_packages`).
     """
+    found: dict[str, Source] = {}
+    for file in _definition_places(path, folders):
+        with contextlib.suppress(OSError, ValueError):
+            source = disk.read(file, []) if disk.is_file(file) else None
+            if source is not None:
+                found.setdefault(os.path.realpath(file), source)
+    return list(found.values())
+
+
+def definition_names(path: str, folders: Sequence[Path]) -> list[str]:
+    """The names of the files in all folders `package/msg` of a package, searched as
+    `definitions` describes."""
+    names: set[str] = set()
+    for place in _definition_places(path, folders):
+        with contextlib.suppress(OSError, ValueError):
+            names.update(each.name for each in place.iterdir())
+    return sorted(names)
+
+
+def _definition_places(path: str, folders: Sequence[Path]) -> list[Path]:
+    """The places where a file or folder of message definitions can be."""
     package, _, inner = path.partition("/")
     own = [
         file
@@ -364,13 +389,7 @@ def definitions(path: str, folders: Sequence[Path], disk: Disk) -> list[Source]:
         if (file != folder / inner or _real_name(folder) == package) and lies_inside(file, folder)
     ]
     installed = [file / inner for file in installed_packages(package, os.environ)]
-    found: dict[str, Source] = {}
-    for file in (*own, *installed):
-        with contextlib.suppress(OSError, ValueError):
-            source = disk.read(file, []) if disk.is_file(file) else None
-            if source is not None:
-                found.setdefault(os.path.realpath(file), source)
-    return list(found.values())
+    return [*own, *installed]
 
 
 def installed_packages(name: str, environment: Mapping[str, str]) -> Iterator[Path]:

@@ -29,9 +29,10 @@ class Library:
     `own_template(file)` the same, but no built-in one; `code(file)` a module or header of the user
     by path (`my_robot/grasp.hpp`); `code_names(folder)` the names of files and folders in a folder
     of such code; `definitions(path)` all message definitions of ROS with a path, such as
-    `std_srvs/srv/Trigger.srv`, in the order of the searched folders. The lists of folders and names
-    are for messages. `ros` and `policy` are the version of ROS and the severities of the project.
-    `parse` may return one tree for all scripts that share a text. `robot(file)` returns a
+    `std_srvs/srv/Trigger.srv`, in the order of the searched folders; `definition_names(folder)` the
+    names of the files in all folders with a path, such as `std_srvs/srv`. The lists of folders and
+    names are for messages. `ros` and `policy` are the version of ROS and the severities of the
+    project. `parse` may return one tree for all scripts that share a text. `robot(file)` returns a
     description or URDF file of a built-in robot, or a file of PyBullet's data.
     """
 
@@ -41,6 +42,7 @@ class Library:
     code: Callable[[str], Source | None] = lambda file: None
     code_names: Callable[[str], Sequence[str]] = lambda folder: ()
     definitions: Callable[[str], Sequence[Source]] = lambda path: ()
+    definition_names: Callable[[str], Sequence[str]] = lambda folder: ()
     script_folders: Callable[[str], Sequence[str]] = lambda caller: ()
     template_folders: Callable[[], Sequence[str]] = lambda: ()
     script_names: Callable[[str], Sequence[str]] = lambda caller: ()
@@ -69,6 +71,10 @@ def memory_library(files: Mapping[str, str], built_in: Library) -> Library:
         code=lambda name: sources.get(name) or built_in.code(name),
         code_names=lambda folder: [*_inside(folder, sources), *built_in.code_names(folder)],
         definitions=lambda path: [sources[path]] if path in sources else built_in.definitions(path),
+        definition_names=lambda folder: [
+            *_inside(folder, sources),
+            *built_in.definition_names(folder),
+        ],
         script_folders=lambda caller: ["."],
         template_folders=lambda: ["templates", *built_in.template_folders()],
         script_names=lambda caller: [name.removesuffix(".yml") for name in sources],

@@ -63,6 +63,7 @@ def lower(script: Script) -> Machine:
         digest=digest.hexdigest(),
         robot=script.robot,
         definitions=script.definitions,
+        missing_definitions=script.missing_definitions,
         unused=script.unused,
         properties=script.properties,
         params=script.params,

@@ -26,6 +26,7 @@ from smachac.ir.message_types import (
     Message,
     MessageConstant,
     MessageField,
+    MissingDefinitions,
 )
 from smachac.ir.nodes import DEFINITION_KINDS
 
@@ -38,6 +39,10 @@ _TYPE = re.compile(
     r"(?P<array>\[(?:(?P<size>\d{1,9})|<=(?P<most>\d{1,9}))?\])?",
     re.ASCII,
 )
+
+
+_MADE = re.compile(r"(Action|ActionGoal|ActionResult|ActionFeedback|Goal|Result|Feedback)\Z")
+"""The names of messages that ROS 1 makes of an action."""
 
 
 class TypeName(NamedTuple):
@@ -88,18 +93,55 @@ def find_definitions(text: str, kind: DefinitionKind, library: Library) -> tuple
 
 
 def definitions_of(base: State, library: Library) -> Definitions:
-    """The definitions of the services and actions that the states of a script name."""
+    """The definitions of the types that the states of a script name, and those of the messages in
+    their fields."""
     found: dict[tuple[DefinitionKind, str], tuple[Definition, ...]] = {}
+    todo: list[tuple[DefinitionKind, str]] = list(_named_types(base))
+    while todo:
+        kind, text = todo.pop()
+        if (kind, text) not in found:
+            found[kind, text] = find_definitions(text, kind, library)
+            for each in found[kind, text]:
+                todo.extend(("msg", name) for name in _nested(each))
+    return {key: each for key, each in found.items() if each}
+
+
+def _named_types(base: State) -> dict[tuple[DefinitionKind, str], None]:
+    """The kinds and names of the types of ROS that the states of a script name."""
+    found: dict[tuple[DefinitionKind, str], None] = {}
     todo = [base]
     while todo:
         state = todo.pop()
         todo += state.states
         for held in state.variables:
             kind = DEFINITION_KINDS.get(held.role)
-            if kind is not None and (kind, type_text(held)) not in found:
-                text = type_text(held)
-                found[kind, text] = find_definitions(text, kind, library)
-    return {key: each for key, each in found.items() if each}
+            if kind is not None:
+                found[kind, type_text(held)] = None
+    return found
+
+
+def _nested(definition: Definition) -> list[str]:
+    """The names of the messages in the fields of a definition."""
+    fields = [each for message in definition.messages for each in message.fields]
+    return [each.type.name for each in fields if each.type.name not in PRIMITIVES]
+
+
+def missing_definitions_of(base: State, found: Definitions, library: Library) -> MissingDefinitions:
+    """The types in the states of a script whose package has types of their kind, but not these.
+
+    Types that ROS 1 makes of an action, such as `TestActionGoal`, and those with a definition in
+    the format of the OMG (`.idl`) are not missing.
+    """
+    missing: dict[tuple[DefinitionKind, str], tuple[str, ...]] = {}
+    for kind, text in _named_types(base):
+        word = type_name(text, kind)
+        if (kind, text) in found or word is None or (kind != "srv" and _MADE.search(word.name)):
+            continue
+        files = library.definition_names(f"{word.package}/{kind}")
+        names = {each.removesuffix(f".{kind}") for each in files if each.endswith(f".{kind}")}
+        if names and word.name not in names and f"{word.name}.idl" not in files:
+            missing[kind, text] = tuple(sorted(names))
+    return missing
 
 
 def read_definition(source: Source, name: TypeName, kind: DefinitionKind) -> Definition | None:

@@ -29,7 +29,7 @@ from smachac.frontend.errors.script import (
 )
 from smachac.frontend.fields import as_name, kind_of, name_of, pairs_of, wrong
 from smachac.frontend.loader import Library
-from smachac.frontend.message_definitions import definitions_of
+from smachac.frontend.message_definitions import definitions_of, missing_definitions_of
 from smachac.frontend.params import (
     MAX_FILLED,
     MAX_FILLED_BY_STATE,
@@ -149,11 +149,13 @@ class _Resolver:
         robot = None if is_wrong else robot_of(base, source, self.library, self.report)
         if "types" in entries:
             self.uses.aliases(entries["types"].value, self.report)
+        definitions = definitions_of(base, self.library)
         return Script(
             base=base,
             sources=tuple(self.sources),
             robot=robot,
-            definitions=definitions_of(base, self.library),
+            definitions=definitions,
+            missing_definitions=missing_definitions_of(base, definitions, self.library),
             unused=self.uses.unused(self.report),
             properties=properties_of(entries.get("properties"), source, self.library, self.report),
             params=_params(entries.get("params")),

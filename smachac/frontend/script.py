@@ -11,7 +11,7 @@ from typing import NamedTuple, TypeAlias
 
 from smachac.diagnostics.source import Source, Span, Word
 from smachac.frontend.schema import FieldOwner
-from smachac.ir.message_types import Definitions
+from smachac.ir.message_types import Definitions, MissingDefinitions
 from smachac.ir.nodes import Outcome, Param, Preset, StateType, Unused, Value, Variable
 from smachac.ir.properties import Property
 from smachac.ir.robot import Robot
@@ -133,6 +133,7 @@ class Script:
     sources: tuple[Source, ...]
     robot: Robot | None = None
     definitions: Definitions = field(default_factory=dict)
+    missing_definitions: MissingDefinitions = field(default_factory=dict)
     unused: tuple[Unused, ...] = ()
     properties: tuple[Property, ...] = ()
     params: tuple[Param, ...] = ()

@@ -103,7 +103,11 @@ class Definition:
 
 Definitions: TypeAlias = "Mapping[tuple[DefinitionKind, str], tuple[Definition, ...]]"
 """By kind and name as in the script all definitions that were found: those of several versions of
-ROS can differ."""
+ROS can differ. The messages in their fields are in it, too: `("msg", "geometry_msgs/Pose")`."""
+
+MissingDefinitions: TypeAlias = "Mapping[tuple[DefinitionKind, str], tuple[str, ...]]"
+"""The types of a script that their packages do not have, by kind and name as in the script, with
+the names of the types of that kind that the package has."""
 
 
 def userdata_type(wanted: FieldType) -> Type:

@@ -14,7 +14,7 @@ from typing import ClassVar, Literal, NamedTuple, NewType, TypeAlias
 
 from smachac.diagnostics.source import NOWHERE, Span, Word
 from smachac.ir.class_facts import ClassFacts
-from smachac.ir.message_types import DefinitionKind, Definitions
+from smachac.ir.message_types import DefinitionKind, Definitions, MissingDefinitions
 from smachac.ir.properties import Property
 from smachac.ir.robot import Robot
 from smachac.ir.types import ANY, Type
@@ -49,8 +49,8 @@ class Value:
 
 VariableRole = Literal[
     "", "callbacks", "conditions", "function", "duration", "steps", "grasp", "output_function",
-    "service_type", "action_type", "request", "response", "goal", "result", "joint_speed",
-    "grip", "qos",
+    "service_type", "action_type", "message_type", "request", "response", "goal", "result",
+    "joint_speed", "grip", "qos",
     "limb", "joint", "frame", "model", "body", "model_file",
 ]  # fmt: skip
 """The meaning of a variable's value for a state (docs/state_types.md, Facts)."""
@@ -58,6 +58,7 @@ VariableRole = Literal[
 DEFINITION_KINDS: Mapping[VariableRole, DefinitionKind] = {
     "service_type": "srv",
     "action_type": "action",
+    "message_type": "msg",
 }
 """The kinds of the definitions of ROS that variables name, by their roles."""
 
@@ -440,9 +441,9 @@ class Machine:
     `base` is the base template; `variables` are its variables (`node_name`, `function_name`,
     `manifest`, and those of its interface). `source` is the name of the script without its folder,
     `digest` a SHA-256 over the texts of the script and its sub-scripts. `robot`, `unused`,
-    `properties` and `definitions`, those of messages of ROS, are for rules; of the targets only
-    `dot` uses properties. `params` are those of the main script. `state_types` are the interfaces
-    of its states and of its base, by name.
+    `properties`, `definitions`, those of messages of ROS, and `missing_definitions` are for rules;
+    of the targets only `dot` uses properties. `params` are those of the main script. `state_types`
+    are the interfaces of its states and of its base, by name.
     """
 
     root: StateMachine
@@ -454,6 +455,7 @@ class Machine:
     unused: tuple[Unused, ...] = field(default=(), compare=False, repr=False)
     properties: tuple[Property, ...] = field(default=(), compare=False, repr=False)
     definitions: Definitions = field(default_factory=dict, compare=False, repr=False)
+    missing_definitions: MissingDefinitions = field(default_factory=dict, compare=False, repr=False)
     params: tuple[Param, ...] = field(default=(), compare=False, repr=False)
     state_types: Mapping[str, StateType] = field(default_factory=dict, compare=False, repr=False)
 
