@@ -108,7 +108,7 @@ def test_the_commands_of_the_docs(graph2: Graph, tmp_path: Path) -> None:
     assert set(lines[0].split()[3:]) <= set(packages)
     tools = tmp_path / "tools"
     tools.mkdir()
-    for name, command in (("python", PYTHON), ("smachac", f"{sys.executable} -m smachac")):
+    for name, command in (("python", f'"{PYTHON}"'), ("smachac", f'"{sys.executable}" -m smachac')):
         tool = tools / name
         tool.write_text(f'#!/bin/sh\nexec {command} "$@"\n', encoding="utf-8")
         tool.chmod(0o755)
@@ -132,9 +132,10 @@ def test_a_package_is_built_by_colcon_and_runs(graph2: Graph, tmp_path: Path) ->
     for name, text in files.items():
         (folder / name).parent.mkdir(parents=True, exist_ok=True)
         (folder / name).write_text(text, encoding="utf-8")
-    colcon = Path(PYTHON).with_name("colcon")
+    venv = tmp_path / "venv"  # no space in its path: the system cannot start a script otherwise
+    venv.symlink_to(Path(PYTHON).parents[1])
     built = subprocess.run(
-        [colcon, "build"], cwd=tmp_path, env=graph2.environment,
+        [venv / "bin" / "python", Path(PYTHON).with_name("colcon"), "build"], cwd=tmp_path, env=graph2.environment,
         capture_output=True, text=True, check=False,
     )  # fmt: skip
     assert built.returncode == 0, built.stderr
