@@ -134,8 +134,9 @@ def test_a_package_is_built_by_colcon_and_runs(graph2: Graph, tmp_path: Path) ->
         (folder / name).write_text(text, encoding="utf-8")
     venv = tmp_path / "venv"  # no space in its path: the system cannot start a script otherwise
     venv.symlink_to(Path(PYTHON).parents[1])
+    python, colcon = venv / "bin" / "python", Path(PYTHON).with_name("colcon")
     built = subprocess.run(
-        [venv / "bin" / "python", Path(PYTHON).with_name("colcon"), "build"], cwd=tmp_path, env=graph2.environment,
+        [python, colcon, "build", "--base-paths", "src"], cwd=tmp_path, env=graph2.environment,
         capture_output=True, text=True, check=False,
     )  # fmt: skip
     assert built.returncode == 0, built.stderr
