@@ -217,7 +217,10 @@ def _userdata(plan: Plan, scope: ContainerScope) -> Lines:
                 value = f"{{{cpp_value(presets[key].value.data, type_)}}}"
             except UnportableError as error:
                 plan.refuse(presets[key].value.span, error, key)
-        lines.append(f"  smachac::Key<{cpp_type(type_)}> {identifier(key)}{value};")
+        try:
+            lines.append(f"  smachac::Key<{cpp_type(type_)}> {identifier(key)}{value};")
+        except UnportableError:
+            continue  # reported by plan
     for child in scope.node.children:
         if not isinstance(child, Leaf):
             lines.append(f"  {identifier(child.name)}::Userdata {member(child)};")
@@ -229,11 +232,14 @@ def _view(scope: ContainerScope) -> Lines:
     if not scope.shared:
         return []
     outputs = {key.name for key in scope.node.outputs}
-    fields = [
-        f"  {'' if key in outputs else 'const '}smachac::Key<{cpp_type(scope.keys[key])}>"
-        f" &{identifier(key)};"
-        for key in scope.view
-    ]
+    fields = []
+    for key in scope.view:
+        access = "" if key in outputs else "const "
+        try:
+            type_ = cpp_type(scope.keys[key])
+        except UnportableError:
+            continue  # reported by plan
+        fields.append(f"  {access}smachac::Key<{type_}> &{identifier(key)};")
     return ["struct UserdataView {", f"  Userdata &{OWN};", *fields, "};"]
 
 

@@ -101,16 +101,8 @@ def plan(machine: Machine) -> Plan:
     """The plan of a machine; names and types that C++ cannot express are refused."""
     types = infer(machine).keys
     keys: dict[str, dict[str, Type]] = {}
-    refused: dict[str, dict[str, UnportableError]] = {}
     for (path, key), type_ in sorted(types.items(), key=lambda item: item[0]):
-        held = keys.setdefault(path, {})
-        try:
-            held[key] = plain(type_)
-            cpp_type(held[key])
-        except UnportableError as error:
-            held[key] = ANY
-            text = f"the key `{key}`: {error}"
-            refused.setdefault(path, {})[key] = UnportableError(text, help=error.help)
+        keys.setdefault(path, {})[key] = plain(type_)
     scopes: dict[str, ContainerScope] = {}
     found = Plan(machine=machine, scopes=scopes, paths=script_paths(machine.root))
     catching: set[str] = set()
@@ -124,8 +116,6 @@ def plan(machine: Machine) -> Plan:
         written = _written(node, machine.state_types)
         scope = replace(scope, shared=_shared(scope, around, written, path in catching))
         scopes[path] = scope
-        for key, refusal in refused.get(path, {}).items():
-            found.refuse(_place_of(node, key), refusal, key)
         _check(found, scope, around)
     return found
 
@@ -188,6 +178,12 @@ def _written(node: Container, types: Mapping[str, StateType]) -> frozenset[str]:
 
 def _check(plan: Plan, scope: ContainerScope, around: ContainerScope | None) -> None:
     node = scope.node
+    for key, type_ in scope.keys.items():
+        try:
+            cpp_type(type_)
+        except UnportableError as error:
+            refused = UnportableError(f"the key `{key}`: {error}", help=error.help)
+            plan.refuse(_place_of(node, key), refused, key)
     names = [
         *(("state", child.name) for child in node.children),
         *(("key", key) for key in scope.keys),
