@@ -112,18 +112,19 @@ def _open_or_stray(stop: _Stop) -> _Fault | None:
 
 
 _NO_SPACE = re.compile(r"[^\s:]*:[\[{'\"]")
-_JOINED = re.compile(r"[^\W\d][\w.-]*:[^\s:/]\S*")
+JOINED = re.compile(r"[^\W\d][\w.-]*:[^\s:/]\S*")
 _WORD = re.compile(r"[^\W\d][\w./-]*")
 _VALUED = re.compile(r"([^\W\d][\w./-]*):[ \t]+[^\s\[{'\"|>#&*].*")
-_SPACE_MISSING = "a space is missing after the colon"
+SPACE_MISSING = "a space is missing after the colon"
+"""The message for a text of the form JOINED where a key and its value are probably meant."""
 
 
 def _colon(stop: _Stop) -> _Fault | None:
     """A colon that is missing, has no space after it, or is one too many."""
     if stop.context == "while scanning a simple key" and stop.first is not None:
-        joined = _JOINED.match(stop.text, stop.first)
+        joined = JOINED.match(stop.text, stop.first)
         if joined is not None:
-            return _Fault(_SPACE_MISSING, _spaced(joined[0]), *joined.span())
+            return _Fault(SPACE_MISSING, spaced(joined[0]), *joined.span())
         help = "write `key: value`, with a space after `:`"
         return _Fault("a `:` is missing after this key", help, stop.first)
     if not stop.problem.startswith("mapping values are not allowed"):
@@ -138,7 +139,8 @@ def _colon(stop: _Stop) -> _Fault | None:
     return fault or _Fault(message, help, stop.at)
 
 
-def _spaced(joined: str) -> str:
+def spaced(joined: str) -> str:
+    """The help for a text of the form JOINED."""
     key, _, value = joined.partition(":")
     return f"write a space after the colon in `{joined}`: `{key}: {value}`"
 
@@ -153,9 +155,9 @@ def _colon_above(stop: _Stop) -> _Fault | None:
     assert dashes is not None
     column = len(above) - len(above.lstrip()) + dashes.end()
     written = above[column:].partition(" #")[0].rstrip()
-    if _JOINED.fullmatch(written) is not None:
+    if JOINED.fullmatch(written) is not None:
         begin = start + column
-        return _Fault(_SPACE_MISSING, _spaced(written), begin, begin + len(written))
+        return _Fault(SPACE_MISSING, spaced(written), begin, begin + len(written))
     begins = dashes.end() or len(lines) < 2 or lines[1][1].rstrip().endswith(":")
     if _WORD.fullmatch(written) is not None and begins:
         begin = start + column
@@ -216,7 +218,8 @@ def _item(stop: _Stop) -> _Fault:
     """The fault of a list item that is indented more or less than the items above it."""
     column = len(stop.before)
     if stop.context == "while parsing a block collection":
-        more, due = "more", stop.first_column
+        more = "more"
+        due: int | None = stop.first_column
     else:
         more, due = "less", _closed_list(stop, column)
     if due is None:

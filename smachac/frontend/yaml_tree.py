@@ -14,10 +14,10 @@ from dataclasses import dataclass, field
 from itertools import accumulate
 from typing import Any, TypeAlias
 
-from smachac.diagnostics.diagnostic import Report
+from smachac.diagnostics.diagnostic import Edit, Report
 from smachac.diagnostics.source import Source, Span, Word
 from smachac.frontend.errors.script import duplicate_key, too_big, wrong_shape, yaml_syntax
-from smachac.frontend.yaml_errors import syntax_error
+from smachac.frontend.yaml_errors import JOINED, SPACE_MISSING, spaced, syntax_error
 
 MAX_CHARACTERS = 10_000_000
 MAX_DEPTH = 3_500
@@ -32,7 +32,7 @@ one for each five characters. A build takes up to 440 bytes for one, so that a s
 than 110 MB and 90 times its text. 100,000 states have a million, of ten characters each."""
 
 MAX_DUPLICATES = 10_000
-"""The most duplicate keys of a script that are reported."""
+"""The most duplicate keys, and keys without a space after the colon, that are reported."""
 
 DEEPEST_PURE = 400
 """Limit on the open brackets of a text that only the pure parser can read: it takes time quadratic
@@ -390,7 +390,7 @@ class _Builder:
         if not done.mapping:
             self._add(Seq(tuple(done.items), span), done.size, done.anchor)
             return
-        entries = self._entries(done.items)
+        entries = self._entries(done.items, done.flow)
         self._add(Map(entries, span), done.size, done.anchor)
 
     def _alias(self, event: Any) -> None:
@@ -428,7 +428,7 @@ class _Builder:
         self.report.append(too_big(span, message, help, arguments=(limit,)))
         raise _BeyondLimitError
 
-    def _entries(self, items: list[Tree]) -> tuple[Entry, ...]:
+    def _entries(self, items: list[Tree], flow: bool) -> tuple[Entry, ...]:
         entries: list[Entry] = []
         merged: list[Entry] = []
         first: dict[object, Scalar] = {}
@@ -442,6 +442,8 @@ class _Builder:
             if key.value == "<<" and key.plain:
                 merged.extend(self._merge(value))
                 continue
+            if flow and isinstance(value, Scalar) and value.value is None:
+                key, value = self._separated(key, value)
             known = first.setdefault((type(key.value), key.value), key)
             if known is not key:
                 self.report.append(duplicate_key(Word(str(key.value), key.span), known.span))
@@ -454,6 +456,27 @@ class _Builder:
                 first[(type(entry.key.value), entry.key.value)] = entry.key
                 entries.append(entry)
         return tuple(entries)
+
+    def _separated(self, key: Scalar, value: Scalar) -> tuple[Scalar, Scalar]:
+        """The key and the value that are meant by `{key:value}`, which YAML reads as a key without
+        a value."""
+        text = key.value
+        if value.start != value.end or not key.plain or not isinstance(text, str):
+            return key, value
+        if JOINED.fullmatch(text) is None or key.end - key.start != len(text):
+            return key, value
+        colon = key.start + text.index(":")
+        if len(self.report) < MAX_DUPLICATES:
+            edits = (Edit(span=Span(self.source, colon + 1, colon + 1), text=" "),)
+            wrong = wrong_shape(
+                key.span, SPACE_MISSING, spaced(text), arguments=("space", text), edits=edits
+            )
+            self.report.append(wrong)
+        name, _, rest = text.partition(":")
+        return (
+            Scalar(_resolve(name), True, self.source, key.start, colon),
+            Scalar(_resolve(rest), True, self.source, colon + 1, key.end),
+        )
 
     def _merge(self, value: Tree) -> Iterator[Entry]:
         """The entries that `<<` adds: those of a mapping, or of each mapping in a list."""

@@ -11,6 +11,7 @@ from hypothesis import strategies as st
 from smachac.diagnostics.diagnostic import Report
 from smachac.diagnostics.source import Source
 from smachac.frontend import yaml_tree
+from smachac.frontend.fields import as_map
 from smachac.frontend.yaml_tree import Map, Scalar, Seq, Tree, parse
 
 
@@ -152,6 +153,25 @@ def test_syntax_errors_name_the_fault_and_its_place(
     assert help in (item.finding.help or "")
 
 
+def test_a_colon_without_a_space_in_a_flow_mapping_is_reported_and_read_as_meant() -> None:
+    report: Report = []
+    tree = parse(Source("x.yml", "{held:succeeded, n:3, a: b:c, 'x:y', lost: }"), report)
+    assert [item.message for item in report] == ["a space is missing after the colon"] * 2
+    held, n = report
+    assert held.span.text == "held:succeeded"
+    assert held.help == "write a space after the colon in `held:succeeded`: `held: succeeded`"
+    assert [(edit.span.start, edit.text) for edit in held.finding.edits] == [(6, " ")]
+    assert n.span.text == "n:3"
+    assert plain(tree) == [
+        ("held", "succeeded"),
+        ("n", 3),
+        ("a", "b:c"),
+        ("x:y", None),
+        ("lost", None),
+    ]
+    assert read("{http://x, std::string, a: 1}") is not None
+
+
 @pytest.mark.parametrize(
     ("text", "codes"),
     [
@@ -284,3 +304,12 @@ def test_the_slow_parser_does_not_read_again_what_takes_it_long(
     (found,) = [item for item in report if item.code == "SM001"]
     assert found.span.start in (len(text), len(text) - 1)
     assert "expected" in found.finding.message
+
+
+def test_a_text_in_place_of_a_mapping_may_need_a_space_after_its_colon() -> None:
+    report: Report = []
+    tree = parse(Source("x.yml", "held:succeeded\n"), report)
+    assert tree is not None
+    assert as_map(tree, report) == ()
+    (item,) = report
+    assert item.help == "write a space after the colon in `held:succeeded`: `held: succeeded`"

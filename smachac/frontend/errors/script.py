@@ -213,6 +213,7 @@ def wrong_shape(
     related: tuple[Related, ...] = (),
     *,
     arguments: tuple[str, ...] = (),
+    edits: tuple[Edit, ...] = (),
 ) -> Finding:
     """A value has a shape that the language does not allow at this place.
 
@@ -239,7 +240,9 @@ def wrong_shape(
               outcomes: [done]
               transitions: {done: done}
     """
-    return Finding(span=span, message=message, arguments=arguments, help=help, related=related)
+    return Finding(
+        span=span, message=message, arguments=arguments, help=help, related=related, edits=edits
+    )
 
 
 @problem("SM005", "missing-variable", Severity.ERROR)
