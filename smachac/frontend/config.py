@@ -10,7 +10,7 @@ from typing import Any
 
 from smachac.diagnostics.diagnostic import Code, Diagnostic, Report, Severity, did_you_mean
 from smachac.diagnostics.severities import Policy
-from smachac.diagnostics.source import Source, Span
+from smachac.diagnostics.source import Source, Span, Word
 from smachac.diagnostics.wording import listed
 from smachac.frontend.errors.script import too_big, unreadable_file
 from smachac.frontend.loader import DEFAULT_ROS, ROS_VERSIONS, Ros
@@ -24,6 +24,9 @@ SETTINGS: Mapping[str, str] = {
     "severity": 'Severities by code, or by the beginning of codes: SM204 = "error".',
 }
 """The settings of a project file, with their descriptions."""
+
+FOLDERS = ("scripts", "templates", "code")
+"""The settings that name search folders."""
 
 LEVELS: Mapping[str, Severity | None] = {
     **{severity.value: severity for severity in Severity},
@@ -43,7 +46,7 @@ LONGEST_KEY = 200
 class Project:
     """The settings of a project file: search folders, absolute or relative to the working folder;
     patterns of files to exclude when a folder is checked, relative to `folder`; the version of ROS
-    of generated programs; severities."""
+    of generated programs; severities. `readable`: no setting with search folders was left out."""
 
     folder: Path = Path()
     scripts: tuple[Path, ...] = ()
@@ -52,6 +55,7 @@ class Project:
     exclude: tuple[str, ...] = ()
     ros: Ros = DEFAULT_ROS
     policy: Policy = field(default_factory=Policy)
+    readable: bool = True
 
 
 def read_project(
@@ -69,7 +73,7 @@ def read_project(
         report.append(
             too_big(Span(source, start, start), message, "break it into lines", arguments=("dots",))
         )
-        return Project()
+        return Project(readable=False)
     try:
         import tomllib as toml
     except ImportError:  # Python 3.10
@@ -78,7 +82,7 @@ def read_project(
         data = toml.loads(source.text)
     except (ValueError, RecursionError) as error:  # also a number or an array that is too long
         report.append(_not_toml(source, str(error)))
-        return Project()
+        return Project(readable=False)
     settings = data if path.name == "smachac.toml" else _tool(data)
     if not isinstance(settings, dict):
         return None
@@ -114,10 +118,18 @@ def read_project(
         exclude=texts.get("exclude", ()),
         ros=ros,
         policy=policy,
+        readable=all(isinstance(settings.get(key, []), list) for key in FOLDERS),
     )
 
 
 _YAML_LINE = re.compile(r"[ \t]*([\w-]+)[ \t]*(:)(?=[ \t]|$)")
+_BRACKETS = {"[": "]", "{": "}"}
+_PART = re.compile(r""" "(?:\\.|[^"\\\n])*" | '[^'\n]*' | \#[^\n]* | [][{}] """, re.VERBOSE)
+"""The parts of TOML in which brackets count, and those in which they do not."""
+
+_NEXT = re.compile(r"[\w-]+[ \t]*=")
+"""The next setting."""
+
 _POSITION = re.compile(r" \(at line (\d+), column (\d+)\)$")
 
 
@@ -137,8 +149,28 @@ def _not_toml(source: Source, error: str) -> Diagnostic:
         if found is not None:
             span = Span(source, start + found.start(2), start + found.end(2))
             message, help = f"`:` follows `{found[1]}`", f"TOML writes `{found[1]} = [...]`"
+    at = span.start if position is not None else len(source.text)
+    opened = _open_bracket(source.text, at)
+    if opened is not None and (message.startswith("Unclosed") or _NEXT.match(source.text, at)):
+        opening = source.text[opened]
+        span = Span(source, opened, opened + 1)
+        message, help = f"`{opening}` is not closed", f"write the `{_BRACKETS[opening]}`"
+        if source.text[at : at + 1] in ("'", '"'):
+            span = Span(source, at, at + 1)
+            message, help = "a `,` is missing before this text", "write a `,` between two texts"
     message = f"the project file is not valid TOML: {message}"
     return unreadable_file(span, message, help, arguments=("toml",))
+
+
+def _open_bracket(text: str, end: int) -> int | None:
+    """The index of the innermost bracket that is open at `end`."""
+    opened: list[int] = []
+    for part in _PART.finditer(text, 0, end):
+        if part[0] in _BRACKETS:
+            opened.append(part.start())
+        elif part[0] in ("]", "}") and opened:
+            opened.pop()
+    return opened[-1] if opened else None
 
 
 def _tool(data: dict[str, Any]) -> object:
@@ -179,8 +211,23 @@ def _near(word: str, known: Iterable[str]) -> str:
 def _wrong(
     source: Source, key: str, message: str, help: str, report: Report, arguments: tuple[str, ...]
 ) -> None:
-    """SM007 at the key, if a search finds it: TOML parsers give no positions."""
-    span = Span(source, 0, 0)
+    """SM007 at the key."""
+    report.append(unreadable_file(_key(source, key), message, help, arguments=arguments))
+
+
+def folder_place(source: Source, setting: str, base: Path, folder: Path) -> Word:
+    """A folder as a setting names it, and its place: that of the setting, if no text is found.
+    `base` is the folder of the project file."""
+    key = _key(source, setting)
+    for found in _PART.finditer(source.text, key.end):
+        text = found[0][1:-1]
+        if found[0][0] in "'\"" and base / text == folder:
+            return Word(text, Span(source, *found.span()))
+    return Word(str(folder), key)
+
+
+def _key(source: Source, key: str) -> Span:
+    """The place of a key, if a search finds it: TOML parsers give no positions."""
     for start in source.line_starts if len(key) <= LONGEST_KEY else ():
         line = source.text[start : start + 2 * LONGEST_KEY].split("\n", 1)[0]
         before, found, after = line.partition(key)
@@ -191,6 +238,5 @@ def _wrong(
         if found and is_key and not (after[:1].isalnum() or after[:1] == "_"):
             at = start + len(before)
             closed = after[:1] in ("'", '"')
-            span = Span(source, at - len(quote), at + len(key) + closed)
-            break
-    report.append(unreadable_file(span, message, help, arguments=arguments))
+            return Span(source, at - len(quote), at + len(key) + closed)
+    return Span(source, 0, 0)

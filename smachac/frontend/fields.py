@@ -12,6 +12,7 @@ from smachac.diagnostics.source import Word
 from smachac.frontend.errors.script import Owner, duplicate_key, unknown_variable, wrong_shape
 from smachac.frontend.script import Keys, Pairs, Rules
 from smachac.frontend.values import as_value
+from smachac.frontend.yaml_errors import JOINED, spaced
 from smachac.frontend.yaml_tree import Entry, Map, Scalar, Seq, Tree, is_known_wrong
 from smachac.ir.nodes import Outcome, Preset
 from smachac.ir.types import ANY, parse_type
@@ -147,7 +148,10 @@ def as_map(tree: Tree, report: Report) -> tuple[Entry, ...]:
     """A mapping of names to anything; a null block (`userdata:` with nothing) is an error."""
     if not isinstance(tree, Map):
         nothing = isinstance(tree, Scalar) and tree.value is None
-        wrong(tree, "map", report, "write `{}`, or remove the key" if nothing else None)
+        help = "write `{}`, or remove the key" if nothing else None
+        if isinstance(tree, Scalar) and tree.plain and JOINED.fullmatch(str(tree.value)):
+            help = spaced(str(tree.value))
+        wrong(tree, "map", report, help)
         return ()
     return tuple([entry for entry in tree.entries if _names(entry.key, report)])
 

@@ -13,9 +13,9 @@ from dataclasses import replace
 from pathlib import Path
 from typing import TypeAlias
 
-from smachac.diagnostics.diagnostic import Code, Diagnostic, Report, did_you_mean
-from smachac.diagnostics.source import Source, Span
-from smachac.frontend.config import Project, read_project
+from smachac.diagnostics.diagnostic import Code, Diagnostic, Report, Severity, did_you_mean
+from smachac.diagnostics.source import Source, Span, Word
+from smachac.frontend.config import FOLDERS, Project, folder_place, read_project
 from smachac.frontend.errors.script import too_big, unreadable_file
 from smachac.frontend.loader import Library, Ros
 from smachac.frontend.yaml_tree import Tree, parse
@@ -232,10 +232,10 @@ def find_project(
             if disk.is_file(path):
                 if not lies_inside(path, folder):
                     report.append(leads_out(path, folder))
-                    return Project()
+                    return Project(readable=False)
                 source = disk.read(path, report)
                 if source is None:
-                    return Project()
+                    return Project(readable=False)
                 project = read_project(source, path, report, codes)
                 if project is not None:
                     return _inside_repository(project, source, report)
@@ -252,14 +252,17 @@ def has_project(main: Path) -> bool:
 
 def _inside_repository(project: Project, source: Source, report: Report) -> Project:
     """The project without the search folders outside its git repository, or outside its own folder
-    if there is none."""
+    if there is none. A folder that does not exist is reported too."""
     above = (project.folder, *_parents(project.folder))
     root = next((each for each in above if (each / ".git").exists()), project.folder)
-    kept: dict[str, list[Path]] = {"scripts": [], "templates": [], "code": []}
+    kept: dict[str, list[Path]] = {setting: [] for setting in FOLDERS}
     for setting, folders in kept.items():
         for folder in getattr(project, setting):
             if lies_inside(folder, root):
                 folders.append(folder)
+                if not folder.is_dir():
+                    written = folder_place(source, setting, project.folder, folder)
+                    report.append(_no_folder(setting, written, folder))
                 continue
             message = f"`{setting}` names a folder outside the project: `{folder}`"
             help = "move it into the project; `--scripts` and `--templates` may name any folder"
@@ -270,6 +273,22 @@ def _inside_repository(project: Project, source: Source, report: Report) -> Proj
         scripts=tuple(kept["scripts"]),
         templates=tuple(kept["templates"]),
         code=tuple(kept["code"]),
+    )
+
+
+def _no_folder(setting: str, written: Word, folder: Path) -> Diagnostic:
+    """SM007, as a warning: a search folder does not exist."""
+    names: list[str] = []
+    with contextlib.suppress(OSError):
+        names = sorted(each.name for each in folder.parent.iterdir() if each.is_dir())
+    before = written.text.rstrip("/").removesuffix(folder.name)
+    near = did_you_mean(f"{before}{folder.name}", [f"{before}{name}" for name in names])
+    return unreadable_file(
+        written.span,
+        f"the folder `{written.text}` of `{setting}` does not exist",
+        near or "create it, or remove it from the setting",
+        arguments=("folder", setting, written.text),
+        severity=Severity.WARNING,
     )
 
 
@@ -324,6 +343,11 @@ def disk_library(
     def script_folders(caller: str) -> list[Path]:
         return list(dict.fromkeys([Path(caller).parent, *own_scripts]))
 
+    def searched(folders: Sequence[Path]) -> list[str]:
+        """The folders for messages, without those of the project that do not exist."""
+        own = (*project.scripts, *project.templates)
+        return [str(folder) for folder in folders if folder not in own or folder.is_dir()]
+
     def script(name: str, caller: str) -> Source | None:
         path = _found(name, script_folders(caller), SUFFIXES, disk, refuse)
         return disk.read(path, report) if path else None
@@ -343,13 +367,14 @@ def disk_library(
         code_names=lambda name: _names_in(name, code_folders),
         definitions=lambda path: definitions(path, message_folders(), disk),
         definition_names=lambda folder: definition_names(folder, message_folders()),
-        script_folders=lambda caller: [str(folder) for folder in script_folders(caller)],
-        template_folders=lambda: [str(folder) for folder in template_folders[: -len(BUILT_IN)]],
+        script_folders=lambda caller: searched(script_folders(caller)),
+        template_folders=lambda: searched(template_folders[: -len(BUILT_IN)]),
         script_names=lambda caller: _stems(script_folders(caller), (".yml", ".yaml")),
         template_names=lambda: _stems(template_folders[:-1], (".tpl.py", ".tpl", ".yml")),
         parse=disk.parse,
         ros=project.ros if ros is None else ros,
         policy=project.policy,
+        settings_read=project.readable,
         robot=lambda name: _robot_file(name, disk, report),
     )
 

@@ -33,7 +33,8 @@ class Library:
     names of the files in all folders with a path, such as `std_srvs/srv`. The lists of folders and
     names are for messages. `ros` and `policy` are the version of ROS and the severities of the
     project. `parse` may return one tree for all scripts that share a text. `robot(file)` returns a
-    description or URDF file of a built-in robot, or a file of PyBullet's data.
+    description or URDF file of a built-in robot, or a file of PyBullet's data. `settings_read` is
+    False if the project file or its search folders could not be read.
     """
 
     script: Callable[[str, str], Source | None]
@@ -51,6 +52,7 @@ class Library:
     ros: Ros = DEFAULT_ROS
     policy: Policy = field(default_factory=Policy)
     robot: Callable[[str], Source | None] = lambda file: None
+    settings_read: bool = True
 
 
 def memory_library(files: Mapping[str, str], built_in: Library) -> Library:

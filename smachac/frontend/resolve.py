@@ -10,7 +10,7 @@ from collections.abc import Sequence
 from dataclasses import dataclass, field, replace
 from typing import Literal
 
-from smachac.diagnostics.diagnostic import Diagnostic, Related, Report
+from smachac.diagnostics.diagnostic import Diagnostic, Related, Report, has_errors
 from smachac.diagnostics.source import Source, Span, Word
 from smachac.diagnostics.spelling import guesser_of
 from smachac.frontend import schema
@@ -356,6 +356,12 @@ class _Resolver:
             own = overridden(self.expand(entries), own)
         return self.state(name, own, around, begin=begin)
 
+    def not_found(self, item: Diagnostic) -> None:
+        """Reports a file that was not found, except as a consequence: its folder may be in settings
+        that could not be read, which are reported."""
+        if self.library.settings_read or not has_errors(self.report):
+            self.report.append(item)
+
     def sub_script(
         self, word: Word, around: _Environment
     ) -> tuple[Source, Word, tuple[Entry, ...]] | None:
@@ -372,7 +378,7 @@ class _Resolver:
             caller = around.source.name
             searched = self.library.script_folders(caller)
             known = self.library.script_names(caller)
-            self.report.append(script_not_found(word, searched, known))
+            self.not_found(script_not_found(word, searched, known))
             return None
         source, tree, broken = found
         chain = [*around.calls, (source.name, word.span)]
@@ -440,7 +446,7 @@ class _Resolver:
         if found is None:
             searched, names = self.known_templates()
             known = [*names, *([] if role else schema.CONTAINERS)]
-            self.report.append(template_not_found(word, searched, known))
+            self.not_found(template_not_found(word, searched, known))
             return StateType(name=word.text, open=True), role or nested
         # Some meta blocks of SMACHA name the kind `container` for a state.
         is_container = found.kind == "container" and not found.prints_itself

@@ -14,9 +14,10 @@ from dataclasses import dataclass, field
 from itertools import accumulate
 from typing import Any, TypeAlias
 
-from smachac.diagnostics.diagnostic import Diagnostic, Report
+from smachac.diagnostics.diagnostic import Edit, Report
 from smachac.diagnostics.source import Source, Span, Word
 from smachac.frontend.errors.script import duplicate_key, too_big, wrong_shape, yaml_syntax
+from smachac.frontend.yaml_errors import JOINED, SPACE_MISSING, spaced, syntax_error
 
 MAX_CHARACTERS = 10_000_000
 MAX_DEPTH = 3_500
@@ -31,7 +32,7 @@ one for each five characters. A build takes up to 440 bytes for one, so that a s
 than 110 MB and 90 times its text. 100,000 states have a million, of ten characters each."""
 
 MAX_DUPLICATES = 10_000
-"""The most duplicate keys of a script that are reported."""
+"""The most duplicate keys, and keys without a space after the colon, that are reported."""
 
 DEEPEST_PURE = 400
 """Limit on the open brackets of a text that only the pure parser can read: it takes time quadratic
@@ -249,7 +250,7 @@ def _build(source: Source, report: Report) -> Tree | None:
                 if events is _c_events and _is_reread(source.text, builder.deepest):
                     continue  # the message is always that of the pure parser
                 builder.root = None
-                found.append(_syntax_error(source, error))
+                found.append(syntax_error(source, error))
             except _BeyondLimitError:
                 builder.root = None
             if builder.seen or events is _pure_events:
@@ -272,77 +273,6 @@ def _deepest_bracket(text: str) -> int:
     """The most brackets that are open at a place of a text, those in strings included."""
     depths = accumulate(1 if bracket in "[{" else -1 for bracket in _BRACKETS.findall(text))
     return max(depths, default=0)
-
-
-_BEYOND_UNICODE = re.compile(r"\\U(?!000|0010)[0-9A-Fa-f]{8}")
-
-
-def _syntax_error(source: Source, error: Any) -> Diagnostic:
-    """SM001 with the place of a parser's exception, and a message in the words of scripts."""
-    wide = _BEYOND_UNICODE.search(source.text) if isinstance(error, ValueError) else None
-    if wide is not None:
-        message = f"`{wide.group()}` is no character: the last one is \\U0010FFFF"
-        span = Span(source, *wide.span())
-        return yaml_syntax(span, message, "correct the number", arguments=("escape", wide.group()))
-    first, mark = (getattr(error, name, None) for name in ("context_mark", "problem_mark"))
-    problem, context = (_one_line(getattr(error, name, None)) for name in ("problem", "context"))
-    message, help, at_start = _reworded(source, problem, context, first, mark)
-    mark = first if at_start else mark or first
-    at = min(mark.index, len(source.text)) if mark is not None else 0
-    here = source.text[at : at + 1]
-    span = Span(source, at, at + (here not in ("", "\n")))
-    return yaml_syntax(span, message, help, arguments=("syntax", here))
-
-
-def _one_line(text: object) -> str:
-    return " ".join(str(text).split()) if text else ""
-
-
-_UNCLOSED = re.compile(r"expected ',' or '([]}])', but got '(.*)'")
-_NOT_A_START = re.compile(r"found character '(.*)' that cannot start any token")
-_NO_SPACE = re.compile(r"[^\s:]*:[\[{'\"]")
-
-
-def _reworded(
-    source: Source, problem: str, context: str, first: Any, mark: Any
-) -> tuple[str, str | None, bool]:
-    """Message, help, and whether the place is `first`, where the faulty part begins, instead of
-    `mark`, where the parser stopped. Rare messages of the parser are used as they are."""
-    line = source.line(mark.line + 1)[: mark.column] if mark is not None else ""
-    unclosed, unstarted = _UNCLOSED.fullmatch(problem), _NOT_A_START.fullmatch(problem)
-    if unclosed is not None and first is not None:
-        end, token = unclosed.groups()
-        kind = "list" if end == "]" else "mapping"
-        found = "the end of the text" if token == "<stream end>" else f"`{token.strip('<>')}`"
-        message = f"expected `,` or `{end}`, found {found}; the {kind} begins in line"
-        help = f"close the {kind} with `{end}`, or put text that contains `:` in quotes"
-        return f"{message} {first.line + 1}", help, False
-    if unstarted is not None:
-        if unstarted.group(1) == "\\t":
-            return "a tab is not allowed here", "indent with spaces", False
-        message = f"a value cannot begin with `{unstarted.group(1)}`"
-        return message, "put the value in quotes", False
-    if problem.startswith("mapping values are not allowed"):
-        joined = _NO_SPACE.search(line)
-        help = "write an inner mapping on lines of its own, or put text with a colon in quotes"
-        if joined is not None:
-            help = f"write a space after the colon in `{joined.group()}`"
-        return "a colon is not allowed here", help, False
-    if context == "while scanning a quoted scalar" and problem == "found unexpected end of stream":
-        return "this quote is not closed", "write the same quote at the end of the text", True
-    if context == "while scanning a simple key":
-        return "a `:` is missing after this key", "write `key: value`, with a space after `:`", True
-    if problem == "expected <block end>, but found '<block mapping start>'" and not line.strip():
-        message = "the indentation of this line is that of no mapping or list above it"
-        return message, "indent the keys of one mapping equally", False
-    if problem == "expected <block end>, but found '-'":
-        message = "a list item cannot follow the keys of a mapping"
-        return message, "indent the items of one list equally, below the key of the list", False
-    if problem.startswith("expected <block end>") and line.strip():
-        message = "there is text after the end of the value"
-        return message, "put the whole value in quotes, or remove the text", False
-    message = ", ".join(part for part in (problem, context) if part)
-    return message or "this is not YAML", None, False
 
 
 class _Open:
@@ -460,7 +390,7 @@ class _Builder:
         if not done.mapping:
             self._add(Seq(tuple(done.items), span), done.size, done.anchor)
             return
-        entries = self._entries(done.items)
+        entries = self._entries(done.items, done.flow)
         self._add(Map(entries, span), done.size, done.anchor)
 
     def _alias(self, event: Any) -> None:
@@ -498,7 +428,7 @@ class _Builder:
         self.report.append(too_big(span, message, help, arguments=(limit,)))
         raise _BeyondLimitError
 
-    def _entries(self, items: list[Tree]) -> tuple[Entry, ...]:
+    def _entries(self, items: list[Tree], flow: bool) -> tuple[Entry, ...]:
         entries: list[Entry] = []
         merged: list[Entry] = []
         first: dict[object, Scalar] = {}
@@ -512,6 +442,8 @@ class _Builder:
             if key.value == "<<" and key.plain:
                 merged.extend(self._merge(value))
                 continue
+            if flow and isinstance(value, Scalar) and value.value is None:
+                key, value = self._separated(key, value)
             known = first.setdefault((type(key.value), key.value), key)
             if known is not key:
                 self.report.append(duplicate_key(Word(str(key.value), key.span), known.span))
@@ -524,6 +456,27 @@ class _Builder:
                 first[(type(entry.key.value), entry.key.value)] = entry.key
                 entries.append(entry)
         return tuple(entries)
+
+    def _separated(self, key: Scalar, value: Scalar) -> tuple[Scalar, Scalar]:
+        """The key and the value that are meant by `{key:value}`, which YAML reads as a key without
+        a value."""
+        text = key.value
+        if value.start != value.end or not key.plain or not isinstance(text, str):
+            return key, value
+        if JOINED.fullmatch(text) is None or key.end - key.start != len(text):
+            return key, value
+        colon = key.start + text.index(":")
+        if len(self.report) < MAX_DUPLICATES:
+            edits = (Edit(span=Span(self.source, colon + 1, colon + 1), text=" "),)
+            wrong = wrong_shape(
+                key.span, SPACE_MISSING, spaced(text), arguments=("space", text), edits=edits
+            )
+            self.report.append(wrong)
+        name, _, rest = text.partition(":")
+        return (
+            Scalar(_resolve(name), True, self.source, key.start, colon),
+            Scalar(_resolve(rest), True, self.source, colon + 1, key.end),
+        )
 
     def _merge(self, value: Tree) -> Iterator[Entry]:
         """The entries that `<<` adds: those of a mapping, or of each mapping in a list."""

@@ -8,6 +8,7 @@ from collections.abc import Iterator, Mapping
 from itertools import pairwise
 from typing import NamedTuple
 
+from smachac.diagnostics.spelling import guesser_of
 from smachac.ir.code_places import python_tree
 
 
@@ -67,7 +68,7 @@ def slips(text: str, *, compares: bool = False) -> list[Slip]:
     tokens = [
         _Token(found.lastgroup or "", found[0], *found.span()) for found in _TOKEN.finditer(text)
     ]
-    found = [*_signs(tokens, compares)]
+    found = sorted([*_misspelt_lambdas(tokens), *_signs(tokens, compares)])
     found = found or [*_statements(tokens)] or [*_brackets(tokens)] or [*_gaps(tokens)]
     return found or [Slip(0, len(text), _reason(text))]
 
@@ -153,6 +154,18 @@ def _statements(tokens: list[_Token]) -> Iterator[Slip]:
                 help = "write a lambda, or define the function in a template and write its name"
             yield Slip(start, end, what, help, cure)
             return
+
+
+def _misspelt_lambdas(tokens: list[_Token]) -> Iterator[Slip]:
+    """Names that are nearly `lambda`, each where a value begins and before an argument."""
+    for at, (token, after) in enumerate(pairwise(tokens)):
+        starts = at == 0 or not _ends(tokens[at - 1])
+        has_argument = after.kind == "name" or (after.text == ":" and at == 0)
+        if token.kind != "name" or token.text == "lambda" or not (starts and has_argument):
+            continue
+        if guesser_of(("lambda",)).sure(token.text) is not None:
+            what = f"Python has no `{token.text}`"
+            yield Slip(token.start, token.end, what, "did you mean `lambda`?", "lambda")
 
 
 def _brackets(tokens: list[_Token]) -> Iterator[Slip]:

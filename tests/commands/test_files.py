@@ -9,7 +9,8 @@ import pytest
 
 from smachac.commands.cli import main
 from smachac.commands.files import changed_files, foreign_files, write_files
-from smachac.diagnostics.diagnostic import Report
+from smachac.diagnostics.diagnostic import Report, Severity
+from smachac.driver import analyse_script
 from smachac.frontend.files import disk_library, find_project, read_source
 
 
@@ -72,7 +73,8 @@ def test_a_link_out_of_the_folder_is_not_followed(tmp_path: Path) -> None:
 
 def test_the_nearest_project_file_counts(tmp_path: Path) -> None:
     inner = tmp_path / "a" / "b"
-    inner.mkdir(parents=True)
+    for folder in (inner, tmp_path / "far", tmp_path / "a" / "near"):
+        folder.mkdir(parents=True)
     (tmp_path / "smachac.toml").write_text('scripts = ["far"]')
     (tmp_path / "a" / "pyproject.toml").write_text('[tool.smachac]\nscripts = ["near"]\n')
     report: Report = []
@@ -90,6 +92,68 @@ def test_a_bad_project_file_is_told(tmp_path: Path, text: str) -> None:
     report: Report = []
     find_project(tmp_path / "main.yml", report)
     assert codes(report) == ["SM007"]
+
+
+CALL = """\
+name: sm
+template: Base
+outcomes: [done]
+states:
+  - A: {script: part, transitions: {done: done}}
+"""
+
+
+@pytest.mark.parametrize("setting", ["scripts", "templates", "code"])
+def test_a_search_folder_that_does_not_exist_is_a_warning_at_its_setting(
+    tmp_path: Path, setting: str
+) -> None:
+    (tmp_path / "a" / "lib").mkdir(parents=True)
+    settings = tmp_path / "smachac.toml"
+    settings.write_text(f'exclude = ["a/libs"]\n{setting} = ["a", "a/libs", "other"]\n')
+    report: Report = []
+    disk_library(tmp_path / "main.yml", report)
+    near, far = report
+    assert (near.code, near.severity) == ("SM007", Severity.WARNING)
+    assert near.message == f"the folder `a/libs` of `{setting}` does not exist"
+    assert near.help == "did you mean `a/lib`?"
+    assert (near.span.source.name, near.span.line) == (str(settings), 2)
+    assert near.span.text == '"a/libs"'
+    assert far.span.text == '"other"'
+    assert far.help == "create it, or remove it from the setting"
+
+
+def test_a_folder_that_does_not_exist_is_in_no_help(tmp_path: Path) -> None:
+    (tmp_path / "smachac.toml").write_text('scripts = ["libs"]\n')
+    script = tmp_path / "main.yml"
+    script.write_text(CALL)
+    found = analyse_script(script).report
+    assert [item.code for item in found] == ["SM007", "SM011"]
+    assert "libs" not in (found[1].help or "")
+
+
+@pytest.mark.parametrize(
+    ("text", "place", "words", "help"),
+    [
+        ('scripts = ["lib"', (1, 11), "`[` is not closed", "write the `]`"),
+        ('scripts = ["lib"\nros = 2\n', (1, 11), "`[` is not closed", "write the `]`"),
+        ('scripts = ["]", # ]\nros = 2\n', (1, 11), "`[` is not closed", "write the `]`"),
+        ('scripts = ["lib"\n[severity]\nSM2 = "off"\n', (1, 11), "`[` is not", "write the `]`"),
+        ('severity = {SM2 = "off"\nros = 2\n', (1, 12), "`{` is not closed", "write the `}`"),
+        ('scripts = ["a" "b"]\n', (1, 16), "a `,` is missing", "between two texts"),
+        ('scripts = "lib"\n', (1, 1), "`scripts` must be a list", 'scripts = ["..."]'),
+    ],
+)
+def test_settings_that_cannot_be_read_are_reported_once_at_the_fault(
+    tmp_path: Path, text: str, place: tuple[int, int], words: str, help: str
+) -> None:
+    (tmp_path / "smachac.toml").write_text(text)
+    script = tmp_path / "main.yml"
+    script.write_text(CALL)
+    (item,) = analyse_script(script).report
+    assert item.code == "SM007"
+    assert (item.span.line, item.span.column) == place
+    assert words in item.message
+    assert help in (item.help or "")
 
 
 def test_all_files_or_none(tmp_path: Path) -> None:
@@ -184,6 +248,7 @@ def test_folders_that_lead_out(linked: Path) -> None:
 
 @pytest.mark.parametrize("setting", ["scripts", "templates", "code"])
 def test_a_project_file_names_no_folder_outside(linked: Path, setting: str) -> None:
+    (linked / "sub").mkdir(exist_ok=True)
     (linked / "smachac.toml").write_text(f'{setting} = ["../secret", "sub"]\n')
     report: Report = []
     project = find_project(linked / "main.yml", report)

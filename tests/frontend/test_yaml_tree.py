@@ -11,6 +11,7 @@ from hypothesis import strategies as st
 from smachac.diagnostics.diagnostic import Report
 from smachac.diagnostics.source import Source
 from smachac.frontend import yaml_tree
+from smachac.frontend.fields import as_map
 from smachac.frontend.yaml_tree import Map, Scalar, Seq, Tree, parse
 
 
@@ -110,7 +111,33 @@ def test_aliases_and_merges() -> None:
         ("a: 1\nb\nc: 2\n", (2, 1), "a `:` is missing", "`key: value`"),
         ("a: %d\n", (1, 4), "a value cannot begin with `%`", "in quotes"),
         ("a:\n\tb: 1\n", (2, 1), "a tab is not allowed here", "spaces"),
-        ('a: "\\d"\n', (1, 6), "unknown escape character", "check the brackets"),
+        ('a: "\\d"\n', (1, 6), "unknown escape character `d`", "in single quotes"),
+        ("%YAML x\n---\na: 1\n", (1, 7), "expected a digit", "check the brackets"),
+        ("s:\n  - GRASP\n      t: X\n", (2, 5), "a `:` is missing", "write `- GRASP:`"),
+        ("- A:\n    to\n      ok: B\n", (2, 5), "a `:` is missing", "write `to:`"),
+        ("doc: some\n  text\n  b: 1\n", (3, 4), "a colon is not allowed here", "in quotes"),
+        ("a: 1\n  b: 2\n", (2, 3), "more than `a` above it, which has a value", "like `a`"),
+        ("- a: x y\n\n   b: 2\n", (3, 4), "more than `a` above it", "like `a`"),
+        ("a:1\nb: 2\n", (1, 1), "a space is missing after the colon", "`a: 1`"),
+        ("a: 1\nb:2\nc: 3\n", (2, 1), "a space is missing after the colon", "`b: 2`"),
+        ("s:\n  - A: 1\n   - B: 2\n", (3, 4), "more than the items above", "by 2 spaces like"),
+        ("- A: 1\n - B: 2\n", (2, 2), "more than the items above it", "without indentation"),
+        ("s:\n  - A: [\n]\n - B: 2\n", (4, 2), "a list item is not allowed", "equally"),
+        ("s:\n  - A:\n     - x\n - B: 2\n", (4, 2), "less than the items above", "by 2 spaces"),
+        ("s:\n  - A: 1\n  B: 2\n", (3, 3), "a key cannot follow the items", "key of the list"),
+        ("s:\n  - A: 1\n  -B: 2\n", (3, 3), "a space is missing after this `-`", "`- B`"),
+        ("a: - b\n", (1, 4), "a list item is not allowed here", "a line of its own"),
+        ("a: [- b]\n", (1, 5), "a list in brackets has no `-`", "`[a, b]`"),
+        ("a: [1]]\n", (1, 7), "`]` closes no `[`", "write the `[`"),
+        ("a: }\n", (1, 4), "`}` closes no `{`", "write the `{`"),
+        ("a: ['b' 'c']\n", (1, 9), "found text; the list begins in line 1", "a `,` between"),
+        ("a: {,}\n", (1, 5), "a value is missing before this `,`", "remove the `,`"),
+        ("a: ,b\n", (1, 4), "a value cannot begin with `,`", "in quotes"),
+        ("a: * 3\n", (1, 4), "a value cannot begin with `*`", "in quotes"),
+        ("a: ? b\n", (1, 4), "`?` is not allowed here", "in quotes"),
+        ("a: |x\n  b\n", (1, 5), "cannot begin in the line of its `|`", "in the next line"),
+        (" a: 1\nb: 2\n", (2, 1), "the indentation of this line", "equally"),
+        ("[a]\nb: 2\n", (2, 1), "text after the end of the value", "in quotes"),
     ],
     ids=lambda value: repr(value)[:20],
 )
@@ -124,6 +151,25 @@ def test_syntax_errors_name_the_fault_and_its_place(
     assert (len(before), len(before[-1]) + 1) == place
     assert words in item.finding.message
     assert help in (item.finding.help or "")
+
+
+def test_a_colon_without_a_space_in_a_flow_mapping_is_reported_and_read_as_meant() -> None:
+    report: Report = []
+    tree = parse(Source("x.yml", "{held:succeeded, n:3, a: b:c, 'x:y', lost: }"), report)
+    assert [item.message for item in report] == ["a space is missing after the colon"] * 2
+    held, n = report
+    assert held.span.text == "held:succeeded"
+    assert held.help == "write a space after the colon in `held:succeeded`: `held: succeeded`"
+    assert [(edit.span.start, edit.text) for edit in held.finding.edits] == [(6, " ")]
+    assert n.span.text == "n:3"
+    assert plain(tree) == [
+        ("held", "succeeded"),
+        ("n", 3),
+        ("a", "b:c"),
+        ("x:y", None),
+        ("lost", None),
+    ]
+    assert read("{http://x, std::string, a: 1}") is not None
 
 
 @pytest.mark.parametrize(
@@ -258,3 +304,12 @@ def test_the_slow_parser_does_not_read_again_what_takes_it_long(
     (found,) = [item for item in report if item.code == "SM001"]
     assert found.span.start in (len(text), len(text) - 1)
     assert "expected" in found.finding.message
+
+
+def test_a_text_in_place_of_a_mapping_may_need_a_space_after_its_colon() -> None:
+    report: Report = []
+    tree = parse(Source("x.yml", "held:succeeded\n"), report)
+    assert tree is not None
+    assert as_map(tree, report) == ()
+    (item,) = report
+    assert item.help == "write a space after the colon in `held:succeeded`: `held: succeeded`"

@@ -39,6 +39,12 @@ from smachac.ir.code_slips import corrected, slips
         ("lambda ud ud.a", "lambda", None),
         ("lambda ud: ud.a ud.b", "ud", None),
         ("lambda ud: '&&' ! 'x'", "!", None),
+        ("lamda ud: ud.n > 1", "lamda", "lambda ud: ud.n > 1"),
+        ("lambada ud: ud.n > 1", "lambada", "lambda ud: ud.n > 1"),
+        ("Lambda ud: ud.n > 1", "Lambda", "lambda ud: ud.n > 1"),
+        ("f(lamda x: x && 1)", "lamda", "f(lambda x: x and 1)"),
+        ("lamda: 3", "lamda", "lambda: 3"),
+        ("gamma ud: ud.n", "ud", None),
     ],
 )
 def test_the_slip_is_marked_and_cured_where_that_is_certain(
@@ -48,6 +54,12 @@ def test_the_slip_is_marked_and_cured_where_that_is_certain(
     found = slips(text)
     assert text[found[0].start : found[0].end] == token
     assert corrected(text, found) == cure
+
+
+def test_a_misspelt_lambda_is_named() -> None:
+    (slip,) = slips("lamda ud: ud.n > 1")
+    assert slip.what == "Python has no `lamda`"
+    assert slip.help == "did you mean `lambda`?"
 
 
 def test_an_assignment_in_a_condition_is_a_comparison() -> None:

@@ -213,6 +213,7 @@ def wrong_shape(
     related: tuple[Related, ...] = (),
     *,
     arguments: tuple[str, ...] = (),
+    edits: tuple[Edit, ...] = (),
 ) -> Finding:
     """A value has a shape that the language does not allow at this place.
 
@@ -239,7 +240,9 @@ def wrong_shape(
               outcomes: [done]
               transitions: {done: done}
     """
-    return Finding(span=span, message=message, arguments=arguments, help=help, related=related)
+    return Finding(
+        span=span, message=message, arguments=arguments, help=help, related=related, edits=edits
+    )
 
 
 @problem("SM005", "missing-variable", Severity.ERROR)
@@ -382,12 +385,18 @@ def too_big(span: Span, message: str, help: str, *, arguments: tuple[str, ...]) 
 
 @problem("SM007", "unreadable-file", Severity.ERROR)
 def unreadable_file(
-    span: Span, message: str, help: str | None = None, *, arguments: tuple[str, ...]
+    span: Span,
+    message: str,
+    help: str | None = None,
+    *,
+    arguments: tuple[str, ...],
+    severity: Severity | None = None,
 ) -> Finding:
     """A file cannot be read, or the project file has a wrong setting.
 
     A robot must not start with a part of its script, so nothing is compiled. A file is unreadable
-    if it is missing, is a folder, is not text, or if its permissions forbid it.
+    if it is missing, is a folder, is not text, or if its permissions forbid it. A search folder of
+    the project file that does not exist is a warning.
 
     Wrong:
         name: sm
@@ -412,6 +421,7 @@ def unreadable_file(
         message=message,
         arguments=arguments,
         help=help or "check the path, and check that the file is text in UTF-8",
+        severity=severity,
     )
 
 

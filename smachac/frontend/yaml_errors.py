@@ -1,0 +1,278 @@
+"""Syntax errors of YAML: from the exception of the parser to a diagnostic in the words of scripts.
+
+The parser has two places, `first`, where the faulty part begins, and `at`, where it stopped. The
+fault is often at a third one, in the line above.
+"""
+
+from __future__ import annotations
+
+import re
+from typing import Any, NamedTuple
+
+from smachac.diagnostics.diagnostic import Diagnostic
+from smachac.diagnostics.source import Source, Span
+from smachac.frontend.errors.script import yaml_syntax
+
+
+class _Stop(NamedTuple):
+    """What the parser reports. `first` and `at` are indexes in the text, `before` is the line of
+    `at` up to there, `first_line` and `first_column` the place of `first`."""
+
+    text: str
+    problem: str
+    context: str
+    first: int | None
+    first_line: int
+    first_column: int
+    at: int
+    before: str
+
+
+class _Fault(NamedTuple):
+    """A fault in the words of scripts, at the characters `start` to `end`, or at one character."""
+
+    message: str
+    help: str | None
+    start: int
+    end: int | None = None
+
+
+_BEYOND_UNICODE = re.compile(r"\\U(?!000|0010)[0-9A-Fa-f]{8}")
+
+
+def syntax_error(source: Source, error: Any) -> Diagnostic:
+    """SM001 for an exception of the parser."""
+    wide = _BEYOND_UNICODE.search(source.text) if isinstance(error, ValueError) else None
+    if wide is not None:
+        message = f"`{wide.group()}` is no character: the last one is \\U0010FFFF"
+        span = Span(source, *wide.span())
+        return yaml_syntax(span, message, "correct the number", arguments=("escape", wide.group()))
+    stop = _stop(source.text, error)
+    readers = (_open_or_stray, _colon, _indentation, _value)
+    faults = (reader(stop) for reader in readers)
+    message = ", ".join(part for part in (stop.problem, stop.context) if part)
+    unknown = _Fault(message or "this is not YAML", None, stop.at)
+    fault = next((fault for fault in faults if fault is not None), unknown)
+    here = source.text[fault.start : fault.start + 1]
+    end = fault.start + (here not in ("", "\n")) if fault.end is None else fault.end
+    span = Span(source, fault.start, end)
+    return yaml_syntax(span, fault.message, fault.help, arguments=("syntax", here))
+
+
+def _stop(text: str, error: Any) -> _Stop:
+    first, mark = (getattr(error, name, None) for name in ("context_mark", "problem_mark"))
+    problem, context = (_one_line(getattr(error, name, None)) for name in ("problem", "context"))
+    mark = mark or first
+    at = min(mark.index, len(text)) if mark is not None else 0
+    return _Stop(
+        text=text,
+        problem=problem,
+        context=context,
+        first=min(first.index, len(text)) if first is not None else None,
+        first_line=first.line + 1 if first is not None else 0,
+        first_column=first.column if first is not None else 0,
+        at=at,
+        before=text[text.rfind("\n", 0, at) + 1 : at],
+    )
+
+
+def _one_line(text: object) -> str:
+    return " ".join(str(text).split()) if text else ""
+
+
+_UNCLOSED = re.compile(r"expected ',' or '([]}])', but got '(.*)'")
+_FOUND = re.compile(
+    r"expected (?:<block end>|the node content|'<document start>'), but found '(.)'"
+)
+_OPENING = {"]": "[", "}": "{"}
+_TOKENS = {"<stream end>": "the end of the text", "<scalar>": "text"}
+
+
+def _open_or_stray(stop: _Stop) -> _Fault | None:
+    """A bracket or a quote without its counterpart."""
+    unclosed, stray = _UNCLOSED.fullmatch(stop.problem), _FOUND.match(stop.problem)
+    if unclosed is not None and stop.first is not None:
+        end, token = unclosed.groups()
+        kind = "list" if end == "]" else "mapping"
+        found = _TOKENS.get(token) or f"`{token.strip('<>')}`"
+        message = f"expected `,` or `{end}`, found {found}; the {kind} begins in line"
+        help = f"close the {kind} with `{end}`, or put text that contains `:` in quotes"
+        if token == "<scalar>":
+            help = f"write a `,` between two values, or close the {kind} with `{end}`"
+        return _Fault(f"{message} {stop.first_line}", help, stop.at)
+    if stray is not None and stray[1] in _OPENING:
+        opening = _OPENING[stray[1]]
+        help = f"remove it, or write the `{opening}`"
+        return _Fault(f"`{stray[1]}` closes no `{opening}`", help, stop.at)
+    in_quotes = stop.context == "while scanning a quoted scalar"
+    if in_quotes and stop.problem == "found unexpected end of stream" and stop.first is not None:
+        help = "write the same quote at the end of the text"
+        return _Fault("this quote is not closed", help, stop.first)
+    return None
+
+
+_NO_SPACE = re.compile(r"[^\s:]*:[\[{'\"]")
+JOINED = re.compile(r"[^\W\d][\w.-]*:[^\s:/]\S*")
+_WORD = re.compile(r"[^\W\d][\w./-]*")
+_VALUED = re.compile(r"([^\W\d][\w./-]*):[ \t]+[^\s\[{'\"|>#&*].*")
+SPACE_MISSING = "a space is missing after the colon"
+"""The message for a text of the form JOINED where a key and its value are probably meant."""
+
+
+def _colon(stop: _Stop) -> _Fault | None:
+    """A colon that is missing, has no space after it, or is one too many."""
+    if stop.context == "while scanning a simple key" and stop.first is not None:
+        joined = JOINED.match(stop.text, stop.first)
+        if joined is not None:
+            return _Fault(SPACE_MISSING, spaced(joined[0]), *joined.span())
+        help = "write `key: value`, with a space after `:`"
+        return _Fault("a `:` is missing after this key", help, stop.first)
+    if not stop.problem.startswith("mapping values are not allowed"):
+        return None
+    message = "a colon is not allowed here"
+    no_space = _NO_SPACE.search(stop.before)
+    if no_space is not None:
+        help = f"write a space after the colon in `{no_space.group()}`"
+        return _Fault(message, help, stop.at)
+    fault = _colon_above(stop) if ": " not in stop.before else None
+    help = "write an inner mapping on lines of its own, or put text with a colon in quotes"
+    return fault or _Fault(message, help, stop.at)
+
+
+def spaced(joined: str) -> str:
+    """The help for a text of the form JOINED."""
+    key, _, value = joined.partition(":")
+    return f"write a space after the colon in `{joined}`: `{key}: {value}`"
+
+
+def _colon_above(stop: _Stop) -> _Fault | None:
+    """The fault of a key that the parser read as a part of the text in the line above."""
+    lines = _lines_above(stop, 2)
+    if not lines:
+        return None
+    start, above = lines[0]
+    dashes = re.match(r"(?:-[ \t]+)*", above.lstrip())
+    assert dashes is not None
+    column = len(above) - len(above.lstrip()) + dashes.end()
+    written = above[column:].partition(" #")[0].rstrip()
+    if JOINED.fullmatch(written) is not None:
+        begin = start + column
+        return _Fault(SPACE_MISSING, spaced(written), begin, begin + len(written))
+    begins = dashes.end() or len(lines) < 2 or lines[1][1].rstrip().endswith(":")
+    if _WORD.fullmatch(written) is not None and begins:
+        begin = start + column
+        help = f"write `{dashes[0]}{written}:`"
+        return _Fault("a `:` is missing after this key", help, begin, begin + len(written))
+    valued, key = _VALUED.fullmatch(written), stop.before.lstrip()
+    if valued is not None and len(stop.before) - len(key) > column and not key.startswith("- "):
+        message = f"this key is indented more than `{valued[1]}` above it, which has a value"
+        help = f"indent it like `{valued[1]}`, or remove the value of `{valued[1]}`"
+        return _Fault(message, help, stop.at - len(key), stop.at)
+    return None
+
+
+def _lines_above(stop: _Stop, most: int) -> list[tuple[int, str]]:
+    """The nearest lines above that are not empty and no comment, each with its start."""
+    found: list[tuple[int, str]] = []
+    end = stop.at - len(stop.before) - 1
+    while end >= 0 and len(found) < most:
+        start = stop.text.rfind("\n", 0, end) + 1
+        line = stop.text[start:end].rstrip("\r")
+        if line.strip() and not line.lstrip().startswith("#"):
+            found.append((start, line))
+        end = start - 1
+    return found
+
+
+_EQUALLY = "indent the items of one list equally, below the key of the list"
+
+
+def _indentation(stop: _Stop) -> _Fault | None:
+    """A line whose indentation is that of no other."""
+    if stop.problem == "expected <block end>, but found '-'":
+        return _Fault("a list item cannot follow the keys of a mapping", _EQUALLY, stop.at)
+    if stop.problem.startswith("sequence entries are not allowed"):
+        help = "write each item on a line of its own, below the key of the list"
+        return _Fault("a list item is not allowed here", help, stop.at)
+    outermost = stop.problem.startswith("expected '<document start>'")
+    if not outermost and not stop.problem.startswith("expected <block end>"):
+        return None
+    indented = stop.text.lstrip("\n").startswith(" ")
+    if stop.before.strip() or (outermost and not indented):
+        help = "put the whole value in quotes, or remove the text"
+        return _Fault("there is text after the end of the value", help, stop.at)
+    if "<block sequence start>" in stop.problem:
+        return _item(stop)
+    if stop.text.startswith("-", stop.at):
+        word = _WORD.match(stop.text, stop.at + 1)
+        name = f"`- {word[0]}`" if word is not None else "`- ...`"
+        return _Fault("a space is missing after this `-`", f"write {name}", stop.at)
+    if stop.context == "while parsing a block collection" and "'?'" in stop.problem:
+        help = "indent it like the key of the list, or begin it with `- ` as an item"
+        return _Fault("a key cannot follow the items of a list", help, stop.at)
+    message = "the indentation of this line is that of no mapping or list above it"
+    return _Fault(message, "indent the keys of one mapping equally", stop.at)
+
+
+def _item(stop: _Stop) -> _Fault:
+    """The fault of a list item that is indented more or less than the items above it."""
+    column = len(stop.before)
+    if stop.context == "while parsing a block collection":
+        more = "more"
+        due: int | None = stop.first_column
+    else:
+        more, due = "less", _closed_list(stop, column)
+    if due is None:
+        return _Fault("a list item is not allowed here", _EQUALLY, stop.at)
+    message = f"this item is indented {more} than the items above it"
+    spaces = f"{due} space{'s' * (due != 1)}"
+    help = f"indent it by {spaces} like them" if due else "write it without indentation like them"
+    return _Fault(message, help, stop.at)
+
+
+def _closed_list(stop: _Stop, column: int) -> int | None:
+    """The column of the list that ends above an item at `column`, which is to the left of it."""
+    nearest: int | None = None
+    for _, line in _lines_above(stop, len(stop.text)):
+        indent = len(line) - len(line.lstrip())
+        if indent <= column:
+            break
+        if line.lstrip().startswith("- "):
+            nearest = indent if nearest is None else min(nearest, indent)
+    return nearest
+
+
+_NOT_A_START = re.compile(r"found character '(.*)' that cannot start any token")
+_ESCAPE = re.compile(r"found unknown escape character (.*)")
+_QUOTED = "put the value in quotes"
+
+
+def _value(stop: _Stop) -> _Fault | None:
+    """A value that does not begin, or has a part, as YAML requires."""
+    unstarted, found = _NOT_A_START.fullmatch(stop.problem), _FOUND.match(stop.problem)
+    here = stop.text[stop.at : stop.at + 1]
+    if unstarted is not None:
+        if unstarted.group(1) == "\\t":
+            return _Fault("a tab is not allowed here", "indent with spaces", stop.at)
+        return _Fault(f"a value cannot begin with `{unstarted.group(1)}`", _QUOTED, stop.at)
+    if found is not None and found[1] == "," and stop.context == "while parsing a flow node":
+        return _Fault(
+            "a value is missing before this `,`", "write the value, or remove the `,`", stop.at
+        )
+    if found is not None and found[1] == "-" and stop.context == "while parsing a flow node":
+        help = "write `[a, b]`, or write each item on a line of its own without the brackets"
+        return _Fault("a list in brackets has no `-`", help, stop.at)
+    if found is not None and found[1] == ",":
+        return _Fault("a value cannot begin with `,`", _QUOTED, stop.at)
+    if stop.context in ("while scanning an alias", "while scanning an anchor"):
+        start = stop.at if stop.first is None else stop.first
+        return _Fault(f"a value cannot begin with `{stop.text[start]}`", _QUOTED, start)
+    if stop.problem.startswith("mapping keys are not allowed"):
+        return _Fault("`?` is not allowed here", "put text that begins with `?` in quotes", stop.at)
+    if _ESCAPE.fullmatch(stop.problem) is not None:
+        help = f"write `\\\\{here}`, or put the text in single quotes"
+        return _Fault(f"unknown escape character `{here}`", help, stop.at)
+    if stop.context == "while scanning a block scalar" and "chomping" in stop.problem:
+        message = "the text cannot begin in the line of its `|` or `>`"
+        return _Fault(message, "begin the text in the next line, indented", stop.at)
+    return None
