@@ -20,7 +20,7 @@ from smachac.frontend.script import ERROR, EXHAUSTED, TIMEOUT, ForEach, Retry, S
 from smachac.frontend.values import as_value
 from smachac.frontend.yaml_tree import Entry, Map, Scalar, Tree
 from smachac.ir.nodes import Outcome, StateType
-from smachac.ir.outcome_names import GOOD_OUTCOMES
+from smachac.ir.outcome_names import GOOD_OUTCOMES, PREEMPTED
 
 NAMES = frozenset(["timeout", "retry", "for_each"])
 """The fields of sugar, except those that are variables of the state type."""
@@ -59,16 +59,29 @@ def read_sugar(
     fields = {name: entries[name] for name in NAMES if name in entries and not is_own(name, type_)}
     if not fields:
         return Sugar()
-    sugar = Sugar(
-        timeout=_timeout(fields["timeout"], report) if "timeout" in fields else None,
-        retry=_retry(fields["retry"], report) if "retry" in fields else None,
-        for_each=_for_each(fields["for_each"], report) if "for_each" in fields else None,
-    )
+    before = len(report)
+    timeout = _timeout(fields["timeout"], report) if "timeout" in fields else None
+    wrong_timeout, before = len(report) > before, len(report)
+    retry = _retry(fields["retry"], report) if "retry" in fields else None
+    wrong_retry, before = len(report) > before, len(report)
+    for_each = _for_each(fields["for_each"], report) if "for_each" in fields else None
+    wrong_loop = len(report) > before
     own = tuple(outcome.name for outcome in type_.outcomes)
     if type_.kind != "state" or "outcomes" in type_.given:
         own += tuple(outcome.name for outcome in outcomes)
-    led = pairs_of(entries["transitions"].value) if "transitions" in entries else ()
-    return _with_known_outcomes(sugar, own, {word.text for word, _ in led}, report)
+    pairs = pairs_of(entries["transitions"].value) if "transitions" in entries else ()
+    led = {word.text for word, _ in pairs}
+    # Wrong sugar is kept only where the script uses an outcome that it adds: otherwise that outcome
+    # would be reported because it has no transition.
+    used = led.union(word.text for part in (retry, for_each) if part for word in part.on)
+    if wrong_timeout and used.isdisjoint({TIMEOUT, PREEMPTED}.difference(own)):
+        timeout = None
+    if wrong_retry and used.isdisjoint({EXHAUSTED, PREEMPTED}.difference(own)):
+        retry = None
+    if wrong_loop and used.isdisjoint({PREEMPTED}.difference(own)):
+        for_each = None
+    sugar = Sugar(timeout=timeout, retry=retry, for_each=for_each)
+    return _with_known_outcomes(sugar, own, led, report)
 
 
 def _with_known_outcomes(

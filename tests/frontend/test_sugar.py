@@ -273,6 +273,17 @@ def test_wrong_sugar_has_no_consequences(
     assert help in (None, found[code].help)
 
 
+@pytest.mark.parametrize("sugar", ["timeout: 20 sec", "retry: {on: [failed], times: 3}"])
+def test_wrong_sugar_adds_no_outcome_that_the_script_does_not_use(
+    sugar: str, tmp_path: Path
+) -> None:
+    path = tmp_path / "main.yml"
+    text = WRONG.replace("SUGAR", sugar).replace("TARGETS", "failed: failed")
+    path.write_text(text, encoding="utf-8")
+    found = [item.code for item in smachac.check(path) if item.severity.value != "info"]
+    assert found in (["SM003"], ["SM004"])
+
+
 @pytest.mark.parametrize("loop", ["for_each: {item: i, in: count}", "LOOP"])
 def test_a_loop_over_a_number(loop: str, tmp_path: Path) -> None:
     state = f"template: ScriptedState\n      {loop}\n      input_keys: [i]\n      outcomes: [ok]"
