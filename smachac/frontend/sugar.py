@@ -36,7 +36,9 @@ UNKNOWN_TRIES = 2
 
 NO_OUTCOMES = "add `outcomes: [...]` to this state"
 
-MEANT_PARTS = dict.fromkeys(("attempts", "count", "limit", "times", "tries"), "max")
+MEANT_PARTS: Mapping[str, str] = dict.fromkeys(
+    ("attempts", "count", "limit", "times", "tries"), "max"
+)
 """Other words for a part of sugar, which are not its misspelt names."""
 
 SECONDS = {"": 1.0, "ms": 0.001, "s": 1.0, "min": 60.0, "h": 3600.0}
