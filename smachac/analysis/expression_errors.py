@@ -465,6 +465,12 @@ def has_attribute(type_: Type, name: str) -> bool:
     return not found or any(hasattr(each, name) for kind in found for each in _BUILT_IN[kind])
 
 
+def is_method(type_: Type, name: str) -> bool:
+    """Whether an attribute is a method of every value of a type."""
+    classes = [each for kind in kinds(type_) for each in _BUILT_IN.get(kind, (object,))]
+    return bool(classes) and all(callable(getattr(each, name, None)) for each in classes)
+
+
 def can_be_indexed(owner: Type, index: Type) -> bool:
     """Whether some value of a type has items with such an index."""
     known, wanted = kinds(owner), kinds(index)

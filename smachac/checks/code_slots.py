@@ -18,11 +18,14 @@ from smachac.analysis.code_slots import (
     userdata_parameter,
 )
 from smachac.analysis.context import Context
-from smachac.analysis.expression_errors import kinds, type_text
+from smachac.analysis.expression_errors import is_method, kinds, type_text
 from smachac.analysis.expression_types import type_of_call
 from smachac.analysis.message_code import content_of
-from smachac.checks.messages import calls, did_you_mean
+from smachac.analysis.type_inference import TypeFlow
+from smachac.checks.messages import calls, did_you_mean, other_place
+from smachac.checks.number_help import number_meant
 from smachac.checks.rule import rule
+from smachac.checks.types import written
 from smachac.diagnostics.diagnostic import Edit, Finding, Severity
 from smachac.diagnostics.source import Span
 from smachac.diagnostics.spelling import guesser
@@ -227,10 +230,22 @@ def wrong_arguments(context: Context) -> Iterator[Finding]:
             span=_head(slot, tree),
             message=f"the function of {_owner(slot, node)} {what}",
             arguments=(slot.name, slot.code.text),
-            help=f"begin it with `lambda {', '.join(map(_short, due))}:`",
+            help=_head_help(tree, due),
             related=calls(node, slot.code.span),
             node=path,
         )
+
+
+def _head_help(tree: ast.Lambda, due: tuple[str, ...]) -> str:
+    """The help for a lambda with wrong arguments: its correct beginning, and the way to read a key
+    that was written as an argument."""
+    help = f"begin it with `lambda {', '.join(map(_short, due))}:`"
+    read = {each.id for each in ast.walk(tree.body) if isinstance(each, ast.Name)}
+    own = [each.arg for each in parameters(tree) if not any(_means(each.arg, arg) for arg in due)]
+    keys = [name for name in own if name in read]
+    if "userdata" not in due or not keys or own == [each.arg for each in parameters(tree)]:
+        return help
+    return f"{help}, and read {', '.join(f'`{key}` as `{USERDATA[0]}.{key}`' for key in keys)}"
 
 
 def _names(names: Iterable[str]) -> str:
@@ -341,11 +356,20 @@ def wrong_result(context: Context) -> Iterator[Finding]:
                 message=f"the function of {_owner(slot, node)} returns {what}",
                 arguments=(slot.name, ast.unparse(result)),
                 help=help,
-                related=calls(node, slot.code.span),
+                related=(
+                    *(
+                        place
+                        for each in _presets(context, path, slot, result)
+                        for place in other_place(each.span, written(each))
+                    ),
+                    *calls(node, slot.code.span),
+                ),
                 node=path,
                 severity=None if sure and len(found) == 1 else Severity.WARNING,
             )
 
+
+SECONDS = Type("float", ("s",))
 
 Fault = tuple[str, str | None, bool]
 """What a function returns, the help, and whether it is certain."""
@@ -370,12 +394,38 @@ def _value_fault(
                 return None
             what = f"None: `{method}` changes the value and returns nothing"
             return what, _instead(result, value, method), bool(known)
+        case ast.Attribute(value=value, attr=method) if slot.role != "callbacks":
+            if is_method(_type(context, path, node, slot, value), method):
+                always = ", which is always true" if slot.role == "conditions" else ""
+                what = f"the method `{method}` without a call{always}"
+                return what, f"call it: `{ast.unparse(result)}()`", True
     if slot.role == "duration":
         type_ = _type(context, path, node, slot, result)
         if kinds(type_) and "number" not in kinds(type_):
             what = f"`{type_text(type_)}`, but a duration is a number of seconds"
-            return what, "return a number, for example with `float(...)`", True
+            return what, _number_help(_presets(context, path, slot, result)), True
     return None
+
+
+def _number_help(presets: list[TypeFlow]) -> str:
+    """The help for a duration that is no number: the number, where a text of the script was meant
+    as one."""
+    texts = (each.value for each in presets if isinstance(each.value, str))
+    meant = (number_meant(text, SECONDS) for text in texts)
+    found = next((help for help in meant if help is not None), None)
+    return found or "return a number, for example with `float(...)`"
+
+
+def _presets(context: Context, path: str, slot: CodeSlot, result: ast.expr) -> list[TypeFlow]:
+    """The values of the script for the keys that a duration reads."""
+    if slot.role != "duration":
+        return []
+    keys = [each.attr for each in ast.walk(result) if isinstance(each, ast.Attribute)]
+    cells = [context.types.cells.get((path, key)) for key in dict.fromkeys(keys)]
+    origins = [
+        alike[0].origin for cell in cells if cell is not None for alike in cell.flows.values()
+    ]
+    return [each for each in dict.fromkeys(origins) if each.how == "value"]
 
 
 def _instead(call: ast.Call, value: ast.expr, method: str) -> str:

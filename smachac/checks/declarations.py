@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterable, Iterator
 from typing import Literal
 
-from smachac.analysis.accesses import callback_names, userdata_fields
+from smachac.analysis.accesses import callback_names, scripted_steps, userdata_fields
 from smachac.analysis.code_slots import free_in, undeclared_slot_reads
 from smachac.analysis.context import Context
 from smachac.analysis.control_flow import is_open
@@ -21,6 +21,7 @@ from smachac.checks.rule import rule
 from smachac.diagnostics.diagnostic import Finding, Related, Severity
 from smachac.diagnostics.source import Span, Word
 from smachac.diagnostics.spelling import guesser, respelt
+from smachac.diagnostics.wording import listed
 from smachac.ir import nodes
 from smachac.ir.code_places import key_place
 from smachac.ir.graph import START
@@ -321,14 +322,18 @@ def lossy_write(context: Context) -> Iterator[Finding]:
             what = "only an input key" if only else "not one of its output keys"
             span = _place_of_write(leaf, key)
             meant = _meant(key, leaf.outputs if not only else ())
+            unset = _never_set(leaf) if not meant else []
+            added = f"add `{key}` to the `output_keys` of `{leaf.name}`"
+            help = f"did you mean {listed(unset)}? or {added}" if unset else added
             yield Finding(
                 span=span,
                 message=f"`{leaf.name}` sets `{key}`, which is {what}: the value is discarded",
                 arguments=(key,),
-                help=meant or f"add `{key}` to the `output_keys` of `{leaf.name}`",
+                help=meant or help,
                 related=calls(leaf, span),
                 node=path,
-                edits=with_output(leaf, key) if not meant else (),
+                # With an edit, a state that reads the key that is not set would fail in the run.
+                edits=with_output(leaf, key) if not meant and not unset else (),
             )
     yield from dropped_writes(context)
 
@@ -349,6 +354,15 @@ def _meant_keys(wrong: Iterable[str], known: Iterable[Key]) -> set[str]:
 
 def _meant(key: str, known: Iterable[Key]) -> str | None:
     return did_you_mean(guesser(each.name for each in known)(key))
+
+
+def _never_set(leaf: Leaf) -> list[str]:
+    """The output keys that nothing in a leaf sets, as far as its code and interface show."""
+    set_ = callback_names(leaf).union(*(keys for _, keys in scripted_steps(leaf)))
+    set_ = set_.union(*(keys for _, keys in leaf.writes))
+    if leaf.class_facts is not None:
+        set_ = set_.union(word.text for word in leaf.class_facts.writes)
+    return [key.name for key in leaf.outputs if key.name not in set_]
 
 
 def _place_of_write(leaf: Leaf, key: str) -> Span:

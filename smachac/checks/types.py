@@ -7,6 +7,7 @@ from collections.abc import Iterator
 from itertools import pairwise
 
 from smachac.analysis.context import Context
+from smachac.analysis.expression_errors import kinds
 from smachac.analysis.expression_types import type_of_data
 from smachac.analysis.type_inference import Cell, Clash, TypeFlow
 from smachac.analysis.type_lattice import (
@@ -28,6 +29,7 @@ from smachac.diagnostics.diagnostic import Finding, Related, Severity
 from smachac.diagnostics.source import NOWHERE, Span
 from smachac.diagnostics.spelling import guesser
 from smachac.diagnostics.wording import listed
+from smachac.ir import nodes
 from smachac.ir.nodes import Leaf, StateType
 from smachac.ir.types import Type
 
@@ -78,8 +80,34 @@ def type_mismatch(context: Context) -> Iterator[Finding]:
               transitions: {done: done}
     """
     yield from clash_findings([each for each in context.clashes["type"] if not _is_function(each)])
+    yield from _without_items(context)
     for type_ in context.machine.state_types.values():
         yield from _wrong_defaults(type_)
+
+
+def _without_items(context: Context) -> Iterator[Finding]:
+    """The loops over a key whose value is a number, which has no items."""
+    for path, container in context.containers:
+        if not isinstance(container, nodes.Iterator) or not container.items_key:
+            continue
+        key = container.items_key
+        cell = context.types.cells.get((path, key))
+        if cell is None or kinds(cell.holds or cell.declared) != {"number"}:
+            continue
+        origins = {alike[0].origin: None for alike in cell.flows.values()}
+        type_ = cell.holds or cell.declared
+        yield Finding(
+            span=container.items_span,
+            message=f"`{container.name}` needs a list of items in `{key}`, but `{key}` is"
+            f" {in_words(type_)}",
+            arguments=(key, str(widened(type_)), "list"),
+            help=f"write a list for `{key}`, such as `[1, 2, 3]`",
+            related=(
+                *(place for each in origins for place in other_place(each.span, written(each))),
+                *calls(container, container.items_span),
+            ),
+            node=path,
+        )
 
 
 def _is_function(clash: Clash) -> bool:

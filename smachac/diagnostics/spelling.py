@@ -8,6 +8,7 @@ from collections.abc import Iterable
 from functools import lru_cache
 
 from smachac.diagnostics.diagnostic import Edit
+from smachac.diagnostics.negation import are_opposite
 from smachac.diagnostics.source import Word
 
 MOST_COMPARED = 40
@@ -42,12 +43,12 @@ class Guesser:
         self._shared: set[str] = set()
 
     def __call__(self, word: str) -> str | None:
-        """The nearest name, or None."""
+        """The nearest name, or None. The opposite of the word is no guess."""
         index = self._slips()
-        one_slip = next((index[slip] for slip in slips(word) if slip in index), None)
-        if one_slip is not None or len(self.names) > MOST_COMPARED or len(word) > LONGEST_SLIP:
-            return one_slip
-        return next(iter(difflib.get_close_matches(word, self.names, n=1)), None)
+        nearest = next((index[slip] for slip in slips(word) if slip in index), None)
+        if nearest is None and len(self.names) <= MOST_COMPARED and len(word) <= LONGEST_SLIP:
+            nearest = next(iter(difflib.get_close_matches(word, self.names, n=1)), None)
+        return None if nearest is None or are_opposite(word, nearest) else nearest
 
     def sure(self, word: str) -> str | None:
         """The only candidate that is one slip away and has the same digits, or None."""
@@ -57,7 +58,9 @@ class Guesser:
         if len(names) != 1 or not self._shared.isdisjoint(near):
             return None
         (name,) = names
-        return name if name != word and _one_slip(word.casefold(), name.casefold()) else None
+        if name == word or are_opposite(word, name):
+            return None
+        return name if _one_slip(word.casefold(), name.casefold()) else None
 
     def _slips(self) -> dict[str, str]:
         if not self._index:

@@ -344,6 +344,8 @@ class _Reader:
                 return name not in self.flows.assigned and self._add(text, span, before)
             case ast.Call():
                 return self._results(value, before)
+            case _ if _is_no_text(value):
+                return self._add(ast.unparse(value), span, before)
         return False
 
     def _add(self, text: str | None, span: Span, before: Keys) -> bool:
@@ -384,6 +386,15 @@ class _Reader:
             known = None if written is None else _both(before, written)
             self.endings.append(Ending(outcome=each.outcome, written=known))
         return flow.complete and not flow.silent
+
+
+def _is_no_text(value: ast.expr) -> bool:
+    """Whether an expression is a collection or a number, whatever its parts are."""
+    if isinstance(value, ast.UnaryOp):
+        value = value.operand
+        return isinstance(value, ast.Constant) and isinstance(value.value, int | float)
+    collections = ast.Tuple | ast.List | ast.Dict | ast.Set
+    return isinstance(value, collections | ast.ListComp | ast.DictComp | ast.SetComp)
 
 
 def _targets(node: ast.Assign | ast.AnnAssign) -> list[ast.expr]:

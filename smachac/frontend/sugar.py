@@ -20,7 +20,7 @@ from smachac.frontend.script import ERROR, EXHAUSTED, TIMEOUT, ForEach, Retry, S
 from smachac.frontend.values import as_value
 from smachac.frontend.yaml_tree import Entry, Map, Scalar, Tree
 from smachac.ir.nodes import Outcome, StateType
-from smachac.ir.outcome_names import GOOD_OUTCOMES
+from smachac.ir.outcome_names import GOOD_OUTCOMES, PREEMPTED
 
 NAMES = frozenset(["timeout", "retry", "for_each"])
 """The fields of sugar, except those that are variables of the state type."""
@@ -28,7 +28,18 @@ NAMES = frozenset(["timeout", "retry", "for_each"])
 MOST_TRIES = 10_000
 """The most tries of a `retry`; each is an item of an iterator."""
 
+UNKNOWN_SECONDS = 86_400.0
+"""The time limit in place of a wrong one, which was reported."""
+
+UNKNOWN_TRIES = 2
+"""The number of tries in place of a wrong one, which was reported."""
+
 NO_OUTCOMES = "add `outcomes: [...]` to this state"
+
+MEANT_PARTS: Mapping[str, str] = dict.fromkeys(
+    ("attempts", "count", "limit", "times", "tries"), "max"
+)
+"""Other words for a part of sugar, which are not its misspelt names."""
 
 SECONDS = {"": 1.0, "ms": 0.001, "s": 1.0, "min": 60.0, "h": 3600.0}
 _DURATION = re.compile(r"(\d+(?:\.\d+)?|\.\d+)\s*([a-z]*)")
@@ -50,16 +61,29 @@ def read_sugar(
     fields = {name: entries[name] for name in NAMES if name in entries and not is_own(name, type_)}
     if not fields:
         return Sugar()
-    sugar = Sugar(
-        timeout=_timeout(fields["timeout"], report) if "timeout" in fields else None,
-        retry=_retry(fields["retry"], report) if "retry" in fields else None,
-        for_each=_for_each(fields["for_each"], report) if "for_each" in fields else None,
-    )
+    before = len(report)
+    timeout = _timeout(fields["timeout"], report) if "timeout" in fields else None
+    wrong_timeout, before = len(report) > before, len(report)
+    retry = _retry(fields["retry"], report) if "retry" in fields else None
+    wrong_retry, before = len(report) > before, len(report)
+    for_each = _for_each(fields["for_each"], report) if "for_each" in fields else None
+    wrong_loop = len(report) > before
     own = tuple(outcome.name for outcome in type_.outcomes)
     if type_.kind != "state" or "outcomes" in type_.given:
         own += tuple(outcome.name for outcome in outcomes)
-    led = pairs_of(entries["transitions"].value) if "transitions" in entries else ()
-    return _with_known_outcomes(sugar, own, {word.text for word, _ in led}, report)
+    pairs = pairs_of(entries["transitions"].value) if "transitions" in entries else ()
+    led = {word.text for word, _ in pairs}
+    # Wrong sugar is kept only where the script uses an outcome that it adds: otherwise that outcome
+    # would be reported because it has no transition.
+    used = led.union(word.text for part in (retry, for_each) if part for word in part.on)
+    if wrong_timeout and used.isdisjoint({TIMEOUT, PREEMPTED}.difference(own)):
+        timeout = None
+    if wrong_retry and used.isdisjoint({EXHAUSTED, PREEMPTED}.difference(own)):
+        retry = None
+    if wrong_loop and used.isdisjoint({PREEMPTED}.difference(own)):
+        for_each = None
+    sugar = Sugar(timeout=timeout, retry=retry, for_each=for_each)
+    return _with_known_outcomes(sugar, own, led, report)
 
 
 def _with_known_outcomes(
@@ -92,13 +116,16 @@ def _known(
         if word.text in (*outcomes, ERROR):
             found.append(word)
             continue
+        others = [name for name in outcomes if name not in led] or list(outcomes[-1:])
+        if not word.text:  # it is missing, which was reported
+            found += [Word(name, word.span) for name in others[:1]]
+            continue
         message = f"this state has no outcome `{word.text}`"
         known = f"use one of its outcomes: {listed(outcomes)}" if outcomes else NO_OUTCOMES
         help = did_you_mean(word.text, outcomes) or known
         arguments = ("outcome", word.text)
         report.append(wrong_shape(word.span, message, help, arguments=arguments))
-        others = (name for name in outcomes if name not in led)
-        meant = guesser(outcomes)(word.text) or next(others, "")
+        meant = guesser(outcomes)(word.text) or next(iter(others), "")
         found += [Word(meant, word.span)] if meant else []
     return tuple(found)
 
@@ -113,57 +140,71 @@ def duration(tree: Tree, report: Report) -> float | None:
     return None
 
 
-def _timeout(entry: Entry, report: Report) -> Timeout | None:
+def _timeout(entry: Entry, report: Report) -> Timeout:
+    """The time limit. A wrong one is reported and kept with the limit `UNKNOWN_SECONDS`, so that
+    no outcome is missing because of it."""
     seconds = duration(entry.value, report)
-    if seconds:
-        return Timeout(seconds=seconds, span=entry.key.span)
     if seconds == 0:
         message = "the time limit must be longer than zero"
         help = "write it as `20s`, or remove it"
         report.append(wrong_shape(entry.value.span, message, help, arguments=("zero",)))
-    return None
+    return Timeout(seconds=seconds or UNKNOWN_SECONDS, span=entry.key.span)
 
 
 def _parts(
     entry: Entry, known: tuple[str, ...], required: tuple[str, ...], report: Report
 ) -> dict[str, Tree] | None:
-    """The entries of a mapping with known keys; None where a required one is missing."""
+    """The entries of a mapping with known keys, without those that are missing; None for other
+    values. All errors are reported."""
     if not isinstance(entry.value, Map):
         wrong(entry.value, "map", report, f"write a mapping with {listed(known)}")
         return None
     owner = Owner(str(entry.key.value), f"`{entry.key.value}`")
     parts: dict[str, Tree] = {}
+    written = {str(each.key.value) for each in entry.value.entries}
     for each in entry.value.entries:
         word = Word(str(each.key.value), each.key.span)  # `on` is fine here, unlike in names
-        if word.text not in known:
+        if word.text in known:
+            parts[word.text] = each.value
+            continue
+        meant = MEANT_PARTS.get(word.text) or guesser(known).sure(word.text)
+        if meant not in known or meant in written:
             report.append(unknown_variable(word, owner, known))
-        parts[word.text] = each.value
+            continue
+        report.append(unknown_variable(word, owner, known, meant=meant))
+        parts.setdefault(meant, each.value)
     for name in required:
         if name not in parts:
             report.append(missing_variable(entry.key.span, name, owner))
-    return parts if all(name in parts for name in required) else None
+    return parts
 
 
-def _retry(entry: Entry, report: Report) -> Retry | None:
-    parts = _parts(entry, ("on", "max", "delay"), ("on", "max"), report)
-    if parts is None:
-        return None
-    on = as_names(parts["on"], report)
-    most = parts["max"]
+def _retry(entry: Entry, report: Report) -> Retry:
+    """The tries. Wrong or missing parts are reported and replaced, so that no outcome is missing
+    because of them."""
+    parts = _parts(entry, ("on", "max", "delay"), ("on", "max"), report) or {}
+    on = as_names(parts["on"], report) if "on" in parts else (Word("", entry.key.span),)
+    most = _tries(parts["max"], report) if "max" in parts else UNKNOWN_TRIES
     delay = duration(parts["delay"], report) if "delay" in parts else 0.0
-    whole = isinstance(most, Scalar) and type(most.value) is int
-    if not whole or not 1 <= int(str(most.value)) <= MOST_TRIES:  # type: ignore[union-attr]
-        message = f"`max`, the number of tries, must be a whole number from 1 to {MOST_TRIES:,}"
+    return Retry(on=on, most=most, delay=delay or 0.0, span=entry.key.span)
+
+
+def _tries(tree: Tree, report: Report) -> int:
+    """The number of tries; a wrong one is reported."""
+    number = tree.value if isinstance(tree, Scalar) and type(tree.value) is int else None
+    if number is not None and 1 <= number <= MOST_TRIES:
+        return number
+    message = f"`max`, the number of tries, must be a whole number from 1 to {MOST_TRIES:,}"
+    help = "write a whole number, such as `3`"
+    if number is not None and number < 1:
         help = "remove `retry` if one try is enough"
-        report.append(wrong_shape(most.span, message, help, arguments=("max",)))
-        return None
-    number = int(str(most.value))  # type: ignore[union-attr]
-    return Retry(on=on, most=number, delay=delay or 0.0, span=entry.key.span)
+    report.append(wrong_shape(tree.span, message, help, arguments=("max",)))
+    return UNKNOWN_TRIES
 
 
 def _for_each(entry: Entry, report: Report) -> ForEach | None:
     parts = _parts(entry, ("item", "in", "on"), ("item", "in"), report)
-    if parts is None:
+    if parts is None or not {"item", "in"} <= parts.keys():
         return None
     item = as_name(parts["item"], report)
     on = as_names(parts["on"], report) if "on" in parts else ()

@@ -291,3 +291,17 @@ def test_the_state_of_another_module_is_the_base() -> None:
     )
     assert findings(derived, **{"cell/base.py": base}) == []
     assert findings(derived.replace("def execute", "def look"), **{"cell/base.py": base}) == []
+
+
+@pytest.mark.parametrize(
+    "value", ['"found", 1', '("found",)', '["found"]', '{"found": 1}', "3", "-1", "[x for x in y]"]
+)
+def test_a_returned_value_that_is_no_text(value: str) -> None:
+    report = findings(changed(('return "lost"', f"return {value}")))
+    assert "SM309" in [item.code for item in report]
+
+
+def test_the_opposite_of_an_outcome_is_no_suggestion() -> None:
+    report = findings(changed(('return "lost"', 'return "not_found"')))
+    (item,) = [item for item in report if item.code == "SM309"]
+    assert item.finding.help == "return one of its outcomes: `found`, `lost`, `preempted`"

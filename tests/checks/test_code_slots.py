@@ -323,3 +323,35 @@ def test_faults_of_the_facts_are_reported() -> None:
     assert [(item.code, item.help) for item in report if item.code == "SM004"] == [
         ("SM004", "did you mean `value`?")
     ]
+
+
+def test_a_key_that_is_written_as_an_argument() -> None:
+    (item,) = found("condition", "'lambda ud, zero: ud.n < zero'")
+    assert item.code == "SM317"
+    assert item.finding.help == "begin it with `lambda ud:`, and read `zero` as `ud.zero`"
+
+
+@pytest.mark.parametrize("slot", ["condition", "time"])
+def test_a_method_that_is_not_called(slot: str) -> None:
+    code = "'lambda ud: ud.word.isdigit'"
+    items = found(slot, code if slot == "condition" else "'`lambda ud: ud.word.isdigit`'")
+    assert [item.code for item in items] == ["SM318"]
+    assert "the method `isdigit` without a call" in items[0].message
+    assert items[0].finding.help == "call it: `ud.word.isdigit()`"
+
+
+def test_a_key_of_unknown_type_may_have_such_an_attribute() -> None:
+    assert shown("condition", "'lambda ud: ud.pose.isdigit'")[:1] != [("SM318", "ud.pose.isdigit")]
+    assert shown("condition", "'lambda ud: ud.word.isdigit()'") == []
+
+
+def test_a_duration_with_a_unit_is_corrected_at_its_preset() -> None:
+    text = (
+        "name: sm\ntemplate: Base\noutcomes: [done, preempted]\nuserdata: {wait: 2s}\nstates:\n"
+        "  - A:\n      template: SleepState\n      input_keys: [wait]\n"
+        "      time: '`lambda ud: ud.wait`'\n      transitions: {succeeded: done}\n"
+    )
+    report = analyse(Source("main.yml", text), memory_library({}, BUILT_IN), []).report
+    (item,) = [item for item in report if item.code == "SM318"]
+    assert item.finding.help == "write the number without its unit: `2`"
+    assert [place.span.text for place in item.finding.related] == ["2s"]

@@ -15,6 +15,7 @@ from smachac.ir.nodes import Key, Leaf, Machine, Node, StateMachine
 from smachac.ir.types import Type
 from tests.support.ir_machines import concurrence, iterator, leaf, machine, sequence
 from tests.support.rule_findings import found, one, report
+from tests.trust.project_text import analysed
 
 
 def writer(name: str, to: dict[str, str], key: str = "k", **on: str) -> Leaf:
@@ -370,3 +371,40 @@ def test_the_item_of_an_iterator_is_no_guess_for_its_items() -> None:
     help = one(root(node), "SM301").finding.help
     assert help is not None
     assert "did you mean" not in help
+
+
+UNSET = """
+name: sm
+template: Base
+outcomes: [done]
+userdata: {n: 1}
+states:
+  - A:
+      STATE
+  - B:
+      template: ScriptedState
+      input_keys: [w]
+      outcomes: [ok]
+      transitions: {ok: done}
+"""
+
+
+@pytest.mark.parametrize(
+    ("state", "key"),
+    [
+        ("template: ScriptedState\n      outcomes: [ok]\n      output_keys: [w]\n"
+         "      steps: [{outcome: ok, set: {widht: 0.05}}]\n      transitions: {ok: B}", "widht"),
+        ("template: CallbacksState\n      input_keys: [n]\n      output_keys: [w]\n"
+         "      callbacks: {total: 'lambda ud: ud.n'}\n      transitions: {succeeded: B}", "total"),
+    ],
+)  # fmt: skip
+def test_no_edit_where_a_declared_output_is_never_set(state: str, key: str) -> None:
+    items = analysed({"main.yml": UNSET.replace("STATE", state)}).report
+    (item,) = [item for item in items if item.code == "SM308"]
+    assert item.finding.help == f"did you mean `w`? or add `{key}` to the `output_keys` of `A`"
+    assert item.finding.edits == ()
+    every = state.replace("set: {widht", "set: {w: 1, widht").replace("{total", "{w: 1, total")
+    if "set:" in every:
+        items = analysed({"main.yml": UNSET.replace("STATE", every)}).report
+        (item,) = [item for item in items if item.code == "SM308"]
+        assert [edit.text for edit in item.finding.edits] == [", widht"]

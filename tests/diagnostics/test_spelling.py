@@ -7,6 +7,8 @@ import tracemalloc
 from dataclasses import replace
 from pathlib import Path
 
+import pytest
+
 from smachac.diagnostics.diagnostic import did_you_mean
 from smachac.diagnostics.source import Source
 from smachac.diagnostics.spelling import LONGEST_SLIP, Guesser, slips
@@ -50,3 +52,45 @@ def test_templates_are_looked_up_once_however_many_are_unknown() -> None:
     analysis = analyse(Source("main.yml", text), library, [])
     assert sum(item.code == "SM013" for item in analysis.report) == 50
     assert looked == ["names"]
+
+
+@pytest.mark.parametrize(
+    ("word", "name"),
+    [
+        ("not_found", "found"),
+        ("found", "not_found"),
+        ("notFound", "found"),
+        ("notfound", "found"),
+        ("no_grasp", "grasp"),
+        ("never_seen", "seen"),
+        ("non_empty", "empty"),
+        ("unreachable", "reachable"),
+        ("unreachble", "reachable"),
+        ("reachable", "unreachable"),
+        ("invalid", "valid"),
+        ("is_unlocked", "is_locked"),
+        ("disconnected", "connected"),
+    ],
+)
+def test_an_opposite_is_no_suggestion(word: str, name: str) -> None:
+    assert Guesser([name])(word) is None
+    assert Guesser([name]).sure(word) is None
+    assert did_you_mean(word, [name]) is None
+
+
+@pytest.mark.parametrize(
+    ("word", "name"),
+    [
+        ("nto_found", "not_found"),
+        ("not_fuond", "not_found"),
+        ("no_fond", "no_found"),
+        ("unreachble", "unreachable"),
+        ("unlokced", "unlocked"),
+        ("note_found", "not_found"),
+        ("nobject", "object"),
+        ("NOT_FOUND", "not_found"),
+    ],
+)
+def test_a_misspelt_negation_is_a_misspelling(word: str, name: str) -> None:
+    assert Guesser([name])(word) == name
+    assert did_you_mean(word, [name]) == f"did you mean `{name}`?"

@@ -229,3 +229,79 @@ def test_a_loop_over_no_list_is_a_wrong_shape(items: str, tmp_path: Path) -> Non
 def test_retries_without_outcomes_never_exhaust(tmp_path: Path) -> None:
     found = faults("retry: {on: [], max: 3}", "{succeeded: succeeded}", tmp_path)
     assert "`on` of `retry`" in (found["SM203"].help or "")
+
+
+WRONG = """
+name: sm
+template: Base
+outcomes: [done, failed, preempted]
+states:
+  - A:
+      template: ScriptedState
+      outcomes: [ok, failed, preempted]
+      SUGAR
+      transitions: {ok: done, preempted: preempted, TARGETS}
+"""
+LIMITED = "timeout: failed, failed: failed"
+
+
+@pytest.mark.parametrize(
+    ("sugar", "targets", "code", "help"),
+    [
+        ("retry: {on: [failed], times: 3}", "exhausted: failed", "SM003", "did you mean `max`?"),
+        ("retry: {on: [failed], mx: 3}", "exhausted: failed", "SM003", None),
+        ("retry: {on: [failed], max: three}", "exhausted: failed", "SM004",
+         "write a whole number, such as `3`"),
+        ("retry: {on: [failed], max: 0}", "exhausted: failed", "SM004",
+         "remove `retry` if one try is enough"),
+        ("retry: {on: [failed]}", "exhausted: failed", "SM005", None),
+        ("retry: {max: 3}", "exhausted: failed", "SM005", None),
+        ("retry: 3", "exhausted: failed", "SM004", None),
+        ("retry: {on: [failed], max: 3, delay: 2 sec}", "exhausted: failed", "SM004", None),
+        ("timeout: 20 sec", LIMITED, "SM004", None),
+        ("timeout: 0", LIMITED, "SM004", "write it as `20s`, or remove it"),
+    ],
+)  # fmt: skip
+def test_wrong_sugar_has_no_consequences(
+    sugar: str, targets: str, code: str, help: str | None, tmp_path: Path
+) -> None:
+    path = tmp_path / "main.yml"
+    path.write_text(WRONG.replace("SUGAR", sugar).replace("TARGETS", targets), encoding="utf-8")
+    found = {x.code: x.finding for x in smachac.check(path) if x.severity.value != "info"}
+    # A part whose misspelling is not certain is also a missing one.
+    assert found.keys() - {"SM005"} <= {code}
+    assert help in (None, found[code].help)
+
+
+@pytest.mark.parametrize("sugar", ["timeout: 20 sec", "retry: {on: [failed], times: 3}"])
+def test_wrong_sugar_adds_no_outcome_that_the_script_does_not_use(
+    sugar: str, tmp_path: Path
+) -> None:
+    path = tmp_path / "main.yml"
+    text = WRONG.replace("SUGAR", sugar).replace("TARGETS", "failed: failed")
+    path.write_text(text, encoding="utf-8")
+    found = [item.code for item in smachac.check(path) if item.severity.value != "info"]
+    assert found in (["SM003"], ["SM004"])
+
+
+@pytest.mark.parametrize("loop", ["for_each: {item: i, in: count}", "LOOP"])
+def test_a_loop_over_a_number(loop: str, tmp_path: Path) -> None:
+    state = f"template: ScriptedState\n      {loop}\n      input_keys: [i]\n      outcomes: [ok]"
+    if loop == "LOOP":
+        state = (
+            "template: Iterator\n      input_keys: [count]\n      outcomes: [ok]\n"
+            "      it: count\n      it_label: i\n      exhausted_outcome: ok\n"
+            "      loop_outcomes: [ok]\n      states:\n"
+            "        - S: {template: ScriptedState, input_keys: [i], outcomes: [ok]}"
+        )
+    text = (
+        "name: sm\ntemplate: Base\noutcomes: [done, preempted]\nuserdata: {count: VALUE}\n"
+        f"states:\n  - A:\n      {state}\n      transitions: {{ok: done}}\n"
+    )
+    path = tmp_path / "main.yml"
+    path.write_text(text.replace("VALUE", "3"), encoding="utf-8")
+    (item,) = [item for item in smachac.check(path) if item.code == "SM304"]
+    assert item.span.text == "count"
+    assert [place.span.text for place in item.finding.related] == ["3"]
+    path.write_text(text.replace("VALUE", "[3]"), encoding="utf-8")
+    assert [item for item in smachac.check(path) if item.code == "SM304"] == []

@@ -117,6 +117,7 @@ def unknown_variable(
     *,
     own: Iterable[str] = (),
     anything: bool = False,
+    meant: str | None = None,
     severity: Severity | None = None,
 ) -> Finding:
     """A script sets a variable that neither the language nor the state type has.
@@ -142,7 +143,7 @@ def unknown_variable(
     names = sorted([*known, *own])
     owned = f"use one of its {owner.part}s: {listed(names)}"
     variables = owned if names else f"remove it: {owner.text} has no {owner.part}s"
-    sure = Guesser(names).sure(word.text)
+    sure = meant or Guesser(names).sure(word.text)
     number = _number_before(word)
     if number:
         return Finding(
@@ -172,8 +173,10 @@ def unknown_variable(
 def _variable_help(word: str, sure: str | None, names: list[str], own: list[str]) -> str | None:
     """The help for an unknown variable: `own` are those of the state type, which come before the
     others among `names`."""
-    if sure is not None or not own:
-        return did_you_mean(word, [sure] if sure else names)
+    if sure is not None:
+        return f"did you mean `{sure}`?"
+    if not own:
+        return did_you_mean(word, names)
     others = [name for name in names if name not in own]
     near = SequenceMatcher(a=word)
     for name in others:

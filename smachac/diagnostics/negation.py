@@ -1,0 +1,55 @@
+"""Negation in names: `not_found` is the opposite of `found`, and no misspelling of it."""
+
+from __future__ import annotations
+
+import difflib
+import re
+
+NEGATIONS = frozenset(["cannot", "never", "no", "non", "not", "without"])
+"""Words that negate the name they are in."""
+
+PREFIXES = ("un", "non", "not", "dis", "in", "im")
+"""The beginnings of words that negate the rest of the word: `unreachable`."""
+
+SHORTEST_REST = 4
+"""Shorter rests are often no words: `unit`."""
+
+NEAR = 0.8
+"""A rest as similar as this to a word is that word, misspelt."""
+
+SLIP = 0.6
+"""A negation as similar as this to a word of the other name can be a misspelling of it."""
+
+_WORDS = re.compile(r"[A-Z]?[a-z]+|[A-Z]+(?![a-z])")
+
+
+def are_opposite(one: str, other: str) -> bool:
+    """Whether one of two names is the negation of the other."""
+    if one.casefold() == other.casefold():
+        return False
+    first, second = _words(one), _words(other)
+    return _negated(first, second) != _negated(second, first)
+
+
+def _words(name: str) -> list[str]:
+    return [word.lower() for word in _WORDS.findall(name)]
+
+
+def _negated(words: list[str], others: list[str]) -> bool:
+    """Whether a name has a negation that another one does not have."""
+    left = [word for word in others if word not in words]
+    return any(_negates(word, others, left) for word in words if word not in others)
+
+
+def _negates(word: str, others: list[str], left: list[str]) -> bool:
+    """Whether a word negates another name, or a word of it. `left` are the words that only the
+    other name has."""
+    if word in NEGATIONS:
+        return not difflib.get_close_matches(word, left, n=1, cutoff=SLIP)
+    for prefix in PREFIXES:
+        rest = word.removeprefix(prefix)
+        if rest != word and len(rest) >= SHORTEST_REST:
+            bare = [other for other in others if not other.startswith(prefix)]
+            if difflib.get_close_matches(rest, bare, n=1, cutoff=NEAR):
+                return True
+    return False
