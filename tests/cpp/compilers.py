@@ -84,10 +84,13 @@ def compilers() -> tuple[Compiler, ...]:
 
 COMPILERS = pytest.mark.parametrize(
     "compiler",
-    [pytest.param(each, id=each.name) for each in compilers()]
+    [
+        pytest.param(each, id=each.name, marks=pytest.mark.slow if number else ())
+        for number, each in enumerate(compilers())
+    ]
     or [pytest.param(None, marks=pytest.mark.skip("no C++ compiler"))],
 )
-"""Marks a test that runs once with each compiler."""
+"""Marks a test that runs once with each compiler; with others than the first one it is slow."""
 
 
 def last_with(*flags: str) -> Compiler:

@@ -23,14 +23,10 @@ from smachac.targets.cpp.expressions import Spelling, cpp_condition, cpp_express
 from smachac.targets.cpp.project import CLANG_FORMAT
 from smachac.targets.cpp.types import UnportableError, cpp_float, cpp_string, cpp_type, cpp_value
 from smachac.verify.players.cpp import HEADERS
-from tests.cpp.compilers import BARE, SANITIZED, Compiler, compilers
+from tests.cpp.compilers import BARE, COMPILERS, SANITIZED, Compiler
 from tests.cpp.expression_programs import NAMES, Tally, cases, compare, portable, program
 from tests.strategies.expressions import NAMES_OF_VALUES, computations, expressions
 from tests.strategies.typed_expressions import userdata
-
-COMPILERS = [pytest.param(each, id=each.name) for each in compilers()] or [
-    pytest.param(None, marks=pytest.mark.skip("no C++ compiler"))
-]
 
 KEYS = {name.removeprefix("ud."): spelling for name, spelling in NAMES.items()}
 KEYS["thing"] = Spelling(text="in.thing", type=Type("any"))
@@ -261,7 +257,7 @@ def test_constants_are_refused(data: Data, type_: str, reason: str) -> None:
 SEEDS = [1, pytest.param(2, marks=pytest.mark.slow)]
 
 
-@pytest.mark.parametrize("compiler", COMPILERS)
+@COMPILERS
 @pytest.mark.parametrize("seed", SEEDS)
 def test_random_expressions_have_the_value_of_python(
     compiler: Compiler, seed: int, folder: Path
@@ -296,7 +292,7 @@ EDGES = [
 ]
 
 
-@pytest.mark.parametrize("compiler", COMPILERS)
+@COMPILERS
 def test_edges_have_the_value_of_python(compiler: Compiler, folder: Path) -> None:
     batch = []
     for text in EDGES:
@@ -308,7 +304,7 @@ def test_edges_have_the_value_of_python(compiler: Compiler, folder: Path) -> Non
     assert compare(compiler, folder, batch, 1, Tally()) == []
 
 
-@pytest.mark.parametrize("compiler", COMPILERS)
+@COMPILERS
 def test_programs_without_exceptions_end_with_the_message(compiler: Compiler, folder: Path) -> None:
     text = """\
 #include <smachac/values.hpp>
@@ -325,7 +321,7 @@ int main(int argc, char **) {
     assert run.returncode < 0
 
 
-@pytest.mark.parametrize("compiler", COMPILERS)
+@COMPILERS
 def test_expressions_compile_optimised_and_bare_without_a_warning(
     compiler: Compiler, folder: Path
 ) -> None:
@@ -402,7 +398,7 @@ int main() {
 """
 
 
-@pytest.mark.parametrize("compiler", COMPILERS)
+@COMPILERS
 def test_floats_are_those_of_python_to_the_last_bit(compiler: Compiler, folder: Path) -> None:
     pairs = numbers()
     table = ", ".join(f"{{{{{cpp_float(a)}, {cpp_float(b)}}}}}" for a, b in pairs)
@@ -430,7 +426,7 @@ TEXTS = [
 ]
 
 
-@pytest.mark.parametrize("compiler", COMPILERS)
+@COMPILERS
 def test_texts_are_read_as_numbers_and_written_as_json(compiler: Compiler, folder: Path) -> None:
     odd = ["", "\0a", "ä€\N{GRINNING FACE}", "\"'\\\b\f\n\r\t\x01\x7f", "??=", "\\u0041", "\x85"]
     shows = [f"show([] {{ return py::whole({cpp_string(text)}); }});" for text in TEXTS]

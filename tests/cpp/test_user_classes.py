@@ -15,9 +15,7 @@ from smachac.frontend.loader import memory_library
 from smachac.frontend.state_types import find_state_type
 from smachac.targets.cpp import TARGET
 from smachac.targets.cpp.user_classes import interface_hash
-from tests.cpp.compilers import BARE, Compiler, compilers, last_with
-
-COMPILERS = pytest.mark.parametrize("compiler", compilers(), ids=lambda each: each.name)
+from tests.cpp.compilers import BARE, COMPILERS, Compiler, last_with
 
 PING = """
 name: ping
