@@ -47,6 +47,15 @@ def memory_limit(parser: argparse.ArgumentParser) -> None:
                         )  # fmt: skip
 
 
+def time_limit(parser: argparse.ArgumentParser) -> None:
+    """`--time-limit`."""
+    from smachac.commands.cpu_time import DEFAULT
+
+    parser.add_argument("--time-limit", type=seconds, default=DEFAULT, metavar="S",
+                        help=f"the most CPU time of this process, in seconds; 0: no limit"
+                        f" (default: {DEFAULT:,})")  # fmt: skip
+
+
 def dry_run(parser: argparse.ArgumentParser) -> None:
     """`--check` and `--diff` of the commands that change scripts."""
     parser.add_argument("--check", action="store_true",
@@ -64,6 +73,13 @@ def megabytes(text: str) -> int:
     """An amount of memory, or 0."""
     if not text.isdecimal() or len(text) > 9:
         raise argparse.ArgumentTypeError(f"must be a number of megabytes, not `{text[:20]}`")
+    return int(text)
+
+
+def seconds(text: str) -> int:
+    """A time in whole seconds, or 0."""
+    if not text.isdecimal() or len(text) > 9:
+        raise argparse.ArgumentTypeError(f"must be a number of seconds, not `{text[:20]}`")
     return int(text)
 
 

@@ -6,7 +6,14 @@ import argparse
 import sys
 from argparse import Namespace
 
-from smachac.commands.arguments import SCRIPT, as_path, colour, memory_limit, search_folders
+from smachac.commands.arguments import (
+    SCRIPT,
+    as_path,
+    colour,
+    memory_limit,
+    search_folders,
+    time_limit,
+)
 from smachac.commands.output import FINDINGS, OK, print_report, shown, usage, without_notes
 
 TYPE_CHECKING = False  # annotations only: `--help` imports none of this
@@ -43,11 +50,13 @@ def build_arguments(parser: argparse.ArgumentParser) -> None:
                         help="overwrite files that smachac did not generate")  # fmt: skip
     search_folders(parser)
     memory_limit(parser)
+    time_limit(parser)
     colour(parser)
 
 
 def build_command(arguments: Namespace) -> int:
     """Generate code; the exit code."""
+    from smachac.commands.cpu_time import CpuTimeError, limited_time
     from smachac.commands.memory import limited_memory
     from smachac.driver import analyse_script, compile_script
     from smachac.targets import OptionError, load_target, target_names
@@ -65,12 +74,15 @@ def build_command(arguments: Namespace) -> int:
             return usage(message, name, list(target.options))
         options[name] = value
     try:
-        with limited_memory(arguments.memory_limit):
+        with limited_memory(arguments.memory_limit), limited_time(arguments.time_limit):
             analysis = analyse_script(arguments.script, arguments.scripts, arguments.templates)
             levels = _levels(arguments.script, arguments.output)
             files, report = compile_script(analysis, target, options, levels)
     except OptionError as error:
         return usage(f"--option {error}")
+    except CpuTimeError as error:
+        print(error, file=sys.stderr)
+        return FINDINGS
     print_report(without_notes(report), arguments, sys.stderr)
     return _put(files, arguments) if files else FINDINGS
 

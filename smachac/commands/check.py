@@ -17,6 +17,7 @@ from smachac.commands.arguments import (
     colour,
     memory_limit,
     search_folders,
+    time_limit,
 )
 from smachac.commands.output import FINDINGS, OK, print_report, shown, usage, without_notes
 from smachac.commands.streams import print_failure
@@ -78,6 +79,7 @@ def check_arguments(parser: argparse.ArgumentParser) -> None:
     parser.add_argument("--watch", action="store_true",
                         help="check again when a file changes, until Ctrl-C")  # fmt: skip
     memory_limit(parser)
+    time_limit(parser)
     colour(parser)
 
 
@@ -85,6 +87,7 @@ def check_command(arguments: Namespace) -> int:
     """Check scripts once, or again and again; the exit code."""
     from pathlib import Path
 
+    from smachac.commands.cpu_time import CpuTimeError, limited_time
     from smachac.commands.memory import limited_memory
     from smachac.driver import CODES
     from smachac.frontend.files import Disk
@@ -99,7 +102,11 @@ def check_command(arguments: Namespace) -> int:
         with limited_memory(arguments.memory_limit):
             if arguments.watch:
                 return _watch(arguments)
-            return _check_once(arguments, set(), Disk())
+            with limited_time(arguments.time_limit):
+                return _check_once(arguments, set(), Disk())
+    except CpuTimeError as error:
+        print(error, file=sys.stderr)
+        return FINDINGS
     except _wrong_usage() as error:
         return usage(str(error))
 

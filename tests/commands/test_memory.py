@@ -95,3 +95,24 @@ def test_the_limit_of_the_process_is_restored_and_never_raised() -> None:
         with limited_memory(0):
             assert resource.getrlimit(resource.RLIMIT_AS)[0] == 50_000_000_000
     assert resource.getrlimit(resource.RLIMIT_AS) == before
+
+
+@pytest.mark.parametrize("words", [["check"], ["build", "--target", "python"]], ids=" ".join)
+def test_beyond_the_limit_of_cpu_time_the_command_ends(words: list[str], tmp_path: Path) -> None:
+    states = "".join(
+        f"  - S{n}: {{template: SleepState, time: 1, transitions: {{succeeded: S{n + 1}}}}}\n"
+        for n in range(20_000)
+    )
+    last = "  - S20000: {template: SleepState, time: 1, transitions: {succeeded: done}}\n"
+    head = "name: sm\noutcomes: [done, preempted]\nstates:\n"
+    (tmp_path / "main.yml").write_text(head + states + last, encoding="utf-8")
+    ended = run(*words, "main.yml", "--time-limit", "1", folder=tmp_path)
+    assert (ended.returncode, ended.stdout) == (1, "")
+    assert ended.stderr == "the limit of CPU time is exceeded; raise it with `--time-limit`\n"
+    assert [path.name for path in tmp_path.iterdir()] == ["main.yml"]
+
+
+@pytest.mark.parametrize("text", ["x", "-1", "1.5"])
+def test_other_limits_of_cpu_time_are_wrong_usage(text: str, tmp_path: Path) -> None:
+    ended = run("check", "--time-limit", text, folder=tmp_path)
+    assert ended.returncode == 2
