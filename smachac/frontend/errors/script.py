@@ -418,6 +418,8 @@ def unreadable_file(
           - PICK: {template: ScriptedState, outcomes: [done], transitions: {done: succeeded}}
         == smachac.toml ==
         scripts = ["sub_scripts"]
+        == sub_scripts/wait.yml ==
+        - WAIT: {template: SleepState, time: 1}
     """
     return Finding(
         span=span,
