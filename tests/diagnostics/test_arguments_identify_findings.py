@@ -34,7 +34,7 @@ SCRIPTS = [
     *sorted((ROOT / "tests" / "explained").glob("*.yml")),
     *sorted((ROOT / "examples").glob("*/main.yml")),
 ]
-QUICK, MORE = 2, 12
+QUICK, MORE = 1, 12
 """The random projects of the corpus; each kind of mutation is applied to each of them."""
 
 Place: TypeAlias = tuple[str, Severity, Span]
@@ -91,7 +91,13 @@ def test_arguments_in_scripts(path: Path) -> None:
     check_arguments(every_finding(source, library, report))
 
 
-@pytest.mark.parametrize("code", sorted(CODES))
+@pytest.mark.parametrize(
+    "code",
+    [
+        pytest.param(code, marks=pytest.mark.slow if number % 3 else ())
+        for number, code in enumerate(sorted(CODES))
+    ],
+)
 def test_arguments_in_the_examples_of_a_code(code: str) -> None:
     for files in (explanation(CODES[code]).wrong, explanation(CODES[code]).right):
         library = memory_library(files, BUILT_IN)

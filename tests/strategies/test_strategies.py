@@ -57,7 +57,7 @@ def test_busy_machines_have_all_there_is() -> None:
     found: set[str] = set()
 
     @given(busy_machines())
-    @settings(max_examples=600)
+    @settings(max_examples=400)
     def collect(drawn: tuple[Machine, tuple[str, int]]) -> None:
         machine, asked = drawn
         found.add("asked" if asked[0] else "not asked")

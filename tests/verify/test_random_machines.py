@@ -25,7 +25,7 @@ LIBRARY = disk_library(ROOT / "main.yml", [])
 
 
 @seed(0)
-@settings(max_examples=60, database=None, deadline=None, suppress_health_check=SLOW)
+@settings(max_examples=30, database=None, deadline=None, suppress_health_check=SLOW)
 @given(busy_machines())
 def test_random_machines_agree(drawn: tuple[Machine, tuple[str, int]]) -> None:
     machine, _ = drawn
