@@ -283,7 +283,7 @@ def _swapped(tree: ast.Lambda, due: tuple[str, ...]) -> list[str]:
 
 
 def _means(own: str, argument: str) -> bool:
-    """Whether a name stands for an argument: the same, its beginning, or a usual short form."""
+    """Whether a name is that of an argument, its first letters, or a usual abbreviation of it."""
     if argument == "userdata":
         return own in USERDATA
     return (len(own) > 2 and argument.startswith(own)) or own == {"message": "msg"}.get(argument)

@@ -109,8 +109,8 @@ def _with_known_outcomes(
 def _known(
     on: tuple[Word, ...], outcomes: tuple[str, ...], led: Collection[str], report: Report
 ) -> tuple[Word, ...]:
-    """The words that name outcomes. One that does not is reported, and stands for the nearest
-    outcome, or else for one without a transition."""
+    """The words that name outcomes. A word that names none is reported; in its place the result has
+    the outcome with the most similar name, or else an outcome without a transition."""
     found: list[Word] = []
     for word in on:
         if word.text in (*outcomes, ERROR):

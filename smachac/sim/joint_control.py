@@ -83,7 +83,7 @@ class JointControl:
 
     @property
     def width(self) -> float:
-        """The distance between the fingers (m), for a gripper with fingers that open alike."""
+        """The distance between the fingers (m), computed from the mean opening of all fingers."""
         opening = self.opening
         part = sum(opening) / len(opening) if opening else 0.0
         return self.closed_width + part * (self.open_width - self.closed_width)
