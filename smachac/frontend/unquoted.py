@@ -8,7 +8,6 @@ from __future__ import annotations
 
 import ast
 import re
-import warnings
 from collections.abc import Callable, Mapping
 from keyword import iskeyword
 
@@ -16,6 +15,7 @@ from smachac.diagnostics.diagnostic import Report
 from smachac.diagnostics.source import Span
 from smachac.frontend.errors.script import wrong_shape
 from smachac.frontend.yaml_tree import Scalar, Tree
+from smachac.ir.code_places import python_tree
 
 _NAME = r"[A-Za-z_][A-Za-z0-9_]*"
 _QUALIFIED = rf"(?:::)?{_NAME}(?:::{_NAME})*"
@@ -45,22 +45,12 @@ def is_function(text: str) -> bool:
     text = text.strip()
     if len(text) > 2 and text[0] == text[-1] == "`":
         text = text[1:-1].strip()
-    return is_dotted(text) or isinstance(_expression(text), ast.Lambda | ast.Call)
+    return is_dotted(text) or isinstance(python_tree(text), ast.Lambda | ast.Call)
 
 
 def is_expression(text: str) -> bool:
     """Whether a text is an expression of Python on one line."""
-    return "\n" not in text and "#" not in text and _expression(text.strip()) is not None
-
-
-def _expression(text: str) -> ast.expr | None:
-    """The syntax tree of an expression of Python; None for another text."""
-    try:
-        with warnings.catch_warnings():
-            warnings.simplefilter("ignore", SyntaxWarning)
-            return ast.parse(text, mode="eval").body
-    except (SyntaxError, ValueError, RecursionError, MemoryError):
-        return None
+    return "\n" not in text and "#" not in text and python_tree(text.strip()) is not None
 
 
 def is_header(text: str) -> bool:

@@ -12,6 +12,7 @@ from smachac.targets import BuildContext, Files, OptionError, made_by, stem
 from smachac.targets.cpp.header import Header
 from smachac.targets.cpp.plan import scope_name
 from smachac.targets.cpp.user_classes import class_code
+from smachac.targets.package_xml import package_xml
 
 OPTIONS = {
     "main": "true: also main.cpp, a program that runs the machine once",
@@ -87,7 +88,12 @@ def project_files(machine: Machine, wanted: Project, header: Header) -> Files:
         files[f"{folder}main.cpp"] = _main(machine, f"{wanted.package}/" if wanted.package else "")
     if wanted.package:
         files["CMakeLists.txt"] = _ament(machine, wanted)
-        files["package.xml"] = _package(machine, wanted.package)
+        files["package.xml"] = package_xml(
+            machine,
+            wanted.package,
+            "  <buildtool_depend>ament_cmake</buildtool_depend>\n",
+            "ament_cmake",
+        )
     elif wanted.cmake:
         files["CMakeLists.txt"] = _cmake(machine, name, wanted, header)
     return files
@@ -204,33 +210,6 @@ ament_export_targets(export_{name})
 ament_export_dependencies(Threads)
 ament_package()
 """
-
-
-def _package(machine: Machine, name: str) -> str:
-    return f"""\
-<?xml version="1.0"?>
-<!-- {made_by(machine)} -->
-<package format="3">
-  <name>{name}</name>
-  <version>0.0.0</version>
-  <description>{_escaped(_summary(machine))}</description>
-  <maintainer email="todo@example.com">TODO: who keeps it</maintainer>
-  <license>TODO: its license</license>
-  <buildtool_depend>ament_cmake</buildtool_depend>
-  <export>
-    <build_type>ament_cmake</build_type>
-  </export>
-</package>
-"""
-
-
-def _summary(machine: Machine) -> str:
-    lines = machine.root.doc.split("\n")
-    return lines[0] or f"The state machine {machine.root.name}."
-
-
-def _escaped(text: str) -> str:
-    return text.replace("&", "&amp;").replace("<", "&lt;").replace(">", "&gt;")
 
 
 CLANG_FORMAT = "BasedOnStyle: LLVM\nColumnLimit: 0\n"

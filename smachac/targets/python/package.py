@@ -7,6 +7,7 @@ import re
 
 from smachac.ir.nodes import Data, Machine
 from smachac.targets import Files, OptionError, made_by, stem
+from smachac.targets.package_xml import package_xml, summary
 from smachac.targets.python.formatter import flat, literal, string
 from smachac.targets.python.parameters import RosParameter
 
@@ -27,10 +28,12 @@ def package_files(
 ) -> Files:
     """The files of a package: the program `text` first."""
     program, mark = stem(machine), made_by(machine)
+    needed = ["rclpy", *message_packages(text)]
+    depends = "".join(f"  <exec_depend>{each}</exec_depend>\n" for each in needed)
     return {
         f"{name}/{program}.py": text,
         f"{name}/__init__.py": f"# {mark}\n",
-        "package.xml": _package_xml(machine, name, message_packages(text)),
+        "package.xml": package_xml(machine, name, depends, "ament_python"),
         "setup.py": _setup(machine, name, program),
         "setup.cfg": SETTINGS.format(mark=mark, name=name),
         f"resource/{name}": f"# {mark}\n",
@@ -47,25 +50,6 @@ def message_packages(text: str) -> list[str]:
             if module in MESSAGE_MODULES:
                 found.add(package)
     return sorted(found)
-
-
-def _package_xml(machine: Machine, name: str, messages: list[str]) -> str:
-    needed = "\n".join(f"  <exec_depend>{each}</exec_depend>" for each in ["rclpy", *messages])
-    return f"""\
-<?xml version="1.0"?>
-<!-- {made_by(machine)} -->
-<package format="3">
-  <name>{name}</name>
-  <version>0.0.0</version>
-  <description>{_escaped(_summary(machine))}</description>
-  <maintainer email="todo@example.com">TODO: who keeps it</maintainer>
-  <license>TODO: its license</license>
-{needed}
-  <export>
-    <build_type>ament_python</build_type>
-  </export>
-</package>
-"""
 
 
 SETTINGS = """\
@@ -95,7 +79,7 @@ setup(
     zip_safe=True,
     maintainer="TODO: who keeps it",
     maintainer_email="todo@example.com",
-    description={string(_summary(machine))},
+    description={string(summary(machine))},
     license="TODO: its license",
     entry_points={{"console_scripts": ["{program} = {name}.{program}:run_node"]}},
 )
@@ -161,12 +145,3 @@ def _type(data: Data) -> str:
     if isinstance(data, tuple):
         return f"List[{_type(data[0])}]"
     return type(data).__name__
-
-
-def _summary(machine: Machine) -> str:
-    lines = machine.root.doc.split("\n")
-    return lines[0] or f"The state machine {machine.root.name}."
-
-
-def _escaped(text: str) -> str:
-    return text.replace("&", "&amp;").replace("<", "&lt;").replace(">", "&gt;")
