@@ -8,7 +8,7 @@ SMACHAC := .venv/bin/smachac
 DEMO := examples/08_pick_and_place/main.yml
 
 .DEFAULT_GOAL := help
-.PHONY: help demo test test-all test-ros test-ros2 test-lowest check golden docs bench build clean
+.PHONY: help demo test test-all test-ros test-ros2 test-browser test-lowest check golden docs viewer bench build clean
 
 help: ## Print this list
 	@awk -F ':.*## ' '/^[a-z0-9-]+:.*## / {printf "  make %-11s %s\n", $$1, $$2}' Makefile
@@ -24,12 +24,12 @@ demo: ## From YAML to a robot that moves: compile, check, simulate, draw; everyt
 
 test: ## Run the tests that a change is likely to break; ARGS="-k trace" selects some of them
 	@scripts/setup.sh dev
-	$(RUN) pytest -n auto --maxprocesses 8 -m "not slow and not ros and not ros2" $(ARGS)
+	$(RUN) pytest -n auto --maxprocesses 8 -m "not slow and not ros and not ros2 and not browser" $(ARGS)
 
-test-all: ## Run every test: also the slow ones, and those with live ROS
+test-all: ## Run every test: also the slow ones, those with live ROS, and those in a browser
 	@scripts/setup.sh dev
-	$(RUN) pytest -n auto --maxprocesses 8 -m "not ros and not ros2" $(ARGS)
-	@$(MAKE) --no-print-directory test-ros test-ros2
+	$(RUN) pytest -n auto --maxprocesses 8 -m "not ros and not ros2 and not browser" $(ARGS)
+	@$(MAKE) --no-print-directory test-ros test-ros2 test-browser
 
 test-ros: ## Install ROS from Debian and run the tests with live nodes
 	@scripts/setup.sh dev
@@ -40,6 +40,15 @@ test-ros2: ## Install ROS 2 with pip in .venv-ros2 and run the tests with live n
 	@scripts/setup.sh dev
 	@scripts/setup.sh ros2 || test -z "$$SMACHAC_REQUIRE_ROS"
 	$(RUN) pytest -n 4 -m ros2 -rs $(ARGS)
+
+test-browser: ## Install Chromium and what builds the viewer, and run the tests in the browser
+	@scripts/setup.sh dev
+	@scripts/setup.sh browser || test -z "$$SMACHAC_REQUIRE_ALL"
+	$(RUN) pytest -n 2 -m browser -rs $(ARGS)
+
+viewer: ## Build the viewer of the html target (viewer/) into smachac/targets/html
+	@scripts/setup.sh browser
+	cd viewer && npm run --silent check && npm run --silent build
 
 test-lowest: ## Run core tests with the lowest versions of the dependencies that pyproject.toml states
 	@scripts/lowest.sh $(ARGS)
@@ -72,4 +81,4 @@ build: ## Make the source archive and the wheel in dist/
 	$(RUN) build --outdir dist
 
 clean: ## Remove everything that the other targets made
-	rm -rf .venv .venv-lowest .venv-ros2 out dist build smachac.egg-info .mypy_cache .ruff_cache .pytest_cache .hypothesis
+	rm -rf .venv .venv-lowest .venv-ros2 viewer/node_modules out dist build smachac.egg-info .mypy_cache .ruff_cache .pytest_cache .hypothesis

@@ -2,6 +2,7 @@
 # Makes .venv ready: `setup.sh sim` for running and simulating, `setup.sh dev` for tests and checks too.
 # `setup.sh ros` installs what the live tests need of Debian's ROS 1; its Python is the system's.
 # `setup.sh ros2` makes .venv-ros2 with what the live tests need of ROS 2, which is on PyPI.
+# `setup.sh browser` installs Chromium, and in viewer/node_modules what builds the viewer.
 # Quick when nothing changed, safe to interrupt, safe to start twice. PYTHON=... chooses the interpreter.
 set -euo pipefail
 CDPATH='' cd -- "$(dirname -- "${BASH_SOURCE[0]}")/.."
@@ -203,9 +204,28 @@ build_interfaces() {
   [[ $here == "$PWD" ]] || rm -f "$here"
 }
 
+# Prints the packages that the tests in a browser still need. npm comes with Node of other sources.
+browser_parts() {
+  compgen -c chromium >/dev/null || compgen -c google-chrome >/dev/null || echo chromium
+  command -v node >/dev/null || echo nodejs
+  command -v npm >/dev/null || echo npm
+}
+
+prepare_browser() {
+  local parts stamp=viewer/node_modules/.ready state
+  mapfile -t parts < <(browser_parts)
+  ((${#parts[@]} == 0)) || install_packages "${parts[@]}" || return 1
+  state=$(cat viewer/package.json viewer/package-lock.json | cksum)
+  [[ -e $stamp && $(<"$stamp") == "$state" ]] && return
+  say "installing what builds the viewer in viewer/node_modules"
+  (cd viewer && npm ci --no-audit --no-fund --loglevel=error </dev/null >/dev/null) || return 1
+  printf '%s\n' "$state" >"$stamp"
+}
+
 level=${1:-}
-[[ $level == sim || $level == dev || $level == ros || $level == ros2 ]] || fail "usage: setup.sh sim|dev|ros|ros2"
-if [[ $level == ros || $level == ros2 ]]; then
+[[ $level == sim || $level == dev || $level == ros || $level == ros2 || $level == browser ]] ||
+  fail "usage: setup.sh sim|dev|ros|ros2|browser"
+if [[ $level == ros || $level == ros2 || $level == browser ]]; then
   "prepare_$level"
   exit
 fi

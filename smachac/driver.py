@@ -218,7 +218,9 @@ def compile_script(
     if analysis.checked is None or analysis.library is None:
         return Compiled({}, analysis.report)
     found: Report = []
-    files = build(analysis.checked, target, analysis.library, found, options, levels)
+    files = build(
+        analysis.checked, target, analysis.library, found, options, levels, analysis.report
+    )
     if files:
         context = BuildContext(library=analysis.library, options=options or {}, levels=levels)
         files |= runtime_files(target.runtime(analysis.checked, context))
@@ -232,9 +234,13 @@ def build(
     report: Report,
     options: Mapping[str, str] | None = None,
     levels: int = 0,
+    findings: Sequence[Diagnostic] = (),
 ) -> Files:
-    """The files that a target emits; none if templates or classes of the user have errors."""
-    context = BuildContext(library=library, options=options or {}, levels=levels)
+    """The files that a target emits; none if templates or classes of the user have errors.
+
+    `findings` are those of the script, for targets that show them.
+    """
+    context = BuildContext(library=library, options=options or {}, levels=levels, findings=findings)
     files: Files = {}
     try:
         with deep_recursion():

@@ -7,13 +7,18 @@ import os
 import signal
 from collections.abc import Generator, Iterator
 from pathlib import Path
+from typing import TYPE_CHECKING
 
 import pytest
 from hypothesis import settings
 
+from tests.browser import pages
 from tests.ros.ros_graph import Graph, missing
 from tests.ros2 import ros2_graph
 from tests.support.silent_smach import silent_smach
+
+if TYPE_CHECKING:
+    from playwright.sync_api import Browser
 
 # A shell starts what it puts in the background deaf to Ctrl-C, which tests send and raise.
 if signal.getsignal(signal.SIGINT) is signal.SIG_IGN:
@@ -90,3 +95,12 @@ def graph2(tmp_path: Path) -> Iterator[ros2_graph.Graph]:
         yield live
     finally:
         live.stop()
+
+
+@pytest.fixture(scope="session")
+def browser() -> Iterator[Browser]:
+    """A headless Chromium; where it is not installed the test is skipped."""
+    if pages.missing():
+        pytest.skip(f"{pages.missing()} is not there: make test-browser")
+    with pages.started_browser() as started:
+        yield started

@@ -7,11 +7,11 @@ group `smachac.targets`. The targets of smachac and those of other packages are 
 from __future__ import annotations
 
 import re
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, field
 from keyword import iskeyword
 
-from smachac.diagnostics.diagnostic import Report
+from smachac.diagnostics.diagnostic import Diagnostic, Report
 from smachac.frontend.loader import Library
 from smachac.ir.nodes import Checked, Machine, StateType
 from smachac.targets.interface_check import Declared
@@ -32,12 +32,13 @@ class BuildContext:
 
     `library` finds templates and interfaces. `options` are the `--option NAME=VALUE` of the
     command line. `levels` is the number of folders from that of the script down to that of the
-    output; 0 if the output is elsewhere.
+    output; 0 if the output is elsewhere. `findings` are those of the script.
     """
 
     library: Library
     options: Mapping[str, str] = field(default_factory=dict)
     levels: int = 0
+    findings: Sequence[Diagnostic] = ()
 
 
 class OptionError(ValueError):

@@ -1,0 +1,229 @@
+"""The model of the viewer: a machine as JSON data, with its findings and properties.
+
+The edges are those of the control-flow graph of each container (`ir.graph.edges`).
+docs/targets.md describes the fields.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Mapping, Sequence
+from pathlib import PurePath
+from typing import Any
+
+from smachac.analysis.context import Context
+from smachac.diagnostics.diagnostic import Diagnostic
+from smachac.diagnostics.source import NOWHERE, Source, Span
+from smachac.ir import graph, nodes
+from smachac.ir.graph import START, Edge
+from smachac.ir.nodes import Concurrence, Container, Key, Leaf, Machine, Node
+from smachac.ir.outcome_names import fails
+from smachac.ir.properties import in_words
+from smachac.ir.script_paths import name_in_script, role_in_words
+from smachac.ir.traversal import remapping
+from smachac.targets.dot.edges import items
+
+VERSION = 1
+"""The version of the format; it increases with every change that a reader must know of."""
+
+SNIPPET_LINES, SNIPPET_COLUMNS = 24, 160
+"""The size of the part of the script that is kept for a state."""
+
+_UNWRITTEN = frozenset(["implicit", "default", "caught"])
+"""The kinds of edges that the script does not write: they are drawn dashed."""
+
+
+def machine_model(
+    machine: Machine, findings: Sequence[Diagnostic] = (), *, live: bool = False
+) -> dict[str, Any]:
+    """A machine, which may have errors, as JSON data.
+
+    `live`: the page connects to the server that it comes from.
+    """
+    context = Context(machine)
+    shown = context.script_paths
+    by_node: dict[str, list[int]] = {}
+    for index, item in enumerate(findings):
+        if item.finding.node is not None:
+            by_node.setdefault(item.finding.node, []).append(index)
+    return {
+        "version": VERSION,
+        "name": machine.root.name,
+        "source": _file(machine.source),
+        "digest": machine.digest,
+        "root": machine.root.name,
+        "live": live,
+        "nodes": [
+            _node(path, node, context, shown, by_node.get(path, []))
+            for path, node in context.states
+        ],
+        "edges": [edge for path, node in context.containers for edge in _edges(path, node)],
+        "findings": [_finding(item) for item in findings],
+        "properties": [
+            {
+                "name": each.property.name,
+                "text": in_words(each.property.form),
+                "verdict": each.verdict,
+                "states": list(each.states),
+            }
+            for each in (context.judgements if machine.properties else ())
+        ],
+    }
+
+
+def _node(
+    path: str, node: Node, context: Context, shown: Mapping[str, str], found: list[int]
+) -> dict[str, Any]:
+    file, line = _place(node.span)
+    children = () if isinstance(node, Leaf) else node.children
+    data: dict[str, Any] = {
+        "path": path,
+        "name": name_in_script(node),
+        "kind": "leaf" if isinstance(node, Leaf) else node.keyword,
+        "parent": path.rpartition("/")[0] or None,
+        "children": [f"{path}/{child.name}" for child in children],
+        "initial": _initial(path, node),
+        "type": node.type or None,
+        "role": role_in_words(node) or None,
+        "doc": node.doc,
+        "file": file,
+        "line": line,
+        "snippet": _snippet(node.span),
+        "outcomes": [
+            {"name": each.name, "failure": fails(node, each.name), "doc": each.doc}
+            for each in node.outcomes
+        ],
+        "inputs": _keys(path, node, node.inputs, context.types.inputs),
+        "outputs": _keys(path, node, node.outputs, context.types.outputs),
+        "findings": found,
+        "tags": list(node.tags),
+    }
+    if path in shown:
+        data["shown"] = shown[path]
+    return data | _of_container(path, node, context)
+
+
+def _initial(path: str, node: Node) -> str | None:
+    if not isinstance(node, nodes.StateMachine | nodes.Sequence) or not node.initial:
+        return None
+    return f"{path}/{node.initial}"
+
+
+def _keys(
+    path: str, node: Node, keys: Sequence[Key], types: Mapping[tuple[str, str], Any]
+) -> list[dict[str, Any]]:
+    """Keys of a state: `key` is the key of the container around it that each refers to."""
+    names = remapping(node)
+    return [
+        {
+            "name": key.name,
+            "key": names.get(key.name, key.name),
+            "type": str(types.get((path, key.name), key.type)),
+            "doc": key.doc,
+        }
+        for key in keys
+    ]
+
+
+def _of_container(path: str, node: Node, context: Context) -> dict[str, Any]:
+    """The fields that only containers have."""
+    if isinstance(node, Leaf):
+        return {}
+    data: dict[str, Any] = {
+        "userdata": [
+            {
+                "key": preset.key,
+                "type": str(context.types.keys.get((path, preset.key), preset.type)),
+                "value": " ".join(preset.value.span.text.split())[:SNIPPET_COLUMNS],
+            }
+            for preset in node.userdata
+        ]
+    }
+    match node:
+        case Concurrence():
+            data["join"] = node.join
+            data["default"] = node.default_outcome or None
+            data["rules"] = [
+                {
+                    "outcome": rule.outcome,
+                    "when": [[f"{path}/{each.child}", each.outcome] for each in rule.when],
+                }
+                for rule in node.rules
+            ]
+        case nodes.Iterator() if not node.sugar:
+            data["items"] = f"{node.item_key} {items(node)}"
+    return data
+
+
+def _edges(path: str, container: Container) -> Iterator[dict[str, Any]]:
+    """The edges inside a container. `source` is null for the edge from its start, `target` is a
+    state, or an outcome of the container."""
+    by_name = {child.name: child for child in container.children}
+    found = list(graph.edges(container))
+    if container.catches:
+        found.append(Edge(START, graph.exit_vertex(container.catches), "", "caught"))
+    for edge in found:
+        source = by_name.get(edge.source) if isinstance(edge.source, str) else None
+        target = edge.target
+        yield {
+            "container": path,
+            "source": f"{path}/{edge.source}" if isinstance(edge.source, str) else None,
+            "outcome": edge.outcome,
+            "target": f"{path}/{target}" if isinstance(target, str) else {"outcome": target[1]},
+            "kind": edge.kind,
+            "implicit": edge.kind in _UNWRITTEN,
+            "failure": fails(source, edge.outcome) if source else edge.kind == "caught",
+        }
+
+
+def _finding(item: Diagnostic) -> dict[str, Any]:
+    file, line = _place(item.span)
+    return {
+        "code": item.code,
+        "severity": item.severity.value,
+        "message": item.message,
+        "help": item.help,
+        "file": file,
+        "line": line,
+        "node": item.finding.node,
+        "related": [
+            dict(zip(("file", "line"), _place(each.span), strict=True), message=each.message)
+            for each in item.related
+        ],
+    }
+
+
+def _file(name: str) -> str:
+    """A file without its folder, which differs between computers."""
+    return PurePath(name.replace("\\", "/")).name
+
+
+def _place(span: Span) -> tuple[str | None, int | None]:
+    if span.source is NOWHERE.source:
+        return None, None
+    return _file(span.source.name), span.line
+
+
+def _snippet(span: Span) -> str:
+    """The lines of the script that describe a state: those indented deeper than its first one."""
+    if span.source is NOWHERE.source:
+        return ""
+    first = span.line
+    start = _indentation(span.source, first)
+    lines = [span.source.line(first)]
+    number = first + 1
+    while number <= len(span.source.line_starts) and len(lines) <= SNIPPET_LINES:
+        text = span.source.line(number)
+        if text.strip() and _indentation(span.source, number) <= start:
+            break
+        lines.append(text)
+        number += 1
+    while not lines[-1].strip() and len(lines) > 1:
+        lines.pop()
+    if len(lines) > SNIPPET_LINES:
+        lines[SNIPPET_LINES:] = ["…"]
+    return "\n".join(line[start : start + SNIPPET_COLUMNS] for line in lines)
+
+
+def _indentation(source: Source, number: int) -> int:
+    text = source.line(number)
+    return len(text) - len(text.lstrip(" "))

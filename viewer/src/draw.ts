@@ -1,0 +1,266 @@
+// The picture: a scene as SVG, and the marks on it of selection and run.
+
+import { html, svg } from "./dom";
+import type { Area, Box, PlacedLine, PlacedPiece, Point, Scene } from "./layout";
+import type { Graph, Path, StateNode } from "./model";
+import { isContainer, kindInWords, nearest } from "./model";
+import { LINE_HEIGHT, TITLE_HEIGHT, boxDetail } from "./pieces";
+import { fitting, width } from "./text";
+
+/** What a run of the machine marks in the picture. `taken` are ids of edges (see `edgeId`). */
+export interface Highlight {
+  active: Iterable<Path>;
+  taken?: Iterable<string>;
+  visits?: ReadonlyMap<Path, number>;
+}
+
+/** The elements of the picture that change after it is drawn. */
+export interface Picture {
+  root: SVGGElement;
+  states: Map<Path, SVGGElement>;
+  lines: { line: PlacedLine; element: SVGGElement }[];
+}
+
+export function draw(graph: Graph, scene: Scene): Picture {
+  const states = new Map<Path, SVGGElement>();
+  const tree = svg("g", { role: "tree", "aria-label": `States of ${graph.model.name}` });
+  for (const box of scene.boxes) {
+    const node = graph.nodes.get(box.path);
+    if (!node) continue;
+    const element = drawState(graph, node, box);
+    states.set(box.path, element);
+    tree.append(element);
+  }
+  const lines = scene.lines.map((line) => ({ line, element: drawLine(line) }));
+  const edges = svg("g", { "aria-hidden": "true" }, ...lines.map((each) => each.element));
+  const labels = svg("g", { "aria-hidden": "true" }, ...scene.lines.map(drawLabel));
+  const marks = svg("g", { "aria-hidden": "true" }, ...scene.pieces.map((piece) => drawPiece(graph, piece)));
+  return { root: svg("g", {}, tree, edges, marks, labels), states, lines };
+}
+
+function drawState(graph: Graph, node: StateNode, box: Box): SVGGElement {
+  const siblings = node.parent === null ? [node.path] : (graph.nodes.get(node.parent)?.children ?? []);
+  const group = svg("g", {
+    class: classes(node, box),
+    transform: `translate(${box.x} ${box.y})`,
+    role: "treeitem",
+    tabindex: "-1",
+    "data-path": node.path,
+    "aria-label": spoken(node),
+    "aria-level": box.level + 1,
+    "aria-setsize": siblings.length,
+    "aria-posinset": siblings.indexOf(node.path) + 1,
+    "aria-expanded": isContainer(node) ? box.open : null,
+    "aria-selected": "false",
+  });
+  const tip = [node.shown ?? node.path, node.doc].filter(Boolean).join("\n");
+  group.append(svg("title", {}, tip));
+  if (isContainer(node) && !box.open) {
+    group.append(svg("rect", { class: "below", x: 4, y: 4, width: box.width, height: box.height, rx: 8 }));
+  }
+  const radius = box.open ? 12 : 8;
+  group.append(svg("rect", { class: "body", width: box.width, height: box.height, rx: radius }));
+  if (box.open) drawTitle(group, node, box);
+  else drawText(group, node, box);
+  return group;
+}
+
+function classes(node: StateNode, box: Box): string {
+  const names = ["state", node.kind, box.open ? "open" : "closed"];
+  if (node.role) names.push("sugar");
+  if (box.open && box.level % 2) names.push("odd");
+  return names.join(" ");
+}
+
+function spoken(node: StateNode): string {
+  const parts = [node.name, kindInWords(node)];
+  if (node.outcomes.length) parts.push(`outcomes ${node.outcomes.map((each) => each.name).join(", ")}`);
+  if (node.findings.length) parts.push(`${node.findings.length} findings`);
+  return parts.join("; ");
+}
+
+function drawTitle(group: SVGGElement, node: StateNode, box: Box): void {
+  const name = fitting(node.name, "title");
+  const detail = fitting(kindInWords(node), "detail");
+  group.append(
+    chevron(16, TITLE_HEIGHT / 2 + 1, true),
+    svg("text", { class: "title", x: 32, y: 22 }, name),
+    svg("text", { class: "detail", x: 32 + width(name, "title") + 10, y: 22 }, detail),
+  );
+  if (node.findings.length) group.append(badge(box.width - 18, 17));
+}
+
+function drawText(group: SVGGElement, node: StateNode, box: Box): void {
+  const middle = box.width / 2;
+  const detail = fitting(boxDetail(node, node.children.length), "detail");
+  const name = fitting(node.name, "name");
+  const y = detail ? 21 : 23;
+  group.append(svg("text", { class: "name", x: middle, y, "text-anchor": "middle" }, name));
+  if (detail) {
+    group.append(svg("text", { class: "detail", x: middle, y: 37, "text-anchor": "middle" }, detail));
+  }
+  if (isContainer(node)) group.append(chevron(14, y - 4, false));
+  if (node.findings.length) group.append(badge(box.width - 13, 13));
+}
+
+/** The mark of a container: points down where it is open. */
+function chevron(x: number, y: number, open: boolean): SVGElement {
+  const points = open ? "-4,-2 0,3 4,-2" : "-2,-4 3,0 -2,4";
+  return svg("g", { class: "toggle", transform: `translate(${x} ${y})` },
+    svg("rect", { class: "hit", x: -11, y: -11, width: 22, height: 22, rx: 5 }),
+    svg("polyline", { points }),
+  );
+}
+
+/** The mark of a state with findings: a triangle, so that colour is not its only sign. */
+function badge(x: number, y: number): SVGElement {
+  return svg("g", { class: "badge", transform: `translate(${x} ${y})` },
+    svg("path", { d: "M0-7 7.5 6H-7.5Z" }),
+    svg("path", { class: "stroke", d: "M0-2.5V1.5M0 3.6V3.8" }),
+  );
+}
+
+function drawPiece(graph: Graph, { piece, container, x, y, width, height }: PlacedPiece): SVGElement {
+  const group = svg("g", { class: `piece ${piece.what}`, transform: `translate(${x} ${y})` });
+  group.append(svg("title", {}, piece.label));
+  switch (piece.what) {
+    case "start":
+      group.append(svg("circle", { cx: width / 2, cy: height / 2, r: width / 2 }));
+      break;
+    case "fork":
+    case "join":
+      group.append(svg("rect", { width, height, rx: 2.5 }));
+      break;
+    default: {
+      group.append(svg("rect", { width, height, rx: height / 2 }));
+      if (piece.what === "exit" && container === graph.model.root) {
+        group.append(svg("rect", { class: "ring", x: -3, y: -3, width: width + 6, height: height + 6, rx: height / 2 + 3 }));
+      }
+      const text = { x: width / 2, y: height / 2 + 4, "text-anchor": "middle" };
+      group.append(svg("text", text, piece.label));
+    }
+  }
+  if (piece.failure) group.classList.add("failure");
+  return group;
+}
+
+const CORNER = 7;
+
+/** A path through points with round corners. */
+export function roundedPath(points: Point[]): string {
+  const first = points[0];
+  if (!first) return "";
+  let path = `M${first.x} ${first.y}`;
+  for (let index = 1; index < points.length; index += 1) {
+    const before = points[index - 1]!;
+    const here = points[index]!;
+    const next = points[index + 1];
+    if (!next) {
+      path += `L${here.x} ${here.y}`;
+      continue;
+    }
+    const radius = Math.min(CORNER, distance(before, here) / 2, distance(here, next) / 2);
+    const start = towards(here, before, radius);
+    const end = towards(here, next, radius);
+    path += `L${start.x} ${start.y}Q${here.x} ${here.y} ${end.x} ${end.y}`;
+  }
+  return path;
+}
+
+function distance(a: Point, b: Point): number {
+  return Math.hypot(a.x - b.x, a.y - b.y);
+}
+
+function towards(from: Point, to: Point, by: number): Point {
+  const length = distance(from, to) || 1;
+  return { x: from.x + ((to.x - from.x) * by) / length, y: from.y + ((to.y - from.y) * by) / length };
+}
+
+function drawLine({ line, points }: PlacedLine): SVGGElement {
+  const d = roundedPath(points);
+  const group = svg("g", { class: `line${line.failure ? " failure" : ""}${line.implicit ? " implicit" : ""}` });
+  const end = points[points.length - 1];
+  group.append(svg("path", { class: "stroke", d }));
+  if (end) group.append(svg("path", { class: "head", d: `M${end.x} ${end.y}l-4-7.5q4 1.6 8 0z` }));
+  return group;
+}
+
+function drawLabel({ line, label }: PlacedLine): SVGElement | null {
+  if (!label) return null;
+  const group = svg("g", { class: `label${line.failure ? " failure" : ""}${line.implicit ? " implicit" : ""}` });
+  group.append(background(label));
+  line.labels.forEach((text, index) => {
+    const y = label.y + 2 + LINE_HEIGHT * index + 10.5;
+    const x = label.x + label.width / 2;
+    group.append(svg("text", { x, y, "text-anchor": "middle" }, fitting(text, "label")));
+  });
+  return group;
+}
+
+function background({ x, y, width, height }: Area): SVGElement {
+  return svg("rect", { x, y, width, height, rx: 4 });
+}
+
+/** Mark the selected state and the lines that start or end at it. */
+export function markSelection(picture: Picture, path: Path | null): void {
+  for (const [each, element] of picture.states) {
+    const chosen = each === path;
+    element.classList.toggle("selected", chosen);
+    element.setAttribute("aria-selected", String(chosen));
+    element.setAttribute("tabindex", chosen ? "0" : "-1");
+  }
+  for (const { line, element } of picture.lines) {
+    element.classList.toggle("near", path !== null && (line.line.from === path || line.line.to === path));
+  }
+}
+
+/** Mark what a run does. A state inside a closed container marks that container. */
+export function markRun(graph: Graph, picture: Picture, run: Highlight | null): void {
+  const active = new Set<Path>();
+  for (const path of run?.active ?? []) {
+    let node = nearest(graph, path);
+    while (node && !picture.states.has(node.path) && node.parent !== null) node = graph.nodes.get(node.parent);
+    if (node) active.add(node.path);
+  }
+  const taken = new Set(run?.taken ?? []);
+  for (const [path, element] of picture.states) {
+    element.classList.toggle("active", active.has(path));
+    setVisits(element, run?.visits?.get(path) ?? 0);
+  }
+  for (const { line, element } of picture.lines) {
+    element.classList.toggle("taken", line.line.edges.some((edge) => taken.has(edge)));
+  }
+}
+
+function setVisits(element: SVGGElement, count: number): void {
+  element.classList.toggle("visited", count > 0);
+  let mark = element.querySelector<SVGTextElement>(":scope > .visits");
+  if (count < 2) {
+    mark?.remove();
+    return;
+  }
+  if (!mark) {
+    mark = svg("text", { class: "visits", "text-anchor": "end" });
+    const body = element.querySelector(":scope > .body")!;
+    mark.setAttribute("x", String(Number(body.getAttribute("width")) - 8));
+    mark.setAttribute("y", "-4");
+    element.append(mark);
+  }
+  mark.textContent = `×${count}`;
+}
+
+/** A legend of the signs of the picture. */
+export function legend(): HTMLElement {
+  const sign = (name: string): SVGElement =>
+    svg("svg", { viewBox: "0 0 40 14", width: 40, height: 14, "aria-hidden": "true" },
+      svg("g", { class: name },
+        svg("path", { class: "stroke", d: "M2 7H32" }),
+        svg("path", { class: "head", d: "M38 7l-7.5-4q1.6 4 0 8z" }),
+      ));
+  const row = (name: string, text: string): HTMLElement => html("li", {}, sign(name), html("span", {}, text));
+  return html("ul", { class: "legend" },
+    row("line", "outcome"),
+    row("line failure", "outcome of failure"),
+    row("line implicit", "implied, not written in the script"),
+  );
+}

@@ -1,0 +1,295 @@
+// The layout of a machine: each open container on its own, innermost first, then put together.
+// No edge crosses the border of a container, so a change inside one leaves the others as they are.
+
+import type { ElkExtendedEdge, ElkNode, ElkPort } from "elkjs/lib/elk-api";
+import type { Graph, Path } from "./model";
+import type { Content, Line, Piece } from "./pieces";
+import { EXIT_HEIGHT, LINE_HEIGHT, TITLE_HEIGHT, boxSize, contentOf, exitId } from "./pieces";
+import { fitting, width } from "./text";
+import { kindInWords } from "./model";
+import type { ComputeLayout } from "./worker";
+
+export interface Point {
+  x: number;
+  y: number;
+}
+
+export interface Area extends Point {
+  width: number;
+  height: number;
+}
+
+/** A state in the picture. `level` is its depth, from 0. */
+export interface Box extends Area {
+  path: Path;
+  open: boolean;
+  level: number;
+}
+
+export interface PlacedPiece extends Area {
+  container: Path;
+  piece: Piece;
+}
+
+export interface PlacedLine {
+  container: Path;
+  line: Line;
+  points: Point[];
+  label: Area | null;
+}
+
+/** Everything that is drawn, in absolute coordinates; containers before their content. */
+export interface Scene {
+  width: number;
+  height: number;
+  boxes: Box[];
+  pieces: PlacedPiece[];
+  lines: PlacedLine[];
+}
+
+/** The layout of one container: `frame` is its box, below which its outcomes stand out. */
+interface Placed {
+  frame: { width: number; height: number };
+  full: { width: number; height: number };
+  entry: number;
+  pieces: PlacedPiece[];
+  lines: PlacedLine[];
+}
+
+const SIDE = 20;
+const MANY = 300;
+/** The number of lines in a container from which its layout is simpler, and so faster. */
+
+const ROOMY: Record<string, string> = {
+  "elk.algorithm": "layered",
+  "elk.direction": "DOWN",
+  "elk.edgeRouting": "ORTHOGONAL",
+  "elk.separateConnectedComponents": "false",
+  "elk.padding": `[top=${TITLE_HEIGHT + 14},left=${SIDE},bottom=0,right=${SIDE}]`,
+  "elk.spacing.nodeNode": "28",
+  "elk.spacing.edgeNode": "18",
+  "elk.spacing.edgeEdge": "12",
+  "elk.spacing.edgeLabel": "3",
+  "elk.spacing.nodeSelfLoop": "14",
+  "elk.layered.spacing.nodeNodeBetweenLayers": "30",
+  "elk.layered.spacing.edgeNodeBetweenLayers": "14",
+  "elk.layered.spacing.edgeEdgeBetweenLayers": "10",
+  "elk.layered.considerModelOrder.strategy": "NODES_AND_EDGES",
+  "elk.layered.cycleBreaking.strategy": "MODEL_ORDER",
+  "elk.layered.nodePlacement.strategy": "NETWORK_SIMPLEX",
+  "elk.layered.nodePlacement.favorStraightEdges": "true",
+  "elk.layered.edgeLabels.centerLabelPlacementStrategy": "TAIL_LAYER",
+};
+
+const FAST: Record<string, string> = {
+  ...ROOMY,
+  "elk.layered.nodePlacement.strategy": "BRANDES_KOEPF",
+  "elk.layered.layering.strategy": "LONGEST_PATH",
+  "elk.layered.thoroughness": "1",
+};
+
+/** Layouts of a machine; a container is laid out again only if something in it changed. */
+export class Layouts {
+  private readonly known = new Map<string, Promise<Placed>>();
+
+  constructor(
+    private readonly graph: Graph,
+    private readonly compute: ComputeLayout,
+  ) {}
+
+  async scene(open: ReadonlySet<Path>): Promise<Scene> {
+    const root = this.graph.model.root;
+    const placed = new Map<Path, Placed>();
+    await this.place(root, open, placed);
+    const scene: Scene = { width: 0, height: 0, boxes: [], pieces: [], lines: [] };
+    if (!placed.has(root)) {
+      const size = this.size(root);
+      scene.boxes.push({ path: root, x: 0, y: 0, ...size, open: false, level: 0 });
+      return { ...scene, ...size };
+    }
+    this.compose(root, { x: 0, y: 0 }, 0, placed, scene);
+    const { full } = placed.get(root)!;
+    return { ...scene, ...full };
+  }
+
+  /** Lay out a container and all open ones in it; the key of the layout. */
+  private async place(path: Path, open: ReadonlySet<Path>, placed: Map<Path, Placed>): Promise<string> {
+    const node = this.graph.nodes.get(path);
+    if (!node || !open.has(path)) return "";
+    const inner = await Promise.all(node.children.map((child) => this.place(child, open, placed)));
+    const key = JSON.stringify([path, ...inner]);
+    let layout = this.known.get(key);
+    if (!layout) {
+      layout = this.placeContainer(path, open, placed);
+      this.known.set(key, layout);
+    }
+    placed.set(path, await layout);
+    return key;
+  }
+
+  private async placeContainer(
+    path: Path,
+    open: ReadonlySet<Path>,
+    placed: Map<Path, Placed>,
+  ): Promise<Placed> {
+    const node = this.graph.nodes.get(path)!;
+    const sizes = new Map(
+      node.children.map((child) => [child, placed.get(child)?.full ?? this.size(child)]),
+    );
+    const content = contentOf(this.graph, path, open, sizes);
+    const done = await this.compute(elkGraph(content, placed));
+    const title =
+      width(fitting(node.name, "title"), "title") +
+      width(fitting(kindInWords(node), "detail"), "detail") +
+      96;
+    return readLayout(content, done, title);
+  }
+
+  private size(path: Path): { width: number; height: number } {
+    const node = this.graph.nodes.get(path)!;
+    return boxSize(node, node.children.length);
+  }
+
+  private compose(path: Path, at: Point, level: number, placed: Map<Path, Placed>, scene: Scene): void {
+    const layout = placed.get(path)!;
+    scene.boxes.push({ path, ...at, ...layout.frame, open: true, level });
+    for (const { container, line, points, label } of layout.lines) {
+      scene.lines.push({
+        container,
+        line,
+        points: points.map((point) => moved(point, at)),
+        label: label && moved(label, at),
+      });
+    }
+    for (const piece of layout.pieces) {
+      const here = moved(piece, at);
+      if (piece.piece.what !== "state") scene.pieces.push(here);
+      else if (placed.has(piece.piece.id)) this.compose(piece.piece.id, here, level + 1, placed, scene);
+      else {
+        const { x, y, width, height } = here;
+        scene.boxes.push({ path: piece.piece.id, x, y, width, height, open: false, level: level + 1 });
+      }
+    }
+  }
+}
+
+function moved<P extends Point>(point: P, by: Point): P {
+  return { ...point, x: point.x + by.x, y: point.y + by.y };
+}
+
+/** The graph of a container for ELK. */
+function elkGraph(content: Content, placed: Map<Path, Placed>): ElkNode {
+  const options = content.lines.length > MANY ? FAST : ROOMY;
+  const ports = new Map<string, Map<string, ElkPort>>();
+  const port = (piece: string, name: string, side: "NORTH" | "SOUTH"): string => {
+    const known = ports.get(piece) ?? new Map<string, ElkPort>();
+    ports.set(piece, known);
+    const id = `${piece}\n${name}`;
+    if (!known.has(id)) {
+      known.set(id, { id, width: 0, height: 0, layoutOptions: { "elk.port.side": side } });
+    }
+    return id;
+  };
+  const inner = (piece: string): Placed | undefined => placed.get(piece);
+  const edges: ElkExtendedEdge[] = content.lines.map((line, index) => ({
+    id: `line ${index}`,
+    sources: [port(line.from, inner(line.from) ? `out ${line.outcome}` : `out ${index}`, "SOUTH")],
+    targets: [port(line.to, inner(line.to) ? "in" : `in ${look(line)}`, "NORTH")],
+    labels: line.labels.length ? [labelBox(line)] : [],
+    layoutOptions: priorities(line),
+  }));
+  return {
+    id: content.path,
+    layoutOptions: options,
+    children: content.pieces.map((piece) => ({
+      id: piece.id,
+      width: piece.width,
+      height: piece.height,
+      ports: placedPorts(piece, [...(ports.get(piece.id)?.values() ?? [])], inner(piece.id)),
+      layoutOptions: {
+        "elk.portConstraints": inner(piece.id) ? "FIXED_POS" : "FIXED_SIDE",
+        "elk.spacing.portPort": "14",
+        ...constraint(piece),
+      },
+    })),
+    edges,
+  };
+}
+
+const look = (line: Line): string => (line.failure ? "failure" : line.implicit ? "implicit" : "plain");
+
+function constraint(piece: Piece): Record<string, string> {
+  const name = "elk.layered.layering.layerConstraint";
+  if (piece.what === "exit") return { [name]: "LAST_SEPARATE" };
+  return piece.what === "start" || piece.what === "fork" ? { [name]: "FIRST_SEPARATE" } : {};
+}
+
+function priorities(line: Line): Record<string, string> {
+  const main = !line.failure && !line.implicit;
+  return {
+    "elk.layered.priority.straightness": main ? "10" : "1",
+    "elk.layered.priority.shortness": main ? "5" : "1",
+  };
+}
+
+function labelBox(line: Line): { id: string; text: string; width: number; height: number; layoutOptions: Record<string, string> } {
+  const widest = Math.max(...line.labels.map((text) => width(fitting(text, "label"), "label")));
+  return {
+    id: `${line.from} ${line.to} label`,
+    text: line.labels.join("\n"),
+    width: widest + 10,
+    height: LINE_HEIGHT * line.labels.length + 4,
+    layoutOptions: { "elk.edgeLabels.inline": "true", "elk.edgeLabels.placement": "CENTER" },
+  };
+}
+
+/** The ports of a piece; those of an open container are at its start and at its outcomes. */
+function placedPorts(piece: Piece, ports: ElkPort[], inner: Placed | undefined): ElkPort[] {
+  if (!inner) return ports;
+  const exits = new Map(
+    inner.pieces
+      .filter((each) => each.piece.what === "exit")
+      .map((each) => [each.piece.id, each.x + each.width / 2]),
+  );
+  return ports.map((port) => {
+    const name = port.id.slice(piece.id.length + 1);
+    if (name === "in") return { ...port, x: inner.entry, y: 0 };
+    const x = exits.get(exitId(name.slice("out ".length))) ?? inner.full.width / 2;
+    return { ...port, x, y: inner.full.height };
+  });
+}
+
+/** The layout of a container from the answer of ELK. `title` is the width that its title needs. */
+function readLayout(content: Content, done: ElkNode, title: number): Placed {
+  const places = new Map((done.children ?? []).map((each) => [each.id, each]));
+  const least = Math.max(title, 120);
+  const shift = { x: Math.max(0, (least - (done.width ?? 0)) / 2), y: 0 };
+  const pieces = content.pieces.map((piece) => {
+    const { x = 0, y = 0 } = places.get(piece.id) ?? {};
+    return { container: content.path, piece, ...moved({ x, y }, shift), width: piece.width, height: piece.height };
+  });
+  const lines = (done.edges ?? []).map((edge, index) => {
+    const section = edge.sections?.[0];
+    const points = section ? [section.startPoint, ...(section.bendPoints ?? []), section.endPoint] : [];
+    const box = edge.labels?.[0];
+    const label = box && { x: box.x ?? 0, y: box.y ?? 0, width: box.width ?? 0, height: box.height ?? 0 };
+    return {
+      container: content.path,
+      line: content.lines[index]!,
+      points: points.map((point) => moved(point, shift)),
+      label: label ? moved(label, shift) : null,
+    };
+  });
+  const exits = pieces.filter((each) => each.piece.what === "exit");
+  const bottom = Math.max(0, ...exits.map((each) => each.y + each.height));
+  const frameWidth = Math.max(least, done.width ?? 0);
+  const frameHeight = exits.length ? bottom - EXIT_HEIGHT / 2 : (done.height ?? 0) + SIDE;
+  const start = pieces[0]!;
+  return {
+    frame: { width: frameWidth, height: frameHeight },
+    full: { width: frameWidth, height: Math.max(bottom, frameHeight) },
+    entry: start.x + start.width / 2,
+    pieces,
+    lines,
+  };
+}

@@ -1,0 +1,25 @@
+// The start of the page: the model in it, the layout program, the viewer.
+
+import type { Model } from "./model";
+import { createViewer } from "./viewer";
+import { startLayout } from "./worker";
+
+const VERSION = 1;
+
+async function main(): Promise<void> {
+  const model = JSON.parse(textOf("smachac-model")) as Model;
+  if (model.version !== VERSION) throw new Error(`the model has version ${model.version}, not ${VERSION}`);
+  await createViewer(document.body, model, startLayout(textOf("smachac-layout")));
+  document.documentElement.dataset["ready"] = "true";
+}
+
+function textOf(id: string): string {
+  return document.getElementById(id)?.textContent ?? "";
+}
+
+main().catch((error: unknown) => {
+  const line = document.createElement("p");
+  line.setAttribute("role", "alert");
+  line.textContent = `The viewer cannot show this page: ${String(error)}`;
+  document.body.prepend(line);
+});

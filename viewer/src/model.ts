@@ -1,0 +1,196 @@
+// The model of a machine as the page gets it (docs/targets.md), and look-ups in it.
+
+export type Path = string;
+
+export interface Outcome {
+  name: string;
+  failure: boolean;
+  doc: string;
+}
+
+export interface Key {
+  name: string;
+  key: string;
+  type: string;
+  doc: string;
+  secret?: boolean;
+}
+
+export interface Preset {
+  key: string;
+  type: string;
+  value: string;
+}
+
+export interface Rule {
+  outcome: string;
+  when: [Path, string][];
+}
+
+export interface StateNode {
+  path: Path;
+  shown?: string;
+  name: string;
+  kind: "leaf" | "machine" | "sequence" | "concurrence" | "iterator";
+  parent: Path | null;
+  children: Path[];
+  initial: Path | null;
+  type: string | null;
+  role: string | null;
+  doc: string;
+  file: string | null;
+  line: number | null;
+  snippet: string;
+  outcomes: Outcome[];
+  inputs: Key[];
+  outputs: Key[];
+  findings: number[];
+  tags: string[];
+  userdata?: Preset[];
+  join?: "all" | "any";
+  default?: string | null;
+  rules?: Rule[];
+  items?: string;
+}
+
+export interface ModelEdge {
+  container: Path;
+  source: Path | null;
+  outcome: string;
+  target: Path | { outcome: string };
+  kind: string;
+  implicit: boolean;
+  failure: boolean;
+}
+
+export interface Finding {
+  code: string;
+  severity: "error" | "warning" | "info";
+  message: string;
+  help: string | null;
+  file: string | null;
+  line: number | null;
+  node: Path | null;
+  related: { file: string | null; line: number | null; message: string }[];
+}
+
+export interface Property {
+  name: string;
+  text: string;
+  verdict: string;
+  states: Path[];
+}
+
+export interface Model {
+  version: number;
+  name: string;
+  source: string;
+  digest: string;
+  root: Path;
+  live: boolean;
+  nodes: StateNode[];
+  edges: ModelEdge[];
+  findings: Finding[];
+  properties: Property[];
+}
+
+/** A model with its look-ups. `byShown` finds a state by the path that scripts and traces show. */
+export interface Graph {
+  model: Model;
+  nodes: Map<Path, StateNode>;
+  byShown: Map<string, StateNode>;
+  inside: Map<Path, ModelEdge[]>;
+  leaving: Map<Path, ModelEdge[]>;
+}
+
+export function indexed(model: Model): Graph {
+  const graph: Graph = {
+    model,
+    nodes: new Map(model.nodes.map((node) => [node.path, node])),
+    byShown: new Map(model.nodes.map((node) => [node.shown ?? node.path, node])),
+    inside: new Map(),
+    leaving: new Map(),
+  };
+  for (const edge of model.edges) {
+    append(graph.inside, edge.container, edge);
+    if (edge.source !== null) append(graph.leaving, edge.source, edge);
+  }
+  return graph;
+}
+
+function append<K, V>(map: Map<K, V[]>, key: K, value: V): void {
+  const known = map.get(key);
+  if (known) known.push(value);
+  else map.set(key, [value]);
+}
+
+/** The id of an edge: equal in two models of one machine. `source` is its container at the start. */
+export function edgeId(edge: ModelEdge): string {
+  const target = typeof edge.target === "string" ? edge.target : `${edge.container}:${edge.target.outcome}`;
+  return `${edge.source ?? edge.container}\n${edge.outcome}\n${target}`;
+}
+
+export function isContainer(node: StateNode): boolean {
+  return node.kind !== "leaf";
+}
+
+/** The containers around a state, outermost first. */
+export function ancestors(graph: Graph, path: Path): Path[] {
+  const found: Path[] = [];
+  let node = graph.nodes.get(path);
+  while (node && node.parent !== null) {
+    found.unshift(node.parent);
+    node = graph.nodes.get(node.parent);
+  }
+  return found;
+}
+
+/** The state at a path, or the nearest container around where it would be. */
+export function nearest(graph: Graph, path: Path): StateNode | undefined {
+  let here = path;
+  while (here) {
+    const node = graph.nodes.get(here);
+    if (node) return node;
+    here = here.slice(0, Math.max(0, here.lastIndexOf("/")));
+  }
+  return undefined;
+}
+
+/** What a state is, in words: its role, kind or type. */
+export function kindInWords(node: StateNode): string {
+  if (node.role) return node.role;
+  if (node.kind === "concurrence") return node.join === "any" ? "in parallel, first to end" : "in parallel";
+  if (node.kind === "iterator" && node.items) return `for each ${node.items}`;
+  if (node.kind === "sequence") return "sequence";
+  if (node.kind === "machine") return "state machine";
+  return node.type ?? "state";
+}
+
+/** The containers that are open at first: breadth first, while no more than `limit` states show. */
+export function firstOpen(graph: Graph, limit: number): Set<Path> {
+  const open = new Set<Path>();
+  let count = 1;
+  let level: Path[] = [graph.model.root];
+  while (level.length) {
+    const next: Path[] = [];
+    for (const path of level) {
+      const node = graph.nodes.get(path);
+      if (!node || !isContainer(node) || isWrapped(graph, node)) continue;
+      if (count + node.children.length > limit && path !== graph.model.root) continue;
+      open.add(path);
+      count += node.children.length;
+      next.push(...node.children);
+    }
+    level = next;
+  }
+  return open;
+}
+
+/** Whether a container was made by a field of one leaf (`retry`, ...): it is drawn closed at first. */
+function isWrapped(graph: Graph, node: StateNode): boolean {
+  if (!node.role) return false;
+  return node.children.every((path) => {
+    const child = graph.nodes.get(path);
+    return child !== undefined && (!isContainer(child) || isWrapped(graph, child));
+  });
+}

@@ -1,0 +1,273 @@
+// The viewer: the page's parts and their state. Other modules extend it through `Viewer`.
+
+import { Camera } from "./camera";
+import { button, html, svg } from "./dom";
+import type { Highlight, Picture } from "./draw";
+import { draw, markRun, markSelection } from "./draw";
+import type { Box, Scene } from "./layout";
+import { Layouts } from "./layout";
+import type { Graph, Model, Path } from "./model";
+import { ancestors, firstOpen, indexed, isContainer, nearest } from "./model";
+import { neighbour, readDirection } from "./navigation";
+import type { Section } from "./panel";
+import { fillPanel } from "./panel";
+import { searchField } from "./search";
+import { themeSwitch } from "./theme";
+import type { ComputeLayout } from "./worker";
+
+/** What other modules use: the run of a machine, replay, edits. */
+export interface Viewer {
+  /** The machine that is shown. */
+  readonly graph: Graph;
+  /** The selected state, null for the machine. */
+  readonly selected: Path | null;
+  /** Places for the elements of other modules: in the bar at the top, and below the picture. */
+  readonly toolbar: HTMLElement;
+  readonly footer: HTMLElement;
+  /** Select a state, open the containers around it and show it. */
+  select(path: Path | null): Promise<void>;
+  /** Mark active states and transitions that were taken; null removes the marks. */
+  highlight(run: Highlight | null): void;
+  /** Add a section to the panel; `refresh` fills all sections again. */
+  addSection(section: Section): void;
+  refresh(): void;
+  /** Show another version of the machine: selection, zoom and open containers stay. */
+  setModel(model: Model): Promise<void>;
+  /** A message in the line below the picture; empty removes it. */
+  notice(text: string): void;
+  /** Call a function after each selection. */
+  onSelect(listener: (path: Path | null) => void): void;
+}
+
+/** The number of states that are shown at first, if the machine has more. */
+const SHOWN_AT_FIRST = 150;
+
+export async function createViewer(page: HTMLElement, model: Model, compute: ComputeLayout): Promise<Viewer> {
+  let graph = indexed(model);
+  let layouts = new Layouts(graph, compute);
+  let open = firstOpen(graph, SHOWN_AT_FIRST);
+  let selected: Path | null = null;
+  let scene: Scene = { width: 0, height: 0, boxes: [], pieces: [], lines: [] };
+  let picture: Picture | null = null;
+  let run: Highlight | null = null;
+  let turn = 0;
+  const sections: Section[] = [];
+  const listeners: ((path: Path | null) => void)[] = [];
+
+  const world = svg("g", {});
+  const frame = svg("svg", { class: "picture", role: "group", "aria-label": "State graph" }, world);
+  const panel = html("aside", { "aria-label": "Details" });
+  const notice = html("p", { class: "notice", role: "status" });
+  const footer = html("footer", {});
+  const toolbar = html("div", { class: "tools" });
+  const camera = new Camera(frame, world);
+
+  const boxOf = (path: Path | null): Box | undefined => scene.boxes.find((box) => box.path === path);
+  const whole = (): void => camera.fit({ x: -6, y: -6, width: scene.width + 12, height: scene.height + 12 });
+
+  /** Lay out and draw again; `anchor` is the state that stays where it is on the screen. */
+  async function redraw(anchor: Path | null): Promise<void> {
+    turn += 1;
+    const mine = turn;
+    const before = boxOf(anchor);
+    let next: Scene;
+    try {
+      next = await layouts.scene(open);
+    } catch (error) {
+      notice.textContent = `The layout failed: ${error instanceof Error ? error.message : String(error)}`;
+      return;
+    }
+    if (mine !== turn) return;
+    const focused = frame.contains(document.activeElement);
+    scene = next;
+    picture = draw(graph, scene);
+    world.replaceChildren(picture.root);
+    const after = boxOf(anchor);
+    if (before && after) camera.keep(before, after);
+    mark();
+    if (focused) focusSelected();
+  }
+
+  function mark(): void {
+    if (!picture) return;
+    markSelection(picture, selected);
+    if (selected === null) picture.states.get(graph.model.root)?.setAttribute("tabindex", "0");
+    markRun(graph, picture, run);
+  }
+
+  function focusSelected(): void {
+    picture?.states.get(selected ?? graph.model.root)?.focus({ preventScroll: true });
+  }
+
+  function refresh(): void {
+    const node = selected === null ? null : (graph.nodes.get(selected) ?? null);
+    fillPanel(panel, graph, node, sections, { select: (path) => void select(path), toggle: (path) => void toggle(path) });
+  }
+
+  async function select(path: Path | null): Promise<void> {
+    selected = path !== null && graph.nodes.has(path) ? path : null;
+    const closed = selected === null ? [] : ancestors(graph, selected).filter((each) => !open.has(each));
+    closed.forEach((each) => open.add(each));
+    writeFragment(selected);
+    refresh();
+    if (closed.length) await redraw(closed[0]!);
+    else mark();
+    const box = boxOf(selected);
+    if (box) camera.reveal(box);
+    for (const listener of listeners) listener(selected);
+  }
+
+  async function toggle(path: Path): Promise<void> {
+    const node = graph.nodes.get(path);
+    if (!node || !isContainer(node)) return;
+    if (open.has(path)) open.delete(path);
+    else open.add(path);
+    if (selected !== null && ancestors(graph, selected).includes(path) && !open.has(path)) selected = path;
+    await redraw(path);
+  }
+
+  async function openAll(all: boolean): Promise<void> {
+    const containers = graph.model.nodes.filter(isContainer).map((node) => node.path);
+    open = new Set(all ? containers : [graph.model.root]);
+    if (selected !== null && !all) selected = ancestors(graph, selected)[1] ?? selected;
+    await redraw(null);
+    whole();
+  }
+
+  async function setModel(next: Model): Promise<void> {
+    const known = new Set(graph.nodes.keys());
+    const opened = open;
+    graph = indexed(next);
+    layouts = new Layouts(graph, compute);
+    const fresh = firstOpen(graph, SHOWN_AT_FIRST);
+    open = new Set(next.nodes.filter((node) => (known.has(node.path) ? opened : fresh).has(node.path)).map((node) => node.path));
+    open.add(next.root);
+    if (selected !== null && !graph.nodes.has(selected)) selected = nearest(graph, selected)?.path ?? null;
+    document.title = next.name;
+    title.textContent = next.name;
+    refresh();
+    await redraw(selected ?? next.root);
+  }
+
+  const title = html("h1", {}, model.name);
+  const field = searchField(() => graph, (path) => void select(path).then(focusSelected), focusSelected);
+  const view = html("div", { class: "tools", role: "group", "aria-label": "View" },
+    button("Zoom out", "−", () => camera.zoom(1 / 1.25), "Zoom out (-)"),
+    button("Show the whole machine", "Fit", whole, "Show the whole machine (f)"),
+    button("Zoom in", "+", () => camera.zoom(1.25), "Zoom in (+)"),
+    button("Open all containers", "Open all", () => void openAll(true), "Open all containers (e)"),
+    button("Close all containers", "Close all", () => void openAll(false), "Close all containers (c)"),
+    themeSwitch(),
+  );
+  page.append(
+    html("header", {}, title, toolbar, field, view),
+    html("main", {}, frame, notice, footer),
+    panel,
+  );
+
+  frame.addEventListener("click", (event) => {
+    const element = event.target as Element;
+    const path = element.closest("[data-path]")?.getAttribute("data-path") ?? null;
+    if (path !== null && element.closest(".toggle")) {
+      void toggle(path).then(() => select(path));
+      return;
+    }
+    void select(path).then(() => path !== null && focusSelected());
+  });
+  frame.addEventListener("dblclick", (event) => {
+    const path = (event.target as Element).closest("[data-path]")?.getAttribute("data-path");
+    if (path) void toggle(path);
+  });
+  frame.addEventListener("focusin", (event) => {
+    const path = (event.target as Element).getAttribute("data-path");
+    if (path !== null && path !== selected && (event.target as Element).matches(":focus-visible")) void select(path);
+  });
+  document.addEventListener("keydown", (event) => {
+    if (event.ctrlKey || event.metaKey || event.altKey) return;
+    const typing = (event.target as Element).closest("input, select, textarea, [contenteditable]");
+    if (typing) return;
+    const inPicture = frame.contains(event.target as Node) || event.target === document.body;
+    if (key(event, inPicture)) event.preventDefault();
+  });
+  window.addEventListener("hashchange", () => {
+    const path = readFragment();
+    if (path !== selected) void select(path);
+  });
+
+  /** Handle a key; whether it means something here. */
+  function key(event: KeyboardEvent, inPicture: boolean): boolean {
+    const direction = readDirection(event.key);
+    if (direction && inPicture) {
+      const next = neighbour(scene.boxes, selected ?? graph.model.root, direction, graph);
+      if (next !== null) void select(next).then(focusSelected);
+      return true;
+    }
+    if ((event.key === "Enter" || event.key === " ") && inPicture) {
+      void toggle(selected ?? graph.model.root);
+      return true;
+    }
+    if (event.key === "Escape") {
+      const parent = selected === null ? null : (graph.nodes.get(selected)?.parent ?? null);
+      void select(parent).then(focusSelected);
+      return true;
+    }
+    const actions: Record<string, () => void> = {
+      "/": () => page.querySelector<HTMLInputElement>("#search")?.focus(),
+      "+": () => camera.zoom(1.25),
+      "=": () => camera.zoom(1.25),
+      "-": () => camera.zoom(1 / 1.25),
+      f: whole,
+      "0": whole,
+      e: () => void openAll(true),
+      c: () => void openAll(false),
+    };
+    actions[event.key]?.();
+    return event.key in actions;
+  }
+
+  refresh();
+  await redraw(null);
+  whole();
+  await select(readFragment());
+
+  return {
+    get graph() {
+      return graph;
+    },
+    get selected() {
+      return selected;
+    },
+    toolbar,
+    footer,
+    select,
+    highlight(next) {
+      run = next;
+      if (picture) markRun(graph, picture, run);
+    },
+    addSection(section) {
+      sections.push(section);
+      refresh();
+    },
+    refresh,
+    setModel,
+    notice(text) {
+      notice.textContent = text;
+    },
+    onSelect(listener) {
+      listeners.push(listener);
+    },
+  };
+}
+
+/** The state in the fragment of the address, which may hold other parameters too. */
+function readFragment(): Path | null {
+  return new URLSearchParams(location.hash.slice(1)).get("state");
+}
+
+function writeFragment(path: Path | null): void {
+  const parameters = new URLSearchParams(location.hash.slice(1));
+  if (path === null) parameters.delete("state");
+  else parameters.set("state", path);
+  const text = parameters.toString().replaceAll("%2F", "/");
+  if (text !== location.hash.slice(1)) history.replaceState(null, "", text ? `#${text}` : location.pathname + location.search);
+}
