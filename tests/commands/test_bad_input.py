@@ -108,13 +108,15 @@ def test_huge_numbers(script: Path) -> None:
 
 COMMANDS = [
     (["--help"], 0),
+    (["check", "main.yml"], 0),
+    (["build", "main.yml", "-t", "json", "-o", "-"], 0),
+    (["run", "main.yml", "--mock", "scenario.yml"], 0),
+]
+MORE_COMMANDS = [
     (["--version"], 0),
     (["check", "--help"], 0),
-    (["check", "main.yml"], 0),
     (["check", "broken.yml", "--format", "json"], 1),
-    (["build", "main.yml", "-t", "json", "-o", "-"], 0),
     (["build", "main.yml", "-t", "json", "-o", "out"], 0),
-    (["run", "main.yml", "--mock", "scenario.yml"], 0),
     (["fmt", "main.yml", "--diff"], 1),
     (["states"], 0),
     (["explain", "SM999"], 2),
@@ -122,8 +124,16 @@ COMMANDS = [
 ]
 
 
-@pytest.mark.parametrize(("command", "code"), COMMANDS, ids=lambda each: " ".join(map(str, each))
-                         if isinstance(each, list) else None)  # fmt: skip
+@pytest.mark.parametrize(
+    ("command", "code"),
+    [
+        *(pytest.param(*each, id=" ".join(each[0])) for each in COMMANDS),
+        *(
+            pytest.param(*each, id=" ".join(each[0]), marks=pytest.mark.slow)
+            for each in MORE_COMMANDS
+        ),
+    ],
+)
 def test_standard_output_is_full_closed_or_unread(
     script: Path, command: list[str], code: int
 ) -> None:

@@ -39,14 +39,20 @@ def long_list(tmp_path: Path) -> Path:
     return tmp_path
 
 
-@pytest.mark.parametrize("words", [["check"], ["build", "--target", "python"]], ids=" ".join)
+WORDS = [
+    pytest.param(["check"], id="check"),
+    pytest.param(["build", "--target", "python"], id="build", marks=pytest.mark.slow),
+]
+
+
+@pytest.mark.parametrize("words", WORDS)
 def test_a_long_list_takes_little_memory(words: list[str], long_list: Path) -> None:
     """An interpreter with the compiler alone takes 100 MB of address space."""
     ended = run(*words, "main.yml", "--memory-limit", "200", folder=long_list)
     assert ended.returncode == 0, ended.stdout + ended.stderr
 
 
-@pytest.mark.parametrize("words", [["check"], ["build", "--target", "python"]], ids=" ".join)
+@pytest.mark.parametrize("words", WORDS)
 def test_beyond_the_limit_the_script_is_refused(words: list[str], long_list: Path) -> None:
     ended = run(*words, "main.yml", "--memory-limit", "110", folder=long_list)
     assert ended.returncode == 1
@@ -97,7 +103,7 @@ def test_the_limit_of_the_process_is_restored_and_never_raised() -> None:
     assert resource.getrlimit(resource.RLIMIT_AS) == before
 
 
-@pytest.mark.parametrize("words", [["check"], ["build", "--target", "python"]], ids=" ".join)
+@pytest.mark.parametrize("words", WORDS)
 def test_beyond_the_limit_of_cpu_time_the_command_ends(words: list[str], tmp_path: Path) -> None:
     states = "".join(
         f"  - S{n}: {{template: SleepState, time: 1, transitions: {{succeeded: S{n + 1}}}}}\n"

@@ -254,7 +254,7 @@ def test_constants_are_refused(data: Data, type_: str, reason: str) -> None:
 # What compiles, and gives the values of Python
 
 
-SEEDS = [1, pytest.param(2, marks=pytest.mark.slow)]
+SEEDS = [1, *(pytest.param(seed, marks=pytest.mark.slow) for seed in (2, 3, 4))]
 
 
 @COMPILERS
@@ -265,11 +265,11 @@ def test_random_expressions_have_the_value_of_python(
     tally = Tally()
     seed += 10 * len(compiler.name)
     flags = SANITIZED if compiler.runs_with(*SANITIZED) else ()
-    assert compare(compiler, folder, list(cases(260, seed)), seed, tally, "-O0", *flags) == []
+    assert compare(compiler, folder, list(cases(130, seed)), seed, tally, "-O0", *flags) == []
     # Most have a value, some have none, few are beyond 64 bits.
-    assert tally.equal > 700
-    assert tally.errors > 50
-    assert tally.limits + tally.nan < 150
+    assert tally.equal > 350
+    assert tally.errors > 25
+    assert tally.limits + tally.nan < 75
 
 
 EDGES = [

@@ -91,7 +91,13 @@ def test_random_edits_in_a_server(client: Client, path: Path, steps: list[Edit])
     client.tell("textDocument/didClose", textDocument={"uri": uri})
 
 
-@pytest.mark.parametrize("path", SCRIPTS, ids=lambda path: path.parent.name)
+@pytest.mark.parametrize(
+    "path",
+    [
+        pytest.param(path, id=path.parent.name, marks=[] if place < 6 else pytest.mark.slow)
+        for place, path in enumerate(SCRIPTS)
+    ],
+)
 @settings(max_examples=8, deadline=None, derandomize=True)
 @given(st.lists(edits(), min_size=1, max_size=6))
 def test_random_edits_of_a_session(path: Path, steps: list[Edit]) -> None:

@@ -9,9 +9,11 @@ from __future__ import annotations
 import os
 import subprocess
 import sys
+from collections.abc import Iterable
 from pathlib import Path
 
 import pytest
+from _pytest.mark import ParameterSet
 
 SECONDS = 10
 """The processor time of a child process; the start of the program takes about 1 s of it."""
@@ -75,6 +77,14 @@ HEADERS = {
 INTERFACE = "outcomes: {done: {}}\ncode: {python: Own.tpl.py, cpp: {header: own.hpp, class: Own}}\n"
 
 
+def first_quick(texts: Iterable[str]) -> list[ParameterSet]:
+    """All texts; those after the third are slow tests."""
+    return [
+        pytest.param(text, marks=[pytest.mark.slow] if place > 2 else [])
+        for place, text in enumerate(texts)
+    ]
+
+
 def run(folder: Path, *words: str) -> None:
     """Runs the command line in a folder with a limit; fails where the limit ends it."""
     environment = {**os.environ, "PYTHONPATH": str(Path(__file__).parents[2])}
@@ -91,7 +101,7 @@ def write(folder: Path, name: str, text: str) -> None:
     path.write_text(text, "utf-8")
 
 
-@pytest.mark.parametrize("text", TEMPLATES)
+@pytest.mark.parametrize("text", first_quick(TEMPLATES))
 def test_templates(text: str, tmp_path: Path) -> None:
     write(tmp_path, "main.yml", MAIN)
     write(tmp_path, "templates/Own.tpl.py", f"{{% extends 'State.tpl.py' %}}\n{TEMPLATES[text]}")
@@ -100,7 +110,7 @@ def test_templates(text: str, tmp_path: Path) -> None:
     run(tmp_path, "migrate", ".")
 
 
-@pytest.mark.parametrize("pure", [False, True])
+@pytest.mark.parametrize("pure", [False, pytest.param(True, marks=pytest.mark.slow)])
 @pytest.mark.parametrize("text", SCRIPTS)
 def test_scripts(text: str, pure: bool, tmp_path: Path) -> None:
     write(tmp_path, "main.yml", SCRIPTS[text])
