@@ -40,7 +40,7 @@ from smachac.report.github import render_github
 from smachac.report.json import render_json
 from smachac.report.junit import render_junit
 from smachac.report.sarif import render_sarif
-from smachac.report.text import render_text
+from smachac.report.text import Layout, render_text
 from smachac.targets import load_target, target_names
 
 ROOT = Path(__file__).parents[1]
@@ -218,7 +218,7 @@ FORMATS: tuple[Callable[[Report], str], ...] = (
     render_sarif,
     render_github,
     lambda report: render_junit({"main.yml": report}, {"main.yml": report}),
-    lambda report: render_text(report, colour=True, width=40),
+    lambda report: render_text(report, Layout(colour=True, width=40, wraps=True)),
 )
 
 

@@ -9,7 +9,6 @@ already loaded: all else is imported inside `main`, where Ctrl-C is handled.
 from __future__ import annotations
 
 import gc
-import os
 import sys
 
 from smachac.version import __version__
@@ -169,11 +168,7 @@ def _formatter(prog: str) -> argparse.HelpFormatter:
     """Argparse's formatter with a given width: to find the width, argparse would import shutil."""
     import argparse
 
-    try:
-        columns = int(os.environ.get("COLUMNS", "")) or 80
-    except ValueError:
-        try:
-            columns = os.get_terminal_size().columns or 80
-        except (OSError, ValueError):
-            columns = 80
+    from smachac.commands.terminal import terminal_width
+
+    columns = terminal_width(sys.stdout)
     return argparse.RawDescriptionHelpFormatter(prog, width=max(columns - 2, 40))

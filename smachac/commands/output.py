@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import os
 import sys
 from argparse import Namespace
 
@@ -17,12 +16,6 @@ OK, FINDINGS, USAGE = 0, 1, 2
 """Exit codes: success; findings or failure; wrong usage."""
 
 
-def wants_colour(arguments: Namespace, stream: Any) -> bool:
-    if arguments.colour != "auto":
-        return bool(arguments.colour == "always")
-    return bool(stream.isatty()) and "NO_COLOR" not in os.environ
-
-
 def without_notes(report: Report) -> Report:
     """The findings that reports for people show: errors and warnings."""
     from smachac.diagnostics.diagnostic import Severity
@@ -31,10 +24,18 @@ def without_notes(report: Report) -> Report:
 
 
 def print_report(report: Report, arguments: Namespace, stream: Any) -> None:
-    from smachac.report.text import render_text
+    """Print findings; on a terminal in its width."""
+    from smachac.commands.terminal import file_uri, terminal_width, wants_colour, wants_links
+    from smachac.report.text import Layout, render_text
 
-    if report:
-        print(render_text(report, colour=wants_colour(arguments, stream)), file=stream)
+    if not report:
+        return
+    layout = Layout(colour=wants_colour(arguments, stream))
+    if stream.isatty():
+        layout = layout._replace(width=terminal_width(stream), wraps=True)
+    if wants_links(stream):
+        layout = layout._replace(link=file_uri)
+    print(render_text(report, layout), file=stream)
 
 
 def shown(path: object) -> str:

@@ -12,14 +12,8 @@ from functools import partial
 
 from smachac.commands.arguments import SCRIPT, as_path, colour, count, names, search_folders
 from smachac.commands.interrupts import end_at_once
-from smachac.commands.output import (
-    FINDINGS,
-    OK,
-    print_report,
-    usage,
-    wants_colour,
-    without_notes,
-)
+from smachac.commands.output import FINDINGS, OK, print_report, usage, without_notes
+from smachac.commands.terminal import wants_colour
 
 TYPE_CHECKING = False  # annotations only: `--help` imports none of this
 if TYPE_CHECKING:

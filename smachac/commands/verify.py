@@ -10,6 +10,7 @@ from argparse import Namespace
 from smachac.commands.arguments import FORMAT, SCRIPT, as_path, colour, count, names, search_folders
 from smachac.commands.interrupts import interrupts_raise
 from smachac.commands.output import FINDINGS, OK, print_report, usage, without_notes
+from smachac.commands.terminal import ProgressLine
 
 TYPE_CHECKING = False  # annotations only: `--help` imports none of this
 if TYPE_CHECKING:
@@ -90,7 +91,8 @@ def verify_command(arguments: Namespace) -> int:
     gc.set_threshold(50_000)
     gc.enable()
     try:
-        with interrupts_raise():  # compiled programs and their folder are removed
+        # Compiled programs and their folder are removed.
+        with interrupts_raise(), ProgressLine(sys.stderr) as progress:
             verdict = verify(
                 machine,
                 players,
@@ -98,6 +100,7 @@ def verify_command(arguments: Namespace) -> int:
                 files={target: str(path) for target, path in files.items()},
                 most=arguments.paths,
                 seed=arguments.seed,
+                progress=progress,
             )
     except UnplayableError as error:
         print(error, file=sys.stderr)

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 from bisect import bisect_left, bisect_right
 from functools import lru_cache
 from typing import NamedTuple
@@ -97,6 +98,27 @@ def visible(text: str) -> str:
     """A text with all invisible characters made visible, except line feeds. No line is a command of
     a CI log."""
     return "\n".join(_no_command("".join(_glyphs(line)[0])) for line in text.split("\n"))
+
+
+def wrapped(text: str, room: int) -> list[str]:
+    """The lines of a text, at most `room` columns each; broken at spaces, not in code between
+    backticks. A longer word has a line of its own."""
+    if columns(text) <= room:
+        return [text]
+    first, *words = re.findall(r"(?:`[^`]*`|\S)+", text) or [text]
+    lines = [first]
+    for word in words:
+        longer = f"{lines[-1]} {word}"
+        if columns(longer) <= room:
+            lines[-1] = longer
+        else:
+            lines.append(word)
+    return lines
+
+
+def linked(text: str, uri: str) -> str:
+    """A text that opens a file, in terminals that support it (OSC 8)."""
+    return f"\x1b]8;;{uri}\x1b\\{text}\x1b]8;;\x1b\\"
 
 
 def _no_command(line: str) -> str:

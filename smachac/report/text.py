@@ -12,7 +12,7 @@ from typing import NamedTuple
 
 from smachac.diagnostics.diagnostic import Diagnostic, Report, Severity
 from smachac.diagnostics.source import NOWHERE, Source, Span
-from smachac.report.terminal import Line, columns, lay_out, on_one_line, visible
+from smachac.report.terminal import Line, columns, lay_out, linked, on_one_line, visible, wrapped
 
 COLOURS = {
     "error": "1;31",
@@ -29,18 +29,34 @@ COLOURS = {
 MOST_FINDINGS = 1000
 """Limit on the findings in a text report; the other formats contain all."""
 
+LEAST_ROOM = 20
+"""Columns that a wrapped message has at least."""
+
 MOST_STEPS = 16
 """Limit on the states of a printed path; the middle of longer ones is left out."""
 
 
-def render_text(report: Report, *, colour: bool = False, width: int = 100) -> str:
-    """The findings, separated by empty lines; empty for no findings. At most MOST_FINDINGS are
-    printed.
+class Layout(NamedTuple):
+    """How findings are laid out.
 
-    `width` is the width of the terminal in columns: it limits source lines, not messages. Texts of
-    the user cannot control the terminal.
+    `width` is the width of the terminal in columns: it limits source lines and paths, with `wraps`
+    messages too. `link` is the function from the name of a file to the URI that its places open.
     """
-    texts = [_rendered(item, colour=colour, width=width) for item in report[:MOST_FINDINGS]]
+
+    colour: bool = False
+    width: int = 100
+    wraps: bool = False
+    link: Callable[[str], str | None] = lambda name: None
+
+
+PLAIN = Layout()
+
+
+def render_text(report: Report, layout: Layout = PLAIN) -> str:
+    """The findings, separated by empty lines; empty for no findings. At most MOST_FINDINGS are
+    printed. Texts of the user cannot control the terminal.
+    """
+    texts = [_rendered(item, layout) for item in report[:MOST_FINDINGS]]
     more = len(report) - len(texts)
     if more:
         texts.append(f"... and {more:,} findings more: `--format json` has all\n")
@@ -91,20 +107,22 @@ def shortened(path: tuple[str, ...]) -> list[str]:
     return [*parts[:half], f" -> ... {left_out} more ...", *parts[-half:]]
 
 
-def _rendered(item: Diagnostic, *, colour: bool, width: int) -> str:
+def _rendered(item: Diagnostic, layout: Layout) -> str:
     def paint(style: str, text: str) -> str:
-        if not colour or not text:
+        if not layout.colour or not text:
             return text
         kind = item.severity.value if style == "primary" else style
         return f"\x1b[{COLOURS[kind]}m{text}\x1b[0m"
 
-    return "\n".join([*_lines(item, width, paint), ""])
+    return "\n".join([*_lines(item, layout, paint), ""])
 
 
-def _lines(item: Diagnostic, width: int, paint: Paint) -> Iterator[str]:
+def _lines(item: Diagnostic, layout: Layout, paint: Paint) -> Iterator[str]:
     finding = item.finding
-    head = paint("primary", f"{item.severity.value}[{item.code}]")
-    yield head + paint("strong", f": {on_one_line(finding.message)}")
+    head = f"{item.severity.value}[{item.code}]"
+    first, *more = _labelled(head, on_one_line(finding.message), layout)
+    yield paint("primary", head) + paint("strong", first)
+    yield from (paint("strong", line) for line in more)
     places = [("", "primary", finding.span)]
     places += [(related.message, "related", related.span) for related in finding.related]
     marks = [
@@ -112,33 +130,46 @@ def _lines(item: Diagnostic, width: int, paint: Paint) -> Iterator[str]:
         for label, style, span in places
         if not _nowhere(span)
     ]
-    yield from _snippets(marks, width, paint)
+    yield from _snippets(marks, layout, paint)
     for label, style, span in places:
         if _nowhere(span) and style == "related":
-            yield paint("related", "note") + f": {on_one_line(label)}"
+            first, *more = _labelled("note", on_one_line(label), layout)
+            yield paint("related", "note") + first
+            yield from more
     if finding.path:
-        yield from _path(finding.path_labels, width, paint)
+        yield from _path(finding.path_labels, layout.width, paint)
     if finding.help:
         for line in visible(finding.help).split("\n"):
-            yield paint("help", "help") + f": {line}"
+            first, *more = _labelled("help", line, layout)
+            yield paint("help", "help") + first
+            yield from more
+
+
+def _labelled(label: str, text: str, layout: Layout) -> list[str]:
+    """The lines of a text after its label; those after the first are indented."""
+    room = max(layout.width - len(label) - 2, LEAST_ROOM)
+    first, *more = wrapped(text, room) if layout.wraps else [text]
+    return [f": {first}", *(" " * (len(label) + 2) + line for line in more)]
 
 
 def _nowhere(span: Span) -> bool:
     return span.source is NOWHERE.source
 
 
-def _snippets(marks: list[Mark], width: int, paint: Paint) -> Iterator[str]:
+def _snippets(marks: list[Mark], layout: Layout, paint: Paint) -> Iterator[str]:
     if not marks:
         return
     digits = len(str(max(m.last_line for m in marks)))
-    for index, group in enumerate(grouped(marks, width)):
+    for index, group in enumerate(grouped(marks, layout.width)):
         first = group[0]
         arrow = "-->" if index == 0 and first.style == "primary" else ":::"
         if index:
             yield paint("gutter", " " * digits + " |")
         place = f"{on_one_line(first.source.name)}:{first.line}:{first.start + 1}"
-        yield f"{' ' * digits}{paint('gutter', arrow)} {place}"
-        yield from snippet(group, digits, width, paint)
+        uri = layout.link(first.source.name)
+        shown = linked(place, uri) if uri else place
+        yield f"{' ' * digits}{paint('gutter', arrow)} {shown}"
+        yield from snippet(group, digits, layout.width, paint)
 
 
 def _path(path: tuple[str, ...], width: int, paint: Paint) -> Iterator[str]:

@@ -9,7 +9,7 @@ value is found where it is first read.
 from __future__ import annotations
 
 from collections import Counter
-from collections.abc import Mapping, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from contextlib import ExitStack
 
 from smachac.ir.nodes import Machine
@@ -30,18 +30,23 @@ def verify(
     files: Mapping[str, str] = {},
     most: int | None = None,
     seed: int = 0,
+    progress: Callable[[str], None] = lambda text: None,
 ) -> Verdict:
     """Run the paths of a machine on every target, up to the first difference of each.
 
     `files` are the names of the files that players play, by target, where these are on disk. `most`
-    and `seed` are those of `PathGenerator`. Exceptions of players are not caught.
+    and `seed` are those of `PathGenerator`. `progress` is called often, with how far the work is.
+    Exceptions of players are not caught.
     """
     generator = PathGenerator(machine, most=most, seed=seed)
     runner = generator.runner
-    paths = list(generator.paths())
+    paths = []
+    for path in generator.paths():
+        paths.append(path)
+        progress(f"paths found: {len(paths)}")
     cases = test_cases(machine, paths, runner.live)
     found = [
-        _first_difference(machine, target, player, paths, cases)
+        _first_difference(machine, target, player, paths, cases, progress)
         for target, player in players.items()
     ]
     items, missing = runner.coverage.items, runner.coverage.missing()
@@ -66,6 +71,7 @@ def _first_difference(
     player: Player,
     paths: Sequence[Path],
     cases: Sequence[TestCase],
+    progress: Callable[[str], None],
 ) -> Disagreement | None:
     """The first path on which a target differs from the interpreter."""
     shown = script_paths(machine.root)
@@ -73,7 +79,9 @@ def _first_difference(
         played = player(cases)
         stack.callback(getattr(played, "close", lambda: None))  # ends its processes
         traces = zip(paths, cases, played, strict=True)
+        progress(f"{target}: starting")
         for number, (path, case, theirs) in enumerate(traces, 1):
+            progress(f"{target}: {number} of {len(paths)} paths")
             difference = compare_traces(expected_trace(machine, path.scenario, case), theirs)
             if difference is not None:
                 return Disagreement(

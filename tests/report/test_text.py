@@ -11,8 +11,8 @@ from hypothesis import strategies as st
 
 from smachac.diagnostics.diagnostic import Code, Diagnostic, Finding, PathStep, Related, Severity
 from smachac.diagnostics.source import NOWHERE, Source, Span
-from smachac.report.terminal import columns, lay_out, visible
-from smachac.report.text import MOST_FINDINGS, render_text, steps, summary
+from smachac.report.terminal import columns, lay_out, visible, wrapped
+from smachac.report.text import MOST_FINDINGS, Layout, render_text, steps, summary
 
 SCRIPT = Source(
     "main.yml",
@@ -55,7 +55,7 @@ def finding(
 
 
 def shown(*report: Diagnostic, width: int = 100) -> str:
-    return render_text(list(report), width=width)
+    return render_text(list(report), Layout(width=width))
 
 
 def test_a_finding_is_what_where_and_what_to_do() -> None:
@@ -254,10 +254,54 @@ def test_witness_paths_show_outcomes_on_arrows_and_break() -> None:
         """)
 
 
+def test_a_message_wraps_at_the_width_of_a_terminal() -> None:
+    item = finding(
+        place("PALCE_BLOCK"),
+        message="the state `PICK` reads `part`, which is unset on some paths of `sm`",
+        hint="set `part` on every path, or give it a value: `userdata: {part: [1, 2]}`",
+    )
+    text = render_text([item], Layout(width=50, wraps=True))
+    lines = text.splitlines()
+    assert lines[:2] == [
+        "error[SM101]: the state `PICK` reads `part`, which",
+        "              is unset on some paths of `sm`",
+    ]
+    assert lines[-2:] == [
+        "help: set `part` on every path, or give it a",
+        "      value: `userdata: {part: [1, 2]}`",
+    ]
+    snippet = [line for line in lines if "|" in line]
+    assert snippet == [line for line in shown(item, width=50).splitlines() if "|" in line]
+
+
+@pytest.mark.parametrize(
+    ("text", "room", "lines"),
+    [
+        ("a b", 3, ["a b"]),
+        ("a b", 2, ["a", "b"]),
+        ("a  b", 4, ["a  b"]),
+        ("see `a b c` here", 8, ["see", "`a b c`", "here"]),
+        ("an `open tick", 8, ["an `open", "tick"]),
+        ("日本 語", 4, ["日本", "語"]),
+        ("longer_than_that it", 4, ["longer_than_that", "it"]),
+        ("   ", 1, ["   "]),
+    ],
+)
+def test_texts_are_broken_at_spaces_outside_of_code(text: str, room: int, lines: list[str]) -> None:
+    assert wrapped(text, room) == lines
+
+
+def test_places_are_links_to_files() -> None:
+    item = finding(place("PALCE_BLOCK"))
+    text = render_text([item], Layout(link=lambda name: f"file:///robot/{name}"))
+    assert "\x1b]8;;file:///robot/main.yml\x1b\\main.yml:" in text
+    assert "\x1b]8" not in render_text([item], Layout(link=lambda name: None))
+
+
 def test_colours_only_when_asked() -> None:
     item = finding(place("PALCE_BLOCK"), hint="x")
     assert "\x1b" not in shown(item)
-    coloured = render_text([item], colour=True)
+    coloured = render_text([item], Layout(colour=True))
     assert coloured.startswith("\x1b[1;31merror[SM101]\x1b[0m")
     assert "\x1b[1;31m^^^^^^^^^^^\x1b[0m" in coloured
 
@@ -297,11 +341,11 @@ def test_any_span_in_any_text(
     places = [Span(sources[n % 3 == 2], *span) for n, span in enumerate(spans)]
     related = tuple(Related(span=span, message=label) for span in places[1:])
     item = finding(places[0], label, related=related, path=(label, text), hint=other)
-    plain = render_text([item], width=width)
+    plain = render_text([item], Layout(width=width))
     assert plain.endswith("\n")
     assert all(c == "\n" or c >= " " for c in plain)
     plain.encode()
-    coloured = render_text([item], colour=True, width=width)
+    coloured = render_text([item], Layout(colour=True, width=width))
     for code in ("1;31", "1;34", "34", "1;32", "1;35", "1", "0"):
         coloured = coloured.replace(f"\x1b[{code}m", "")
     squeezed = [line.rstrip() for line in plain.split("\n")]
