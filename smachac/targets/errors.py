@@ -19,6 +19,10 @@ def unsupported_by_target(
     Python accepts any code and any type. Other languages accept portable expressions only, and
     need the type of a value before they can store it.
 
+    Exactly: `check` reports, as a warning, what Python for the project's version of ROS (`ros` in
+    the project file, 2 where it has none) does not support: variables, values, and code of the
+    script and of templates that uses modules of the other version. All else, only a build reports.
+
     Wrong:
         name: sm
         outcomes: [succeeded]
