@@ -189,11 +189,16 @@ def read_machine(source: Source, library: Library, report: Report) -> Machine | 
 
 
 def version_faults(machine: Machine, library: Library) -> Report:
-    """What the project's version of ROS does not support, as warnings: an option of a build may
-    choose the other version."""
-    from smachac.targets.python.ros import unsupported
+    """What the project's version of ROS does not support, as warnings, because an option of a build
+    may choose the other version; and the params that are fixed in a node of ROS 2."""
+    from smachac.targets.python.ros import is_node, unsupported
 
-    return [replace(item, severity=Severity.WARNING) for item in unsupported(machine, library.ros)]
+    found = [replace(item, severity=Severity.WARNING) for item in unsupported(machine, library.ros)]
+    if not found and machine.params and is_node(machine, library, library.ros):
+        from smachac.targets.python.parameters import RESERVED, fixed_uses, ros_parameters
+
+        found += fixed_uses(ros_parameters(machine, RESERVED))
+    return found
 
 
 def template_faults(machine: Machine, library: Library) -> Report:

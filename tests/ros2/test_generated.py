@@ -81,6 +81,32 @@ def test_names_are_remapped(graph2: Graph) -> None:
     assert program.end() == 0, program.output
 
 
+IN_TEXTS = """
+name: machine
+template: ROSBase
+outcomes: [succeeded, aborted, preempted]
+params: {name: nothing, order: 1}
+states:
+  - COUNT:
+      template: SimpleActionState
+      action_server_namespace: [/wo, [params, name]]
+      action: test_msgs/action/Fibonacci
+      goal: {order: [params, order]}
+      server_wait_timeout: 20.0
+      transitions: {succeeded: succeeded, aborted: aborted, preempted: preempted}
+"""
+
+
+def test_parameters_inside_texts_and_goals_are_overridden(graph2: Graph, tmp_path: Path) -> None:
+    path = tmp_path / "machine.yml"
+    path.write_text(IN_TEXTS, encoding="utf-8")
+    (text,) = smachac.compile(path, "python").values()
+    server = graph2.node("server")
+    program = graph2.start(text, "--ros-args", "-p", "name:=rk", "-p", "order:=8")
+    assert program.end() == 0, program.output
+    server.expect("goal 8")
+
+
 def test_ctrl_c_cancels_the_goal(graph2: Graph) -> None:
     robot = base(graph2, "speed:=0.01")
     program = patrol(graph2)
