@@ -201,6 +201,39 @@ def test_a_whole_number_that_is_a_float_elsewhere_stays_in_a_request(tmp_path: P
     assert [item.finding.arguments for item in found] == [("request", "patience")]
 
 
+PUBLISH = """
+  - SAY:
+      template: PublishMsgState
+      action: once
+      input_keys: [msg]
+      output_keys: [msg]
+      callbacks: {msg: 'lambda ud: %s'}
+      transitions: {succeeded: succeeded, aborted: aborted}
+"""
+
+
+@pytest.mark.parametrize(
+    ("message", "printed"),
+    [
+        ("Bool(data=True)", "from std_msgs.msg import Bool"),
+        ("Duration(sec=1)", "from builtin_interfaces.msg import Duration"),
+        ("std_msgs.msg.Bool(data=True)", "import std_msgs.msg"),
+        ("[my_msgs.msg.Grip(), my_msgs.srv.Open.Request()]", "import my_msgs.srv"),
+    ],
+)
+def test_code_that_makes_messages_is_imported(message: str, printed: str, tmp_path: Path) -> None:
+    lines = program(tmp_path, PUBLISH % message).splitlines()
+    assert printed in lines
+    assert "SM019" not in [item.code for item in smachac.check(tmp_path / "main.yml")]
+
+
+@pytest.mark.parametrize("message", ["GoalStatus()", "grips.Open()", "msg.Bool()", "a.msg.open()"])
+def test_names_that_are_no_messages_of_ros_2(message: str, tmp_path: Path) -> None:
+    with pytest.raises(smachac.ScriptError) as found:
+        program(tmp_path, PUBLISH % message)
+    assert "SM019" in [item.code for item in found.value.report]
+
+
 @pytest.mark.parametrize(
     ("service", "more", "printed"),
     [

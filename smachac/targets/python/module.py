@@ -237,7 +237,7 @@ def _imports(expressions: list[str], module: ModuleParts) -> list[str]:
     trees = [tree for tree in map(parsed, expressions) if isinstance(tree, ast.Module)]
     for tree in trees:
         module.names.add(tree)
-    needed = unbound_names(module.names, module.ros)
+    needed = unbound_names(module.names, module.ros, node=module.node)
     return [*module.buffers["imports"], *standard_imports(trees), *needed]
 
 
