@@ -226,6 +226,66 @@ def test_a_machine_is_offered_as_an_action(graph2: Graph, tmp_path: Path) -> Non
     assert program.end() == 0, program.output
 
 
+DRIVING = """
+name: machine
+template: ROSBase
+outcomes: [succeeded, preempted]
+input_keys: [speed]
+output_keys: [message]
+userdata: {message: docked}
+states:
+  - NAVIGATE:
+      template: StateMachine
+      outcomes: [succeeded, preempted]
+      states:
+        - GO:
+            template: SleepState
+            time: 0.05
+            transitions: {succeeded: succeeded, preempted: preempted}
+      transitions: {succeeded: DOCK, preempted: preempted}
+  - DOCK:
+      template: SleepState
+      time: 0.05
+      transitions: {succeeded: succeeded, preempted: preempted}
+"""
+
+DRIVER = """
+import threading
+import rclpy
+from rclpy.action import ActionClient
+from smachac_test_interfaces.action import Drive
+
+rclpy.init()
+node = rclpy.create_node("caller")
+client = ActionClient(node, Drive, "machine")
+threading.Thread(target=rclpy.spin, args=(node,), daemon=True).start()
+client.wait_for_server()
+paths = []
+response = client.send_goal(
+    Drive.Goal(speed=0.5), feedback_callback=lambda each: paths.append(each.feedback.state)
+)
+print("paths", paths)
+print("result", response.result.message)
+rclpy.shutdown()
+"""
+
+
+def test_the_feedback_of_the_action_is_the_path_of_the_active_state(
+    graph2: Graph, tmp_path: Path
+) -> None:
+    path = tmp_path / "machine.yml"
+    path.write_text(DRIVING, encoding="utf-8")
+    options = {"action": "smachac_test_interfaces/action/Drive"}
+    (text,) = smachac.compile(path, "python", options=options).values()
+    graph2.use_interfaces()
+    program = graph2.start(text)
+    caller = graph2.start(DRIVER)
+    caller.expect("paths ['/NAVIGATE', '/NAVIGATE/GO', '/DOCK']")
+    caller.expect("result docked")
+    program.send(signal.SIGINT)
+    assert program.end() == 0, program.output
+
+
 def test_a_managed_node(graph2: Graph, tmp_path: Path) -> None:
     path = tmp_path / "machine.yml"
     script = (EXAMPLE / "patrol.yml").read_text("utf-8").replace("name: patrol", "name: machine")

@@ -320,7 +320,7 @@ def _serving(machine: Machine, root: str, action: RosType) -> str:
     failures = [name for name in outcomes if is_failure(name)]
     good = [name for name in outcomes if name not in (*failures, PREEMPTED)]
     server = call(
-        "smach_ros.ActionServerWrapper",
+        "serving.ActionServerWrapper",
         [
             *(("", each) for each in ("node", string(machine.root.name), action.name, root)),
             ("succeeded_outcomes=", names(good)),
