@@ -6,7 +6,7 @@ Every command and the public API pass through these functions. Only this module 
 from __future__ import annotations
 
 from collections.abc import Callable, Iterable, Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from os import PathLike
 from pathlib import Path
 from typing import NamedTuple, TypeAlias
@@ -14,7 +14,15 @@ from typing import NamedTuple, TypeAlias
 from smachac import checks
 from smachac.analysis.context import Context
 from smachac.checks import check_machine
-from smachac.diagnostics.diagnostic import Code, Diagnostic, Report, grouped, has_errors, in_order
+from smachac.diagnostics.diagnostic import (
+    Code,
+    Diagnostic,
+    Report,
+    Severity,
+    grouped,
+    has_errors,
+    in_order,
+)
 from smachac.diagnostics.severities import apply_severities
 from smachac.diagnostics.source import Source, Span
 from smachac.frontend.errors import references, suppressions
@@ -111,8 +119,9 @@ def analyse(
 ) -> Analysis:
     """Parse, resolve, lower and check a script, then apply suppressions and severities.
 
-    Findings that are already in `report` belong to the result as well. `render`: the templates of
-    the user are rendered too, for their findings; a build does that in any case. `make_context`
+    Findings that are already in `report` belong to the result as well. `render`: the findings of
+    the Python program are reported too, for which the templates of the user are rendered; a build
+    does that in any case. `make_context`
     makes the context of the machine; a caller may keep it. If there is not enough memory, that is
     the only finding.
     """
@@ -140,6 +149,7 @@ def _analysis(
             report.extend(code_faults(machine, library, load_target))
             report.extend(undefined_names(machine, library))
             report.extend(extra(machine) if extra is not None else ())
+            report.extend(version_faults(machine, library) if render else ())
             if render and not has_errors(report):
                 report.extend(template_faults(machine, library))
         sources = script.sources if script is not None else (source,)
@@ -178,20 +188,40 @@ def read_machine(source: Source, library: Library, report: Report) -> Machine | 
     return None if script is None else lower(script)
 
 
+def version_faults(machine: Machine, library: Library) -> Report:
+    """What the project's version of ROS does not support, as warnings, because an option of a build
+    may choose the other version; and the params that are fixed in a node of ROS 2."""
+    from smachac.targets.python.ros import is_node, unsupported
+
+    found = [replace(item, severity=Severity.WARNING) for item in unsupported(machine, library.ros)]
+    if not found and machine.params and is_node(machine, library, library.ros):
+        from smachac.targets.python.parameters import RESERVED, fixed_uses, ros_parameters
+
+        found += fixed_uses(ros_parameters(machine, RESERVED))
+    return found
+
+
 def template_faults(machine: Machine, library: Library) -> Report:
-    """The findings in templates of the user, which are rendered as for the Python program."""
+    """The findings in templates of the user, which are rendered as for the Python program. Code for
+    the other version of ROS is a warning, see `version_faults`."""
     from smachac.targets.python import TARGET
+    from smachac.targets.python.ros import needs_other_version
     from smachac.targets.python.template_sources import uses_own_templates
 
     if not uses_own_templates(machine, library):
         return []
     found: Report = []
+    lacking: Report = []
     for ros in dict.fromkeys((library.ros, *ROS_VERSIONS)):
         found = []
         context = BuildContext(library=library, options={"ros": str(ros)})
-        if TARGET.emit(Checked(machine), context, found):
+        made = TARGET.emit(Checked(machine), context, found)
+        if ros == library.ros:
+            lacking = [item for item in found if needs_other_version(item)]
+        if made:
             break
-    return [item for item in found if item.code in TEMPLATE_CODES]
+    found = [item for item in found if item.code in TEMPLATE_CODES]
+    return [*found, *(replace(item, severity=Severity.WARNING) for item in lacking)]
 
 
 def check(machine: Machine, report: Report) -> Checked | None:

@@ -67,6 +67,7 @@ def lower(script: Script) -> Machine:
         unused=script.unused,
         properties=script.properties,
         params=script.params,
+        fixed_params=script.fixed_params,
         state_types=script.state_types,
     )
 

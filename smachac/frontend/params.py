@@ -11,13 +11,16 @@ from smachac.diagnostics.diagnostic import Report
 from smachac.diagnostics.source import Word
 from smachac.frontend.errors.references import unresolved_look_up
 from smachac.frontend.errors.script import too_big
-from smachac.frontend.yaml_tree import Entry, Map, Scalar, Seq, Tree, known_wrong
+from smachac.frontend.yaml_tree import Entry, Joined, Map, Scalar, Seq, Tree, known_wrong
 
 Scope = Mapping[str, Tree]
 """The params in scope of a state."""
 
 MAX_TEXT = 100_000
 """The longest result of a string construct, in characters."""
+
+MAX_PARTS = 1_000
+"""The most parts of a string construct that programs put together when they run."""
 
 MAX_NODES = 100_000
 """The most nodes of a param after substitution of its look-ups."""
@@ -113,7 +116,19 @@ def _joined(items: tuple[Tree, ...], tree: Seq, report: Report) -> Tree | None:
         return known_wrong(tree.span)
     # A call may need quotes in YAML; quotes around a dotted word mean that it is text.
     quoted = any(isinstance(item, Scalar) and not item.plain for item in tree.items)
-    return Scalar(text, text != "" and (text.endswith(")") or not quoted), *tree.span)
+    plain = text != "" and (text.endswith(")") or not quoted)
+    return Joined(text, plain, *tree.span, parts=_parts(items, tree))
+
+
+def _parts(items: tuple[Tree, ...], tree: Seq) -> tuple[str | Scalar, ...]:
+    """The texts of a string construct, and the values of its params; none if there are too many."""
+    parts: list[str | Scalar] = []
+    for item, own in zip(items, tree.items, strict=True):
+        if isinstance(item, Joined):
+            parts += item.parts or (str(item.value),)
+        elif isinstance(item, Scalar):
+            parts.append(str(item.value) if item is own else item)
+    return tuple(parts) if len(parts) <= MAX_PARTS else ()
 
 
 def child_scope(scope: Scope, own: Tree | None, report: Report) -> Scope:

@@ -6,7 +6,7 @@ every state gets its typed fields and its state type. Lowering needs no tree and
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from typing import Literal
 
@@ -48,10 +48,10 @@ from smachac.frontend.script import TIMER, Pairs, Script, State, Sugar
 from smachac.frontend.state_fields import Entries, accepts, read_fields, with_meant_fields
 from smachac.frontend.state_types import find_state_type
 from smachac.frontend.type_annotations import Aliases, read_aliases, typed
-from smachac.frontend.unused import Mark, Uses
+from smachac.frontend.unused import Mark, Uses, look_ups
 from smachac.frontend.values import as_value
 from smachac.frontend.yaml_tree import Entry, Map, Scalar, Seq, Tree, known_wrong
-from smachac.ir.nodes import Param, Preset, StateType
+from smachac.ir.nodes import FixedParam, Param, Preset, StateType
 
 MAX_STATES = 1_000_000
 """The most states of a script with its sub-scripts."""
@@ -133,6 +133,7 @@ class _Resolver:
         self.count = self.looked_up = self.keys = 0
         self.most_keys: tuple[Preset, ...] = ()
         self.uses = Uses()
+        self.fixed_params: list[FixedParam] = []
 
     def script(self, source: Source, tree: Map) -> Script:
         """The script of a tree: its outermost state machine, with the robot and the types."""
@@ -159,6 +160,7 @@ class _Resolver:
             unused=self.uses.unused(self.report),
             properties=properties_of(entries.get("properties"), source, self.library, self.report),
             params=_params(entries.get("params")),
+            fixed_params=tuple(self.fixed_params),
             state_types={name: type_ for name, type_ in self.types.items() if type_ is not None},
         )
 
@@ -212,6 +214,7 @@ class _Resolver:
         type_, owner = self.type_of(name, entries, role, around)
         entries = with_meant_fields(entries, owner, type_)
         self.uses.type(type_)
+        self.fixed_params += _fixed_params(own, type_, scope)
         if role != "base":
             self.count += 1
         fields = read_fields(
@@ -467,6 +470,16 @@ def _params(entry: Entry | None) -> tuple[Param, ...]:
     return tuple(
         Param(name=str(each.key.value), value=as_value(each.value)) for each in entry.value.entries
     )
+
+
+def _fixed_params(own: Mapping[str, Entry], type_: StateType, scope: Scope) -> Iterator[FixedParam]:
+    """The look-ups in the time limit and in the retries of a state."""
+    for key in ("timeout", "retry"):
+        if key not in own or key in type_.variables:
+            continue
+        for word in look_ups(own[key].value):
+            if word.text in scope:
+                yield FixedParam(key, word, scope[word.text].span)
 
 
 def _unknown(name: Word, transitions: Pairs, around: _Environment) -> State:

@@ -12,7 +12,7 @@ from typing import NamedTuple, TypeAlias
 from smachac.diagnostics.source import Source, Span, Word
 from smachac.frontend.schema import FieldOwner
 from smachac.ir.message_types import Definitions, MissingDefinitions
-from smachac.ir.nodes import Outcome, Param, Preset, StateType, Unused, Value, Variable
+from smachac.ir.nodes import FixedParam, Outcome, Param, Preset, StateType, Unused, Value, Variable
 from smachac.ir.properties import Property
 from smachac.ir.robot import Robot
 from smachac.ir.types import Type
@@ -137,4 +137,5 @@ class Script:
     unused: tuple[Unused, ...] = ()
     properties: tuple[Property, ...] = ()
     params: tuple[Param, ...] = ()
+    fixed_params: tuple[FixedParam, ...] = ()
     state_types: Mapping[str, StateType] = field(default_factory=dict)

@@ -33,7 +33,7 @@ class Uses:
     def value(self, key: str, tree: Tree, *, flat: bool) -> None:
         """Collect the uses in a field of a state. `flat`: see `is_flat`."""
         if not flat:
-            self.looked_up += _names(tree)
+            self.looked_up += (word.text for word in look_ups(tree))
         if key in TYPED:
             self.types.update(type_words(key, tree))
 
@@ -77,8 +77,8 @@ class Uses:
         return tuple(each for each in self.found if each.word.text not in names)
 
 
-def _names(tree: Tree) -> Iterator[str]:
-    """The params that the look-ups in a value name, at any depth."""
+def look_ups(tree: Tree) -> Iterator[Word]:
+    """The names of params in the look-ups of a value, at any depth."""
     todo: list[Tree] = [tree]
     while todo:
         each = todo.pop()
@@ -86,7 +86,7 @@ def _names(tree: Tree) -> Iterator[str]:
             continue
         word = look_up_word(each)
         if word is not None:
-            yield word.text
+            yield word
             continue
         inner: Iterable[Tree]
         inner = (entry.value for entry in each.entries) if isinstance(each, Map) else each.items

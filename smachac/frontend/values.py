@@ -3,10 +3,11 @@
 from __future__ import annotations
 
 import ast
+from collections.abc import Iterator
 
-from smachac.frontend.yaml_tree import Scalar, Seq, Tree, is_known_wrong
+from smachac.frontend.yaml_tree import Joined, Map, Scalar, Seq, Tree, is_known_wrong
 from smachac.ir.expressions import looks_like_expression, parse_expression
-from smachac.ir.nodes import Data, Expression, Struct, Value
+from smachac.ir.nodes import Data, Expression, LookUp, Struct, Value
 
 UNKNOWN = "..."
 """The code in place of a value that was reported: it has no type, so no rule judges it."""
@@ -14,12 +15,43 @@ UNKNOWN = "..."
 
 def as_value(tree: Tree, *, code: bool = False) -> Value:
     """The value of a tree. `code`: every string is an expression, as in `callbacks`."""
-    return Value(data=_data(tree, code), span=tree.span)
+    return Value(data=_data(tree, code), span=tree.span, look_ups=_look_ups(tree))
 
 
 def as_written(tree: Tree) -> Value:
     """The value of a tree as SMACHA's templates expect it: backticks stay in strings."""
     return Value(data=_data(tree, False, ticks=True), span=tree.span)
+
+
+def _look_ups(tree: Tree) -> tuple[LookUp, ...]:
+    """The parts of a value that are made of params: string constructs, and the parts whose place is
+    outside the value, because a look-up put them there."""
+    if isinstance(tree, Joined):
+        return (_look_up(tree, ()),)
+    return () if isinstance(tree, Scalar) else tuple(_inner_look_ups(tree, ()))
+
+
+def _inner_look_ups(tree: Seq | Map, path: tuple[str | int, ...]) -> Iterator[LookUp]:
+    source, start, end = tree.span
+    for at, item in (
+        enumerate(tree.items)
+        if isinstance(tree, Seq)
+        else ((str(entry.key.value), entry.value) for entry in tree.entries)
+    ):
+        if isinstance(item, Scalar):
+            inside = item.source is source and start <= item.start and item.end <= end
+            if not inside or isinstance(item, Joined):
+                yield _look_up(item, (*path, at))
+            continue
+        if item.span.source is not source or not start <= item.span.start < end:
+            yield _look_up(item, (*path, at))
+        yield from _inner_look_ups(item, (*path, at))
+
+
+def _look_up(tree: Tree, path: tuple[str | int, ...]) -> LookUp:
+    found = tree.parts if isinstance(tree, Joined) else ()
+    parts = tuple(part if isinstance(part, str) else _look_up(part, ()) for part in found)
+    return LookUp(path=path, span=tree.span, data=_data(tree, False), parts=parts)
 
 
 def _data(tree: Tree, code: bool, ticks: bool = False) -> Data:

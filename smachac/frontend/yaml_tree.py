@@ -60,6 +60,13 @@ class Scalar:
 
 
 @dataclass(frozen=True, slots=True)
+class Joined(Scalar):
+    """The text of a string construct. `parts` are its texts, and its params with their values."""
+
+    parts: tuple[str | Scalar, ...] = field(default=(), compare=False)
+
+
+@dataclass(frozen=True, slots=True)
 class Seq:
     """A list."""
 

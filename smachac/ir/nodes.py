@@ -40,11 +40,30 @@ Data: TypeAlias = "bool | int | float | str | Expression | Struct | tuple[Data, 
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
+class LookUp:
+    """A part of a value that is made of params.
+
+    `path` leads to it: the keys and indexes in the value. `span` is the place of the param's value,
+    or of the string construct, whose `parts` are texts and look-ups. `data` is the result.
+    """
+
+    path: tuple[str | int, ...] = ()
+    span: Span
+    data: Data
+    parts: tuple[str | LookUp, ...] = ()
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
 class Value:
-    """A constant of the script; it may contain expressions."""
+    """A constant of the script; it may contain expressions.
+
+    A value that is one param has the span of that param's value. `look_ups` are the other params in
+    it.
+    """
 
     data: Data
     span: Span = field(compare=False, repr=False)
+    look_ups: tuple[LookUp, ...] = field(default=(), compare=False, repr=False)
 
 
 VariableRole = Literal[
@@ -344,6 +363,15 @@ class Unused(NamedTuple):
     via: tuple[Span, ...] = ()
 
 
+class FixedParam(NamedTuple):
+    """A look-up in a field that a program has no parameter for: the field, the name of the param,
+    and the place of the param's value."""
+
+    field: str
+    word: Word
+    value: Span
+
+
 StateKind = Literal["base", "container", "state"]
 """What a state type describes: a script's base, a container or a state."""
 
@@ -442,8 +470,9 @@ class Machine:
     `manifest`, and those of its interface). `source` is the name of the script without its folder,
     `digest` a SHA-256 over the texts of the script and its sub-scripts. `robot`, `unused`,
     `properties`, `definitions`, those of messages of ROS, and `missing_definitions` are for rules;
-    of the targets only `dot` uses properties. `params` are those of the main script. `state_types`
-    are the interfaces of its states and of its base, by name.
+    of the targets only `dot` uses properties. `params` are those of the main script, `fixed_params`
+    the look-ups of params in time limits and retries. `state_types` are the interfaces of its
+    states and of its base, by name.
     """
 
     root: StateMachine
@@ -457,6 +486,7 @@ class Machine:
     definitions: Definitions = field(default_factory=dict, compare=False, repr=False)
     missing_definitions: MissingDefinitions = field(default_factory=dict, compare=False, repr=False)
     params: tuple[Param, ...] = field(default=(), compare=False, repr=False)
+    fixed_params: tuple[FixedParam, ...] = field(default=(), compare=False, repr=False)
     state_types: Mapping[str, StateType] = field(default_factory=dict, compare=False, repr=False)
 
 

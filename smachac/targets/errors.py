@@ -19,6 +19,10 @@ def unsupported_by_target(
     Python accepts any code and any type. Other languages accept portable expressions only, and
     need the type of a value before they can store it.
 
+    Exactly: `check` reports, as a warning, what Python for the project's version of ROS (`ros` in
+    the project file, 2 where it has none) does not support: variables, values, and code of the
+    script and of templates that uses modules of the other version. All else, only a build reports.
+
     Wrong:
         name: sm
         outcomes: [succeeded]
@@ -518,6 +522,65 @@ def _about_class(fault: ClassFault, state_type: str, name: str) -> tuple[str, st
     ), f"add the parameter `{word}` to `__init__`"
 
 
+@problem("SM610", "param-fixed-at-build", Severity.WARNING)
+def fixed_param(span: Span, field: str, param: str, value: Span) -> Finding:
+    """A param is a parameter of the ROS 2 node, but one value of the program does not follow it.
+
+    A launch file that sets the parameter changes only a part of what the script means by it.
+
+    Exactly: params are parameters of a node where variables of states and userdata use them, also
+    in lists, mappings and texts. Fixed are the fields `timeout` and `retry`, code, names of types,
+    and texts, lists and mappings with a whole number that is a float elsewhere. A param that is
+    fixed in all places is no parameter: a note.
+
+    Wrong:
+        name: sm
+        template: ROSBase
+        outcomes: [succeeded, aborted, preempted]
+        params: {patience: 5.0}
+        states:
+          - WAIT:
+              template: WaitForMsgState
+              topic: battery
+              msg_type: std_msgs/Float32
+              timeout: [params, patience]
+              transitions: {succeeded: CALL, aborted: aborted}
+          - CALL:
+              template: ServiceState
+              service_namespace: dock
+              service: std_srvs/Trigger
+              timeout: [params, patience]
+              transitions: {succeeded: succeeded, aborted: aborted, timeout: aborted}
+
+    Right:
+        name: sm
+        template: ROSBase
+        outcomes: [succeeded, aborted, preempted]
+        params: {patience: 5.0}
+        states:
+          - WAIT:
+              template: WaitForMsgState
+              topic: battery
+              msg_type: std_msgs/Float32
+              timeout: [params, patience]
+              transitions: {succeeded: CALL, aborted: aborted}
+          - CALL:
+              template: ServiceState
+              service_namespace: dock
+              service: std_srvs/Trigger
+              timeout: 20s
+              transitions: {succeeded: succeeded, aborted: aborted, timeout: aborted}
+    """
+    return Finding(
+        span=span,
+        message=f"the param `{param}` has its value of the build in `{field}`: a parameter of the"
+        " node that a launch file sets does not change it",
+        arguments=(field, param),
+        related=(Related(span=value, message="the value of the build"),),
+        help="use another param, or a constant, here",
+    )
+
+
 PROBLEMS: tuple[Problem[...], ...] = (
     unsupported_by_target,
     no_code_for_target,
@@ -527,5 +590,6 @@ PROBLEMS: tuple[Problem[...], ...] = (
     defined_twice,
     code_not_found,
     bad_class,
+    fixed_param,
 )
 """The problems of this module, in the order of their codes."""

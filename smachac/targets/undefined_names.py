@@ -119,11 +119,13 @@ def _uses(node: Node, code: Expression) -> Iterator[_Use]:
     """The names that code uses from its module, except names that every module has."""
     tree = python_tree(code.text)  # SM016 if there is none
     function = tree if isinstance(tree, ast.Lambda) else None
+    packages = _packages(tree)
     keys = {key.name for key in node.inputs}
     found: set[str] = set()
     for name in free_in(code.text):
         word = name.id
-        if word in found or hasattr(builtins, word) or word in sys.stdlib_module_names:
+        known = word in packages or hasattr(builtins, word) or word in sys.stdlib_module_names
+        if word in found or known:
             continue
         if function is None and (word in USERDATA or (word in keys and _is_operation(tree))):
             continue  # SM316
@@ -131,6 +133,16 @@ def _uses(node: Node, code: Expression) -> Iterator[_Use]:
             continue  # SM317
         found.add(word)
         yield _Use(node, code, name, function)
+
+
+def _packages(tree: ast.expr | None) -> set[str]:
+    """The packages of messages in code, which a program imports: `std_msgs.msg.Bool()`."""
+    from smachac.targets.python.imports import message_module
+
+    attributes = (
+        each for each in (ast.walk(tree) if tree else ()) if isinstance(each, ast.Attribute)
+    )
+    return {found.partition(".")[0] for found in map(message_module, attributes) if found}
 
 
 def _is_operation(tree: ast.expr | None) -> bool:
@@ -201,7 +213,7 @@ def _known(machine: Machine, library: Library) -> set[str] | None:
     from smachac.targets.python.imports import importable
     from smachac.targets.python.template_sources import template_sources
 
-    known = importable()
+    known = importable(library.ros)
     for file, source in template_sources(machine, library):
         if library.own_template(file) is None:
             known.update(word for pair in _DEFINED.findall(source.text) for word in pair if word)

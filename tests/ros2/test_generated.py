@@ -81,6 +81,32 @@ def test_names_are_remapped(graph2: Graph) -> None:
     assert program.end() == 0, program.output
 
 
+IN_TEXTS = """
+name: machine
+template: ROSBase
+outcomes: [succeeded, aborted, preempted]
+params: {name: nothing, order: 1}
+states:
+  - COUNT:
+      template: SimpleActionState
+      action_server_namespace: [/wo, [params, name]]
+      action: test_msgs/action/Fibonacci
+      goal: {order: [params, order]}
+      server_wait_timeout: 20.0
+      transitions: {succeeded: succeeded, aborted: aborted, preempted: preempted}
+"""
+
+
+def test_parameters_inside_texts_and_goals_are_overridden(graph2: Graph, tmp_path: Path) -> None:
+    path = tmp_path / "machine.yml"
+    path.write_text(IN_TEXTS, encoding="utf-8")
+    (text,) = smachac.compile(path, "python").values()
+    server = graph2.node("server")
+    program = graph2.start(text, "--ros-args", "-p", "name:=rk", "-p", "order:=8")
+    assert program.end() == 0, program.output
+    server.expect("goal 8")
+
+
 def test_ctrl_c_cancels_the_goal(graph2: Graph) -> None:
     robot = base(graph2, "speed:=0.01")
     program = patrol(graph2)
@@ -196,6 +222,66 @@ def test_a_machine_is_offered_as_an_action(graph2: Graph, tmp_path: Path) -> Non
     caller.expect("ended canceled")
     caller.say("2")
     caller.expect("ended succeeded [0, 1]")
+    program.send(signal.SIGINT)
+    assert program.end() == 0, program.output
+
+
+DRIVING = """
+name: machine
+template: ROSBase
+outcomes: [succeeded, preempted]
+input_keys: [speed]
+output_keys: [message]
+userdata: {message: docked}
+states:
+  - NAVIGATE:
+      template: StateMachine
+      outcomes: [succeeded, preempted]
+      states:
+        - GO:
+            template: SleepState
+            time: 0.05
+            transitions: {succeeded: succeeded, preempted: preempted}
+      transitions: {succeeded: DOCK, preempted: preempted}
+  - DOCK:
+      template: SleepState
+      time: 0.05
+      transitions: {succeeded: succeeded, preempted: preempted}
+"""
+
+DRIVER = """
+import threading
+import rclpy
+from rclpy.action import ActionClient
+from smachac_test_interfaces.action import Drive
+
+rclpy.init()
+node = rclpy.create_node("caller")
+client = ActionClient(node, Drive, "machine")
+threading.Thread(target=rclpy.spin, args=(node,), daemon=True).start()
+client.wait_for_server()
+paths = []
+response = client.send_goal(
+    Drive.Goal(speed=0.5), feedback_callback=lambda each: paths.append(each.feedback.state)
+)
+print("paths", paths)
+print("result", response.result.message)
+rclpy.shutdown()
+"""
+
+
+def test_the_feedback_of_the_action_is_the_path_of_the_active_state(
+    graph2: Graph, tmp_path: Path
+) -> None:
+    path = tmp_path / "machine.yml"
+    path.write_text(DRIVING, encoding="utf-8")
+    options = {"action": "smachac_test_interfaces/action/Drive"}
+    (text,) = smachac.compile(path, "python", options=options).values()
+    graph2.use_interfaces()
+    program = graph2.start(text)
+    caller = graph2.start(DRIVER)
+    caller.expect("paths ['/NAVIGATE', '/NAVIGATE/GO', '/DOCK']")
+    caller.expect("result docked")
     program.send(signal.SIGINT)
     assert program.end() == 0, program.output
 

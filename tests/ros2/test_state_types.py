@@ -170,6 +170,43 @@ def test_a_message_is_published_read_and_transformed(
     assert "z=3.0" in output
 
 
+SAID = (
+    HEAD
+    + """
+userdata: {msg: %s, topic: said, msg_type: std_msgs/Bool}
+states:
+  - SAY:
+      template: PublishMsgState
+      action: once
+      qos: latched
+      input_keys: %s
+      transitions: {succeeded: HEAR, aborted: aborted}
+  - HEAR:
+      template: WaitForMsgState
+      topic: said
+      qos: latched
+      msg_type: std_msgs/Bool
+      msg_cb: 'lambda message, userdata: message.data'
+      timeout: 20.0
+      transitions: {succeeded: succeeded, aborted: aborted, preempted: preempted}
+"""
+)
+
+
+@pytest.mark.parametrize(
+    ("message", "keys"),
+    [
+        ("Bool(data=True)", "[msg, topic]"),
+        ("std_msgs.msg.Bool(data=True)", "[msg, topic]"),
+        ("{data: true}", "[msg, topic, msg_type]"),
+    ],
+)
+def test_a_message_of_std_msgs_is_published(
+    message: str, keys: str, graph2: Graph, tmp_path: Path
+) -> None:
+    outcome(graph2, tmp_path, SAID % (message, keys))
+
+
 def test_a_topic_is_monitored_and_a_condition_polled(graph2: Graph, tmp_path: Path) -> None:
     outcome(graph2, tmp_path, MONITORED)
 

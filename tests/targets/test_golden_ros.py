@@ -10,6 +10,8 @@ from pathlib import Path
 import pytest
 
 import smachac
+from smachac.commands.cli import main
+from smachac.diagnostics.diagnostic import Diagnostic, Severity
 from tests.support.golden import compare_folder, outputs
 
 ROOT = Path(__file__).parents[2]
@@ -52,3 +54,45 @@ def test_a_project_file_names_version_1_or_2(value: str, tmp_path: Path) -> None
     (tmp_path / "smachac.toml").write_text(f"ros = {value}\n", encoding="utf-8")
     found = [item.finding for item in smachac.check(tmp_path / "main.yml")]
     assert "`ros` must be 1 or 2" in [finding.message for finding in found]
+
+
+def place(item: Diagnostic) -> tuple[object, ...]:
+    span = item.span
+    return span.source.name, span.start, span.end, item.finding.message, item.finding.help
+
+
+@pytest.mark.parametrize("case", CASES, ids=lambda case: case.name)
+def test_check_warns_of_what_a_build_refuses(case: Path) -> None:
+    found = [item for item in smachac.check(case / "main.yml") if item.code == "SM601"]
+    assert all(item.severity is Severity.WARNING and item.finding.help for item in found)
+    try:
+        smachac.compile(case / "main.yml", "python")
+        refused = []
+    except smachac.ScriptError as error:
+        refused = [item for item in error.report if item.code == "SM601"]
+    assert [*map(place, found)] == [*map(place, refused)]
+    assert bool(refused) == case.name.startswith("bad_")
+
+
+def test_check_uses_the_version_of_the_project(tmp_path: Path) -> None:
+    text = (FOLDER / "bad_ros_2" / "main.yml").read_text("utf-8")
+    (tmp_path / "main.yml").write_text(text, encoding="utf-8")
+    assert "SM601" in [item.code for item in smachac.check(tmp_path / "main.yml")]
+    (tmp_path / "smachac.toml").write_text("ros = 1\n", encoding="utf-8")
+    assert "SM601" not in [item.code for item in smachac.check(tmp_path / "main.yml")]
+
+
+def test_check_reports_the_other_version_beside_errors(tmp_path: Path) -> None:
+    text = (FOLDER / "bad_ros_2" / "main.yml").read_text("utf-8")
+    (tmp_path / "main.yml").write_text(f"{text}  - SHOW: {{}}\n", encoding="utf-8")
+    found = smachac.check(tmp_path / "main.yml")
+    assert [item.code for item in found].count("SM601") == 2
+    assert any(item.severity is Severity.ERROR for item in found)
+
+
+def test_a_build_for_the_other_version_has_no_warning(tmp_path: Path) -> None:
+    text = (FOLDER / "bad_ros_2" / "main.yml").read_text("utf-8")
+    (tmp_path / "main.yml").write_text(text, encoding="utf-8")
+    arguments = ["build", str(tmp_path / "main.yml"), "-t", "python", "-o", str(tmp_path)]
+    assert main([*arguments, "--option", "ros=1"]) == 0
+    assert main(arguments) == 1

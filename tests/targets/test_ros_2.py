@@ -106,11 +106,132 @@ def test_params_of_sub_scripts_are_followed(tmp_path: Path) -> None:
     assert '"battery"' not in text.partition("def build(")[0]
 
 
-def test_a_param_inside_a_text_keeps_its_value(tmp_path: Path) -> None:
-    states = WAIT.replace("[params, topic]", "['/', [params, topic]]")
-    text = program(tmp_path, states, params="{topic: battery, patience: 5.0}")
-    assert "def build(node, patience=5.0):" in text
-    assert '"/battery"' in text
+@pytest.mark.parametrize(
+    ("topic", "printed"),
+    [
+        ("['/', [params, topic]]", 'f"/{topic}"'),
+        ("['{', [params, topic], '}', [params, n]]", 'f"{{{topic}}}{n}"'),
+        ("[params, whole]", 'f"/{topic}/x"'),
+    ],
+)
+def test_a_param_inside_a_text(topic: str, printed: str, tmp_path: Path) -> None:
+    params = "{topic: battery, patience: 5.0, n: 3, whole: ['/', [params, topic], /x]}"
+    text = program(tmp_path, WAIT.replace("[params, topic]", topic), params=params)
+    assert 'def build(node, topic="battery", patience=5.0' in text
+    assert f"WaitForMsgState(node, {printed}, String, timeout=patience)" in text
+
+
+def test_params_inside_mappings_and_lists(tmp_path: Path) -> None:
+    states = CALL % (
+        "my_srvs/Grip",
+        "request: {pose: {x: [params, x], ids: [{a: [params, n]}, {a: 1}]}}",
+    )
+    text = program(tmp_path, states, params="{x: 0.5, n: 2}")
+    assert "def build(node, x=0.5, n=2):" in text
+    assert '{"pose": {"x": x, "ids": [{"a": n}, {"a": 1}]}}' in text.replace("\n", "").replace(
+        "  ", ""
+    )
+
+
+def test_params_of_an_iterator_and_of_userdata(tmp_path: Path) -> None:
+    states = """
+  - EACH:
+      template: StateMachine
+      outcomes: [succeeded, aborted, preempted]
+      userdata: {home: [at, [params, name]]}
+      for_each: {item: place, in: [params, xs]}
+      states: [%s]
+      transitions: {succeeded: succeeded, aborted: aborted, preempted: preempted}
+"""
+    wait = "WAIT: {template: WaitForMsgState, topic: [params, topic], msg_type: std_msgs/String,"
+    wait += " transitions: {succeeded: succeeded, aborted: aborted, preempted: preempted}}"
+    params = "{xs: [1.5, 2.5], topic: battery, name: home}"
+    text = program(tmp_path, states % f"{{{wait}}}", params=params)
+    assert 'def build(node, xs=[1.5, 2.5], topic="battery", name="home"):' in text
+    assert "it=xs," in text
+    assert 'f"at{name}"' in text
+
+
+def test_equal_values_of_two_params_stay_two_parameters(tmp_path: Path) -> None:
+    (tmp_path / "sub.yml").write_text(
+        "- INNER:\n    template: StateMachine\n    outcomes: [succeeded, preempted]\n"
+        "    states:\n    - NAP:\n        template: SleepState\n        time: [params, nap]\n"
+        "        transitions: {succeeded: END, preempted: preempted}\n"
+        "    - END:\n        template: SleepState\n        time: [params, end]\n"
+        "        transitions: {succeeded: succeeded, preempted: preempted}\n",
+        encoding="utf-8",
+    )
+    call = "  - {0}: {{script: sub, params: {{nap: [params, {1}]}},"
+    call += " transitions: {{succeeded: {2}}}}}\n"
+    calls = "\n" + call.format("A", "first", "B") + call.format("B", "second", "succeeded")
+    text = program(tmp_path, calls, params="{first: 1.0, second: 1.0, end: 2.0}")
+    assert "build_sub(node, time=first, end=end)" in text
+    assert "build_sub(node, time=second, end=end)" in text
+    ast.parse(text)
+
+
+TIMED = CALL % ("std_srvs/Trigger", "timeout: [params, patience]\n      retry: %s")
+TIMED = TIMED.replace("aborted: aborted", "timeout: aborted, exhausted: aborted")
+
+
+def test_params_that_are_fixed_are_findings(tmp_path: Path) -> None:
+    params = "{topic: battery, patience: 5.0, type: std_srvs/Trigger, most: 3}"
+    wait = WAIT.replace("succeeded: succeeded", "succeeded: CALL")
+    states = wait + TIMED.replace("std_srvs/Trigger", "[params, type]").replace(
+        "%s", "{on: [aborted], max: [params, most]}"
+    )
+    program(tmp_path, states, params=params)
+    found = [item for item in smachac.check(tmp_path / "main.yml") if item.code == "SM610"]
+    assert [(item.finding.arguments, item.severity.value) for item in found] == [
+        (("service", "type"), "info"),
+        (("timeout", "patience"), "warning"),
+        (("retry", "most"), "info"),
+    ]
+    assert found[1].span.text == "patience"
+    (tmp_path / "smachac.toml").write_text("ros = 1\n", encoding="utf-8")
+    assert "SM610" not in [item.code for item in smachac.check(tmp_path / "main.yml")]
+
+
+def test_a_whole_number_that_is_a_float_elsewhere_stays_in_a_request(tmp_path: Path) -> None:
+    more = "request: {n: [params, patience], name: [a, [params, patience]]}"
+    states = WAIT.replace("succeeded: succeeded", "succeeded: CALL") + CALL % ("my_srvs/Grip", more)
+    text = program(tmp_path, states, params="{topic: battery, patience: 5}")
+    assert '{"n": 5, "name": "a5"}' in text
+    found = [item for item in smachac.check(tmp_path / "main.yml") if item.code == "SM610"]
+    assert [item.finding.arguments for item in found] == [("request", "patience")]
+
+
+PUBLISH = """
+  - SAY:
+      template: PublishMsgState
+      action: once
+      input_keys: [msg]
+      output_keys: [msg]
+      callbacks: {msg: 'lambda ud: %s'}
+      transitions: {succeeded: succeeded, aborted: aborted}
+"""
+
+
+@pytest.mark.parametrize(
+    ("message", "printed"),
+    [
+        ("Bool(data=True)", "from std_msgs.msg import Bool"),
+        ("Duration(sec=1)", "from builtin_interfaces.msg import Duration"),
+        ("std_msgs.msg.Bool(data=True)", "import std_msgs.msg"),
+        ("[my_msgs.msg.Grip(), my_msgs.srv.Open.Request()]", "import my_msgs.srv"),
+    ],
+)
+def test_code_that_makes_messages_is_imported(message: str, printed: str, tmp_path: Path) -> None:
+    lines = program(tmp_path, PUBLISH % message).splitlines()
+    assert printed in lines
+    assert "SM019" not in [item.code for item in smachac.check(tmp_path / "main.yml")]
+
+
+@pytest.mark.parametrize("message", ["GoalStatus()", "grips.Open()", "msg.Bool()", "a.msg.open()"])
+def test_names_that_are_no_messages_of_ros_2(message: str, tmp_path: Path) -> None:
+    with pytest.raises(smachac.ScriptError) as found:
+        program(tmp_path, PUBLISH % message)
+    assert "SM019" in [item.code for item in found.value.report]
 
 
 @pytest.mark.parametrize(

@@ -4,6 +4,9 @@ from __future__ import annotations
 
 from typing import Any
 
+from smachac.runtime.smach_ros2.action_server_wrapper import (
+    ActionServerWrapper as ActionServerWrapper,  # that of smach_ros has no `path_slot`
+)
 from smachac.runtime.smach_ros2.signals import GRACE, PreemptHandler
 
 

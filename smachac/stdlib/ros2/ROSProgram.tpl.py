@@ -4,12 +4,12 @@
 
 try:
     import smach
-{%- if smach_ros or introspection or ros_action %}
+{%- if smach_ros or introspection %}
     import smach_ros
 {%- endif %}
 except ImportError:  # without SMACH: smachac.runtime has the same names
     from smachac.runtime import smach
-{%- if smach_ros or introspection or ros_action %}
+{%- if smach_ros or introspection %}
     from smachac.runtime import smach_ros2 as smach_ros
 {%- endif %}
 {%- endblock %}

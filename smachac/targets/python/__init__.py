@@ -32,7 +32,7 @@ def emit(machine: Checked, context: BuildContext, report: Report) -> Files:
     """The module of a machine: `<name>.py`."""
     from smachac.targets.python.module import module_text
     from smachac.targets.python.package import package_files
-    from smachac.targets.python.parameters import RESERVED, ros_parameters
+    from smachac.targets.python.parameters import RESERVED, fixed_uses, ros_parameters
 
     for name in ("comments", "introspection"):
         value = context.options.get(name, "no")
@@ -48,8 +48,12 @@ def emit(machine: Checked, context: BuildContext, report: Report) -> Files:
     text = None if found else module_text(machine, context, report)
     if text is None:
         return {}
+    if not ros.is_node(machine, context.library, version):
+        return {f"{stem(machine)}.py": text}
+    parameters = ros_parameters(machine, RESERVED)
+    report.extend(fixed_uses(parameters))
     if package:
-        return package_files(machine, package, text, ros_parameters(machine, RESERVED).declared)
+        return package_files(machine, package, text, parameters.declared)
     return {f"{stem(machine)}.py": text}
 
 

@@ -42,6 +42,19 @@ MOST_PARAMETERS = 5
 Place = tuple[str, str]
 """The path of a state and the name of a value of it: a variable, a key, or ITEMS."""
 
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Use:
+    """A value that uses parameters of the program: its data, with the names of the parameters in
+    code, and these names."""
+
+    data: Data
+    names: tuple[str, ...]
+
+
+Uses = Mapping[Place, Use]
+"""The values that use parameters of the program."""
+
 ITEMS = "items"
 """The name of the items of an Iterator among its values."""
 
@@ -79,7 +92,7 @@ Plan = Mapping[str, Call]
 """The containers that are built in functions, by path."""
 
 
-def one_function(machine: Machine, inlined: Inlined) -> Plan:
+def one_function(machine: Machine, inlined: Inlined, _uses: Uses) -> Plan:
     """The plan of a program that is one function, as SMACHA's are: a function only for what is
     nested too deeply."""
     return {
@@ -91,10 +104,10 @@ def one_function(machine: Machine, inlined: Inlined) -> Plan:
     }
 
 
-def functions(machine: Machine, inlined: Inlined) -> Plan:
-    """The plan of a program of functions."""
+def functions(machine: Machine, inlined: Inlined, uses: Uses) -> Plan:
+    """The plan of a program of functions. `uses`: its values that use parameters."""
     found = list(_extracted(machine, inlined, MOST_NESTED, MOST_STATES))
-    shared = _shared(machine, found, inlined)
+    shared = _shared(machine, found, inlined, uses)
     plan = {}
     for path, node in found:
         plan[path] = shared.get(path) or Call(function=_function(path, node))
@@ -162,7 +175,7 @@ class _Value:
 
 
 def _shared(
-    machine: Machine, found: Iterable[tuple[str, Container]], inlined: Inlined
+    machine: Machine, found: Iterable[tuple[str, Container]], inlined: Inlined, uses: Uses
 ) -> dict[str, Call]:
     """The calls of functions that several calls of a sub-script share, by path."""
     same_place: dict[object, list[tuple[str, Container]]] = {}
@@ -181,16 +194,16 @@ def _shared(
                 alike.setdefault(forms[path], []).append((path, node))
         for occurrences in alike.values():
             if len(occurrences) > 1:
-                calls |= _calls(occurrences, machine.state_types)
+                calls |= _calls(occurrences, machine.state_types, uses)
     return calls
 
 
 def _calls(
-    occurrences: list[tuple[str, Container]], types: Mapping[str, StateType]
+    occurrences: list[tuple[str, Container]], types: Mapping[str, StateType], uses: Uses
 ) -> dict[str, Call]:
     """The calls of one function for containers of one form; none if they differ in too much."""
     path, node = occurrences[0]
-    columns = zip(*(_values(each) for _, each in occurrences), strict=True)
+    columns = zip(*(_values(at, each, uses) for at, each in occurrences), strict=True)
     varying: dict[object, list[tuple[_Value, ...]]] = {}
     for number, column in enumerate(columns):
         texts = tuple(value.text for value in column)
@@ -200,7 +213,7 @@ def _calls(
             varying.setdefault(texts if plain else number, []).append(column)
     if len(varying) > MOST_PARAMETERS:
         return {}
-    taken = _words(node, types)
+    taken = _words(node, types).union(*(use.names for use in uses.values()))
     parameters: dict[Place, str] = {}
     arguments: list[dict[str, Data]] = [{} for _ in occurrences]
     for equal in varying.values():
@@ -222,19 +235,20 @@ def _calls(
     }
 
 
-def _values(container: Container) -> Iterator[_Value]:
+def _values(path: str, container: Container, uses: Uses) -> Iterator[_Value]:
     """The values in a container that may become parameters, in the order of the script."""
-    for path, node in walk(container):
-        state = path[len(container.name) :]
+    for inner, node in walk(container):
+        state = inner[len(container.name) :]
+        values: list[tuple[str, Data]] = []
         if isinstance(node, Leaf):
-            for variable in node.variables:
-                if variable.role != "callbacks":
-                    yield _Value(state=state, name=variable.name, data=variable.value.data)
-            continue
-        for preset in node.userdata:
-            yield _Value(state=state, name=preset.key, data=preset.value.data)
+            values += [(v.name, v.value.data) for v in node.variables if v.role != "callbacks"]
+        else:
+            values += [(preset.key, preset.value.data) for preset in node.userdata]
         if isinstance(node, IteratorNode) and node.items is not None:
-            yield _Value(state=state, name=ITEMS, data=node.items.data)
+            values.append((ITEMS, node.items.data))
+        for name, data in values:
+            use = uses.get((path + state, name))
+            yield _Value(state=state, name=name, data=use.data if use is not None else data)
 
 
 def _forms(machine: Machine, inlined: Inlined) -> dict[str, int | None]:

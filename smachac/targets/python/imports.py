@@ -42,7 +42,15 @@ MESSAGES = {
 """The messages of the common packages of ROS, by module. Scripts call these names to make messages.
 SMACHA's template for actions imported all names of actionlib."""
 
-_MODULE_OF = {name: module for module, names in MESSAGES.items() for name in names.split()}
+_MODULE_OF: Mapping[Ros, Mapping[str, str]] = {
+    1: {name: module for module, names in MESSAGES.items() for name in names.split()},
+    2: {
+        name: "builtin_interfaces.msg" if name == "Duration" else module
+        for module, names in MESSAGES.items()
+        if not module.startswith("actionlib")
+        for name in names.split()
+    },
+}
 
 
 FALLBACK = """
@@ -66,10 +74,11 @@ def with_fallback(text: str, tree: ast.Module) -> str:
     return "".join(lines)
 
 
-def importable() -> set[str]:
-    """The names that a program may use without importing them."""
+def importable(ros: Ros) -> set[str]:
+    """The names that a program may use without importing them. Modules of the other version of ROS
+    are reported as such."""
     modules = (name for names in ROS_MODULES.values() for name in names)
-    return {"smach", "smach_ros", *modules, *_MODULE_OF}
+    return {"smach", "smach_ros", *modules, *_MODULE_OF[ros]}
 
 
 def import_lines(texts: Iterable[str]) -> str:
@@ -159,12 +168,14 @@ def _from_import(module: str, imported: list[str]) -> str:
 @dataclass(frozen=True, slots=True)
 class Names:
     """The names in the code of a program: those with an attribute (`rospy` in `rospy.loginfo`), all
-    that are read, those that the code binds, and the modules of which it imports all names."""
+    that are read, those that the code binds, the modules of which it imports all names, and the
+    modules of messages that it names (`std_msgs.msg`)."""
 
     used: set[str] = field(default_factory=set)
     named: set[str] = field(default_factory=set)
     bound: set[str] = field(default_factory=set)
     everything: set[str] = field(default_factory=set)
+    messages: set[str] = field(default_factory=set)
 
     def add(self, tree: ast.AST) -> None:
         """Add the names in a piece of code."""
@@ -172,6 +183,8 @@ class Names:
             match node:
                 case ast.Attribute(value=ast.Name(id=name)):
                     self.used.add(name)
+                case ast.Attribute() if (module := message_module(node)) is not None:
+                    self.messages.add(module)
                 case ast.Name(id=name, ctx=ast.Load()):
                     self.named.add(name)
                 case ast.Name(id=name, ctx=ast.Store()) | ast.arg(arg=name):
@@ -184,21 +197,40 @@ class Names:
                     self.bound.update(each.asname or each.name.partition(".")[0] for each in names)
 
 
-def unbound_names(names: Names, ros: Ros, also: Iterable[str] = ()) -> list[str]:
+def message_module(code: ast.Attribute) -> str | None:
+    """The module of the class of a message that code names as `std_msgs.msg.Bool`; None if it is
+    other code."""
+    match code:
+        case ast.Attribute(
+            value=ast.Attribute(value=ast.Name(id=package), attr="msg" | "srv" | "action" as kind),
+            attr=name,
+        ) if name[0].isupper() and package.islower():
+            return f"{package}.{kind}"
+    return None
+
+
+def unbound_names(
+    names: Names, ros: Ros, also: Iterable[str] = (), *, node: bool = False
+) -> list[str]:
     """Imports for names that code uses and does not bind: modules by their attributes
-    (`rospy.loginfo`), messages by their names (`Point()`); `also` are further modules. `import *`
-    binds the names in MESSAGES; from a module that is not listed there it may bind any message."""
+    (`rospy.loginfo`), messages by their names (`Point()`, `std_msgs.msg.Bool()`); `also` are
+    further modules. `node`: the program is a node of ROS 2. `import *` binds the names in MESSAGES;
+    from a module that is not listed there it may bind any message."""
     used, named, bound = names.used, names.named, names.bound
-    known = ROS_MODULES[ros]
+    known, modules_of = ROS_MODULES[ros], _MODULE_OF[ros]
     modules = sys.stdlib_module_names | {*known, *also}
     found = [f"import {name}" for name in sorted(used - bound) if name in modules]
+    found += [
+        f"import {name}" for name in sorted(names.messages) if name.partition(".")[0] not in bound
+    ]
     unknown = any(module not in MESSAGES for module in names.everything)
-    if unknown or not any(name in used | named | bound for name in (*known, "smach_ros")):
+    is_ros = node or any(name in used | named | bound for name in (*known, "smach_ros"))
+    if unknown or not is_ros:
         return found
     return found + [
-        f"from {_MODULE_OF[name]} import {name}"
+        f"from {modules_of[name]} import {name}"
         for name in sorted(named - bound)
-        if name in _MODULE_OF and _MODULE_OF[name] not in names.everything
+        if name in modules_of and modules_of[name] not in names.everything
     ]
 
 

@@ -103,12 +103,17 @@ def module_text(machine: Machine, context: BuildContext, report: Report) -> str 
     text, faults = None, report[:0]
     for plan in (functions, one_function):
         module = ModuleParts(blocks, context, machine.state_types, ros)
-        module.plan = plan(machine, partial(is_printed_by_template, module))
         module.node = is_node(machine, context.library, ros)
+        whole = plan is one_function
+        settable = RosParameters()
+        if module.node and not whole:
+            settable = ros_parameters(machine, RESERVED)
+        inlined = partial(is_printed_by_template, module)
+        module.plan = plan(machine, inlined, settable.uses)
         module.action = action
         module.wrappers = wrappers(machine)
         try:
-            text = _text(machine, context, module, whole=plan is one_function)
+            text = _text(machine, settable, module, whole=whole)
         except BlockError as error:
             module.fault(error, machine.root)
         faults = module.faults
@@ -119,16 +124,15 @@ def module_text(machine: Machine, context: BuildContext, report: Report) -> str 
 
 
 def _text(
-    machine: Machine, context: BuildContext, module: ModuleParts, *, whole: bool
+    machine: Machine, settable: RosParameters, module: ModuleParts, *, whole: bool
 ) -> str | None:
     """The text of the module; None if there are errors, and if the program must be one function,
     unless it is planned so (`whole`)."""
+    context = module.context
     template = _base_template(machine, context, module)
     root = module.fresh(machine.root.name, "")
-    settable = ros_parameters(machine, RESERVED) if module.node and not whole else RosParameters()
-    name, places = machine.root.name, settable.places
     inside = EmittedContainer(
-        node=machine.root, variable=root, path=name, depth=1, parameters=places
+        node=machine.root, variable=root, path=machine.root.name, depth=1, uses=settable.uses
     )
     states = children(inside, module)
     if has_errors(module.faults):
@@ -233,7 +237,7 @@ def _imports(expressions: list[str], module: ModuleParts) -> list[str]:
     trees = [tree for tree in map(parsed, expressions) if isinstance(tree, ast.Module)]
     for tree in trees:
         module.names.add(tree)
-    needed = unbound_names(module.names, module.ros)
+    needed = unbound_names(module.names, module.ros, node=module.node)
     return [*module.buffers["imports"], *standard_imports(trees), *needed]
 
 

@@ -1,18 +1,24 @@
 """The params of a script as parameters of its ROS node, which a launch file can set.
 
-A param is a parameter of the node if it is the whole value of a variable or of userdata.
+A param is a parameter of the node if a variable or userdata uses it: as its value, in a list or a
+mapping, or in a string construct. Names of types, code, time limits and numbers of retries are
+fixed when the program is generated.
 """
 
 from __future__ import annotations
 
-from collections.abc import Collection, Iterator, Mapping
-from dataclasses import dataclass, field
+from collections.abc import Collection, Iterable, Iterator, Mapping
+from dataclasses import dataclass, field, replace
 from keyword import iskeyword
 
-from smachac.ir.nodes import Data, Leaf, Machine, Value
+from smachac.diagnostics.diagnostic import Diagnostic, Severity
+from smachac.diagnostics.source import Span
+from smachac.ir.nodes import Data, Expression, Leaf, LookUp, Machine, Param, Struct, Value
+from smachac.ir.nodes import Iterator as IteratorNode
 from smachac.ir.outcome_names import PREEMPTED, is_failure
 from smachac.ir.traversal import walk
 from smachac.ir.types import ANY, Type
+from smachac.targets.errors import fixed_param
 from smachac.targets.python import structure
 from smachac.targets.python.formatter import (
     WIDTH,
@@ -25,7 +31,7 @@ from smachac.targets.python.formatter import (
     names,
     string,
 )
-from smachac.targets.python.functions import Place
+from smachac.targets.python.functions import ITEMS, Place, Use, Uses
 from smachac.targets.python.ros import RosType
 
 
@@ -40,11 +46,23 @@ class RosParameter:
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
+class FixedUse:
+    """The use of a param in a value that a program contains as it is: the field, its place, and the
+    param."""
+
+    field: str
+    span: Span
+    param: Param
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
 class RosParameters:
-    """The parameters of a node, and the values of the machine that they stand for."""
+    """The parameters of a node, the values of the machine that use them, and the uses of params
+    that are fixed."""
 
     declared: tuple[RosParameter, ...] = ()
-    places: Mapping[Place, str] = field(default_factory=dict)
+    uses: Uses = field(default_factory=dict)
+    fixed: tuple[FixedUse, ...] = ()
 
 
 RESERVED = frozenset(
@@ -55,48 +73,178 @@ RESERVED = frozenset(
 
 def ros_parameters(machine: Machine, taken: Collection[str]) -> RosParameters:
     """The parameters of the node of a machine; `taken` are names that variables must not have."""
-    params = {
-        each.value.span: each
-        for each in machine.params
+    params = {each.value.span: each for each in machine.params}
+    if not params:
+        return RosParameters()
+    found = [(each, _look_ups(each.value, params)) for each in _values(machine)]
+    floats, choices = _limits(found)
+    variables = {
+        span: _variable(each.name, taken)
+        for span, each in params.items()
         if each.name.isidentifier() and _has_ros_type(each.value.data)
     }
-    variables = {span: _variable(each.name, taken) for span, each in params.items()}
-    places: dict[Place, str] = {}
-    floats: set[str] = set()
-    choices: dict[str, tuple[int | str, ...]] = {}
-    for path, name, value, type_ in _values(machine):
-        param, variable = params.get(value.span), variables.get(value.span)
-        if param is None or variable is None or param.value.data != value.data:
-            continue
-        places[path, name] = variable
-        if _plain(type_).name == "float":
-            floats.add(variable)
-        allowed = _choices(type_)
-        if allowed:
-            before = choices.get(variable, allowed)
-            choices[variable] = tuple(each for each in before if each in allowed)
-    used = set(places.values())
+    # Where the type of the value matters, 5 is not 5.0.
+    exact = {
+        span: name
+        for span, name in variables.items()
+        if span not in floats or not isinstance(params[span].value.data, int)
+    }
+    uses: dict[Place, Use] = {}
+    fixed = [
+        FixedUse(field=each.field, span=each.word.span, param=params[each.value])
+        for each in machine.fixed_params
+        if each.value in params
+    ]
+    for each, look_ups in found:
+        data, names = each.value.data, dict[str, None]()
+        for look_up in look_ups:
+            known = exact if look_up.path or look_up.parts else variables
+            code = None if each.fixed else _code(look_up, known)
+            if code is not None:
+                data = _replaced(data, look_up.path, code.data)
+                names |= dict.fromkeys(code.names)
+            fixed += [
+                FixedUse(field=each.name, span=each.span, param=params[span])
+                for span in dict.fromkeys(part.span for part in (look_up, *_params_of(look_up)))
+                if span in params and (code is None or span not in known)
+            ]
+        if names:
+            uses[each.path, each.name] = Use(data=data, names=tuple(names))
+    used = {name for use in uses.values() for name in use.names}
     declared = [
         RosParameter(
             name=variables[span],
-            default=_default(each.value.data, variables[span] in floats),
-            choices=choices.get(variables[span], ()),
+            default=_default(each.value.data, span in floats),
+            choices=choices.get(span, ()),
         )
         for span, each in params.items()
         if variables.get(span) in used
     ]
-    return RosParameters(declared=tuple(declared), places=places)
+    return RosParameters(declared=tuple(declared), uses=uses, fixed=tuple(dict.fromkeys(fixed)))
 
 
-def _values(machine: Machine) -> Iterator[tuple[str, str, Value, Type]]:
-    """The values in a machine: path of the state, name, value, type of the variable."""
+@dataclass(frozen=True, slots=True, kw_only=True)
+class _Value:
+    """A value of a machine: the path of its state, its name with the place, its type. `fixed`: a
+    program contains it as code, or as the name of a type."""
+
+    path: str
+    name: str
+    span: Span
+    value: Value
+    type: Type = ANY
+    fixed: bool = False
+
+
+def _values(machine: Machine) -> Iterator[_Value]:
+    """The values in a machine."""
     for path, node in walk(machine.root):
         if isinstance(node, Leaf):
+            known = machine.state_types.get(node.type)
+            variables = known.variables if known is not None else {}
             for held in node.variables:
-                yield path, held.name, held.value, held.type
+                fact = variables.get(held.name)
+                yield _Value(
+                    path=path,
+                    name=held.name,
+                    span=held.span,
+                    value=held.value,
+                    type=held.type,
+                    fixed=held.role == "callbacks" or (fact is not None and fact.unquoted != ""),
+                )
+            continue
+        for preset in node.userdata:
+            yield _Value(path=path, name=preset.key, span=preset.span, value=preset.value)
+        if isinstance(node, IteratorNode) and node.items is not None:
+            yield _Value(path=path, name=ITEMS, span=node.items_span, value=node.items)
+
+
+def _look_ups(value: Value, params: Mapping[Span, Param]) -> list[LookUp]:
+    """The parts of a value that are made of params of the script, without parts of other parts."""
+    found: list[LookUp] = []
+    for each in (LookUp(span=value.span, data=value.data), *value.look_ups):
+        if found and each.path[: len(found[-1].path)] == found[-1].path:
+            continue
+        param = params.get(each.span)
+        if any(part.span in params for part in _params_of(each)) or (
+            param is not None and not each.parts and param.value.data == each.data
+        ):
+            found.append(each)
+    return found
+
+
+def _limits(
+    found: Iterable[tuple[_Value, list[LookUp]]],
+) -> tuple[set[Span], dict[Span, tuple[int | str, ...]]]:
+    """The params that must be floats, and the values that interfaces allow for params."""
+    floats: set[Span] = set()
+    choices: dict[Span, tuple[int | str, ...]] = {}
+    for each, look_ups in found:
+        for look_up in look_ups:
+            if look_up.path or look_up.parts:
+                continue
+            if _plain(each.type).name == "float":
+                floats.add(look_up.span)
+            allowed = _choices(each.type)
+            if allowed:
+                before = choices.get(look_up.span, allowed)
+                choices[look_up.span] = tuple(one for one in before if one in allowed)
+    return floats, choices
+
+
+def _params_of(look_up: LookUp) -> Iterator[LookUp]:
+    """The params in a string construct."""
+    return (part for part in look_up.parts if isinstance(part, LookUp))
+
+
+def _code(look_up: LookUp, variables: Mapping[Span, str]) -> Use | None:
+    """The code of a part that is made of params; None if it has no parameter, or is code itself."""
+    if not look_up.parts:
+        name = variables.get(look_up.span)
+        return Use(data=Expression(text=name, span=look_up.span), names=(name,)) if name else None
+    names: list[str] = []
+    text = ""
+    for part in look_up.parts:
+        if isinstance(part, LookUp) and part.span in variables:
+            names.append(variables[part.span])
+            text += f"{{{names[-1]}}}"
         else:
-            for preset in node.userdata:
-                yield path, preset.key, preset.value, ANY
+            plain = str(part.data) if isinstance(part, LookUp) else part
+            text += plain.replace("{", "{{").replace("}", "}}")
+    if not names or not isinstance(look_up.data, str):
+        return None
+    return Use(data=Expression(text=f"f{string(text)}", span=look_up.span), names=tuple(names))
+
+
+def _replaced(data: Data, path: tuple[str | int, ...], new: Data) -> Data:
+    """Data with another part at a path."""
+    if not path:
+        return new
+    first, rest = path[0], path[1:]
+    match data:
+        case Struct(entries=entries):
+            return Struct(
+                entries=tuple(
+                    (key, _replaced(each, rest, new) if key == first else each)
+                    for key, each in entries
+                )
+            )
+        case tuple():
+            return tuple(
+                _replaced(each, rest, new) if number == first else each
+                for number, each in enumerate(data)
+            )
+    return data
+
+
+def fixed_uses(parameters: RosParameters) -> Iterator[Diagnostic]:
+    """The findings for params that are fixed somewhere: warnings if they are parameters of the node
+    as well, which then have effect elsewhere only, else notes."""
+    declared = {each.name for each in parameters.declared}
+    for use in parameters.fixed:
+        found = fixed_param(use.span, use.field, use.param.name, use.param.value.span)
+        settable = use.param.name in declared or f"{use.param.name}_" in declared
+        yield found if settable else replace(found, severity=Severity.INFO)
 
 
 def _variable(name: str, taken: Collection[str]) -> str:
@@ -172,7 +320,7 @@ def _serving(machine: Machine, root: str, action: RosType) -> str:
     failures = [name for name in outcomes if is_failure(name)]
     good = [name for name in outcomes if name not in (*failures, PREEMPTED)]
     server = call(
-        "smach_ros.ActionServerWrapper",
+        "serving.ActionServerWrapper",
         [
             *(("", each) for each in ("node", string(machine.root.name), action.name, root)),
             ("succeeded_outcomes=", names(good)),

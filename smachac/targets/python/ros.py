@@ -9,7 +9,7 @@ from dataclasses import dataclass
 
 from smachac.diagnostics.diagnostic import Diagnostic
 from smachac.diagnostics.source import Source, Span
-from smachac.frontend.loader import Library, Ros
+from smachac.frontend.loader import ROS_VERSIONS, Library, Ros
 from smachac.ir.nodes import Leaf, Machine, StateType
 from smachac.ir.traversal import expressions, walk
 from smachac.targets import BuildContext, OptionError
@@ -100,6 +100,7 @@ def ros_type(text: str, module: str, ros: Ros) -> RosType | None:
 def unsupported(machine: Machine, ros: Ros) -> Iterator[Diagnostic]:
     """What a script has that only the other version of ROS supports: variables, values, code."""
     other = 3 - ros
+    language = _language(ros)
     for _, node in walk(machine.root):
         type_ = machine.state_types.get(node.type)
         variables = type_.variables if type_ is not None else {}
@@ -111,9 +112,11 @@ def unsupported(machine: Machine, ros: Ros) -> Iterator[Diagnostic]:
             shown = f"`{held.name}: {value}`" if isinstance(value, str) else f"`{held.name}`"
             message = f"{shown} of {node.type} needs ROS {other}"
             help = f"remove it, or set `ros = {other}` in the project file"
-            target, place = f"Python for ROS {ros}", (node.name, held.name)
-            yield unsupported_by_target(held.value.span, target, message, help, place)
+            place = (node.name, held.name)
+            yield unsupported_by_target(held.value.span, language, message, help, place)
         for each in expressions(node):
+            if not any(name in each.text for name in OTHER_MODULES[ros]):
+                continue
             tree = parsed(each.text.strip())
             used = other_modules(tree, ros) if isinstance(tree, ast.Module) else ()
             for name in dict.fromkeys(name for _, name in used):
@@ -145,7 +148,19 @@ def other_version(span: Span, name: str, ros: Ros) -> Diagnostic:
     help = f"write it for ROS {ros}, or set `ros = {other}` in the project file"
     help += f" (`--option ros={other}` for one build)"
     message = f"`{name}` is a module of ROS {other}"
-    return unsupported_by_target(span, f"Python for ROS {ros}", message, help, (name,))
+    return unsupported_by_target(span, _language(ros), message, help, (name,))
+
+
+def needs_other_version(found: Diagnostic) -> bool:
+    """Whether a finding of a program is about a part that only the other version of ROS
+    supports."""
+    arguments = found.finding.arguments
+    return arguments[:1] in [(_language(ros),) for ros in ROS_VERSIONS]
+
+
+def _language(ros: Ros) -> str:
+    """The language of a program, in findings."""
+    return f"Python for ROS {ros}"
 
 
 def is_node(machine: Machine, library: Library, ros: Ros) -> bool:

@@ -4,7 +4,6 @@ user."""
 from __future__ import annotations
 
 import re
-from collections.abc import Mapping
 from dataclasses import dataclass, field
 from itertools import chain, count
 from textwrap import indent
@@ -46,12 +45,12 @@ from smachac.targets.python.formatter import (
     literal,
     names,
 )
-from smachac.targets.python.functions import ITEMS, Function, Place, variable_name
+from smachac.targets.python.functions import ITEMS, Function, Use, Uses, variable_name
 from smachac.targets.python.ros import takes_node
 from smachac.targets.python.smacha_context import (
-    CodeText,
     adding,
     container_variables,
+    plain,
     state_variables,
 )
 from smachac.targets.templates.engine import BlockError, Page
@@ -89,7 +88,7 @@ class EmittedContainer:
     function.
 
     `headers` are the lines that states add to containers, by block and name of the container.
-    `parameters` are those of the function, by the place of the value that they stand for.
+    `uses` are the values that use parameters of the function.
     """
 
     node: Container
@@ -97,15 +96,16 @@ class EmittedContainer:
     path: str
     depth: int
     headers: Headers = field(default_factory=lambda: {name: {} for name in KEYED})
-    parameters: Mapping[Place, str] = field(default_factory=dict)
+    uses: Uses = field(default_factory=dict)
 
     def lines(self) -> list[str]:
         """The header lines of this container, which precede its states."""
         return [line for name in KEYED for line in self.headers[name].get(self.node.name, ())]
 
     def value(self, path: str, name: str, data: Data) -> Doc:
-        """The code of a value: the name of its parameter if there is one, else a literal."""
-        return self.parameters.get((path, name)) or literal(data)
+        """The code of a value, with the names of the parameters that it uses."""
+        use = self.uses.get((path, name))
+        return literal(data if use is None else use.data)
 
 
 def container(node: Container, parent: EmittedContainer, path: str, module: ModuleParts) -> str:
@@ -121,7 +121,7 @@ def container(node: Container, parent: EmittedContainer, path: str, module: Modu
         variable=module.fresh(variable_name(node), "sm_"),
         path=path,
         depth=parent.depth + 1,
-        parameters=parent.parameters,
+        uses=parent.uses,
     )
     states = children(inside, module)
     notes = structure.notes(node, inside.depth)
@@ -294,28 +294,29 @@ def _called(node: Container, parent: EmittedContainer, path: str, module: Module
     at its first call."""
     planned = module.plan[path]
     function = planned.function
-    outer = {
-        (state, name): parameter
-        for (state, name), parameter in parent.parameters.items()
-        if f"{state}/".startswith(f"{path}/")
-    }
-    parameters = {
+    places = {
         (path + state, name): parameter for (state, name), parameter in function.parameters.items()
     }
-    # A function for one call alone takes the parameters of the function around it.
-    parameters = parameters or outer
     arguments: dict[str, Doc] = {
-        parameter: outer.get(place) or literal(planned.arguments[parameter])
-        for place, parameter in parameters.items()
+        parameter: parent.value(*place, planned.arguments[parameter])
+        for place, parameter in places.items()
+    }
+    uses = {
+        place: use
+        for place, use in parent.uses.items()
+        if place not in places and f"{place[0]}/".startswith(f"{path}/")
+    }
+    arguments |= {name: name for use in uses.values() for name in use.names}
+    uses |= {
+        place: Use(data=Expression(text=parameter, span=node.span), names=(parameter,))
+        for place, parameter in places.items()
     }
     node_parameter = ["node"] if module.node else []
     if function.key not in module.functions:
         name = module.fresh(function.word, "build_")
         module.functions[function.key] = PrintedFunction(name=name)  # its place in the order
         variable = module.fresh(function.variable, "sm_")
-        inside = EmittedContainer(
-            node=node, variable=variable, path=path, depth=1, parameters=parameters
-        )
+        inside = EmittedContainer(node=node, variable=variable, path=path, depth=1, uses=uses)
         text = _function(name, [*node_parameter, *arguments], inside, function, module)
         module.functions[function.key] = PrintedFunction(name=name, text=text)
     name, depth = module.functions[function.key].name, parent.depth + 1
@@ -463,8 +464,9 @@ def _whole(
     own = module.context.library.own_template(used.template) is not None
     variables = state_variables(leaf, inside.node, inside.variable, path)
     variables["defined_headers"] = module.defined_headers
-    for name in [name for name in variables if (path, name) in inside.parameters]:
-        variables[name] = CodeText(inside.parameters[path, name])
+    for name in variables:
+        if (path, name) in inside.uses:
+            variables[name] = plain(inside.uses[path, name].data)
     if not own:  # built-in templates take the keys of the interface beside those of the script
         variables["inputs"] = [key.name for key in leaf.inputs]
     called = _called_first(leaf, used, module)
