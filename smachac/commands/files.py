@@ -17,7 +17,7 @@ from smachac.diagnostics.source import Source
 from smachac.frontend.files import TooBigError, decoded, read_bytes
 
 MARK = re.compile(
-    r"""\s*(?:# |// |<!-- |"made_by": ")Made by smachac(?: \d\S* from |, as it is )"""
+    r"""\s*(?:# |// |%% |<!-- |"made_by": ")Made by smachac(?: \d\S* from |, as it is )"""
 )
 """Beginning of a comment, or of a field of JSON, at the head of every file that smachac writes: of
 generated files with the name of the script, and of copied ones."""

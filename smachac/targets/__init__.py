@@ -121,6 +121,17 @@ def stem(machine: Machine) -> str:
     return f"_{word}" if word[0].isdigit() or iskeyword(word) else word
 
 
+def levels_open(options: Mapping[str, str]) -> int | None:
+    """The option `depth` of pictures: the number of levels that are drawn open; None for all.
+
+    Raises OptionError if it is not a number.
+    """
+    depth = options.get("depth")
+    if depth is not None and not (depth.isdecimal() and len(depth) < 10 and int(depth) > 0):
+        raise OptionError(f"`depth` must be a number of levels, 1 or more, not `{depth}`")
+    return int(depth) if depth else None
+
+
 def target_names() -> list[str]:
     """The names of all installed targets."""
     from importlib.metadata import entry_points

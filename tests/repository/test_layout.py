@@ -37,8 +37,8 @@ DISK_METHODS = {"read_text", "read_bytes", "write_text", "write_bytes", "mkdir",
 STREAMS = {"stdin", "stdout", "stderr", "__stdin__", "__stdout__", "__stderr__"}
 
 TEXTS = (
-    *("", ".cfg", ".dot", ".hpp", ".html", ".json", ".jsonl", ".lark", ".md", ".py", ".sh"),
-    *(".smir", ".svg", ".toml", ".txt", ".yaml", ".yml"),
+    *("", ".cfg", ".dot", ".hpp", ".html", ".json", ".jsonl", ".lark", ".md", ".mmd", ".py"),
+    *(".sh", ".smir", ".svg", ".toml", ".txt", ".yaml", ".yml"),
 )
 """Endings of the files that are read for paths of somebody's machine."""
 

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from smachac.diagnostics.diagnostic import Report
 from smachac.ir.nodes import Checked
-from smachac.targets import BuildContext, Files, OptionError, Target, made_by, stem
+from smachac.targets import BuildContext, Files, OptionError, Target, levels_open, made_by, stem
 from smachac.targets.dot.graph import picture
 
 DIRECTIONS = ("TB", "LR", "BT", "RL")
@@ -15,13 +15,11 @@ def emit(machine: Checked, context: BuildContext, report: Report) -> Files:
 
     Raises OptionError for an invalid value of an option.
     """
-    depth = context.options.get("depth")
-    if depth is not None and not (depth.isdecimal() and len(depth) < 10 and int(depth) > 0):
-        raise OptionError(f"`depth` must be a number of levels, 1 or more, not `{depth}`")
+    depth = levels_open(context.options)
     rankdir = context.options.get("rankdir", "TB")
     if rankdir not in DIRECTIONS:
         raise OptionError(f"`rankdir` must be one of {', '.join(DIRECTIONS)}, not `{rankdir}`")
-    lines = picture(machine, depth=int(depth) if depth else None, rankdir=rankdir)
+    lines = picture(machine, depth=depth, rankdir=rankdir)
     return {f"{stem(machine)}.dot": "\n".join([f"// {made_by(machine)}", *lines, ""])}
 
 

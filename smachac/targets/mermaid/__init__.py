@@ -1,0 +1,34 @@
+"""Mermaid: the state diagram of a machine for Markdown pages, such as READMEs and pull requests."""
+
+from __future__ import annotations
+
+from smachac.diagnostics.diagnostic import Report
+from smachac.ir.nodes import Checked
+from smachac.targets import BuildContext, Files, OptionError, Target, levels_open, made_by, stem
+from smachac.targets.mermaid.diagram import diagram
+
+DIRECTIONS = ("TB", "LR", "BT", "RL")
+
+
+def emit(machine: Checked, context: BuildContext, report: Report) -> Files:
+    """One Mermaid file, named after the machine.
+
+    Raises OptionError for an invalid value of an option.
+    """
+    depth = levels_open(context.options)
+    direction = context.options.get("direction", "TB")
+    if direction not in DIRECTIONS:
+        raise OptionError(f"`direction` must be one of {', '.join(DIRECTIONS)}, not `{direction}`")
+    lines = diagram(machine.root, depth=depth, direction=direction)
+    return {f"{stem(machine)}.mmd": "\n".join([f"%% {made_by(machine)}", *lines, ""])}
+
+
+TARGET = Target(
+    name="mermaid",
+    description="a picture for Markdown pages",
+    emit=emit,
+    options={
+        "depth": "levels of containers that are drawn open; deeper ones are closed boxes",
+        "direction": "where the picture runs to: TB (down, the default), LR, BT or RL",
+    },
+)
