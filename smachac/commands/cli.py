@@ -58,7 +58,8 @@ examples:
   smachac explain main.yml --failures        list where every failure leads
   smachac fmt                                format all scripts below the current folder
 
-`smachac COMMAND --help` shows the options of a command.
+`smachac COMMAND --help` shows the options of a command, `man smachac` those of all.
+The tutorial and the reference are in the folder docs/ of the repository.
 
 exit codes: 0 success, 1 findings or failure, 2 wrong usage, 70 a bug in smachac,
 130 interrupted, 141 the reader of the output ended early

@@ -35,6 +35,7 @@ MODULES = (
     ("PIL", "Pillow", "films of the arm (.gif)", "pip install 'smachac[sim]'", False),
     ("imageio_ffmpeg", "imageio-ffmpeg", "films of the arm (.mp4)", "pip install 'smachac[sim]'",
      False),
+    ("pygls", "pygls", "the language server, `smachac lsp`", "pip install 'smachac[lsp]'", False),
     ("smach", "smach", "SMACH itself; without it programs use the bundled runtime",
      "install ROS", False),
     ("rospy", "rospy", "programs for ROS 1", "install ROS 1", False),
