@@ -222,6 +222,7 @@ def _variations(
 def _perform(arguments: Namespace, task: Task, database: Database) -> bool:
     """Perform the runs that the database does not have; whether Ctrl-C ended it."""
     import random
+    from contextlib import redirect_stdout
 
     from smachac.commands.interrupts import interrupts_raise
 
@@ -231,7 +232,8 @@ def _perform(arguments: Namespace, task: Task, database: Database) -> bool:
     random.Random().shuffle(missing)  # a second sweep with this database does other runs first
     runs = _runs(arguments, task, missing, database.has)
     progress = _Progress(planned - len(missing), planned)
-    with interrupts_raise():
+    # Ray prints messages about its workers; the standard output has only the report.
+    with interrupts_raise(), redirect_stdout(sys.stderr):
         try:
             for run in runs:
                 if database.add(run):
