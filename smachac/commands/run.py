@@ -41,6 +41,7 @@ examples:
   smachac run main.yml --mock scenario.yml       play a scenario, without robot and simulation
   smachac run main.yml --mock scenario.yml --orders 100   try 100 orders of concurrent branches
   smachac run main.yml --faults faults.yml       inject faults into the simulation
+  smachac run main.yml --seed 7 --set userdata.speed=0.2   with another value
   smachac run main.yml --expect succeeded        fail if the outcome is another one (CI)
   smachac run main.yml --ros                     run it as a ROS node, here and now
   smachac run main.yml --ros --ros-args -p speed:=0.2 -r __ns:=/robot_1
@@ -65,6 +66,9 @@ def run_arguments(parser: argparse.ArgumentParser) -> None:
                         help="seed of the simulation and random states (default: 0)")  # fmt: skip
     parser.add_argument("--faults", type=as_path, metavar="FILE",
                         help="inject the faults in FILE into the simulation")  # fmt: skip
+    parser.add_argument("--set", action="append", default=[], metavar="NAME=VALUE",
+                        help="another value: userdata.KEY, params.NAME, scene.BODY.x"
+                        " (repeatable)")  # fmt: skip
     parser.add_argument("--mock", type=as_path, metavar="FILE",
                         help="play the scenario in FILE, do not run the program")  # fmt: skip
     parser.add_argument("--schedule", type=names, metavar="A,B,...",
@@ -82,8 +86,6 @@ def run_arguments(parser: argparse.ArgumentParser) -> None:
 
 def run_command(arguments: Namespace) -> int:
     """Run a script; the exit code."""
-    from smachac.driver import analyse_script
-
     record: Path | None = arguments.record
     if record is not None and record.suffix.lower() not in (".gif", ".mp4"):
         return usage(f"--record writes .gif and .mp4, not `{record}`")
@@ -102,10 +104,38 @@ def run_command(arguments: Namespace) -> int:
         if path is not None and in_the_way(path, is_ours):
             what = "is a file of another kind: it was not overwritten"
             return usage(f"--{option} {path} {what}")
-    analysis = analyse_script(arguments.script, arguments.scripts, arguments.templates)
+    analysis = _analysis(arguments)
+    if isinstance(analysis, str):
+        return usage(analysis)
     if arguments.mock is not None:
         return _run_scenario(arguments, analysis)
     return _run_program(arguments, analysis)
+
+
+def _analysis(arguments: Namespace) -> Analysis | str:
+    """The analysis of the script with the values of `--set`, or what is wrong with these.
+    `arguments.poses` becomes those of the scene."""
+    from smachac.driver import analyse_script
+
+    folders = arguments.scripts, arguments.templates
+    analysis = analyse_script(arguments.script, *folders)
+    arguments.poses = {}
+    if not arguments.set or analysis.machine is None:
+        return analysis
+    from smachac.frontend.files import module_folders
+    from smachac.frontend.yaml_tree import parse
+    from smachac.sweep.inputs import scene_bodies
+    from smachac.sweep.variation import VariationError, edited, fixed, poses
+
+    source = analysis.machine.root.span.source
+    tree = parse(source, [])
+    bodies = scene_bodies(analysis.machine, module_folders(arguments.script))
+    try:
+        values = fixed(arguments.set, tree, bodies)
+    except VariationError as error:
+        return f"--set: {error}"
+    arguments.poses = poses(values)
+    return analyse_script(edited(source, tree, values), *folders)
 
 
 def in_the_way(path: Path, is_ours: Callable[[bytes], bool]) -> bool:
@@ -167,6 +197,8 @@ def _run_program(arguments: Namespace, analysis: Analysis) -> int:
 
 def _run_scenario(arguments: Namespace, analysis: Analysis) -> int:
     """Play a scenario; the exit code."""
+    from smachac.sweep.play import play
+
     print_report(without_notes(analysis.report), arguments, sys.stderr)
     machine = analysis.checked or _playable(analysis)
     if machine is None:
@@ -197,6 +229,8 @@ def _observed(
     arguments: Namespace, machine: Machine, go: Callable[[Callable[[Event], None]], str]
 ) -> int:
     """Run a machine with trace and progress, and print its outcome; the exit code."""
+    from smachac.sweep.play import FailedError
+
     try:
         with watching(arguments, machine) as (observe, errors):
             try:
@@ -221,49 +255,6 @@ def _where(errors: list[dict[str, Any]]) -> str:
         return ""
     source = f" ({errors[0]['src']})" if "src" in errors[0] else ""
     return f" in {errors[0]['path']}{source}"
-
-
-class FailedError(Exception):
-    """A run ended without an outcome; the message gives the reason."""
-
-
-def play(
-    machine: Machine,
-    scenario: Scenario,
-    seed: int,
-    schedule: list[str] | None,
-    observe: Callable[[Event], None],
-) -> str:
-    """Play a scenario on the interpreter; the outcome. Raises FailedError."""
-    from smachac.interpreter.behaviours import builtin_behaviour
-    from smachac.interpreter.interpreter import run
-    from smachac.interpreter.scenario import scenario_behaviour
-    from smachac.interpreter.scheduler import ScheduleError
-    from smachac.ir.script_paths import script_paths
-    from smachac.runtime.tracing.writer import shown_path
-
-    behaviour = scenario_behaviour(scenario, machine, builtin_behaviour(seed))
-    paths = script_paths(machine.root)
-    full = {shown: path for path, shown in paths.items()}
-    turns = None if schedule is None else [full.get(turn, turn) for turn in schedule]
-    try:
-        result = run(machine, behaviour, _shown(observe, paths), seed=seed, schedule=turns)
-    except ScheduleError as error:
-        raise FailedError(f"--schedule: {error}") from None
-    if result.error is not None:
-        failure = result.error
-        words = f"{shown_path(failure.path, paths)}: {failure.message}"
-        span = failure.span
-        raise FailedError(f"{words}\n  --> {span}" if span.source.text else words)
-    assert result.outcome is not None
-    return result.outcome
-
-
-def _shown(observe: Callable[[Event], None], paths: Mapping[str, str]) -> Callable[[Event], None]:
-    """An observer of events with full paths."""
-    from smachac.runtime.tracing.writer import with_shown_paths
-
-    return lambda event: observe(with_shown_paths(event, paths))
 
 
 def sugar_of(machine: Machine) -> Sugar:
@@ -302,7 +293,7 @@ def play_orders(machine: Machine, scenario: Scenario, seed: int, most: int) -> t
     paths = script_paths(machine.root)
     ends: dict[str, list[InterpreterResult]] = {}
     orders = explore(
-        machine, lambda: scenario_behaviour(scenario, machine, builtin_behaviour(seed))
+        machine, lambda: scenario_behaviour(scenario, machine, builtin_behaviour(seed), seed)
     )
     for result in islice(orders, most):
         end = f"outcome: {result.outcome}"
@@ -343,6 +334,7 @@ def perform(
 ) -> str:
     """Run the generated module; the outcome. Raises FailedError."""
     from smachac.frontend.files import module_folders
+    from smachac.sweep.play import FailedError
     from smachac.targets.python.runner import execute, failure_text
 
     gc.enable()  # from here on the user's program runs
@@ -359,6 +351,7 @@ def perform(
             gui=arguments.gui,
             record=arguments.record,
             faults=faults,
+            poses=arguments.poses,
             arguments=arguments.node,
             on_preempt=lambda: print(
                 "preemption requested: the states stop; Ctrl-C again ends at once", file=sys.stderr

@@ -33,13 +33,14 @@ STATS_EXAMPLES = """\
 examples:
   smachac stats main.yml runs/*.jsonl              outcomes, and the failures that cost most
   smachac stats main.yml runs/*.jsonl --success done,skipped
+  smachac stats main.yml sweep.db                  the same from the database of a sweep
   smachac stats main.yml runs/*.jsonl --format json
 
 exit codes: 0 success, 1 a trace is not a run that the script allows, or the script has errors,
 2 wrong usage, 70 a bug in smachac, 130 interrupted
 """
 
-TRACES = "file that `run --trace` or a robot has written"
+TRACES = "file that `run --trace` or a robot has written; for statistics also a sweep's database"
 
 
 class UnreadableTraceError(Exception):
@@ -81,7 +82,9 @@ def trace_command(arguments: Namespace) -> int:
     if machine is None:
         return FINDINGS
     try:
-        judged, taken, statistics = _judged(arguments.traces, machine)
+        judged, taken, statistics = _judged(
+            arguments.traces, machine, conformance=arguments.action == "check"
+        )
     except UnreadableTraceError as error:
         return usage(str(error))
     never = untaken(machine, taken)
@@ -138,9 +141,10 @@ def _machine(arguments: Namespace) -> Machine | None:
 
 
 def _judged(
-    paths: list[Path], machine: Machine
+    paths: list[Path], machine: Machine, *, conformance: bool = False
 ) -> tuple[list[JudgedTrace], Coverage, TraceStatistics]:
-    """Every trace, with what all of them cover and count. Raises UnreadableTraceError."""
+    """Every trace, with what all of them cover and count. Raises UnreadableTraceError. The runs of
+    a database have no events, and so no `conformance`."""
     from smachac.verify.coverage import Coverage
     from smachac.verify.trace_report import judge_trace
     from smachac.verify.trace_statistics import TraceStatistics
@@ -155,9 +159,39 @@ def _judged(
         try:
             if not path.is_file() and path.exists():
                 raise UnreadableTraceError(path, "it is not a regular file")
+            if _is_database(path):
+                if conformance:
+                    raise UnreadableTraceError(path, "a sweep's database has no events")
+                _add_database(path, machine, taken, statistics)
+                continue
             with path.open(encoding="utf-8", errors="replace", newline="\n") as lines:
                 judged.append(judge_trace(machine, str(path), lines, record))
         except OSError as error:
             raise UnreadableTraceError(path, error.strerror or str(error)) from None
         statistics.end_trace()
     return judged, taken, statistics
+
+
+def _is_database(path: Path) -> bool:
+    with path.open("rb") as stream:
+        return stream.read(6) == b"SQLite"
+
+
+def _add_database(
+    path: Path, machine: Machine, taken: Coverage, statistics: TraceStatistics
+) -> None:
+    """Add the runs of a sweep. Raises UnreadableTraceError."""
+    from contextlib import closing
+
+    from smachac.sweep.database import Database, DatabaseError
+    from smachac.sweep.task import merge_states
+
+    try:
+        with closing(Database(path, None)) as database:
+            if database.inputs().get("script") != machine.digest:
+                raise UnreadableTraceError(path, "its runs are those of another script")
+            for run in database.runs():
+                taken.covered.update(run.covered)
+                merge_states(statistics, run.states)
+    except DatabaseError as error:
+        raise UnreadableTraceError(path, str(error)) from None

@@ -5,8 +5,10 @@ from __future__ import annotations
 
 import copy
 import json
+import math
+import random
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import NamedTuple
 
 from smachac.diagnostics.diagnostic import did_you_mean
@@ -26,10 +28,12 @@ class Step:
 
     Without an outcome the leaf ends with its default outcome. `stop`: the visit begins with a
     request to stop for the whole machine. `wait`: the leaf first waits for a request to stop.
-    `error`: the leaf raises an error with this message instead.
+    `error`: the leaf raises an error with this message instead. `chances`: outcomes with their
+    probabilities, one of which is drawn at each visit and takes the place of `outcome`.
     """
 
     outcome: str | None = None
+    chances: tuple[tuple[str, float], ...] = ()
     writes: tuple[tuple[str, object], ...] = ()
     wait: bool = False
     error: str = ""
@@ -41,7 +45,8 @@ LONGEST_WAIT = 1e9
 
 
 STEP_FIELDS: Mapping[str, str] = {
-    "outcome": "The outcome it ends with; without one, its default outcome.",
+    "outcome": "The outcome it ends with, or the probability of each of several outcomes; without"
+    " one, its default outcome.",
     "set": "The userdata keys that it writes: {width: 0.05}.",
     "wait": "It first waits for a request to stop.",
     "error": "It raises an error with this message.",
@@ -61,19 +66,28 @@ class Scenario:
     steps: Mapping[str, tuple[Step, ...]]
 
 
-def scenario_behaviour(scenario: Scenario, machine: Machine, otherwise: Behaviour) -> Behaviour:
+def scenario_behaviour(
+    scenario: Scenario, machine: Machine, otherwise: Behaviour, seed: int = 0
+) -> Behaviour:
     """A behaviour that follows a scenario; leaves without steps follow `otherwise`.
 
-    Raises ValueError for a path that names no leaf, or several.
+    `seed` is that of outcomes with probabilities; each leaf has random numbers of its own. Raises
+    ValueError for a path that names no leaf, or several.
     """
     by_path = _by_path(scenario, machine)
     others = preemptible(otherwise)
+    sources: dict[str, random.Random] = {}
 
     def behave(path: str, leaf: Leaf, visit: int, userdata: Userdata) -> str:
         steps = by_path.get(path)
         if not steps:
             return others(path, leaf, visit, userdata)
         step = steps[min(visit, len(steps)) - 1]
+        if step.chances:
+            if path not in sources:
+                sources[path] = random.Random(f"{seed}/{path}")
+            outcomes, weights = zip(*step.chances, strict=True)
+            step = replace(step, outcome=sources[path].choices(outcomes, weights)[0])
         if step.stop:
             userdata.stop_machine()
         return perform_step(step, leaf, userdata)
@@ -197,6 +211,7 @@ def read_scenario(data: object, machine: Machine) -> tuple[Scenario, list[Scenar
       CHECK: succeeded
       TIMER: {wait: true}
       WALK: [succeeded, {outcome: preempted, stop: true}]
+      LIFT: {outcome: {succeeded: 0.7, aborted: 0.3}}
     ```
     """
     problems: list[ScenarioProblem] = []
@@ -268,9 +283,12 @@ class _StepReader:
         for key in ("wait", "stop"):
             if not isinstance(entry.get(key, False), bool):
                 self.problem(number, f"`{key}` is true or false")
-        outcome = self.outcome(entry["outcome"], number) if "outcome" in entry else None
+        given = entry.get("outcome")
+        chances = self.chances(given, number) if isinstance(given, dict) else ()
+        single = "outcome" in entry and not isinstance(given, dict)
         return Step(
-            outcome=outcome,
+            outcome=self.outcome(given, number) if single else None,
+            chances=chances,
             writes=tuple((str(key), writes[key]) for key in writes),
             wait=entry.get("wait") is True,
             error=str(entry.get("error", "")),
@@ -285,6 +303,21 @@ class _StepReader:
             help_ = did_you_mean(name, declared)
             self.problem(number, f"`{name}` is not one of its outcomes", help_)
         return name
+
+    def chances(self, given: dict[object, object], number: int) -> tuple[tuple[str, float], ...]:
+        """The probabilities of the outcomes of a step."""
+        found = []
+        for name, value in given.items():
+            outcome = self.outcome(name, number)
+            if isinstance(value, bool) or not isinstance(value, int | float) or not 0 <= value <= 1:
+                self.problem(number, f"the probability of `{outcome}` is a number from 0 to 1")
+                return ()
+            found.append((outcome, float(value)))
+        total = math.fsum(value for _, value in found)
+        if abs(total - 1) > 1e-6:
+            self.problem(number, f"the probabilities of its outcomes add up to {total:g}, not to 1")
+            return ()
+        return tuple(found)
 
     def problem(self, number: int, message: str, help_: str | None = None) -> None:
         end = f"; {help_}" if help_ else ""

@@ -302,8 +302,13 @@ def project_schema(codes: Mapping[str, Code]) -> Schema:
 def scenario_schema() -> Schema:
     """The schema of scenarios: the files of `smachac run --mock`."""
     outcome: Schema = {"type": ["string", "boolean"]}
+    chances: Schema = {
+        "type": "object",
+        "minProperties": 1,
+        "additionalProperties": {"type": "number", "minimum": 0, "maximum": 1},
+    }
     shapes: Schema = {
-        "outcome": outcome,
+        "outcome": {"anyOf": [outcome, chances]},
         "set": {"type": ["object", "null"]},
         "error": {},
         "wait": {"type": "boolean", "default": False},

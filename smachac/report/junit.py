@@ -31,22 +31,22 @@ def render_junit(reports: Mapping[str, Report], failing: Mapping[str, Report]) -
     whole.append(suite)
     suite.set("skipped", "0")
     for name, report in reports.items():
-        shown = _text(on_one_line(name))
+        shown = xml_text(on_one_line(name))
         test = ET.SubElement(suite, "testcase", name=shown, classname="smachac.check")
         failing_items = failing.get(name, [])
         if failing_items:
             codes = dict.fromkeys(item.code for item in failing_items)
-            failure = ET.SubElement(test, "failure", message=_text(summary(failing_items)))
+            failure = ET.SubElement(test, "failure", message=xml_text(summary(failing_items)))
             failure.set("type", " ".join(codes))
-            failure.text = "\n" + _text(render_text(failing_items))
+            failure.text = "\n" + xml_text(render_text(failing_items))
         ids = {id(item) for item in failing_items}
         mild = [item for item in report if id(item) not in ids]
         if mild:
-            ET.SubElement(test, "system-out").text = "\n" + _text(render_text(mild))
+            ET.SubElement(test, "system-out").text = "\n" + xml_text(render_text(mild))
     ET.indent(whole)
     return '<?xml version="1.0" encoding="utf-8"?>\n' + ET.tostring(whole, "unicode") + "\n"
 
 
-def _text(text: str) -> str:
+def xml_text(text: str) -> str:
     """A text without the characters that XML does not allow."""
     return _NO_XML.sub(lambda found: f"<U+{ord(found.group()):04X}>", text)

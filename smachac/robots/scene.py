@@ -2,8 +2,9 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import Any
 
 from smachac.robots import fields
@@ -29,6 +30,21 @@ class Body:
     colour: RGB | None = None
     spread: Vector = (0.0, 0.0, 0.0)
     apart: tuple[tuple[str, float], ...] = ()
+
+
+AXES = ("x", "y", "z", "yaw")
+"""The parts of a pose that can be replaced: x, y, z (m), and the angle about z (rad)."""
+
+
+def posed(body: Body, values: Mapping[str, float]) -> Body:
+    """A body with other values for some of AXES, before its random shift. A `yaw` replaces the
+    whole rotation."""
+    position, rotation = body.pose
+    x, y, z = (values.get(axis, old) for axis, old in zip(AXES[:3], position, strict=True))
+    if "yaw" in values:
+        half = values["yaw"] / 2
+        rotation = (0.0, 0.0, math.sin(half), math.cos(half))
+    return replace(body, pose=((x, y, z), rotation))
 
 
 def read(data: Any) -> tuple[Body, ...]:

@@ -11,13 +11,13 @@ import atexit
 import threading
 import time
 from collections.abc import Callable, Iterable, Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from pathlib import Path
 from types import TracebackType
 from typing import Any
 
 from smachac.robots.files import find_file, read_file
-from smachac.robots.scene import Body
+from smachac.robots.scene import Body, posed
 from smachac.robots.scene import read as read_scene
 from smachac.sim import robots, skills, smach_bridge, tasks
 from smachac.sim.arm import Arm, arm_named
@@ -40,6 +40,7 @@ class Settings:
     faults: tuple[Fault | Mapping[str, Any], ...] = ()
     on_event: Callable[[Event], None] | None = None
     folders: tuple[Path, ...] = ()
+    poses: Mapping[str, Mapping[str, float]] = field(default_factory=dict)
 
 
 _settings = Settings()
@@ -219,7 +220,8 @@ def _bodies(scene: str | Path | Iterable[Body] | None) -> Iterable[Body]:
         return ()
     if not isinstance(scene, str | Path):
         return scene
-    return read_scene(read_file(find_file(scene, _settings.folders)))
+    bodies = read_scene(read_file(find_file(scene, _settings.folders)))
+    return [posed(body, _settings.poses.get(body.name, {})) for body in bodies]
 
 
 # Settings and open worlds of the process
@@ -233,10 +235,13 @@ def configure(
     faults: Iterable[Fault | Mapping[str, Any]] = (),
     on_event: Callable[[Event], None] | None = None,
     folders: Iterable[Path] = (),
+    poses: Mapping[str, Mapping[str, float]] | None = None,
 ) -> None:
     """Set the defaults of all worlds opened later; an argument left out is reset.
 
-    `folders` are searched for descriptions of robots and scenes, after the working folder.
+    `folders` are searched for descriptions of robots and scenes, after the working folder. `poses`
+    are other values for poses of bodies in the file of a scene: body to axis (robots.scene.AXES) to
+    value.
     """
     global _settings
     _settings = Settings(
@@ -246,6 +251,7 @@ def configure(
         faults=read_faults(faults),
         on_event=on_event,
         folders=tuple(folders),
+        poses=poses or {},
     )
 
 

@@ -56,9 +56,9 @@ def statistics_text(
     for path, state in _in_order(machine, statistics):
         name = f"{'  ' * path.count('/')}{shown.get(path, path).rpartition('/')[2]}"
         rows.append(
-            (name, str(state.visits), _seconds(state.mean), _seconds(state.longest), _shares(state))
+            (name, str(state.visits), seconds(state.mean), seconds(state.longest), _shares(state))
         )
-    lines = list(_table(rows))
+    lines = list(table(rows))
     lines += [f"never taken: {item.path}: {item.outcome} -> {item.target}" for item, _ in untaken]
     return "".join(f"{on_one_line(line)}\n" for line in lines)
 
@@ -91,19 +91,19 @@ def forecast_text(machine: Machine, statistics: TraceStatistics, found: Forecast
     for name in dict.fromkeys([*root.outcomes, *found.prediction.outcomes]):
         low, high = wilson_interval(root.outcomes[name], root.ended)
         measured = root.outcomes[name] / root.ended
-        interval = f"{_percent(low)} to {_percent(high)}"
-        predicted = _percent(found.prediction.outcomes.get(name, 0.0))
-        rows.append((name, _percent(measured), interval, predicted))
-    rows.append(("mean duration", _seconds(root.mean), "", _seconds(found.prediction.seconds)))
-    lines += _table(rows)
+        interval = f"{percent(low)} to {percent(high)}"
+        predicted = percent(found.prediction.outcomes.get(name, 0.0))
+        rows.append((name, percent(measured), interval, predicted))
+    rows.append(("mean duration", seconds(root.mean), "", seconds(found.prediction.seconds)))
+    lines += table(rows)
     lines += [f"as measured, not computed: {shown.get(path, path)}" for path in found.as_measured]
     if found.sensitivities:
         lines.append("failures, by the successes that the machine would gain without them:")
     for each in found.sensitivities[:MOST_GAINS]:
         path = shown.get(each.path, each.path)
         lines.append(
-            f"  {path}: {each.outcome} ({_percent(each.probability)} of its visits):"
-            f" +{_percent(each.gain)}"
+            f"  {path}: {each.outcome} ({percent(each.probability)} of its visits):"
+            f" +{percent(each.gain)}"
         )
     return "".join(f"{on_one_line(line)}\n" for line in lines)
 
@@ -148,20 +148,20 @@ def _in_order(
 
 
 def _shares(state: StateStatistics) -> str:
-    shares = [f"{name} {_percent(p)}" for name, p in state.probabilities().items()]
+    shares = [f"{name} {percent(p)}" for name, p in state.probabilities().items()]
     unfinished = [f"{state.unfinished} not ended"] if state.unfinished else []
     return ", ".join([*shares, *unfinished])
 
 
-def _percent(share: float) -> str:
+def percent(share: float) -> str:
     return f"{100 * share:.1f} %"
 
 
-def _seconds(time: float) -> str:
+def seconds(time: float) -> str:
     return f"{time:.3g} s"
 
 
-def _table(rows: Sequence[tuple[str, ...]]) -> Iterator[str]:
+def table(rows: Sequence[tuple[str, ...]]) -> Iterator[str]:
     """Rows in columns that are as wide as their widest text."""
     widths = [max(len(row[column]) for row in rows) for column in range(len(rows[0]))]
     for row in rows:

@@ -271,3 +271,39 @@ def test_problems_of_a_scenario_show_the_path_of_the_script(
 ) -> None:
     _, found = read_scenario({"states": states}, smachac.load(SUGAR, name="main.yml"))
     assert any(message in each.message for each in found), found
+
+
+def test_an_outcome_is_drawn_from_its_probabilities() -> None:
+    given = picking()
+    scenario, problems = read(
+        {"PICK/GRASP": {"outcome": {"succeeded": 0.7, "aborted": 0.3}}, "CHECK": True}
+    )
+    assert problems == []
+    assert scenario.steps["sm/PICK/GRASP"] == (
+        Step(chances=(("succeeded", 0.7), ("aborted", 0.3))),
+    )
+
+    def tries(seed: int) -> int:
+        _, events = ran(given.root, scenario_behaviour(scenario, given, builtin_behaviour(), seed))
+        return sum(e["event"] == "exit" and e["path"] == "sm/PICK/GRASP" for e in events)
+
+    counts = [tries(seed) for seed in range(300)]
+    assert counts == [tries(seed) for seed in range(300)]
+    first = counts.count(1) / 300
+    assert 0.62 < first < 0.78
+    assert max(counts) > 2
+
+
+@pytest.mark.parametrize(
+    ("chances", "problem"),
+    [
+        ({"succeeded": 0.7, "abortd": 0.3}, "`abortd` is not one of its outcomes; did you mean"),
+        ({"succeeded": 0.7}, "the probabilities of its outcomes add up to 0.7, not to 1"),
+        ({"succeeded": 70, "aborted": 30}, "`succeeded` is a number from 0 to 1"),
+        ({"succeeded": True}, "`succeeded` is a number from 0 to 1"),
+        ({}, "add up to 0, not to 1"),
+    ],
+)
+def test_wrong_probabilities(chances: Any, problem: str) -> None:
+    (found,) = read({"PICK/GRASP": {"outcome": chances}})[1]
+    assert problem in found

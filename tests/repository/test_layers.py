@@ -19,7 +19,7 @@ LAYERS = (
     ("driver", "report"),
     ("__init__", "batch"),
     ("refactor", "verify"),
-    ("lsp",),
+    ("lsp", "sweep"),
     ("commands",),
     ("__main__",),
 )
@@ -36,7 +36,7 @@ PACKAGES: Mapping[str, frozenset[str]] = {
 
 HEAVY = {
     *("networkx", "lark", "jinja2", "pybullet", "pybullet_data", "numpy", "PIL"),
-    *("pygls", "lsprotocol"),
+    *("pygls", "lsprotocol", "ray"),
 }
 """Packages slow to load: imported inside the functions that use them, or for types alone."""
 

@@ -28,6 +28,7 @@ TOUCHES = {
     "smachac/runtime/smach/log.py": "prints what SMACH prints",
     "smachac/robots/files.py": "reads descriptions of robots and scenes",
     "smachac/sim/video.py": "writes films",
+    "smachac/sweep/local.py": "drops what the runs print",
     "smachac/sim/physics.py": "keeps the physics engine's banner off the streams",
 }
 """The modules outside commands/ that may use files and streams, each with its reason."""

@@ -59,6 +59,7 @@ def execute(
     gui: bool = False,
     record: Path | None = None,
     faults: Sequence[Fault] = (),
+    poses: Mapping[str, Mapping[str, float]] | None = None,
     on_preempt: Callable[[], None] = lambda: None,
     on_interrupt: Callable[..., Any] = signal.default_int_handler,
     arguments: Sequence[str] | None = None,
@@ -68,9 +69,10 @@ def execute(
     `folders` are those from which the program may import modules of the user (`module_folders` of
     frontend/files.py), and where it finds descriptions of robots and scenes. `observe` gets every
     event of the trace, with paths of the script; `faults` are injected into the simulation, and are
-    events of the trace. Ctrl-C requests the machine to preempt and calls `on_preempt`; a second one
-    calls the signal handler `on_interrupt`. `arguments` are those of a node of ROS 2, which handles
-    Ctrl-C itself. Exceptions of the program are not caught.
+    events of the trace; `poses` replace those of bodies in its scene (`sim.configure`). Ctrl-C
+    requests the machine to preempt and calls `on_preempt`; a second one calls the signal handler
+    `on_interrupt`. `arguments` are those of a node of ROS 2, which handles Ctrl-C itself.
+    Exceptions of the program are not caught.
     """
     from smachac.runtime.tracing import trace
 
@@ -86,6 +88,7 @@ def execute(
             "faults": faults,
             "on_event": partial(_record_fault, machine, emits),
             "folders": folders,
+            "poses": poses,
         }
 
         def watch(root: Any) -> None:
