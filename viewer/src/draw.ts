@@ -4,7 +4,7 @@ import { html, svg } from "./dom";
 import type { Area, Box, PlacedLine, PlacedPiece, Point, Scene } from "./layout";
 import type { Graph, Path, StateNode } from "./model";
 import { isContainer, kindInWords, nearest } from "./model";
-import { LINE_HEIGHT, TITLE_HEIGHT, boxDetail } from "./pieces";
+import { LINE_HEIGHT, TITLE_HEIGHT, boxDetail, exitsInWords } from "./pieces";
 import { fitting, width } from "./text";
 
 /** What a run of the machine marks in the picture. `taken` are ids of edges (see `edgeId`). */
@@ -105,6 +105,12 @@ function drawText(graph: Graph, group: SVGGElement, node: StateNode, box: Box): 
   group.append(svg("text", { class: "name", x: middle, y, "text-anchor": "middle" }, name));
   if (detail) {
     group.append(svg("text", { class: "detail", x: middle, y: 37, "text-anchor": "middle" }, detail));
+  }
+  if (box.written.length) {
+    const exits = fitting(exitsInWords(box.written), "detail");
+    const failure = box.written.every((edge) => edge.failure);
+    const look = failure ? "detail written failure" : "detail written";
+    group.append(svg("text", { class: look, x: middle, y: y + (detail ? 32 : 16), "text-anchor": "middle" }, exits));
   }
   if (isContainer(node)) group.append(chevron(14, y - 4, false));
   if (node.findings.length) group.append(badge(graph, node, box.width - 13, 13));

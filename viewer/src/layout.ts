@@ -2,9 +2,9 @@
 // No edge crosses the border of a container, so a change inside one leaves the others as they are.
 
 import type { ElkExtendedEdge, ElkNode, ElkPort } from "elkjs/lib/elk-api";
-import type { Graph, Path } from "./model";
+import type { Graph, ModelEdge, Path } from "./model";
 import type { Content, Line, Piece } from "./pieces";
-import { EXIT_HEIGHT, LINE_HEIGHT, TITLE_HEIGHT, boxSize, contentOf, exitId } from "./pieces";
+import { EXIT_HEIGHT, LINE_HEIGHT, TITLE_HEIGHT, boxSize, contentOf, exitId, writtenExits } from "./pieces";
 import { fitting, width } from "./text";
 import { kindInWords } from "./model";
 import type { ComputeLayout } from "./worker";
@@ -19,11 +19,12 @@ export interface Area extends Point {
   height: number;
 }
 
-/** A state in the picture. `level` is its depth, from 0. */
+/** A state in the picture. `level` is its depth, from 0. `written`: edges that it shows as text. */
 export interface Box extends Area {
   path: Path;
   open: boolean;
   level: number;
+  written: readonly ModelEdge[];
 }
 
 export interface PlacedPiece extends Area {
@@ -58,10 +59,11 @@ interface Placed {
   entry: number;
   pieces: PlacedPiece[];
   lines: PlacedLine[];
+  written: Map<Path, ModelEdge[]>;
 }
 
 const SIDE = 20;
-const MANY = 300;
+const MANY = 120;
 /** The number of lines in a container from which its layout is simpler, and so faster. */
 
 const ROOMY: Record<string, string> = {
@@ -81,7 +83,6 @@ const ROOMY: Record<string, string> = {
   "elk.layered.cycleBreaking.strategy": "MODEL_ORDER",
   "elk.layered.nodePlacement.strategy": "NETWORK_SIMPLEX",
   "elk.layered.nodePlacement.favorStraightEdges": "true",
-  "elk.layered.nodePlacement.networkSimplex.nodeFlexibility.default": "PORT_POSITION",
   "elk.layered.edgeLabels.centerLabelPlacementStrategy": "TAIL_LAYER",
 };
 
@@ -109,7 +110,7 @@ export class Layouts {
     const scene: Scene = { width: 0, height: 0, boxes: [], pieces: [], lines: [] };
     if (!placed.has(root)) {
       const size = this.size(root);
-      scene.boxes.push({ path: root, x: 0, y: 0, ...size, open: false, level: 0 });
+      scene.boxes.push({ path: root, x: 0, y: 0, ...size, open: false, level: 0, written: [] });
       return { ...scene, ...size };
     }
     this.compose(root, { x: 0, y: 0 }, 0, placed, scene);
@@ -127,6 +128,7 @@ export class Layouts {
     if (!layout) {
       layout = this.placeContainer(path, open, placed);
       this.known.set(key, layout);
+      layout.catch(() => this.known.delete(key));
     }
     placed.set(path, await layout);
     return key;
@@ -138,26 +140,31 @@ export class Layouts {
     placed: Map<Path, Placed>,
   ): Promise<Placed> {
     const node = this.graph.nodes.get(path)!;
+    const written = writtenExits(this.graph, path);
     const sizes = new Map(
-      node.children.map((child) => [child, placed.get(child)?.full ?? this.size(child)]),
+      node.children.map((child) => [child, placed.get(child)?.full ?? this.size(child, written.get(child))]),
     );
     const content = contentOf(this.graph, path, open, sizes);
-    const done = await this.compute(elkGraph(content, placed, this.direction));
+    const compute = (fast: boolean): Promise<ElkNode> =>
+      this.compute(elkGraph(content, placed, this.direction, fast));
+    const many = content.lines.length > MANY;
+    // ELK fails on a few graphs; it does so less often with fewer options.
+    const done = await (many ? compute(true) : compute(false).catch(() => compute(true)));
     const title =
       width(fitting(node.name, "title"), "title") +
       width(fitting(kindInWords(node), "detail"), "detail") +
       96;
-    return readLayout(content, done, title, this.direction);
+    return { ...readLayout(content, done, title, this.direction), written };
   }
 
-  private size(path: Path): { width: number; height: number } {
+  private size(path: Path, written: readonly ModelEdge[] = []): { width: number; height: number } {
     const node = this.graph.nodes.get(path)!;
-    return boxSize(node, node.children.length);
+    return boxSize(node, node.children.length, written);
   }
 
   private compose(path: Path, at: Point, level: number, placed: Map<Path, Placed>, scene: Scene): void {
     const layout = placed.get(path)!;
-    scene.boxes.push({ path, ...at, ...layout.frame, open: true, level });
+    scene.boxes.push({ path, ...at, ...layout.frame, open: true, level, written: [] });
     for (const { container, line, points, label } of layout.lines) {
       scene.lines.push({
         container,
@@ -172,7 +179,9 @@ export class Layouts {
       else if (placed.has(piece.piece.id)) this.compose(piece.piece.id, here, level + 1, placed, scene);
       else {
         const { x, y, width, height } = here;
-        scene.boxes.push({ path: piece.piece.id, x, y, width, height, open: false, level: level + 1 });
+        const path = piece.piece.id;
+        const written = layout.written.get(path) ?? [];
+        scene.boxes.push({ path, x, y, width, height, open: false, level: level + 1, written });
       }
     }
   }
@@ -183,8 +192,8 @@ function moved<P extends Point>(point: P, by: Point): P {
 }
 
 /** The graph of a container for ELK. */
-function elkGraph(content: Content, placed: Map<Path, Placed>, direction: Direction): ElkNode {
-  const options = content.lines.length > MANY ? FAST : ROOMY;
+function elkGraph(content: Content, placed: Map<Path, Placed>, direction: Direction, fast: boolean): ElkNode {
+  const options = fast ? FAST : ROOMY;
   const [before, after] = direction === "DOWN" ? (["NORTH", "SOUTH"] as const) : (["WEST", "EAST"] as const);
   const padding = direction === "DOWN" ? `bottom=0,right=${SIDE}` : `bottom=${SIDE},right=0`;
   // The outcomes stand on one edge of the container.
@@ -241,9 +250,13 @@ function connections(
     const fixed = { ...layoutOptions, "elk.portConstraints": "FIXED_POS" };
     return { ports: portsAroundMain(piece, ports, `out ${main}`, direction), layoutOptions: fixed };
   }
-  const name = "elk.layered.nodePlacement.networkSimplex.nodeFlexibility";
-  if (piece.what === "state" || piece.what === "fork") return { ports, layoutOptions };
-  const centred = { "elk.spacing.portsSurrounding": "[top=0,left=0,bottom=0,right=0]", [name]: "NONE" };
+  if (piece.what === "state" || piece.what === "fork") {
+    // ELK fails where ports of a node with an edge to itself are free to move.
+    const loops = content.lines.some((line) => line.from === piece.id && line.to === piece.id);
+    const free = { "elk.layered.nodePlacement.networkSimplex.nodeFlexibility": "PORT_POSITION" };
+    return { ports, layoutOptions: { ...layoutOptions, ...(loops ? {} : free) } };
+  }
+  const centred = { "elk.spacing.portsSurrounding": "[top=0,left=0,bottom=0,right=0]" };
   return { ports, layoutOptions: { ...layoutOptions, ...centred } };
 }
 
@@ -334,7 +347,7 @@ function portsOfOpen(piece: Piece, ports: ElkPort[], inner: Placed): ElkPort[] {
 }
 
 /** The layout of a container from the answer of ELK. `title` is the width that its title needs. */
-function readLayout(content: Content, done: ElkNode, title: number, direction: Direction): Placed {
+function readLayout(content: Content, done: ElkNode, title: number, direction: Direction): Omit<Placed, "written"> {
   const places = new Map((done.children ?? []).map((each) => [each.id, each]));
   const down = direction === "DOWN";
   const least = Math.max(title, 120);

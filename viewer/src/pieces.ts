@@ -44,14 +44,57 @@ export const LINE_HEIGHT = 14;
 export const exitId = (outcome: string): string => `exit ${outcome}`;
 const START = "start";
 
-/** The size of a state as a box without content. */
-export function boxSize(node: StateNode, count: number): { width: number; height: number } {
+/** An outcome of the container to which so many states lead is written into them instead of drawn. */
+const MANY_LEAVE = 30;
+
+/** The outcomes of a state that end the container and are written into its box: there are many. */
+export function writtenExits(graph: Graph, path: Path): Map<Path, ModelEdge[]> {
+  const bySource = new Map<Path, ModelEdge[]>();
+  const counts = new Map<string, number>();
+  const leaving = (graph.inside.get(path) ?? []).flatMap((edge) =>
+    edge.source !== null && typeof edge.target !== "string" && edge.kind !== "exhausted"
+      ? [{ edge, source: edge.source, exit: edge.target.outcome }]
+      : [],
+  );
+  if (leaving.length <= MANY_LEAVE) return bySource;
+  for (const { exit } of leaving) counts.set(exit, (counts.get(exit) ?? 0) + 1);
+  for (const { edge, source, exit } of leaving) {
+    if (counts.get(exit)! <= MANY_LEAVE) continue;
+    const known = bySource.get(source) ?? [];
+    bySource.set(source, [...known, edge]);
+  }
+  return bySource;
+}
+
+/** Edges that leave the container, as the text in the box of their state. */
+export function exitsInWords(edges: readonly ModelEdge[]): string {
+  const byExit = new Map<string, string[]>();
+  for (const { outcome, target } of edges) {
+    if (typeof target === "string") continue;
+    byExit.set(target.outcome, [...(byExit.get(target.outcome) ?? []), outcome]);
+  }
+  const texts = [...byExit].map(([exit, outcomes]) => {
+    const others = [...new Set(outcomes)].filter((each) => each !== exit);
+    return others.length ? `${others.join(", ")} \u2192 ${exit}` : `\u2192 ${exit}`;
+  });
+  return texts.join("; ");
+}
+
+export const WRITTEN_HEIGHT = 16;
+
+/** The size of a state as a box without content. `written` are the edges that are written into it. */
+export function boxSize(
+  node: StateNode,
+  count: number,
+  written: readonly ModelEdge[] = [],
+): { width: number; height: number } {
   const name = width(fitting(node.name, "name"), "name") + (node.findings.length ? 20 : 0);
   const detail = boxDetail(node, count);
   const chevron = isContainer(node) ? 22 : 0;
+  const exits = written.length ? width(fitting(exitsInWords(written), "detail"), "detail") : 0;
   return {
-    width: Math.max(96, name + chevron + 32, width(fitting(detail, "detail"), "detail") + 32),
-    height: detail ? 48 : 36,
+    width: Math.max(96, name + chevron + 32, width(fitting(detail, "detail"), "detail") + 32, exits + 24),
+    height: (detail ? 48 : 36) + (written.length ? WRITTEN_HEIGHT : 0),
   };
 }
 
@@ -99,7 +142,9 @@ export function contentOf(
     if (label && !open.has(line.from) && !known.labels.includes(label)) known.labels.push(label);
   };
   const joined = joins(container, pieces, add);
+  const written = new Set([...writtenExits(graph, path)].flatMap(([source, edges]) => (open.has(source) ? [] : edges)));
   for (const edge of graph.inside.get(path) ?? []) {
+    if (written.has(edge)) continue;
     for (const line of linesOf(container, edge, joined)) {
       add(line, edgeId(edge), labelOf(container, edge, line));
     }

@@ -225,9 +225,8 @@ def _snippet(span: Span) -> str:
         number += 1
     while not lines[-1].strip() and len(lines) > 1:
         lines.pop()
-    if len(lines) > SNIPPET_LINES:
-        lines[SNIPPET_LINES:] = ["…"]
-    return "\n".join(line[start : start + SNIPPET_COLUMNS] for line in lines)
+    kept = [line[start : start + SNIPPET_COLUMNS] for line in lines[:SNIPPET_LINES]]
+    return "\n".join([*kept, "…"] if len(lines) > SNIPPET_LINES else kept)
 
 
 def _indentation(source: Source, number: int) -> int:

@@ -249,13 +249,43 @@ ${target2}`;
   var LINE_HEIGHT = 14;
   var exitId = (outcome) => `exit ${outcome}`;
   var START = "start";
-  function boxSize(node, count) {
+  var MANY_LEAVE = 30;
+  function writtenExits(graph, path) {
+    const bySource = /* @__PURE__ */ new Map();
+    const counts = /* @__PURE__ */ new Map();
+    const leaving = (graph.inside.get(path) ?? []).flatMap(
+      (edge) => edge.source !== null && typeof edge.target !== "string" && edge.kind !== "exhausted" ? [{ edge, source: edge.source, exit: edge.target.outcome }] : []
+    );
+    if (leaving.length <= MANY_LEAVE) return bySource;
+    for (const { exit } of leaving) counts.set(exit, (counts.get(exit) ?? 0) + 1);
+    for (const { edge, source, exit } of leaving) {
+      if (counts.get(exit) <= MANY_LEAVE) continue;
+      const known = bySource.get(source) ?? [];
+      bySource.set(source, [...known, edge]);
+    }
+    return bySource;
+  }
+  function exitsInWords(edges) {
+    const byExit = /* @__PURE__ */ new Map();
+    for (const { outcome, target: target2 } of edges) {
+      if (typeof target2 === "string") continue;
+      byExit.set(target2.outcome, [...byExit.get(target2.outcome) ?? [], outcome]);
+    }
+    const texts = [...byExit].map(([exit, outcomes2]) => {
+      const others = [...new Set(outcomes2)].filter((each) => each !== exit);
+      return others.length ? `${others.join(", ")} \u2192 ${exit}` : `\u2192 ${exit}`;
+    });
+    return texts.join("; ");
+  }
+  var WRITTEN_HEIGHT = 16;
+  function boxSize(node, count, written = []) {
     const name = width(fitting(node.name, "name"), "name") + (node.findings.length ? 20 : 0);
     const detail = boxDetail(node, count);
     const chevron2 = isContainer(node) ? 22 : 0;
+    const exits = written.length ? width(fitting(exitsInWords(written), "detail"), "detail") : 0;
     return {
-      width: Math.max(96, name + chevron2 + 32, width(fitting(detail, "detail"), "detail") + 32),
-      height: detail ? 48 : 36
+      width: Math.max(96, name + chevron2 + 32, width(fitting(detail, "detail"), "detail") + 32, exits + 24),
+      height: (detail ? 48 : 36) + (written.length ? WRITTEN_HEIGHT : 0)
     };
   }
   function boxDetail(node, count) {
@@ -293,7 +323,9 @@ ${target2}`;
       if (label && !open.has(line.from) && !known.labels.includes(label)) known.labels.push(label);
     };
     const joined = joins(container, pieces, add);
+    const written = new Set([...writtenExits(graph, path)].flatMap(([source, edges]) => open.has(source) ? [] : edges));
     for (const edge of graph.inside.get(path) ?? []) {
+      if (written.has(edge)) continue;
       for (const line of linesOf(container, edge, joined)) {
         add(line, edgeId(edge), labelOf(container, edge, line));
       }
@@ -432,6 +464,12 @@ ${target2}`;
     group.append(svg("text", { class: "name", x: middle, y, "text-anchor": "middle" }, name));
     if (detail) {
       group.append(svg("text", { class: "detail", x: middle, y: 37, "text-anchor": "middle" }, detail));
+    }
+    if (box.written.length) {
+      const exits = fitting(exitsInWords(box.written), "detail");
+      const failure = box.written.every((edge) => edge.failure);
+      const look3 = failure ? "detail written failure" : "detail written";
+      group.append(svg("text", { class: look3, x: middle, y: y + (detail ? 32 : 16), "text-anchor": "middle" }, exits));
     }
     if (isContainer(node)) group.append(chevron(14, y - 4, false));
     if (node.findings.length) group.append(badge(graph, node, box.width - 13, 13));
@@ -604,7 +642,7 @@ ${target2}`;
 
   // src/layout.ts
   var SIDE = 20;
-  var MANY = 300;
+  var MANY = 120;
   var ROOMY = {
     "elk.algorithm": "layered",
     "elk.edgeRouting": "ORTHOGONAL",
@@ -622,7 +660,6 @@ ${target2}`;
     "elk.layered.cycleBreaking.strategy": "MODEL_ORDER",
     "elk.layered.nodePlacement.strategy": "NETWORK_SIMPLEX",
     "elk.layered.nodePlacement.favorStraightEdges": "true",
-    "elk.layered.nodePlacement.networkSimplex.nodeFlexibility.default": "PORT_POSITION",
     "elk.layered.edgeLabels.centerLabelPlacementStrategy": "TAIL_LAYER"
   };
   var FAST = {
@@ -648,7 +685,7 @@ ${target2}`;
       const scene = { width: 0, height: 0, boxes: [], pieces: [], lines: [] };
       if (!placed.has(root)) {
         const size = this.size(root);
-        scene.boxes.push({ path: root, x: 0, y: 0, ...size, open: false, level: 0 });
+        scene.boxes.push({ path: root, x: 0, y: 0, ...size, open: false, level: 0, written: [] });
         return { ...scene, ...size };
       }
       this.compose(root, { x: 0, y: 0 }, 0, placed, scene);
@@ -665,27 +702,31 @@ ${target2}`;
       if (!layout) {
         layout = this.placeContainer(path, open, placed);
         this.known.set(key, layout);
+        layout.catch(() => this.known.delete(key));
       }
       placed.set(path, await layout);
       return key;
     }
     async placeContainer(path, open, placed) {
       const node = this.graph.nodes.get(path);
+      const written = writtenExits(this.graph, path);
       const sizes = new Map(
-        node.children.map((child) => [child, placed.get(child)?.full ?? this.size(child)])
+        node.children.map((child) => [child, placed.get(child)?.full ?? this.size(child, written.get(child))])
       );
       const content = contentOf(this.graph, path, open, sizes);
-      const done = await this.compute(elkGraph(content, placed, this.direction));
+      const compute = (fast) => this.compute(elkGraph(content, placed, this.direction, fast));
+      const many = content.lines.length > MANY;
+      const done = await (many ? compute(true) : compute(false).catch(() => compute(true)));
       const title = width(fitting(node.name, "title"), "title") + width(fitting(kindInWords(node), "detail"), "detail") + 96;
-      return readLayout(content, done, title, this.direction);
+      return { ...readLayout(content, done, title, this.direction), written };
     }
-    size(path) {
+    size(path, written = []) {
       const node = this.graph.nodes.get(path);
-      return boxSize(node, node.children.length);
+      return boxSize(node, node.children.length, written);
     }
     compose(path, at, level, placed, scene) {
       const layout = placed.get(path);
-      scene.boxes.push({ path, ...at, ...layout.frame, open: true, level });
+      scene.boxes.push({ path, ...at, ...layout.frame, open: true, level, written: [] });
       for (const { container, line, points, label } of layout.lines) {
         scene.lines.push({
           container,
@@ -700,7 +741,9 @@ ${target2}`;
         else if (placed.has(piece.piece.id)) this.compose(piece.piece.id, here, level + 1, placed, scene);
         else {
           const { x, y, width: width2, height } = here;
-          scene.boxes.push({ path: piece.piece.id, x, y, width: width2, height, open: false, level: level + 1 });
+          const path2 = piece.piece.id;
+          const written = layout.written.get(path2) ?? [];
+          scene.boxes.push({ path: path2, x, y, width: width2, height, open: false, level: level + 1, written });
         }
       }
     }
@@ -708,8 +751,8 @@ ${target2}`;
   function moved(point, by) {
     return { ...point, x: point.x + by.x, y: point.y + by.y };
   }
-  function elkGraph(content, placed, direction) {
-    const options = content.lines.length > MANY ? FAST : ROOMY;
+  function elkGraph(content, placed, direction, fast) {
+    const options = fast ? FAST : ROOMY;
     const [before, after] = direction === "DOWN" ? ["NORTH", "SOUTH"] : ["WEST", "EAST"];
     const padding = direction === "DOWN" ? `bottom=0,right=${SIDE}` : `bottom=${SIDE},right=0`;
     const exits = Math.max(0, ...content.pieces.map((each) => each.what === "exit" ? each.width : 0));
@@ -758,9 +801,12 @@ ${name}`;
       const fixed = { ...layoutOptions, "elk.portConstraints": "FIXED_POS" };
       return { ports: portsAroundMain(piece, ports, `out ${main2}`, direction), layoutOptions: fixed };
     }
-    const name = "elk.layered.nodePlacement.networkSimplex.nodeFlexibility";
-    if (piece.what === "state" || piece.what === "fork") return { ports, layoutOptions };
-    const centred = { "elk.spacing.portsSurrounding": "[top=0,left=0,bottom=0,right=0]", [name]: "NONE" };
+    if (piece.what === "state" || piece.what === "fork") {
+      const loops = content.lines.some((line) => line.from === piece.id && line.to === piece.id);
+      const free = { "elk.layered.nodePlacement.networkSimplex.nodeFlexibility": "PORT_POSITION" };
+      return { ports, layoutOptions: { ...layoutOptions, ...loops ? {} : free } };
+    }
+    const centred = { "elk.spacing.portsSurrounding": "[top=0,left=0,bottom=0,right=0]" };
     return { ports, layoutOptions: { ...layoutOptions, ...centred } };
   }
   function mainLine(piece, content) {
