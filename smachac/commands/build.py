@@ -27,6 +27,7 @@ examples:
   smachac build main.yml --target python             write the Python program here
   smachac build main.yml --target cpp -o generated   write the C++ code into a folder
   smachac build main.yml --target dot -o -           print the picture for Graphviz
+  smachac build main.yml --target html -o out        write a page for a browser
   smachac build main.yml --target dot --option depth=1    set an option of the target
   smachac build main.yml --target python --check     fail if the file is not up to date (CI)
 

@@ -13,6 +13,7 @@ export interface Piece {
   height: number;
   path?: Path;
   failure?: boolean;
+  success?: boolean;
 }
 
 /** A drawn line: all edges between two nodes with one look. `from` and `to` are ids of pieces. */
@@ -23,8 +24,12 @@ export interface Line {
   labels: string[];
   failure: boolean;
   implicit: boolean;
+  /** Whether all its outcomes follow requests to stop: it is drawn lighter. */
+  stop: boolean;
   edges: string[];
 }
+
+type Drawn = Omit<Line, "edges" | "labels" | "stop">;
 
 export interface Content {
   path: Path;
@@ -39,14 +44,57 @@ export const LINE_HEIGHT = 14;
 export const exitId = (outcome: string): string => `exit ${outcome}`;
 const START = "start";
 
-/** The size of a state as a box without content. */
-export function boxSize(node: StateNode, count: number): { width: number; height: number } {
+/** An outcome of the container to which so many states lead is written into them instead of drawn. */
+const MANY_LEAVE = 30;
+
+/** The outcomes of a state that end the container and are written into its box: there are many. */
+export function writtenExits(graph: Graph, path: Path): Map<Path, ModelEdge[]> {
+  const bySource = new Map<Path, ModelEdge[]>();
+  const counts = new Map<string, number>();
+  const leaving = (graph.inside.get(path) ?? []).flatMap((edge) =>
+    edge.source !== null && typeof edge.target !== "string" && edge.kind !== "exhausted"
+      ? [{ edge, source: edge.source, exit: edge.target.outcome }]
+      : [],
+  );
+  if (leaving.length <= MANY_LEAVE) return bySource;
+  for (const { exit } of leaving) counts.set(exit, (counts.get(exit) ?? 0) + 1);
+  for (const { edge, source, exit } of leaving) {
+    if (counts.get(exit)! <= MANY_LEAVE) continue;
+    const known = bySource.get(source) ?? [];
+    bySource.set(source, [...known, edge]);
+  }
+  return bySource;
+}
+
+/** Edges that leave the container, as the text in the box of their state. */
+export function exitsInWords(edges: readonly ModelEdge[]): string {
+  const byExit = new Map<string, string[]>();
+  for (const { outcome, target } of edges) {
+    if (typeof target === "string") continue;
+    byExit.set(target.outcome, [...(byExit.get(target.outcome) ?? []), outcome]);
+  }
+  const texts = [...byExit].map(([exit, outcomes]) => {
+    const others = [...new Set(outcomes)].filter((each) => each !== exit);
+    return others.length ? `${others.join(", ")} \u2192 ${exit}` : `\u2192 ${exit}`;
+  });
+  return texts.join("; ");
+}
+
+export const WRITTEN_HEIGHT = 16;
+
+/** The size of a state as a box without content. `written` are the edges that are written into it. */
+export function boxSize(
+  node: StateNode,
+  count: number,
+  written: readonly ModelEdge[] = [],
+): { width: number; height: number } {
   const name = width(fitting(node.name, "name"), "name") + (node.findings.length ? 20 : 0);
   const detail = boxDetail(node, count);
   const chevron = isContainer(node) ? 22 : 0;
+  const exits = written.length ? width(fitting(exitsInWords(written), "detail"), "detail") : 0;
   return {
-    width: Math.max(96, name + chevron + 32, width(fitting(detail, "detail"), "detail") + 32),
-    height: detail ? 48 : 36,
+    width: Math.max(96, name + chevron + 32, width(fitting(detail, "detail"), "detail") + 32, exits + 24),
+    height: (detail ? 48 : 36) + (written.length ? WRITTEN_HEIGHT : 0),
   };
 }
 
@@ -79,22 +127,26 @@ export function contentOf(
       width: width(label, "exit") + 22,
       height: EXIT_HEIGHT,
       failure: outcome.failure,
+      success: outcome.success,
     });
   }
   const lines = new Map<string, Line>();
-  const add = (line: Omit<Line, "edges" | "labels">, edge: string, label: string): void => {
+  const add = (line: Drawn, edge: string, label: string): void => {
     // The lines of an open state start at its outcomes, so that each outcome has lines of its own.
     const own = open.has(line.from) ? line.outcome : "";
     const key = JSON.stringify([line.from, line.to, line.failure, line.implicit, own]);
-    const known = lines.get(key) ?? { ...line, labels: [], edges: [] };
+    const known = lines.get(key) ?? { ...line, stop: true, labels: [], edges: [] };
     lines.set(key, known);
+    known.stop &&= line.outcome === "preempted";
     if (edge && !known.edges.includes(edge)) known.edges.push(edge);
     if (label && !open.has(line.from) && !known.labels.includes(label)) known.labels.push(label);
   };
   const joined = joins(container, pieces, add);
+  const written = new Set([...writtenExits(graph, path)].flatMap(([source, edges]) => (open.has(source) ? [] : edges)));
   for (const edge of graph.inside.get(path) ?? []) {
+    if (written.has(edge)) continue;
     for (const line of linesOf(container, edge, joined)) {
-      add(line, edgeId(edge), labelOf(edge, line));
+      add(line, edgeId(edge), labelOf(container, edge, line));
     }
   }
   return { path, pieces, lines: [...lines.values()] };
@@ -106,7 +158,7 @@ function startPiece(container: StateNode): Piece {
     return { id: START, what: "fork", label: "all start together", width: size, height: 5 };
   }
   if (container.kind === "iterator") {
-    const label = fitting(container.role ?? kindInWords(container), "label");
+    const label = container.role ? "next try" : "next item";
     return { id: START, what: "loop", label, width: width(label, "label") + 24, height: 24 };
   }
   return { id: START, what: "start", label: "start", width: 12, height: 12 };
@@ -116,15 +168,15 @@ function startPiece(container: StateNode): Piece {
 function joins(
   container: StateNode,
   pieces: Piece[],
-  add: (line: Omit<Line, "edges" | "labels">, edge: string, label: string) => void,
+  add: (line: Drawn, edge: string, label: string) => void,
 ): Map<string, string[]> {
   const joined = new Map<string, string[]>();
   (container.rules ?? []).forEach((rule, index) => {
     const exit = pieces.find((each) => each.id === exitId(rule.outcome));
     if (rule.when.length < 2 || !exit) return;
     const id = `join ${index}`;
-    const failure = exit.failure ?? false;
-    pieces.push({ id, what: "join", label: `all: ${rule.outcome}`, width: 64, height: 5, failure });
+    const { failure = false, success } = exit;
+    pieces.push({ id, what: "join", label: `all: ${rule.outcome}`, width: 64, height: 5, failure, success });
     for (const [child, outcome] of rule.when) {
       const key = JSON.stringify([child, outcome, rule.outcome]);
       joined.set(key, [...(joined.get(key) ?? []), id]);
@@ -139,7 +191,7 @@ function linesOf(
   container: StateNode,
   edge: ModelEdge,
   joined: Map<string, string[]>,
-): Omit<Line, "edges" | "labels">[] {
+): Drawn[] {
   const { outcome, failure, implicit } = edge;
   const look = { outcome, failure, implicit };
   const from = edge.source ?? START;
@@ -165,9 +217,9 @@ function linesOf(
 }
 
 /** The label of an edge on its line; empty where the end of the line has the same name. */
-function labelOf(edge: ModelEdge, line: { from: string; to: string }): string {
+function labelOf(container: StateNode, edge: ModelEdge, line: { from: string; to: string }): string {
   if (edge.kind === "default") return "otherwise";
   if (edge.kind === "caught") return "exception";
-  if (edge.kind === "exhausted") return edge.source === null ? "" : "no more items";
+  if (edge.kind === "exhausted") return edge.source === null ? "" : container.role ? "no tries left" : "no more items";
   return line.to === exitId(edge.outcome) ? "" : edge.outcome;
 }
