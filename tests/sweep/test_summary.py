@@ -8,6 +8,7 @@ import smachac
 from smachac.sweep.summary import Summary, Totals, progress_line, replay, summarize
 from smachac.sweep.task import Run
 from smachac.sweep.text import summary_text
+from smachac.sweep.variation import Single
 from tests.support.sweeps import SCRIPT
 
 MACHINE = smachac.load(SCRIPT, name="main.yml")
@@ -50,7 +51,7 @@ def test_failures_are_grouped_by_their_last_three_states() -> None:
 
 
 def test_a_replay_has_the_varied_values() -> None:
-    values = {"userdata.a": 0.5, "params.arm": "left arm", "userdata.b": True}
+    values: dict[str, Single] = {"userdata.a": 0.5, "params.arm": "left arm", "userdata.b": True}
     assert replay(["smachac", "run", "m.yml"], 3, values) == (
         "smachac run m.yml --seed 3 --set userdata.a=0.5 --set 'params.arm=left arm'"
         " --set userdata.b=true"
