@@ -58,14 +58,17 @@ def memory(worker: LocalWorker) -> float:
 
 
 def rates(runs: int, rounds: int, jobs: int = 2) -> None:
-    ratios = []
+    ratios, shares = [], []
     for _ in range(rounds):
-        one, more = rate(1, runs), rate(jobs, runs)
+        (one, _), (more, busy) = rate(1, runs), rate(jobs, runs)
         ratios.append(more / (jobs * one))
+        shares.append(busy)
         print(
             f"{one:.2f} runs/s in 1 process, {more:.2f} in {jobs}: {ratios[-1]:.0%} of {jobs} x 1"
         )
-    print(f"the middle of {rounds}: {statistics.median(ratios):.0%}")
+        print(f"  the {jobs} processes were in runs for {busy:.1%} of the time", flush=True)
+    middle = statistics.median(ratios)
+    print(f"the middle of {rounds}: {middle:.0%}, {statistics.median(shares):.1%}")
 
 
 def many(runs: int) -> None:
@@ -98,5 +101,5 @@ def many(runs: int) -> None:
 if __name__ == "__main__":
     given = [int(word) for word in sys.argv[1:]]
     total, few, rounds = [*given, *(1000, 60, 3)[len(given) :]]
-    rates(few, rounds)
     many(total)
+    rates(few, rounds)

@@ -34,6 +34,7 @@ examples:
   smachac stats main.yml runs/*.jsonl              outcomes, and the failures that cost most
   smachac stats main.yml runs/*.jsonl --success done,skipped
   smachac stats main.yml sweep.db                  the same from the database of a sweep
+  smachac stats main.yml runs/*.jsonl --format dot | dot -Tsvg > main.svg   the graph with figures
   smachac stats main.yml runs/*.jsonl --format json
 
 exit codes: 0 success, 1 a trace is not a run that the script allows, or the script has errors,
@@ -53,7 +54,7 @@ class UnreadableTraceError(Exception):
 def trace_arguments(parser: argparse.ArgumentParser) -> None:
     parser.epilog = TRACE_EXAMPLES
     parser.add_argument("action", choices=("check", "stats"), help="what to do with the traces")
-    _files(parser)
+    _files(parser, "text", "json")
 
 
 def stats_arguments(parser: argparse.ArgumentParser) -> None:
@@ -61,13 +62,13 @@ def stats_arguments(parser: argparse.ArgumentParser) -> None:
     parser.add_argument("--success", type=names, metavar="A,B,...",
                         help="outcomes of the machine that count as success (default: those with"
                         " names of success)")  # fmt: skip
-    _files(parser)
+    _files(parser, "text", "json", "dot")
 
 
-def _files(parser: argparse.ArgumentParser) -> None:
+def _files(parser: argparse.ArgumentParser, *formats: str) -> None:
     parser.add_argument("script", type=as_path, help=SCRIPT)
     parser.add_argument("traces", type=as_path, nargs="+", metavar="TRACE", help=TRACES)
-    parser.add_argument("--format", choices=("text", "json"), default="text", help=FORMAT)
+    parser.add_argument("--format", choices=formats, default="text", help=FORMAT)
     search_folders(parser)
     colour(parser)
 
@@ -105,7 +106,12 @@ def stats_command(arguments: Namespace) -> int:
     from smachac.ir.outcome_names import successes
     from smachac.ir.traversal import outcome_names
     from smachac.report.terminal import on_one_line
-    from smachac.verify.statistics_report import forecast, forecast_json, forecast_text
+    from smachac.verify.statistics_report import (
+        forecast,
+        forecast_dot,
+        forecast_json,
+        forecast_text,
+    )
     from smachac.verify.trace_report import refusals
 
     machine = _machine(arguments)
@@ -126,8 +132,9 @@ def stats_command(arguments: Namespace) -> int:
     if machine.root.name not in statistics.states:
         return usage("the traces have no run")
     good = arguments.success or successes(machine.root)
-    render = forecast_json if arguments.format == "json" else forecast_text
-    sys.stdout.write(render(machine, statistics, forecast(machine, statistics, good)))
+    renders = {"text": forecast_text, "json": forecast_json, "dot": forecast_dot}
+    found = forecast(machine, statistics, good)
+    sys.stdout.write(renders[arguments.format](machine, statistics, found))
     return OK
 
 

@@ -17,6 +17,7 @@ from smachac.ir.script_paths import script_paths
 from smachac.ir.traversal import walk
 from smachac.report.json import json_text
 from smachac.report.terminal import on_one_line
+from smachac.targets.dot.graph import Notes, picture
 from smachac.verify.trace_report import UntakenTransition
 from smachac.verify.trace_statistics import StateStatistics, TraceStatistics, wilson_interval
 
@@ -106,6 +107,25 @@ def forecast_text(machine: Machine, statistics: TraceStatistics, found: Forecast
             f" +{percent(each.gain)}"
         )
     return "".join(f"{on_one_line(line)}\n" for line in lines)
+
+
+def forecast_dot(machine: Machine, statistics: TraceStatistics, found: Forecast | str) -> str:
+    """The graph of the machine for Graphviz: the frequencies of outcomes, the visits and the mean
+    duration of each state, and the successes that the machine would gain without its failures."""
+    gains: dict[str, float] = {}
+    if not isinstance(found, str):
+        for each in found.sensitivities:
+            gains[each.path] = max(each.gain, gains.get(each.path, 0.0))
+    states = {}
+    for path, state in statistics.states.items():
+        gain = f", without failure +{percent(gains[path])}" if gains.get(path, 0.0) > 0 else ""
+        states[path] = f"{state.visits} visits, {seconds(state.mean)}{gain}"
+    outcomes = {
+        path: {name: percent(share) for name, share in state.probabilities().items()}
+        for path, state in statistics.states.items()
+        if state.ended
+    }
+    return "\n".join([*picture(machine, notes=Notes(states, outcomes)), ""])
 
 
 def forecast_json(machine: Machine, statistics: TraceStatistics, found: Forecast | str) -> str:

@@ -13,6 +13,11 @@ from xml.etree import ElementTree as ET
 import pytest
 
 from smachac.commands.cli import main
+from smachac.diagnostics.source import Source
+from smachac.robots.faults import read_file
+from smachac.robots.files import plain
+from smachac.sweep.task import Runner, Task
+from smachac.sweep.variation import read_variation
 from tests.support.sweeps import CHANCES, ONCE, SCRIPT, smachac, work_folder
 
 EXAMPLES = Path(__file__).parents[2] / "examples"
@@ -265,9 +270,11 @@ def test_a_run_in_a_worker_equals_a_run_of_its_own(
     found = smachac(*words, "--database", str(database), folder=tmp_path)
     assert found.returncode == 0, found.stderr
     connection = sqlite3.connect(database)
-    rows = connection.execute("SELECT vary, outcome, states FROM runs WHERE seed = 5").fetchall()
+    rows = connection.execute(
+        "SELECT vary, outcome, states, world FROM runs WHERE seed = 5"
+    ).fetchall()
     connection.close()
-    ((values, outcome, states),) = rows
+    ((values, outcome, states, world),) = rows
     drawn = json.loads(values)["scene.block.x"]
     assert main(
         ["run", script, *faults, "--seed", "5", "--set", f"scene.block.x={drawn}",
@@ -279,3 +286,11 @@ def test_a_run_in_a_worker_equals_a_run_of_its_own(
     swept = sorted(repr((each[0], each[2])) for each in json.loads(states).values())
     assert len(swept) > 20
     assert swept == sorted(repr((each["outcomes"], each["longest"])) for each in alone)
+    source = Source(script, Path(script).read_text("utf-8"))
+    task = Task(
+        source=source,
+        faults=read_file(plain((EXAMPLES / "13_recovery" / "slips.yml").read_text("utf-8"))),
+        variations=(read_variation(vary[1]),),
+    )
+    here = Runner(task).run(5)
+    assert (here.world, here.values) == (world, json.loads(values))

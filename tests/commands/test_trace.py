@@ -141,3 +141,25 @@ def test_a_trace_without_a_run(recorded: Path, capsys: pytest.CaptureFixture[str
     assert main(["trace", "check", "main.yml", "run.jsonl"]) == 0
     assert main(["stats", "main.yml", "run.jsonl"]) == 2
     assert "the traces have no run" in capsys.readouterr().err
+
+
+def test_the_graph_shows_the_statistics(recorded: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    text = recorded.read_text("utf-8")
+    # A second run, in which `A` ends the machine.
+    bad = [line for line in text.splitlines(keepends=True) if '"sm/B' not in line]
+    changed = "".join(bad).replace('"outcome": "ok"', '"outcome": "bad"')
+    changed = changed.replace('"outcome": "done"', '"outcome": "lost"')
+    lines = [json.loads(line) for line in changed.splitlines()]
+    assert [event["event"] for event in lines] == ["start", "enter", "exit", "finish"]
+    added = {**lines[2], "event": "transition", "to": "sm:lost"}
+    rows = [*lines[:3], added, lines[3]]
+    (recorded.parent / "other.jsonl").write_text("".join(json.dumps(row) + "\n" for row in rows))
+    assert main(["stats", "main.yml", "run.jsonl", "other.jsonl", "--format", "dot"]) == 0
+    found = capsys.readouterr().out
+    assert found.startswith('digraph "sm" {')
+    (box,) = [line for line in found.splitlines() if line.strip().startswith('"sm/A" [')]
+    assert "2 visits, " in box
+    (edge,) = [
+        line for line in found.splitlines() if line.strip().startswith('"sm/A" -> "sm=lost"')
+    ]
+    assert "bad 50.0 %" in edge

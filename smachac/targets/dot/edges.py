@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Iterator
+from collections.abc import Iterable, Iterator, Mapping
 from typing import NamedTuple
 
 from smachac.ir import graph, nodes
@@ -34,11 +34,13 @@ class Spot(NamedTuple):
 class Piece(NamedTuple):
     """A drawn state: the end of its incoming edges and the nodes of its outgoing edges.
 
-    `ports` maps outcomes to nodes; it is empty for a state that is one box.
+    `ports` maps outcomes to nodes; it is empty for a state that is one box. `notes` are texts
+    beside its outcomes.
     """
 
     entry: Spot
     ports: dict[str, str]
+    notes: Mapping[str, str] = {}
 
 
 class Edge(NamedTuple):
@@ -46,7 +48,7 @@ class Edge(NamedTuple):
 
     `tacit`: it needs no label, because a node at its end has the name of the outcome. `main`: it
     belongs to the successful path and is drawn straight. `back`: it leads to an earlier state.
-    `hidden`: it is not drawn and affects only the layout.
+    `hidden`: it is not drawn and affects only the layout. `note` stands beside the outcome.
     """
 
     tail: str
@@ -57,6 +59,7 @@ class Edge(NamedTuple):
     main: bool = False
     back: bool = False
     hidden: bool = False
+    note: str = ""
 
 
 Drawn = dict[str, Piece]
@@ -145,7 +148,8 @@ def _leave(piece: Piece, outcome: str, head: Spot, exit: str = "") -> Edge:
     port = piece.ports.get(outcome)
     tacit = port is not None or outcome == exit
     main = tone(outcome) in ("success", "neutral")
-    return Edge(port or piece.entry.id, head, outcome, tacit, main=main)
+    note = piece.notes.get(outcome, "")
+    return Edge(port or piece.entry.id, head, outcome, tacit, main=main, note=note)
 
 
 def _transitions(
@@ -253,8 +257,10 @@ def _arrow(bundle: list[Edge]) -> str:
     outcomes = [edge.outcome for edge in bundle if edge.outcome]
     look = {"color": TONES[_common([tone(edge.outcome) for edge in bundle])][0]}
     label = ""
-    if outcomes and not all(edge.tacit for edge in bundle):
-        rows = [font(html(name), colour=TONES[tone(name)][0]) for name in outcomes]
+    noted = any(edge.note for edge in bundle)
+    if outcomes and (noted or not all(edge.tacit for edge in bundle)):
+        texts = [(edge.outcome, f"{edge.outcome} {edge.note}".rstrip()) for edge in bundle]
+        rows = [font(html(text), colour=TONES[tone(name)][0]) for name, text in texts if name]
         label = lines(f" {row} " for row in rows)
     if outcomes:
         look["tooltip"] = ", ".join(outcomes)

@@ -33,6 +33,14 @@ from smachac.targets.dot.style import (
 )
 
 
+class Notes(NamedTuple):
+    """Texts that are drawn beside a machine: below the names of states, by full path, and beside
+    outcomes, by path and outcome."""
+
+    states: Mapping[str, str] = {}
+    outcomes: Mapping[str, Mapping[str, str]] = {}
+
+
 class Position(NamedTuple):
     """The position of a state: its full path, its node name in DOT and its depth; `paths` are those
     of the script by full path, where they differ; `tones` those of the states in properties."""
@@ -42,6 +50,7 @@ class Position(NamedTuple):
     level: int
     paths: Mapping[str, str]
     tones: Mapping[str, str]
+    notes: Notes = Notes()
 
     def below(self, name: str) -> Position:
         path, id = f"{self.path}/{name}", f"{self.id}/{identifier(name)}"
@@ -61,7 +70,13 @@ class Position(NamedTuple):
         return {name: f"{self.id}={identifier(name)}" for name in outcome_names(node)}
 
 
-def picture(machine: Machine, *, depth: int | None, rankdir: str) -> Iterator[str]:
+def picture(
+    machine: Machine,
+    *,
+    depth: int | None = None,
+    rankdir: str = "TB",
+    notes: Notes = Notes(),  # noqa: B008 (constant)
+) -> Iterator[str]:
     """The lines of a DOT file. Containers below `depth` levels are drawn as closed boxes."""
     root = machine.root
     yield f"digraph {quoted(root.name)} {{"
@@ -69,7 +84,7 @@ def picture(machine: Machine, *, depth: int | None, rankdir: str) -> Iterator[st
         yield f"  {line}"
     todo: list[str | tuple[Position, Container]] = ["}"]
     tones = property_tones(machine)
-    start = Position(root.name, identifier(root.name), 1, script_paths(root), tones)
+    start = Position(root.name, identifier(root.name), 1, script_paths(root), tones, notes)
     todo.append((start, root))
     while todo:
         item = todo.pop()
@@ -129,6 +144,8 @@ def _frame(container: Container, place: Position) -> Iterator[str]:
     title = f"<B>{html(name)}</B>  {font(kind, colour=FAINT, size=9)}"
     if shade := place.tones.get(place.path):
         title += f"  {_property_mark(shade)}"
+    if note := place.notes.states.get(place.path):
+        title += f"<BR/>{font(html(note), colour=FAINT, size=9)}"
     look = {"labeljust": "c", "labelloc": "t", "style": style}
     colours = {"fillcolor": fill, "color": border, "fontsize": "11"}
     yield f'subgraph "cluster_{place.id}" {{'
@@ -147,6 +164,8 @@ def _box(node: Node, place: Position) -> str:
     if shade := place.tones.get(place.path):
         rows.append(_property_mark(shade))
         look |= {"color": TONES[shade][0], "penwidth": "2"} if shade == "failure" else {}
+    if note := place.notes.states.get(place.path):
+        rows.append(font(html(note), colour=INK, size=9))
     return f'"{place.id}"{attributes(look, spaced(rows))}'
 
 
@@ -206,6 +225,7 @@ def _arrows(place: Position, container: Container, depth: int | None) -> Iterato
 
 
 def _piece(node: Node, place: Position, *, closed: bool) -> Piece:
+    notes = place.notes.outcomes.get(place.path, {})
     if closed or isinstance(node, Leaf):
-        return Piece(Spot(place.id), {})
-    return Piece(Spot(place.start, place.id), place.exits(node))
+        return Piece(Spot(place.id), {}, notes)
+    return Piece(Spot(place.start, place.id), place.exits(node), notes)
