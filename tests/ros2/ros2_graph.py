@@ -103,7 +103,10 @@ class Graph:
         return program.output
 
     def stop(self) -> None:
-        """Kill everything and give the domain back."""
-        while self._programs:
-            self._programs.pop().kill()
+        """Kill everything and give the domain back. The output of the programs is shown if the test
+        fails."""
+        for program in self._programs:
+            program.kill()
+            print(f"--- output of process {program.pid}\n{program.output}")
+        self._programs.clear()
         self._lock.close()

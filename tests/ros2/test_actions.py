@@ -135,7 +135,7 @@ report("preempted", state.execute(smach.UserData()))
 """
     )
     assert "absent: aborted" in output
-    assert "there is no server for action 'work'" in output
+    assert "there is no server for action '/work'" in output
     assert "preempted: preempted" in output
 
 

@@ -81,6 +81,71 @@ def test_names_are_remapped(graph2: Graph) -> None:
     assert program.end() == 0, program.output
 
 
+VIEWER = """
+import json, rclpy
+from rclpy.qos import DurabilityPolicy, QoSProfile
+from std_msgs.msg import String
+
+rclpy.init()
+node = rclpy.create_node("viewer")
+qos = QoSProfile(depth=20, durability=DurabilityPolicy.TRANSIENT_LOCAL)
+
+def show(message):
+    fields = json.loads(message.data)
+    print(sorted(fields), [f"{fields['path']}/{each}" for each in fields.get("active_states", [])],
+          flush=True)
+    if fields.get("active_states") == ["WAIT"]:
+        print("nodes", sorted(set(node.get_node_names()) - {"viewer"}), flush=True)
+
+for name in "status", "structure":
+    node.create_subscription(
+        String, f"/robot_1/patrol/smach/container_{name}_json", show, qos
+    )
+print("ready", flush=True)
+rclpy.spin(node)
+"""
+
+VIEWED = """
+name: patrol
+template: ROSBase
+outcomes: [succeeded, aborted, preempted]
+states:
+  - DRIVE:
+      template: StateMachine
+      outcomes: [succeeded, aborted, preempted]
+      states:
+        - WAIT:
+            template: WaitForMsgState
+            topic: nothing
+            msg_type: std_msgs/String
+            timeout: 1000.0
+            transitions: {succeeded: succeeded, aborted: aborted, preempted: preempted}
+      transitions: {succeeded: succeeded, aborted: aborted, preempted: preempted}
+"""
+
+STATUS = ["active_states", "info", "initial_states", "local_data", "path", "stamp"]
+STRUCTURE = [
+    *("children", "container_outcomes", "internal_outcomes", "outcomes_from", "outcomes_to"),
+    *("path", "stamp"),
+]
+
+
+def test_a_viewer_sees_the_active_states(graph2: Graph, tmp_path: Path) -> None:
+    path = tmp_path / "patrol.yml"
+    path.write_text(VIEWED, encoding="utf-8")
+    (text,) = smachac.compile(path, "python", options={"introspection": "yes"}).values()
+    program = graph2.start(text, "--ros-args", "-r", "__ns:=/robot_1")
+    program.expect("state machine starting in 'WAIT'")
+    viewer = graph2.start(VIEWER)
+    viewer.expect("ready")  # it comes late, and gets all that is latched
+    viewer.expect(f"{STATUS} ['/patrol/DRIVE/WAIT']")
+    viewer.expect("nodes ['patrol', 'patrol_introspection']")
+    viewer.expect(str(STRUCTURE))
+    program.send(signal.SIGINT)
+    assert program.end() == 1, program.output
+    assert "publisher already registered" not in program.output
+
+
 IN_TEXTS = """
 name: machine
 template: ROSBase

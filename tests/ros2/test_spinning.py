@@ -175,6 +175,50 @@ left()
     assert "entities: 3" in output
 
 
+def test_a_limit_begins_with_the_first_message_of_the_clock(graph2: Graph) -> None:
+    output = graph2.run(
+        START.replace(
+            'rclpy.create_node("machine")',
+            'rclpy.create_node("machine", parameter_overrides='
+            '[rclpy.Parameter("use_sim_time", value=True)])',
+        )
+        + """
+from rosgraph_msgs.msg import Clock
+clock = rclpy.create_node("clock")
+publisher = clock.create_publisher(Clock, "/clock", 10)
+seen, begun = [], threading.Event()
+
+def now():
+    return node.get_clock().now().nanoseconds // 10**9
+
+def condition(userdata):
+    seen.append(now())
+    begun.set()
+    return False
+
+state = smach_ros.ConditionState(node, condition, poll_rate=100.0, timeout=500.0, max_checks=-1)
+thread = threading.Thread(target=lambda: print("outcome:", state.execute(smach.UserData())))
+thread.start()
+begun.wait()
+second = 1_000_000
+while thread.is_alive():
+    message = Clock()
+    message.clock.sec = second
+    publisher.publish(message)
+    second += 100
+    thread.join(0.05)
+print("seconds:", seen[0], any(each > 1_000_000 for each in seen))
+rclpy.shutdown()
+for other in threading.enumerate():
+    if other is not threading.main_thread():
+        other.join(10)
+left()
+"""
+    )
+    assert "outcome: false" in output
+    assert "seconds: 0 True" in output
+
+
 def test_limits_are_in_simulated_time(graph2: Graph) -> None:
     server = graph2.node("server")
     program = graph2.start(

@@ -70,7 +70,8 @@ class ActionServerWrapper:
             smach.logerr(f"outcomes of an action server stand for two ends: {sorted(both)}")
         self._keys = goal_key, feedback_key, result_key
         expanded = ros.fields(action_spec.Goal) if expand_goal_slots else []
-        self._goal_slots = {slot: slot for slot in expanded} | dict(goal_slots_map or {})
+        self._goal_slots = [(slot, slot) for slot in expanded]
+        self._goal_slots += dict(goal_slots_map or {}).items()
         self._feedback_slots = dict(feedback_slots_map or {})
         self._result_slots = dict(result_slots_map or {})
         self._packed = ros.fields(action_spec.Result) if pack_result_slots else []
@@ -100,7 +101,7 @@ class ActionServerWrapper:
         self.userdata[feedback_key] = self._spec.Feedback()
         self.userdata[result_key] = self._spec.Result()
         container = self.wrapped_container
-        container.register_input_keys([*self._keys, *self._goal_slots.values()])
+        container.register_input_keys([*self._keys, *(key for _, key in self._goal_slots)])
         container.register_start_cb(self._start_cb)
         container.register_transition_cb(self.transition_cb)
         container.register_termination_cb(self.termination_cb)
@@ -174,7 +175,7 @@ class ActionServerWrapper:
         self.userdata[goal_key] = goal
         self.userdata[feedback_key] = self._spec.Feedback()
         self.userdata[result_key] = self._spec.Result()
-        for slot, key in self._goal_slots.items():
+        for slot, key in self._goal_slots:
             self.userdata[key] = getattr(goal, slot)
         container = self.wrapped_container
         inputs = container.get_registered_input_keys()

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import time
 import traceback
 from collections.abc import Callable
 from typing import Any
@@ -10,6 +9,7 @@ from typing import Any
 from smachac.runtime.smach import InvalidUserCodeError, has_smach_interface
 from smachac.runtime.smach_ros2 import ros
 from smachac.runtime.smach_ros2.ros_state import RosState
+from smachac.runtime.smach_ros2.waits import TimeLimit
 
 
 class ConditionState(RosState):
@@ -41,20 +41,19 @@ class ConditionState(RosState):
 
     def execute(self, ud: Any) -> str:
         """Poll the condition until it is true or a limit is reached."""
-        clock = self.node.get_clock()
-        end = None if self._limit is None else _now(clock) + self._limit
         checks = 0
-        while self.node.context.ok():
-            if end is not None and _now(clock) > end:
-                return "false"
-            if self._is_preempted():
-                return "preempted"
-            if self._holds(ud):
-                return "true"
-            checks += 1
-            if checks == self._max_checks:
-                return "false"
-            self._wait_until(lambda: False, self._pause)
+        with TimeLimit(self.node, self._limit, self._wake) as limit:
+            while self.node.context.ok():
+                if limit.left() < 0:
+                    return "false"
+                if self._is_preempted():
+                    return "preempted"
+                if self._holds(ud):
+                    return "true"
+                checks += 1
+                if checks == self._max_checks:
+                    return "false"
+                self._wait_until(lambda: False, self._pause)
         return "preempted"
 
     def _holds(self, ud: Any) -> bool:
@@ -64,10 +63,3 @@ class ConditionState(RosState):
             raise InvalidUserCodeError(
                 f"the condition {self._condition!r} failed:\n{traceback.format_exc()}"
             ) from error
-
-
-def _now(clock: Any) -> float:
-    """The time in seconds: of the ROS clock if it is simulated, else of the monotonic clock."""
-    if clock.ros_time_is_active:
-        return float(clock.now().nanoseconds) / ros.NANOSECONDS
-    return time.monotonic()

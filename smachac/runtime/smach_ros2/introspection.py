@@ -10,6 +10,7 @@ import base64
 import json
 import pickle
 import threading
+import time
 from collections.abc import Mapping
 from importlib import import_module
 from typing import Any
@@ -32,6 +33,10 @@ STATUS_DEPTH = 20
 
 HEARTBEAT = 2.0
 """Seconds between two reports on all containers; a viewer that starts late waits for one."""
+
+
+REPEAT = 0.25
+"""Seconds after which a command that no server has confirmed is sent again."""
 
 
 class Format:
@@ -60,7 +65,8 @@ class Format:
     def encode(self, node: Any, name: str, fields: Mapping[str, Any]) -> Any:
         """The message with these fields."""
         if not self._types:
-            return self._text(data=json.dumps(fields))
+            stamp = node.get_clock().now().nanoseconds / ros.NANOSECONDS
+            return self._text(data=json.dumps({"stamp": stamp, **fields}))
         message = self.message_type(name)()
         if hasattr(message, "header"):
             message.header.stamp = node.get_clock().now().to_msg()
@@ -190,9 +196,11 @@ class ContainerProxy:
 class IntrospectionServer(ros.Node):
     """Reports on the container `state`, whose path is `path`, and on all containers below it.
 
-    It is a node. It publishes on `<server_name>/smach/container_structure` and `container_status`
-    (without smach_msgs: `..._json`): at every start, transition and end of a container, and on all
-    containers every two seconds; a new subscriber gets the newest report on each container.
+    It is a node, with the name of the server and `_introspection`, because the node of the machine
+    often has the name of the server. It publishes on `<server_name>/smach/container_structure` and
+    `container_status` (without smach_msgs: `..._json`): at every start, transition and end of a
+    container, and on all containers every two seconds; a new subscriber gets the newest report on
+    each container.
 
     On `container_init` a viewer may set the initial state of a container for all later runs. The
     userdata of such a command is a pickle, which can run any code: it is dropped, unless `unpickle`
@@ -202,7 +210,8 @@ class IntrospectionServer(ros.Node):
     def __init__(
         self, server_name: str, state: State, path: str, unpickle: bool = False, **kwargs: Any
     ) -> None:
-        super().__init__(server_name.strip("/").replace("/", "_"), **kwargs)
+        name = server_name.strip("/").replace("/", "_")
+        super().__init__(f"{name}_introspection", **kwargs)
         self._server_name = server_name
         self._state = state
         self._path = path
@@ -266,7 +275,8 @@ class IntrospectionClient(ros.Node):
     ) -> bool | None:
         """Set the initial states of a container; whether it confirms them within `timeout`.
 
-        Without a timeout the command is sent without waiting, and the result is None.
+        Without a timeout the command is sent once, and the result is None. A server that is being
+        found may miss a command: with a timeout it is sent again until the server confirms it.
         """
         confirmed, limit = threading.Event(), ros.seconds(timeout)
 
@@ -284,8 +294,9 @@ class IntrospectionClient(ros.Node):
             "initial_states": list(initial_states),
             "local_data": pickled(initial_userdata or UserData()),
         }
-        commands.publish(self._format.encode(self, INIT_TOPIC, fields))
+        command = self._format.encode(self, INIT_TOPIC, fields)
         if limit is None:
+            commands.publish(command)
             return None
         self.create_subscription(
             self._format.message_type(STATUS_TOPIC),
@@ -294,7 +305,10 @@ class IntrospectionClient(ros.Node):
             latched(STATUS_DEPTH),
         )
         spinning.ensure(self)
-        confirmed.wait(limit)
+        end = time.monotonic() + limit
+        while not confirmed.is_set() and time.monotonic() < end:
+            commands.publish(command)
+            confirmed.wait(min(REPEAT, end - time.monotonic()))
         return confirmed.is_set()
 
 

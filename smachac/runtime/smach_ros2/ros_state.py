@@ -2,11 +2,13 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Callable
 from typing import Any
 
+from smachac.runtime import smach
 from smachac.runtime.smach import State
-from smachac.runtime.smach_ros2.waits import CHECK_INTERVAL, Wait
+from smachac.runtime.smach_ros2.waits import CHECK_INTERVAL, DISCOVERY_INTERVAL, SILENCE_LIMIT, Wait
 
 
 class RosState(State):
@@ -43,6 +45,20 @@ class RosState(State):
         `stopped` defaults to a preempt request.
         """
         return self._ros_wait.until(ready, stopped or self.preempt_requested, limit, interval)
+
+    def _found(self, server: str, is_ready: Callable[[], bool], limit: float | None) -> bool:
+        """Wait for a server up to `limit` seconds; whether it is there. After a few seconds the log
+        names the server."""
+        most = math.inf if limit is None else limit
+        first = min(most, SILENCE_LIMIT)
+        if self._wait_until(is_ready, first, interval=DISCOVERY_INTERVAL):
+            return True
+        if self.preempt_requested() or not self.node.context.ok() or first == most:
+            return False
+        left = "without a limit" if limit is None else f"up to {most:g} s"
+        smach.logwarn(f"there is no server for {server} yet: it is waited for, {left}")
+        rest = None if limit is None else most - first
+        return self._wait_until(is_ready, rest, interval=DISCOVERY_INTERVAL)
 
     def _is_preempted(self) -> bool:
         """Whether there is a preempt request; if so, it is marked as answered."""

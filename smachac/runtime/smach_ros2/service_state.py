@@ -12,7 +12,6 @@ from smachac.runtime.smach_ros2 import ros
 from smachac.runtime.smach_ros2.policies import Incoming, Outgoing
 from smachac.runtime.smach_ros2.ros_state import RosState
 from smachac.runtime.smach_ros2.servers import watch_service
-from smachac.runtime.smach_ros2.waits import DISCOVERY_INTERVAL
 from smachac.runtime.state_callbacks import callback, checked_slots
 
 
@@ -94,13 +93,11 @@ class ServiceState(RosState):
         """Call the service once."""
         if self._is_preempted():
             return "preempted"
-        found = self._wait_until(
-            self._client.service_is_ready, self._server_wait_timeout, interval=DISCOVERY_INTERVAL
-        )
-        if not found:
+        service = f"service '{self.node.resolve_service_name(self._name)}'"
+        if not self._found(service, self._client.service_is_ready, self._server_wait_timeout):
             if self._is_preempted():
                 return "preempted"
-            smach.logerr(f"service '{self._name}' is not available")
+            smach.logerr(f"{service} is not available")
             return "aborted"
         request = self._outgoing.build(ud)
         if request is None:

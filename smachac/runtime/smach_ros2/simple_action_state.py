@@ -12,7 +12,6 @@ from smachac.runtime.smach_ros2 import ros
 from smachac.runtime.smach_ros2.policies import Incoming, Outgoing
 from smachac.runtime.smach_ros2.ros_state import RosState
 from smachac.runtime.smach_ros2.servers import watch_action
-from smachac.runtime.smach_ros2.waits import DISCOVERY_INTERVAL
 from smachac.runtime.state_callbacks import callback, checked_slots
 
 ACCEPT_LIMIT = 10.0
@@ -134,13 +133,12 @@ class SimpleActionState(RosState):
         """Send one goal and wait for its end."""
         if self._is_preempted():
             return "preempted"
-        found = self._wait_until(
-            self._client.server_is_ready, self._server_wait_timeout, interval=DISCOVERY_INTERVAL
-        )
+        action = f"action '{self.node.resolve_topic_name(self._name)}'"
+        found = self._found(action, self._client.server_is_ready, self._server_wait_timeout)
         if self._is_preempted():
             return "preempted"
         if not found:
-            smach.logerr(f"there is no server for action '{self._name}'")
+            smach.logerr(f"there is no server for {action}")
             return "aborted"
         goal = self._outgoing.build(ud)
         if goal is None:

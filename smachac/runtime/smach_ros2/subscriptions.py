@@ -9,9 +9,7 @@ from types import TracebackType
 from typing import Any
 
 from smachac.runtime.smach_ros2 import ros
-
-SILENCE_LIMIT = 5.0
-"""Seconds without a message after which the reason is logged."""
+from smachac.runtime.smach_ros2.waits import SILENCE_LIMIT
 
 
 class Subscription:

@@ -14,6 +14,9 @@ from smachac.runtime.smach_ros2 import ros, spinning
 CHECK_INTERVAL = 0.5
 """Seconds between two checks of what notifies nobody: the executor, a server that was killed."""
 
+SILENCE_LIMIT = 5.0
+"""Seconds after which the log names what a state waits for: a topic or a server."""
+
 DISCOVERY_INTERVAL = 0.02
 """Seconds between two checks of the ROS graph; rclpy has no notification for its changes."""
 
@@ -21,15 +24,17 @@ DISCOVERY_INTERVAL = 0.02
 class TimeLimit:
     """A limit in the time of the node's clock: simulated time if the node uses it.
 
-    In simulated time `wake` is called at each change of the clock.
+    In simulated time `wake` is called at each change of the clock. That clock is zero until its
+    first message, which may have any time: the limit begins with it.
     """
 
     def __init__(self, node: Any, length: float | None, wake: Callable[[], None]) -> None:
         self._clock = node.get_clock()
         self._wake = wake
         self._jumps: Any = None
+        self._length = math.inf if length is None else length
         self._simulated = length is not None and self._clock.ros_time_is_active
-        self._end = math.inf if length is None else self._now() + length
+        self._begin = self._now()
 
     def __enter__(self) -> TimeLimit:
         if self._simulated:
@@ -57,7 +62,9 @@ class TimeLimit:
 
     def left(self) -> float:
         """The seconds until the end; inf without a limit."""
-        return self._end - self._now()
+        now = self._now()
+        self._begin = self._begin or now
+        return self._length - (now - self._begin)
 
     def pause(self) -> float:
         """The seconds of wall time that a thread may wait before it checks the limit again."""

@@ -30,8 +30,8 @@ def show_result(future: Any) -> None:
 
 def show_handle(future: Any) -> None:
     handle = future.result()
-    print("accepted" if handle.accepted else "rejected", flush=True)
     handles.append(handle)
+    print("accepted" if handle.accepted else "rejected", flush=True)
     handle.get_result_async().add_done_callback(show_result)
 
 
