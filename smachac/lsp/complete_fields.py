@@ -3,13 +3,16 @@
 from __future__ import annotations
 
 from collections import Counter
-from collections.abc import Iterable
+from collections.abc import Iterable, Mapping
 
 from smachac.frontend import schema
+from smachac.frontend.schema import CONTAINERS
+from smachac.frontend.yaml_tree import Map, Scalar, Seq, Tree
 from smachac.ir.nodes import StateType, VariableType
-from smachac.ir.types import ANY
+from smachac.ir.types import ANY, Type
 from smachac.lsp.complete_values import params_of_call
 from smachac.lsp.place import Body
+from smachac.lsp.repair import ENDING
 from smachac.lsp.word import Completion, Request
 
 
@@ -27,11 +30,76 @@ def fields(here: Request) -> Iterable[Completion]:
         needed.insert(0, "template")
         needed.insert(1, "script") if "transitions" in present else needed.append("script")
     needed += [name for name, each in variables.items() if each.required]
+    if body.name is None:
+        needed.insert(1, "template")
     order = dict.fromkeys([*needed, *likely(here, type_), *variables, *usual_order(known)])
-    for name in order:
+    value = _value_behind(here)
+    for name in sorted(order, key=lambda name: not _fits(here, name, variables.get(name), value)):
         other = {"template": "script", "script": "template"}.get(name, "")
         if name not in present and other not in present:
             yield field_word(here, name, variables.get(name))
+
+
+def _value_behind(here: Request) -> Tree | None:
+    """The value that stands behind the word already, where only the name of a field is typed."""
+    entry = here.body.fields.get(str(here.place.word.value))
+    value = entry.value if entry is not None else None
+    if isinstance(value, Scalar) and (value.value is None or value.value == ENDING):
+        return None
+    return value
+
+
+def _fits(here: Request, name: str, variable: VariableType | None, value: Tree | None) -> bool:
+    """Whether a value has the shape of a field."""
+    if value is None:
+        return True
+    if variable is not None:
+        return _is_look_up(value) or _has_type(value, variable.type)
+    if name in ("template", "script") and isinstance(value, Scalar):
+        library = here.facts.library
+        scripts = library.script_names(here.facts.caller)
+        known = scripts if name == "script" else [*library.template_names(), *CONTAINERS]
+        return str(value.value) in known
+    kinds = SHAPES.get(schema.VARIABLES[name].shape, (Scalar, Seq, Map))
+    return Scalar in kinds if _is_look_up(value) else isinstance(value, kinds)
+
+
+def _is_look_up(value: Tree) -> bool:
+    """Whether a value looks a param up: `[params, x]` or `[[x]]`."""
+    if not isinstance(value, Seq) or not value.items:
+        return False
+    first = value.items[0]
+    return isinstance(first, Seq) or (isinstance(first, Scalar) and first.value == "params")
+
+
+SHAPES: Mapping[str, tuple[type, ...]] = {
+    **dict.fromkeys(("name", "text", "flag"), (Scalar,)),
+    **dict.fromkeys(("map", "userdata", "pairs", "rules"), (Map,)),
+    **dict.fromkeys(("keys", "outcomes"), (Seq, Map)),
+    "names": (Seq,),
+}
+"""The kinds of YAML values of fields, by shape; other shapes have all kinds."""
+
+
+def _has_type(value: Tree, type_: Type) -> bool:
+    """Whether a value may have a type, as far as its kind of YAML value shows it."""
+    if type_.name == "optional" and isinstance(type_.args[0], Type):
+        return _has_type(value, type_.args[0])
+    data = value.value if isinstance(value, Scalar) else None
+    match type_.name:
+        case "bool":
+            return isinstance(data, bool)
+        case "int" | "float":
+            return isinstance(data, (int, float)) and not isinstance(data, bool)
+        case "str":
+            return isinstance(data, str)
+        case "one_of":
+            return data in type_.args
+        case "list" | "array":
+            return isinstance(value, Seq)
+        case "dict" | "record":
+            return isinstance(value, Map)
+    return True
 
 
 def likely(here: Request, type_: StateType | None) -> Iterable[str]:

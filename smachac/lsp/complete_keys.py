@@ -54,7 +54,8 @@ def remapping(here: Request) -> Iterable[Completion]:
         total += 2.0 * (wanted in name or name in wanted)
         total += 1.0 * bool({*wanted.split("_")} & {*name.split("_")})
         total += 1.5 * bool(mine_words & {*name.split("_")})
-        total -= 2.0 * (name in taken)
+        total -= 2.0 * (name in taken) + 4.0 * (name == wanted and name not in known)
+        total += 1.0 * (not known.get(name))
         total += 2.5 * (name in before and not writes)
         total += 2.5 * (name in after and writes)
         return total

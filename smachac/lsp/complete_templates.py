@@ -56,7 +56,8 @@ def fitness(here: Request, name: str, type_: StateType | None) -> float:
     if type_ is None:
         return -9.0
     if here.body.name is None:
-        return 1.0 * (type_.simulation == is_simulated(here)) + 0.5 * (name == "Base")
+        score = 1.0 * (type_.simulation == is_simulated(here)) + 0.5 * (name == "Base")
+        return score + 0.2 * is_robot_of(here, type_)
     common = {*schema.names_for("state")}
     own = {*type_.variables}
     extra = fields - common - own
@@ -85,6 +86,16 @@ def is_simulated(here: Request) -> bool:
     """Whether a state of the script has a type that uses the simulated world."""
     types = map(here.facts.type_named, used_templates(here))
     return any(each.simulation for each in types if each is not None and each.kind == "state")
+
+
+def is_robot_of(here: Request, type_: StateType) -> bool:
+    """Whether the robot of a base is that of the script, which names it only if it is another."""
+    robot = type_.variables.get("robot")
+    usual = robot.default.data if robot is not None and robot.default is not None else None
+    if "robot" in here.body.fields:
+        return usual != here.body.text("robot")
+    several = any("limb" in body.fields for body in here.body.states)
+    return several == (usual == "baxter")
 
 
 def scripts(here: Request) -> Iterable[Completion]:

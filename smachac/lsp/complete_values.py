@@ -4,13 +4,16 @@ from __future__ import annotations
 
 import re
 from collections import Counter
-from collections.abc import Iterable
+from collections.abc import Callable, Iterable, Mapping
 
 from smachac.frontend import schema
+from smachac.ir.robot import MODELS, Robot
+from smachac.ir.types import Type
 from smachac.lsp.complete_flow import success_first
 from smachac.lsp.complete_keys import callbacks, item_keys, key_word
 from smachac.lsp.place import KEY
 from smachac.lsp.word import Completion, Request
+from smachac.robots.files import BUILT_IN
 
 
 def params(here: Request) -> Iterable[Completion]:
@@ -35,7 +38,69 @@ def choices(here: Request) -> Iterable[Completion]:
 
 
 def robots(here: Request) -> Iterable[Completion]:
-    return [Completion(word=each, kind="value") for each in ("panda", "baxter")]
+    """The built-in robots."""
+    return [Completion(word=each, kind="value") for each in BUILT_IN]
+
+
+def _choices_of(type_: Type) -> list[str]:
+    """The words of a type that has few values; empty for other types."""
+    if type_.name == "optional" and isinstance(type_.args[0], Type):
+        return _choices_of(type_.args[0])
+    return [each for each in type_.args if isinstance(each, str)] if type_.name == "one_of" else []
+
+
+def _robot(here: Request) -> Robot | None:
+    machine = here.view.machine
+    return machine.robot if machine is not None else None
+
+
+def limbs(here: Request) -> Iterable[str]:
+    """The limbs of the robot; `left` and `right` if it is not known."""
+    robot = _robot(here)
+    return robot.limb_names if robot is not None else ("left", "right")
+
+
+def joints(here: Request) -> Iterable[str]:
+    """The joints of the robot, those first that the list does not have."""
+    robot = _robot(here)
+    names = [joint.name for joint in robot.joints] if robot is not None else []
+    return sorted(names, key=lambda name: name in here.place.siblings)
+
+
+def frames(here: Request) -> Iterable[str]:
+    """The frames that the script adds, then those of the robot."""
+    robot = _robot(here)
+    return [*sorted(robot.added), *sorted(robot.frames)] if robot is not None else []
+
+
+def models(here: Request) -> Iterable[str]:
+    """The models of the simulation, those first that no state has loaded."""
+    return sorted(MODELS, key=lambda name: name in {*_loaded(here)})
+
+
+def bodies(here: Request) -> Iterable[str]:
+    """The bodies that states load, then those of the scene."""
+    robot = _robot(here)
+    return [*_loaded(here), *(sorted(robot.scene) if robot is not None else ())]
+
+
+def _loaded(here: Request) -> Iterable[str]:
+    """The bodies of the states that load a model, by name; without one, that of the model."""
+    for body in here.place.bodies[0].states:
+        type_ = here.facts.type_named(body.template)
+        named = {each.role: name for name, each in type_.variables.items()} if type_ else {}
+        if "model" in named and body.start != here.body.start:
+            yield body.text("body") or body.text(named["model"])
+
+
+NAMES: Mapping[str, Callable[[Request], Iterable[str]]] = {
+    "limb": limbs,
+    "joint": joints,
+    "frame": frames,
+    "model": models,
+    "body": bodies,
+}
+"""The names that a variable of a role may have."""
 
 
 def variable(here: Request) -> Iterable[Completion]:
@@ -54,8 +119,10 @@ def variable(here: Request) -> Iterable[Completion]:
         return [Completion(word=each, kind="outcome") for each in words]
     if variable is not None and str(variable.type) in ("bool", "bool?"):
         return [Completion(word=each, kind="value") for each in ("true", "false")]
-    if variable is not None and variable.role == "limb":
-        return [Completion(word=each, kind="value") for each in ("left", "right")]
+    if variable is not None and (words := _choices_of(variable.type)):
+        return [Completion(word=each, kind="value") for each in words]
+    if variable is not None and variable.role in NAMES:
+        return [Completion(word=each, kind="value") for each in NAMES[variable.role](here)]
     if variable is not None and variable.keys:
         return item_keys(here)
     used = Counter(
