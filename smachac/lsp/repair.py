@@ -39,7 +39,12 @@ def _blanked(text: str, line: int) -> str | None:
 MARK = "smachacMARK"
 """The word that stands for the one at the cursor: no script has it."""
 
-_ENDINGS = ("", ": x", "}", "]", ": x}", "}]", "]}", "}}", ": x}}")
+ENDING = "smachacEND"
+"""The value that completes a field without one."""
+
+_ENDINGS = tuple(
+    each.replace("x", ENDING) for each in ("", ": x", "}", "]", ": x}", "}]", "]}", "}}", ": x}}")
+)
 """What may complete the text after the cursor, in the order in which it is tried."""
 
 

@@ -162,7 +162,7 @@ def test_state_types_are_looked_up_in_few_places() -> None:
         "smachac/commands/new.py",
         "smachac/commands/states.py",
         "smachac/frontend/resolve.py",
-        "smachac/lsp/completion.py",
+        "smachac/lsp/complete_templates.py",
         "smachac/lsp/facts.py",
         "smachac/lsp/session.py",
     ]

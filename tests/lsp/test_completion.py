@@ -105,6 +105,78 @@ def test_params_and_sub_scripts(tmp_path: Path) -> None:
     assert offered(with_params.replace("time: 1", "time: [[|]]"), tmp_path) == ["pause"]
 
 
+ARM = """\
+name: arm
+template: PyBulletBase
+robot: baxter
+outcomes: [succeeded, aborted]
+userdata: {part: [[0.5, 0.0, 0.1], [0.0, 0.0, 0.0, 1.0]]}
+states:
+- LOAD:
+    template: LoadModelState
+    model_name: block
+    body: part_1
+    remapping: {pose: part}
+    transitions: {succeeded: GRIP, aborted: aborted}
+- GRIP:
+    template: GripperState
+    limb: left
+    command: close
+    transitions: {succeeded: CHECK, aborted: aborted, preempted: aborted}
+- CHECK:
+    template: CheckGraspState
+    limb: left
+    body: part_1
+    transitions: {succeeded: succeeded, aborted: aborted}
+"""
+
+
+@pytest.mark.parametrize(
+    ("old", "new", "found"),
+    [
+        ("robot: baxter", "robot: |", ["panda", "baxter", "iiwa"]),
+        ("limb: left", "limb: |", ["left", "right"]),
+        ("command: close", "command: |", ["open", "close"]),
+        ("model_name: block", "model_name: |", ["block", "brick"]),
+        ("    body: part_1\n    transitions", "    body: |\n    transitions", ["part_1"]),
+    ],
+)
+def test_names_of_the_robot_and_its_world(
+    old: str, new: str, found: list[str], tmp_path: Path
+) -> None:
+    assert old in ARM
+    assert offered(ARM.replace(old, new, 1), tmp_path)[: len(found)] == found
+
+
+def test_joints_are_those_of_the_robot_and_frames_those_of_the_script(tmp_path: Path) -> None:
+    (tmp_path / "templates").mkdir()
+    (tmp_path / "templates" / "Turn.yml").write_text(
+        "name: Turn\nvariables: {joint: {names: joint}, of: {names: frame}}\noutcomes: {done: {}}\n"
+    )
+    state = "- TURN: {template: Turn, joint: left_s0, of: base, transitions: {done: succeeded}}\n"
+    joints = offered(ARM + state.replace("left_s0", "|"), tmp_path)
+    assert "left_s0" in joints
+    assert len(joints) >= 14
+    text = ARM.replace("robot: baxter", "robot: baxter\nframes: [camera]")
+    assert offered(text + state.replace("base", "|"), tmp_path) == ["camera"]
+
+
+@pytest.mark.parametrize(
+    ("old", "new", "first"),
+    [
+        ("limb: left", "|: left", "limb"),
+        ("command: close", "|: close", "command"),
+        ("transitions: {succeeded: GRIP", "|: {succeeded: GRIP", "transitions"),
+        ("template: PyBulletBase", "|: PyBulletBase", "template"),
+        ("outcomes: [succeeded, aborted]", "|: [succeeded, aborted]", "outcomes"),
+        ("PyBulletBase", "|", "PyBulletBase"),
+    ],
+)
+def test_a_field_fits_the_value_behind_it(old: str, new: str, first: str, tmp_path: Path) -> None:
+    assert old in ARM
+    assert offered(ARM.replace(old, new, 1), tmp_path)[0] == first
+
+
 def test_the_word_that_was_deleted_is_first() -> None:
     chosen = random.Random(0).sample(places(), 100)
     first = 0
@@ -115,4 +187,4 @@ def test_the_word_that_was_deleted_is_first() -> None:
         session.change(str(path), text)
         found = complete(text, word.start, str(path), session.view(str(path)))
         first += bool(found) and found[0].word == word.value
-    assert first >= 80
+    assert first >= 88
