@@ -31,6 +31,7 @@ COMMANDS = {
     "verify": ("verify", "compare the generated code with the script, path by path"),
     "trace": ("trace", "compare recorded traces with a script"),
     "stats": ("trace", "predict outcomes and costly failures from recorded traces"),
+    "diff": ("diff", "compare two scripts, or two git revisions"),
     "explain": ("explain", "explain a code, or a state, a key or the failures of a script"),
     "new": ("new", "create a project or a state type"),
     "states": ("states", "list the state types, or describe one"),

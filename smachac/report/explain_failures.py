@@ -5,20 +5,17 @@ from __future__ import annotations
 
 import csv
 import io
-import re
 from collections import Counter
 from collections.abc import Iterable, Iterator, Sequence
 
 from smachac.analysis.failure_paths import Answer, Failure
 from smachac.report.json import json_text
+from smachac.report.markdown import cell, table
 from smachac.report.outline import alternatives, at
-from smachac.report.terminal import on_one_line, visible
+from smachac.report.terminal import on_one_line
 from smachac.report.text import steps
 
 HEADINGS = ("state", "failure", "place", "path", "caught by", "the machine ends with")
-
-_MARKUP = re.compile(r"[\\`*<\[\]|]|\b_|_\b")
-"""Characters that are markup in Markdown."""
 
 _COUNTED: dict[Answer, str] = {
     "caught": "caught",
@@ -127,14 +124,5 @@ def _csv(found: Iterable[Failure]) -> str:
 
 
 def _markdown(name: str, found: Sequence[Failure]) -> str:
-    def row(cells: Iterable[str]) -> str:
-        return f"| {' | '.join(map(_cell, cells))} |"
-
-    lines = [f"Failures of {_cell(name)}: {_summary(found)}.", "", row(HEADINGS)]
-    lines += ["|" + " --- |" * len(HEADINGS), *map(row, _rows(found))]
+    lines = [f"Failures of {cell(name)}: {_summary(found)}.", "", *table(HEADINGS, _rows(found))]
     return "\n".join(lines) + "\n"
-
-
-def _cell(text: str) -> str:
-    """A text with its Markdown characters escaped."""
-    return _MARKUP.sub(r"\\\g<0>", visible(text).replace("\n", " "))

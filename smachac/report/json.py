@@ -18,7 +18,11 @@ def render_json(report: Report, *, on_one_line: bool = False) -> str:
     counts = {
         severity.value: sum(item.severity is severity for item in report) for severity in Severity
     }
-    whole = {"version": VERSION, "diagnostics": list(map(_diagnostic, report)), "counts": counts}
+    whole = {
+        "version": VERSION,
+        "diagnostics": list(map(diagnostic_data, report)),
+        "counts": counts,
+    }
     return json_text(whole, sort_keys=True, on_one_line=on_one_line)
 
 
@@ -28,7 +32,8 @@ def json_text(data: object, *, sort_keys: bool = False, on_one_line: bool = Fals
     return text.replace(COMMAND, "##\\u005b") + "\n"
 
 
-def _diagnostic(item: Diagnostic) -> dict[str, Any]:
+def diagnostic_data(item: Diagnostic) -> dict[str, Any]:
+    """A finding as data."""
     finding = item.finding
     return {
         "code": item.code,

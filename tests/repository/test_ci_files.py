@@ -55,6 +55,10 @@ def test_files_and_snippets_fit_their_schemas() -> None:
     workflow["on"] = workflow.pop(True, workflow.get("on"))
     assert faults(workflow, "github-workflows") == []
     assert faults(found["GitLab"], "gitlab-ci") == []
+    compare = found["What a pull request changes"]
+    compare["on"] = compare.pop(True, compare.get("on"))
+    assert faults(compare, "github-workflows") == []
+    assert set(compare["jobs"]["diff"]["steps"][1]["with"]) <= set(action["inputs"])
     uses = workflow["jobs"]["check"]["steps"][1]
     assert set(uses["with"]) <= set(action["inputs"])
 
@@ -80,7 +84,7 @@ def commands(folder: Path) -> dict[str, str]:
 
 def checked(text: str, **inputs: str) -> dict[str, str]:
     """The environment of the step `Check`, its expressions filled in."""
-    names = {"paths": ".", "arguments": "", "sarif": ""} | inputs
+    names = {"paths": ".", "arguments": "", "sarif": "", "diff": "", "base": ""} | inputs
     return {
         name: re.sub(r"\$\{\{ inputs\.(\w+) \}\}", lambda found: names[found[1]], value)
         for name, value in load(text)["runs"]["steps"][1]["env"].items()
@@ -115,6 +119,30 @@ def test_the_step_of_the_action(
         report = json.loads((tmp_path / "my report.sarif").read_text())
         assert bool(report["runs"][0]["results"]) == bool(ended)
         assert ("file=main.yml,line=" in done.stdout) == bool(ended)
+
+
+def test_the_action_writes_the_differences(tmp_path: Path) -> None:
+    script = tmp_path / "main.yml"
+    script.write_text(RIGHT)
+    environment = {**commands(tmp_path), "SMACHAC": str(tmp_path / "bin" / "smachac")}
+    environment |= {f"GIT_{who}_{what}": "x" for who in ("AUTHOR", "COMMITTER")
+                    for what in ("NAME", "EMAIL")}  # fmt: skip
+    for words in (["init", "-q"], ["add", "main.yml"], ["commit", "-qm", "x"]):
+        subprocess.run(["git", *words], cwd=tmp_path, env=environment, check=True)
+    text = (ROOT / "action.yml").read_text("utf-8")
+    environment |= checked(text, paths="main.yml", diff="my diff.md", base="HEAD")
+    for written, ended, found in (
+        (RIGHT, 0, "No difference"),
+        (RIGHT.replace("A:", "B:"), 0, "1 state renamed"),
+        (BROKEN, 1, "1 transition changed"),
+        ("name: [", 1, "cannot be read"),
+    ):
+        script.write_text(written)
+        code, output = run_step(1, tmp_path, environment)
+        assert code == ended, output
+        assert found in (tmp_path / "my diff.md").read_text("utf-8")
+    code, output = run_step(1, tmp_path, environment | {"BASE": "nothing"})
+    assert (code, "git has no revision `nothing`" in output) == (2, True)
 
 
 PASSES = "print('bypassed')\nraise SystemExit(0)\n"

@@ -18,7 +18,7 @@ LAYERS = (
     ("targets", "checks"),
     ("driver", "report"),
     ("__init__", "batch"),
-    ("refactor", "verify"),
+    ("refactor", "verify", "diff"),
     ("lsp", "sweep"),
     ("commands",),
     ("__main__",),

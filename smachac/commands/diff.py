@@ -1,0 +1,147 @@
+"""The command `diff`: the differences of state machines in two files or two git revisions."""
+
+from __future__ import annotations
+
+import argparse
+import os
+import sys
+from argparse import Namespace
+
+from smachac.commands.arguments import FORMAT, as_path, colour, search_folders
+from smachac.commands.output import OK, print_report, usage
+
+TYPE_CHECKING = False  # annotations only: `--help` imports none of this
+if TYPE_CHECKING:
+    from collections.abc import Mapping, Sequence
+    from pathlib import Path
+
+    from smachac.diff.comparison import Comparison
+    from smachac.driver import Analysis
+
+EXAMPLES = """\
+examples:
+  smachac diff old.yml new.yml                    two files
+  smachac diff main.yml                           what changed since the last commit
+  smachac diff main.yml --from v1.0 --to v2.0     two git revisions
+  smachac diff --from origin/main --format markdown > comment.md   all scripts, for a pull request
+  smachac diff old.yml new.yml --format dot | dot -Tsvg > diff.svg   a picture in red and green
+
+exit codes: 0 equal, 1 different or a script that cannot be read, 2 wrong usage,
+70 a bug in smachac
+"""
+
+FORMATS = ("text", "markdown", "json", "dot")
+DIFFERENT = 1
+
+
+def diff_arguments(parser: argparse.ArgumentParser) -> None:
+    parser.epilog = EXAMPLES
+    parser.add_argument("script", nargs="*", type=as_path, metavar="SCRIPT",
+                        help="two files to compare; or scripts, folders or patterns in git"
+                        " (default: the current folder)")  # fmt: skip
+    parser.add_argument("--from", dest="old", metavar="REV",
+                        help="the git revision before (default: HEAD, unless there are two files)"
+                        )  # fmt: skip
+    parser.add_argument("--to", dest="new", metavar="REV",
+                        help="the git revision after (default: the files as they are)")  # fmt: skip
+    parser.add_argument("--format", choices=FORMATS, default="text", help=FORMAT)
+    search_folders(parser)
+    colour(parser)
+
+
+def diff_command(arguments: Namespace) -> int:
+    """Compare scripts and print the differences; the exit code."""
+    from smachac.frontend.discovery import GitError, NothingFoundError
+
+    try:
+        pairs = _analyses(arguments)
+    except (GitError, NothingFoundError) as error:
+        return usage(str(error))
+    for analysis in (each for pair in pairs for each in pair):
+        if analysis is not None and analysis.machine is None:
+            print_report(analysis.report, arguments, sys.stderr)
+    return _put(arguments, pairs)
+
+
+def _analyses(arguments: Namespace) -> list[tuple[Analysis | None, Analysis | None]]:
+    """Each script before and after; None where it does not exist. Raises GitError and
+    NothingFoundError."""
+    from smachac.frontend.discovery import NothingFoundError
+
+    paths = [_from_here(path) for path in arguments.script] or [as_path(".")]
+    revisions = (arguments.old, arguments.new)
+    if revisions == (None, None) and len(paths) == 2 and not any(map(os.path.isdir, paths)):
+        one, other = (_checked([path], arguments)[str(path)] for path in paths)
+        return [(one, other)]
+    before = _at(arguments.old or "HEAD", paths, arguments)
+    after = _at(arguments.new, paths, arguments)
+    if not before and not after:
+        raise NothingFoundError(f"there is no script in `{paths[0]}`")
+    return [(before.get(name), after.get(name)) for name in dict.fromkeys([*after, *before])]
+
+
+def _from_here(path: Path) -> Path:
+    """A path relative to the current folder, so that it means the same file in a git revision."""
+    return as_path(os.path.relpath(path)) if path.is_absolute() else path
+
+
+def _at(
+    revision: str | None, paths: Sequence[Path], arguments: Namespace
+) -> Mapping[str, Analysis]:
+    """The analyses of the scripts in a revision, or on disk, by name."""
+    from smachac.commands.revisions import checked_out
+
+    if revision is None:
+        return _checked(_existing(paths), arguments)
+    with checked_out(revision):
+        return _checked(_existing(paths), arguments)
+
+
+def _existing(paths: Sequence[Path]) -> list[Path]:
+    """The scripts that files, folders and patterns match; none where there is no such file."""
+    from smachac.frontend.discovery import NothingFoundError, scripts_of
+    from smachac.frontend.files import Disk
+
+    found: list[Path] = []
+    for path in paths:
+        try:
+            found += [each for each in scripts_of([path], Disk()) if os.path.lexists(each)]
+        except NothingFoundError:
+            continue
+    return list(dict.fromkeys(found))
+
+
+def _checked(paths: Sequence[Path], arguments: Namespace) -> Mapping[str, Analysis]:
+    from smachac.batch import check_scripts
+    from smachac.frontend.files import Disk
+
+    return check_scripts(paths, Disk(), arguments.scripts, arguments.templates).analyses
+
+
+def _put(arguments: Namespace, pairs: Sequence[tuple[Analysis | None, Analysis | None]]) -> int:
+    """Print the comparisons; the exit code."""
+    from smachac.diff.comparison import compare
+    from smachac.diff.report import render_json, render_markdown, render_text
+
+    found = [compare(before, after) for before, after in pairs]
+    different = [each for each in found if not each.equal]
+    match arguments.format:
+        case "dot":
+            return _put_picture(different or found)
+        case "json":
+            sys.stdout.write(render_json(found))
+        case "markdown":
+            sys.stdout.write(render_markdown(found))
+        case _:
+            sys.stdout.write(render_text(found))
+    return DIFFERENT if different else OK
+
+
+def _put_picture(found: Sequence[Comparison]) -> int:
+    """Print the picture of one script; the exit code."""
+    from smachac.diff.picture import render_picture
+
+    if len(found) > 1:
+        return usage("--format dot draws one script: name it")
+    sys.stdout.write(render_picture(found[0]))
+    return OK if found[0].equal else DIFFERENT

@@ -1,0 +1,1 @@
+"""The differences of two machines: states, transitions, keys, values, outcomes, findings."""

@@ -1,0 +1,237 @@
+"""The states of a script as a comparison sees them: a list of facts for each, by its path.
+
+A state and the containers of its sugar (`timeout`, `retry`, `for_each`) are one state here, with
+the path that the script shows.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Mapping
+from dataclasses import dataclass, field
+from typing import Literal, NamedTuple, TypeAlias
+
+from smachac.diagnostics.source import Span
+from smachac.ir import nodes
+from smachac.ir.nodes import Concurrence, Container, Leaf, Machine, Node, Sequence, StateMachine
+from smachac.ir.printer import print_data
+from smachac.ir.properties import in_words
+from smachac.ir.script_paths import role, role_in_words, sugared_child, walk_script
+from smachac.ir.traversal import leads_to_child
+
+FactKind = Literal[
+    "field", "param", "property", "outcome", "input", "output", "variable", "userdata", "remapping",
+    "transition", "rule",
+]  # fmt: skip
+
+Fact: TypeAlias = "tuple[FactKind, str]"
+"""What a fact is about: its kind and its name, such as a transition and its outcome."""
+
+
+class StateName(NamedTuple):
+    """A state that a value names, by its path."""
+
+    path: str
+
+    def __str__(self) -> str:
+        return self.path.rpartition("/")[2]
+
+
+Value: TypeAlias = "tuple[str | StateName, ...]"
+"""The value of a fact: parts of a text, in which the states can be recognised."""
+
+
+@dataclass(slots=True, kw_only=True)
+class State:
+    """A state of a script. `chain` is its node, with the containers of its sugar outside of it,
+    outermost first; `children` are the paths of the states inside."""
+
+    path: str
+    chain: list[Node]
+    parent: str | None
+    children: list[str] = field(default_factory=list)
+    facts: dict[Fact, Value] = field(default_factory=dict)
+
+    @property
+    def name(self) -> str:
+        return self.path.rpartition("/")[2]
+
+    @property
+    def type(self) -> str:
+        """The state type, or the kind of the container."""
+        return self.chain[-1].type
+
+    @property
+    def span(self) -> Span:
+        return self.chain[-1].span
+
+
+_OUTCOME = "outcome "
+
+States = dict[str, State]
+"""The states of a script by path, parents before children; the first is the machine itself."""
+
+
+def states_of(machine: Machine) -> States:
+    """The states of a machine with their facts. Of two states with one path the first counts."""
+    found: States = {}
+    for each in walk_script(machine.root):
+        known = found.get(each.plain)
+        if each.added:
+            continue
+        if known is None:
+            parent = each.plain.rpartition("/")[0] if found else None
+            if parent is None or parent in found:
+                found[each.plain] = State(path=each.plain, chain=[each.node], parent=parent)
+                if parent is not None:
+                    found[parent].children.append(each.plain)
+        elif not isinstance(last := known.chain[-1], Leaf) and sugared_child(last) is each.node:
+            known.chain.append(each.node)
+    for state in found.values():
+        around = found[state.parent].chain[-1] if state.parent is not None else None
+        state.facts = dict(_facts(state, around))
+    found[machine.root.name].facts |= dict(_machine_facts(machine))
+    return found
+
+
+def _machine_facts(machine: Machine) -> Iterator[tuple[Fact, Value]]:
+    yield ("field", "name"), (machine.root.name,)
+    yield ("field", "template"), (machine.base,)
+    for variable in machine.variables:
+        yield ("variable", variable.name), (print_data(variable.value.data),)
+    for param in machine.params:
+        yield ("param", param.name), (print_data(param.value.data),)
+    for each in machine.properties:
+        yield ("property", each.name), (in_words(each.form),)
+    if machine.robot is not None:
+        yield ("field", "robot"), (machine.robot.name,)
+
+
+def _facts(state: State, around: Node | None) -> Iterator[tuple[Fact, Value]]:
+    inner, outer = state.chain[-1], state.chain[0]
+    yield from _interface(inner, outer)
+    for container in state.chain[:-1]:
+        assert not isinstance(container, Leaf)
+        yield from _sugar(container)
+    if isinstance(inner, Leaf):
+        for variable in inner.variables:
+            yield ("variable", variable.name), (print_data(variable.value.data),)
+    else:
+        yield from _container(inner, state.path)
+    if around is not None and not isinstance(around, Leaf):
+        yield from _transitions(outer, around, state.path)
+
+
+def _interface(inner: Node, outer: Node) -> Iterator[tuple[Fact, Value]]:
+    for name, text in (
+        ("template", inner.type),
+        ("doc", inner.doc),
+        ("claims", ", ".join(inner.claims)),
+        ("tags", ", ".join(inner.tags)),
+        ("caught as", inner.catches),
+    ):
+        if text:
+            yield ("field", name), (text,)
+    for outcome in outer.outcomes:
+        failure = {True: "failure", False: "no failure", None: ""}[outcome.failure]
+        words = ", ".join(filter(None, [failure, outcome.doc]))
+        yield ("outcome", outcome.name), (words,) if words else ()
+    for kind, keys in (("input", inner.inputs), ("output", inner.outputs)):
+        for key in keys:
+            yield (kind, key.name), (str(key.type),)  # type: ignore[misc]
+    for remap in outer.remaps:
+        if remap.key != remap.to:
+            yield ("remapping", remap.key), (remap.to,)
+
+
+def _sugar(container: Container) -> Iterator[tuple[Fact, Value]]:
+    """The facts of a container of sugar: the values of the timers that it adds, or its limit."""
+    what = role(container)
+    inside = sugared_child(container)
+    added = [child for child in container.children if child is not inside]
+    values = [
+        print_data(variable.value.data)
+        for child in added
+        if isinstance(child, Leaf)
+        for variable in child.variables
+    ]
+    name = "retry delay" if what == "try" else what
+    yield ("field", name), (", ".join(values) or role_in_words(container),)
+    if isinstance(container, nodes.Iterator):
+        for (_, each), value in _loop(container):
+            yield ("field", f"{what}: {each}"), value
+
+
+def _container(container: Container, path: str) -> Iterator[tuple[Fact, Value]]:
+    for preset in container.userdata:
+        yield ("userdata", preset.key), (print_data(preset.value.data),)
+    match container:
+        case StateMachine() | Sequence():
+            if container.initial:
+                yield ("field", "initial"), (StateName(f"{path}/{container.initial}"),)
+            if isinstance(container, Sequence):
+                yield ("field", "connector outcome"), (container.connector_outcome,)
+            elif container.forever:
+                yield ("field", "forever"), ("true",)
+        case Concurrence():
+            yield ("field", "default outcome"), (container.default_outcome,)
+            yield ("field", "ends with"), (f"{container.join} of its states",)
+            yield from _rules(container, path)
+        case nodes.Iterator():
+            yield from _loop(container)
+
+
+def _rules(container: Concurrence, path: str) -> Iterator[tuple[Fact, Value]]:
+    """The rules of a concurrence by outcome, each as text: `A = done and B = done`."""
+    found: dict[str, list[str | StateName]] = {}
+    for rule in container.rules:
+        parts = found.setdefault(rule.outcome, [])
+        parts += [" or "] if parts else []
+        for number, each in enumerate(rule.when):
+            parts += [" and "] if number else []
+            parts += [StateName(f"{path}/{each.child}"), f" = {each.outcome}"]
+    for outcome, parts in found.items():
+        yield ("rule", outcome), tuple(parts)
+
+
+def _loop(container: nodes.Iterator) -> Iterator[tuple[Fact, Value]]:
+    items = container.items_key if container.items is None else print_data(container.items.data)
+    for name, text in (
+        ("items", items),
+        ("item key", container.item_key),
+        ("exhausted outcome", container.exhausted_outcome),
+        ("loop outcomes", ", ".join(sorted(container.loop_outcomes))),
+        ("final outcomes", ", ".join(f"{one}: {to}" for one, to in sorted(container.final_map))),
+    ):
+        if text:
+            yield ("field", name), (text,)
+
+
+def _transitions(outer: Node, around: Container, path: str) -> Iterator[tuple[Fact, Value]]:
+    siblings = frozenset(child.name for child in around.children)
+    seen: set[str] = set()
+    for step in outer.transitions:
+        if step.outcome in seen:
+            continue
+        seen.add(step.outcome)
+        value: Value = (f"{_OUTCOME}{step.target}",)
+        if leads_to_child(step, siblings):
+            value = (StateName(f"{path.rpartition('/')[0]}/{step.target}"),)
+        yield ("transition", step.outcome), value
+
+
+def outcome_of(text: str) -> str:
+    """The outcome of a container to which a transition leads, from its value."""
+    return text.removeprefix(_OUTCOME)
+
+
+def value_text(value: Value) -> str:
+    """A value as text."""
+    return "".join(map(str, value))
+
+
+def translated(value: Value, paths: Mapping[str, str]) -> Value:
+    """A value with other paths for its states; a path without another one is kept."""
+    return tuple(
+        StateName(paths.get(part.path, part.path)) if isinstance(part, StateName) else part
+        for part in value
+    )
