@@ -24,6 +24,8 @@ def missing() -> str:
     """The first thing that the tests in a browser lack; empty if all is there."""
     if find_spec("playwright") is None:
         return "the package playwright"
+    if not (ROOT / "viewer" / "node_modules" / "axe-core").is_dir():
+        return "viewer/node_modules"
     return "" if _executable() else "Chromium"
 
 

@@ -48,11 +48,11 @@ function drawState(graph: Graph, node: StateNode, box: Box): SVGGElement {
     role: "treeitem",
     tabindex: "-1",
     "data-path": node.path,
-    "aria-label": spoken(node),
+    "aria-label": spoken(node, box),
     "aria-level": box.level + 1,
     "aria-setsize": siblings.length,
     "aria-posinset": siblings.indexOf(node.path) + 1,
-    "aria-expanded": isContainer(node) ? box.open : null,
+    "aria-expanded": isContainer(node) ? String(box.open) : null,
     "aria-selected": "false",
   });
   const tip = [node.shown ?? node.path, node.doc].filter(Boolean).join("\n");
@@ -79,10 +79,12 @@ function ground(node: StateNode | undefined, box: Box): string {
   return box.level % 2 ? "odd" : "even";
 }
 
-function spoken(node: StateNode): string {
-  const parts = [node.name, kindInWords(node)];
-  if (node.outcomes.length) parts.push(`outcomes ${node.outcomes.map((each) => each.name).join(", ")}`);
-  if (node.findings.length) parts.push(`${node.findings.length} findings`);
+/** The name of a state for screen readers: the words of its box, then what only signs show. */
+function spoken(node: StateNode, box: Box): string {
+  const words = box.open ? kindInWords(node) : boxDetail(node, node.children.length);
+  const parts = [[node.name, words, exitsInWords(box.written)].filter(Boolean).join(" ")];
+  if (node.outcomes.length) parts.push(`outcomes: ${node.outcomes.map((each) => each.name).join(", ")}`);
+  if (node.findings.length) parts.push(`findings: ${node.findings.length}`);
   return parts.join("; ");
 }
 

@@ -179,7 +179,7 @@ export async function createViewer(page: HTMLElement, model: Model, compute: Com
   const field = searchField(() => graph, (path) => void select(path).then(focusSelected), focusSelected);
   const view = html("div", { class: "tools", role: "group", "aria-label": "View" },
     button("Zoom out", "−", () => camera.zoom(1 / 1.25), "Zoom out (-)"),
-    button("Show the whole machine", "Fit", whole, "Show the whole machine (f)"),
+    button("Fit: show the whole machine", "Fit", whole, "Show the whole machine (f)"),
     button("Zoom in", "+", () => camera.zoom(1.25), "Zoom in (+)"),
     button("Open all containers", "Open all", () => void openAll(true), "Open all containers (e)"),
     button("Close all containers", "Close all", () => void openAll(false), "Close all containers (c)"),

@@ -413,11 +413,11 @@ ${target2}`;
       role: "treeitem",
       tabindex: "-1",
       "data-path": node.path,
-      "aria-label": spoken(node),
+      "aria-label": spoken(node, box),
       "aria-level": box.level + 1,
       "aria-setsize": siblings.length,
       "aria-posinset": siblings.indexOf(node.path) + 1,
-      "aria-expanded": isContainer(node) ? box.open : null,
+      "aria-expanded": isContainer(node) ? String(box.open) : null,
       "aria-selected": "false"
     });
     const tip = [node.shown ?? node.path, node.doc].filter(Boolean).join("\n");
@@ -440,10 +440,11 @@ ${target2}`;
     if (node?.kind === "concurrence") return "parallel";
     return box.level % 2 ? "odd" : "even";
   }
-  function spoken(node) {
-    const parts = [node.name, kindInWords(node)];
-    if (node.outcomes.length) parts.push(`outcomes ${node.outcomes.map((each) => each.name).join(", ")}`);
-    if (node.findings.length) parts.push(`${node.findings.length} findings`);
+  function spoken(node, box) {
+    const words = box.open ? kindInWords(node) : boxDetail(node, node.children.length);
+    const parts = [[node.name, words, exitsInWords(box.written)].filter(Boolean).join(" ")];
+    if (node.outcomes.length) parts.push(`outcomes: ${node.outcomes.map((each) => each.name).join(", ")}`);
+    if (node.findings.length) parts.push(`findings: ${node.findings.length}`);
     return parts.join("; ");
   }
   function drawTitle(graph, group, node, box) {
@@ -1386,7 +1387,7 @@ ${name}`;
       "div",
       { class: "tools", role: "group", "aria-label": "View" },
       button("Zoom out", "\u2212", () => camera.zoom(1 / 1.25), "Zoom out (-)"),
-      button("Show the whole machine", "Fit", whole, "Show the whole machine (f)"),
+      button("Fit: show the whole machine", "Fit", whole, "Show the whole machine (f)"),
       button("Zoom in", "+", () => camera.zoom(1.25), "Zoom in (+)"),
       button("Open all containers", "Open all", () => void openAll(true), "Open all containers (e)"),
       button("Close all containers", "Close all", () => void openAll(false), "Close all containers (c)"),
