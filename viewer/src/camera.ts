@@ -19,14 +19,28 @@ export class Camera {
     frame.addEventListener("pointerdown", (event) => this.drag(event));
   }
 
-  /** Show an area as a whole, not enlarged. */
-  fit(area: Area): void {
+  /** The scale at which an area is seen as a whole. */
+  fitting(area: { width: number; height: number }): number {
     const { clientWidth, clientHeight } = this.frame;
     const across = (clientWidth - 2 * MARGIN) / Math.max(1, area.width);
     const down = (clientHeight - 2 * MARGIN) / Math.max(1, area.height);
-    this.scale = Math.min(1.25, Math.max(LEAST, Math.min(across, down)));
+    return Math.min(1.25, Math.max(LEAST, Math.min(across, down)));
+  }
+
+  /** Show an area as a whole, hardly enlarged. */
+  fit(area: Area): void {
+    const { clientWidth, clientHeight } = this.frame;
+    this.scale = this.fitting(area);
     this.x = (clientWidth - area.width * this.scale) / 2 - area.x * this.scale;
     this.y = (clientHeight - area.height * this.scale) / 2 - area.y * this.scale;
+    this.apply();
+  }
+
+  /** Show the surroundings of a place, which is put near the upper edge, at a scale. */
+  start(place: { x: number; y: number }, scale: number): void {
+    this.scale = scale;
+    this.x = this.frame.clientWidth / 2 - place.x * scale;
+    this.y = MARGIN - place.y * scale;
     this.apply();
   }
 

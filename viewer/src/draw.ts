@@ -33,7 +33,9 @@ export function draw(graph: Graph, scene: Scene): Picture {
   }
   const lines = scene.lines.map((line) => ({ line, element: drawLine(line) }));
   const edges = svg("g", { "aria-hidden": "true" }, ...lines.map((each) => each.element));
-  const labels = svg("g", { "aria-hidden": "true" }, ...scene.lines.map(drawLabel));
+  const grounds = new Map(scene.boxes.map((box) => [box.path, ground(graph.nodes.get(box.path), box)]));
+  const labels = svg("g", { "aria-hidden": "true" }, ...scene.lines.map(({ line, label, container }) =>
+    drawLabel(line, label, grounds.get(container) ?? "")));
   const marks = svg("g", { "aria-hidden": "true" }, ...scene.pieces.map((piece) => drawPiece(graph, piece)));
   return { root: svg("g", {}, tree, edges, marks, labels), states, lines };
 }
@@ -60,16 +62,21 @@ function drawState(graph: Graph, node: StateNode, box: Box): SVGGElement {
   }
   const radius = box.open ? 12 : 8;
   group.append(svg("rect", { class: "body", width: box.width, height: box.height, rx: radius }));
-  if (box.open) drawTitle(group, node, box);
-  else drawText(group, node, box);
+  if (box.open) drawTitle(graph, group, node, box);
+  else drawText(graph, group, node, box);
   return group;
 }
 
 function classes(node: StateNode, box: Box): string {
-  const names = ["state", node.kind, box.open ? "open" : "closed"];
-  if (node.role) names.push("sugar");
-  if (box.open && box.level % 2) names.push("odd");
-  return names.join(" ");
+  const kind = box.open ? `open ${ground(node, box)}` : `closed ${isContainer(node) ? ground(node, box) : ""}`;
+  return `state ${node.kind} ${kind.trim()}`;
+}
+
+/** The class with the colour of a container. */
+function ground(node: StateNode | undefined, box: Box): string {
+  if (node?.role || node?.kind === "iterator") return "looping";
+  if (node?.kind === "concurrence") return "parallel";
+  return box.level % 2 ? "odd" : "even";
 }
 
 function spoken(node: StateNode): string {
@@ -79,7 +86,7 @@ function spoken(node: StateNode): string {
   return parts.join("; ");
 }
 
-function drawTitle(group: SVGGElement, node: StateNode, box: Box): void {
+function drawTitle(graph: Graph, group: SVGGElement, node: StateNode, box: Box): void {
   const name = fitting(node.name, "title");
   const detail = fitting(kindInWords(node), "detail");
   group.append(
@@ -87,10 +94,10 @@ function drawTitle(group: SVGGElement, node: StateNode, box: Box): void {
     svg("text", { class: "title", x: 32, y: 22 }, name),
     svg("text", { class: "detail", x: 32 + width(name, "title") + 10, y: 22 }, detail),
   );
-  if (node.findings.length) group.append(badge(box.width - 18, 17));
+  if (node.findings.length) group.append(badge(graph, node, box.width - 18, 17));
 }
 
-function drawText(group: SVGGElement, node: StateNode, box: Box): void {
+function drawText(graph: Graph, group: SVGGElement, node: StateNode, box: Box): void {
   const middle = box.width / 2;
   const detail = fitting(boxDetail(node, node.children.length), "detail");
   const name = fitting(node.name, "name");
@@ -100,7 +107,7 @@ function drawText(group: SVGGElement, node: StateNode, box: Box): void {
     group.append(svg("text", { class: "detail", x: middle, y: 37, "text-anchor": "middle" }, detail));
   }
   if (isContainer(node)) group.append(chevron(14, y - 4, false));
-  if (node.findings.length) group.append(badge(box.width - 13, 13));
+  if (node.findings.length) group.append(badge(graph, node, box.width - 13, 13));
 }
 
 /** The mark of a container: points down where it is open. */
@@ -112,11 +119,15 @@ function chevron(x: number, y: number, open: boolean): SVGElement {
   );
 }
 
-/** The mark of a state with findings: a triangle, so that colour is not its only sign. */
-function badge(x: number, y: number): SVGElement {
-  return svg("g", { class: "badge", transform: `translate(${x} ${y})` },
-    svg("path", { d: "M0-7 7.5 6H-7.5Z" }),
-    svg("path", { class: "stroke", d: "M0-2.5V1.5M0 3.6V3.8" }),
+/** The mark of a state with findings; its shape shows the severity too, not only its colour. */
+function badge(graph: Graph, node: StateNode, x: number, y: number): SVGElement {
+  const found = new Set(node.findings.map((index) => graph.model.findings[index]?.severity));
+  const severity = found.has("error") ? "error" : found.has("warning") ? "warning" : "info";
+  const shape = severity === "warning" ? "M0-7 7.5 6H-7.5Z" : "M0-7A7 7 0 1 1 0 7 7 7 0 1 1 0-7Z";
+  const sign = { error: "M-2.5-2.5 2.5 2.5M2.5-2.5-2.5 2.5", warning: "M0-2.5V1.5M0 3.6V3.8", info: "M0-3.4V-3.2M0-.6V3.6" };
+  return svg("g", { class: `badge ${severity}`, transform: `translate(${x} ${y})` },
+    svg("path", { d: shape }),
+    svg("path", { class: "stroke", d: sign[severity] }),
   );
 }
 
@@ -141,6 +152,7 @@ function drawPiece(graph: Graph, { piece, container, x, y, width, height }: Plac
     }
   }
   if (piece.failure) group.classList.add("failure");
+  if (piece.success) group.classList.add("success");
   return group;
 }
 
@@ -176,18 +188,27 @@ function towards(from: Point, to: Point, by: number): Point {
   return { x: from.x + ((to.x - from.x) * by) / length, y: from.y + ((to.y - from.y) * by) / length };
 }
 
+function look(line: PlacedLine["line"]): string {
+  return [line.failure && "failure", line.implicit && "implicit", line.stop && "stop"].filter(Boolean).join(" ");
+}
+
 function drawLine({ line, points }: PlacedLine): SVGGElement {
   const d = roundedPath(points);
-  const group = svg("g", { class: `line${line.failure ? " failure" : ""}${line.implicit ? " implicit" : ""}` });
+  const group = svg("g", { class: `line ${look(line)}` });
   const end = points[points.length - 1];
+  const before = points[points.length - 2];
   group.append(svg("path", { class: "stroke", d }));
-  if (end) group.append(svg("path", { class: "head", d: `M${end.x} ${end.y}l-4-7.5q4 1.6 8 0z` }));
+  if (end && before) {
+    const turn = (Math.atan2(end.y - before.y, end.x - before.x) * 180) / Math.PI;
+    const transform = `translate(${end.x} ${end.y}) rotate(${turn})`;
+    group.append(svg("path", { class: "head", d: "M0 0L-7.5-4Q-5.9 0-7.5 4Z", transform }));
+  }
   return group;
 }
 
-function drawLabel({ line, label }: PlacedLine): SVGElement | null {
+function drawLabel(line: PlacedLine["line"], label: Area | null, ground: string): SVGElement | null {
   if (!label) return null;
-  const group = svg("g", { class: `label${line.failure ? " failure" : ""}${line.implicit ? " implicit" : ""}` });
+  const group = svg("g", { class: `label ${ground} ${look(line)}` });
   group.append(background(label));
   line.labels.forEach((text, index) => {
     const y = label.y + 2 + LINE_HEIGHT * index + 10.5;

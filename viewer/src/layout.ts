@@ -47,8 +47,12 @@ export interface Scene {
   lines: PlacedLine[];
 }
 
-/** The layout of one container: `frame` is its box, below which its outcomes stand out. */
+/** Where the picture runs to. */
+export type Direction = "DOWN" | "RIGHT";
+
+/** The layout of one container: `frame` is its box, beyond which its outcomes stand out. */
 interface Placed {
+  direction: Direction;
   frame: { width: number; height: number };
   full: { width: number; height: number };
   entry: number;
@@ -62,15 +66,14 @@ const MANY = 300;
 
 const ROOMY: Record<string, string> = {
   "elk.algorithm": "layered",
-  "elk.direction": "DOWN",
   "elk.edgeRouting": "ORTHOGONAL",
   "elk.separateConnectedComponents": "false",
-  "elk.padding": `[top=${TITLE_HEIGHT + 14},left=${SIDE},bottom=0,right=${SIDE}]`,
   "elk.spacing.nodeNode": "28",
   "elk.spacing.edgeNode": "18",
   "elk.spacing.edgeEdge": "12",
   "elk.spacing.edgeLabel": "3",
   "elk.spacing.nodeSelfLoop": "14",
+  "elk.spacing.portsSurrounding": "[top=12,left=18,bottom=12,right=18]",
   "elk.layered.spacing.nodeNodeBetweenLayers": "30",
   "elk.layered.spacing.edgeNodeBetweenLayers": "14",
   "elk.layered.spacing.edgeEdgeBetweenLayers": "10",
@@ -78,6 +81,7 @@ const ROOMY: Record<string, string> = {
   "elk.layered.cycleBreaking.strategy": "MODEL_ORDER",
   "elk.layered.nodePlacement.strategy": "NETWORK_SIMPLEX",
   "elk.layered.nodePlacement.favorStraightEdges": "true",
+  "elk.layered.nodePlacement.networkSimplex.nodeFlexibility.default": "PORT_POSITION",
   "elk.layered.edgeLabels.centerLabelPlacementStrategy": "TAIL_LAYER",
 };
 
@@ -95,6 +99,7 @@ export class Layouts {
   constructor(
     private readonly graph: Graph,
     private readonly compute: ComputeLayout,
+    private readonly direction: Direction,
   ) {}
 
   async scene(open: ReadonlySet<Path>): Promise<Scene> {
@@ -137,12 +142,12 @@ export class Layouts {
       node.children.map((child) => [child, placed.get(child)?.full ?? this.size(child)]),
     );
     const content = contentOf(this.graph, path, open, sizes);
-    const done = await this.compute(elkGraph(content, placed));
+    const done = await this.compute(elkGraph(content, placed, this.direction));
     const title =
       width(fitting(node.name, "title"), "title") +
       width(fitting(kindInWords(node), "detail"), "detail") +
       96;
-    return readLayout(content, done, title);
+    return readLayout(content, done, title, this.direction);
   }
 
   private size(path: Path): { width: number; height: number } {
@@ -178,10 +183,14 @@ function moved<P extends Point>(point: P, by: Point): P {
 }
 
 /** The graph of a container for ELK. */
-function elkGraph(content: Content, placed: Map<Path, Placed>): ElkNode {
+function elkGraph(content: Content, placed: Map<Path, Placed>, direction: Direction): ElkNode {
   const options = content.lines.length > MANY ? FAST : ROOMY;
+  const [before, after] = direction === "DOWN" ? (["NORTH", "SOUTH"] as const) : (["WEST", "EAST"] as const);
+  const padding = direction === "DOWN" ? `bottom=0,right=${SIDE}` : `bottom=${SIDE},right=0`;
+  // The outcomes stand on one edge of the container.
+  const exits = Math.max(0, ...content.pieces.map((each) => (each.what === "exit" ? each.width : 0)));
   const ports = new Map<string, Map<string, ElkPort>>();
-  const port = (piece: string, name: string, side: "NORTH" | "SOUTH"): string => {
+  const port = (piece: string, name: string, side: "NORTH" | "SOUTH" | "WEST" | "EAST"): string => {
     const known = ports.get(piece) ?? new Map<string, ElkPort>();
     ports.set(piece, known);
     const id = `${piece}\n${name}`;
@@ -193,27 +202,87 @@ function elkGraph(content: Content, placed: Map<Path, Placed>): ElkNode {
   const inner = (piece: string): Placed | undefined => placed.get(piece);
   const edges: ElkExtendedEdge[] = content.lines.map((line, index) => ({
     id: `line ${index}`,
-    sources: [port(line.from, inner(line.from) ? `out ${line.outcome}` : `out ${index}`, "SOUTH")],
-    targets: [port(line.to, inner(line.to) ? "in" : `in ${look(line)}`, "NORTH")],
+    sources: [port(line.from, inner(line.from) ? `out ${line.outcome}` : `out ${index}`, after)],
+    targets: [port(line.to, inner(line.to) ? "in" : `in ${look(line)}`, before)],
     labels: line.labels.length ? [labelBox(line)] : [],
     layoutOptions: priorities(line),
   }));
   return {
     id: content.path,
-    layoutOptions: options,
+    layoutOptions: {
+      ...options,
+      "elk.direction": direction,
+      "elk.padding": `[top=${TITLE_HEIGHT + 14},left=${SIDE},${padding}]`,
+    },
     children: content.pieces.map((piece) => ({
       id: piece.id,
-      width: piece.width,
-      height: piece.height,
-      ports: placedPorts(piece, [...(ports.get(piece.id)?.values() ?? [])], inner(piece.id)),
-      layoutOptions: {
-        "elk.portConstraints": inner(piece.id) ? "FIXED_POS" : "FIXED_SIDE",
-        "elk.spacing.portPort": "14",
-        ...constraint(piece),
-      },
+      ...sizeOf(piece, direction, exits),
+      ...connections(piece, content, [...(ports.get(piece.id)?.values() ?? [])], inner(piece.id), direction),
     })),
     edges,
   };
+}
+
+/** The ports of a piece, and how free the layout is to move them. */
+function connections(
+  piece: Piece,
+  content: Content,
+  ports: ElkPort[],
+  inner: Placed | undefined,
+  direction: Direction,
+): Pick<ElkNode, "ports" | "layoutOptions"> {
+  const layoutOptions = { "elk.portConstraints": "FIXED_SIDE", "elk.spacing.portPort": "14", ...constraint(piece) };
+  if (inner) {
+    const fixed = { ...layoutOptions, "elk.portConstraints": "FIXED_POS" };
+    return { ports: portsOfOpen(piece, ports, inner), layoutOptions: fixed };
+  }
+  const main = piece.what === "state" || piece.what === "start" ? mainLine(piece, content) : null;
+  if (main !== null) {
+    const fixed = { ...layoutOptions, "elk.portConstraints": "FIXED_POS" };
+    return { ports: portsAroundMain(piece, ports, `out ${main}`, direction), layoutOptions: fixed };
+  }
+  const name = "elk.layered.nodePlacement.networkSimplex.nodeFlexibility";
+  if (piece.what === "state" || piece.what === "fork") return { ports, layoutOptions };
+  const centred = { "elk.spacing.portsSurrounding": "[top=0,left=0,bottom=0,right=0]", [name]: "NONE" };
+  return { ports, layoutOptions: { ...layoutOptions, ...centred } };
+}
+
+/** The number of the only line from a state that is neither of failure nor of a stop request. */
+function mainLine(piece: Piece, content: Content): number | null {
+  const own = content.lines.flatMap((line, index) => (line.from === piece.id ? [{ line, index }] : []));
+  const good = own.filter(({ line }) => !line.failure && !line.stop);
+  return good.length === 1 ? good[0]!.index : null;
+}
+
+const STEP = 18;
+
+/** The ports of a state with one successful outcome: that in the middle, the others on one side. */
+function portsAroundMain(piece: Piece, ports: ElkPort[], main: string, direction: Direction): ElkPort[] {
+  const size = direction === "DOWN" ? piece.width : piece.height;
+  const outs = ports.filter((port) => nameOf(port, piece).startsWith("out "));
+  const ins = ports.filter((port) => !outs.includes(port));
+  const step = Math.min(STEP, (size / 2 - 8) / Math.max(1, outs.length - 1));
+  let others = 0;
+  return ports.map((port) => {
+    const name = nameOf(port, piece);
+    let along = size / 2;
+    if (outs.includes(port)) along += name === main ? 0 : (others += 1) * step;
+    else if (ins.length > 1) along += { plain: 0, failure: 1, implicit: -1 }[name.slice(3)]! * Math.min(STEP, size / 4);
+    const far = outs.includes(port);
+    const [x, y] = direction === "DOWN" ? [along, far ? piece.height : 0] : [far ? piece.width : 0, along];
+    return { ...port, x, y };
+  });
+}
+
+const nameOf = (port: ElkPort, piece: Piece): string => port.id.slice(piece.id.length + 1);
+
+/** The size of a piece; bars stand across the direction. */
+function sizeOf(piece: Piece, direction: Direction, exits: number): { width: number; height: number } {
+  const { width, height } = piece;
+  if (direction === "DOWN") return { width, height };
+  if (piece.what === "exit") return { width: exits, height };
+  if (piece.what === "join" || piece.what === "fork") return { width: height, height: width };
+  return { width, height };
 }
 
 const look = (line: Line): string => (line.failure ? "failure" : line.implicit ? "implicit" : "plain");
@@ -225,9 +294,9 @@ function constraint(piece: Piece): Record<string, string> {
 }
 
 function priorities(line: Line): Record<string, string> {
-  const main = !line.failure && !line.implicit;
+  const main = !line.failure && !line.implicit && !line.stop;
   return {
-    "elk.layered.priority.straightness": main ? "10" : "1",
+    "elk.layered.priority.straightness": main ? "100" : "1",
     "elk.layered.priority.shortness": main ? "5" : "1",
   };
 }
@@ -243,30 +312,37 @@ function labelBox(line: Line): { id: string; text: string; width: number; height
   };
 }
 
-/** The ports of a piece; those of an open container are at its start and at its outcomes. */
-function placedPorts(piece: Piece, ports: ElkPort[], inner: Placed | undefined): ElkPort[] {
-  if (!inner) return ports;
+/** The ports of an open container: at its start and at its outcomes. */
+function portsOfOpen(piece: Piece, ports: ElkPort[], inner: Placed): ElkPort[] {
+  const down = inner.direction === "DOWN";
   const exits = new Map(
     inner.pieces
       .filter((each) => each.piece.what === "exit")
-      .map((each) => [each.piece.id, each.x + each.width / 2]),
+      .map((each) => [each.piece.id, down ? each.x + each.width / 2 : each.y + each.height / 2]),
   );
   return ports.map((port) => {
-    const name = port.id.slice(piece.id.length + 1);
-    if (name === "in") return { ...port, x: inner.entry, y: 0 };
-    const x = exits.get(exitId(name.slice("out ".length))) ?? inner.full.width / 2;
-    return { ...port, x, y: inner.full.height };
+    const name = nameOf(port, piece);
+    if (name === "in") {
+      const side = { "elk.port.side": down ? "NORTH" : "WEST" };
+      return { ...port, layoutOptions: side, x: down ? inner.entry : 0, y: down ? 0 : inner.entry };
+    }
+    const along = exits.get(exitId(name.slice("out ".length))) ?? inner.full.width / 2;
+    const side = { "elk.port.side": down ? "SOUTH" : "EAST" };
+    const [x, y] = down ? [along, inner.full.height] : [inner.full.width, along];
+    return { ...port, layoutOptions: side, x, y };
   });
 }
 
 /** The layout of a container from the answer of ELK. `title` is the width that its title needs. */
-function readLayout(content: Content, done: ElkNode, title: number): Placed {
+function readLayout(content: Content, done: ElkNode, title: number, direction: Direction): Placed {
   const places = new Map((done.children ?? []).map((each) => [each.id, each]));
+  const down = direction === "DOWN";
   const least = Math.max(title, 120);
-  const shift = { x: Math.max(0, (least - (done.width ?? 0)) / 2), y: 0 };
+  const spare = Math.max(0, least - (done.width ?? 0));
+  const shift = { x: down ? spare / 2 : spare, y: 0 };
   const pieces = content.pieces.map((piece) => {
-    const { x = 0, y = 0 } = places.get(piece.id) ?? {};
-    return { container: content.path, piece, ...moved({ x, y }, shift), width: piece.width, height: piece.height };
+    const { x = 0, y = 0, width = 0, height = 0 } = places.get(piece.id) ?? {};
+    return { container: content.path, piece, ...moved({ x, y }, shift), width, height };
   });
   const lines = (done.edges ?? []).map((edge, index) => {
     const section = edge.sections?.[0];
@@ -280,16 +356,28 @@ function readLayout(content: Content, done: ElkNode, title: number): Placed {
       label: label ? moved(label, shift) : null,
     };
   });
-  const exits = pieces.filter((each) => each.piece.what === "exit");
-  const bottom = Math.max(0, ...exits.map((each) => each.y + each.height));
-  const frameWidth = Math.max(least, done.width ?? 0);
-  const frameHeight = exits.length ? bottom - EXIT_HEIGHT / 2 : (done.height ?? 0) + SIDE;
   const start = pieces[0]!;
-  return {
-    frame: { width: frameWidth, height: frameHeight },
-    full: { width: frameWidth, height: Math.max(bottom, frameHeight) },
-    entry: start.x + start.width / 2,
-    pieces,
-    lines,
-  };
+  const entry = down ? start.x + start.width / 2 : start.y + start.height / 2;
+  return { direction, ...frames(pieces, done, least, down), entry, pieces, lines };
+}
+
+/** The frame of a container, and its size with the outcomes that stand out. */
+function frames(
+  pieces: PlacedPiece[],
+  done: ElkNode,
+  least: number,
+  down: boolean,
+): Pick<Placed, "frame" | "full"> {
+  const exits = pieces.filter((each) => each.piece.what === "exit");
+  const width = Math.max(least, done.width ?? 0);
+  const height = done.height ?? 0;
+  if (down) {
+    const bottom = Math.max(0, ...exits.map((each) => each.y + each.height));
+    const frame = { width, height: exits.length ? bottom - EXIT_HEIGHT / 2 : height + SIDE };
+    return { frame, full: { width, height: Math.max(bottom, frame.height) } };
+  }
+  const right = Math.max(0, ...exits.map((each) => each.x + each.width));
+  const widest = Math.max(0, ...exits.map((each) => each.width));
+  const frame = { width: exits.length ? right - widest / 2 : width + SIDE, height };
+  return { frame, full: { width: Math.max(right, frame.width), height } };
 }

@@ -5,6 +5,7 @@ export type Path = string;
 export interface Outcome {
   name: string;
   failure: boolean;
+  success: boolean;
   doc: string;
 }
 
@@ -166,17 +167,20 @@ export function kindInWords(node: StateNode): string {
   return node.type ?? "state";
 }
 
-/** The containers that are open at first: breadth first, while no more than `limit` states show. */
-export function firstOpen(graph: Graph, limit: number): Set<Path> {
+/**
+ * The containers that are open at first: down to a depth, breadth first, while no more than `limit`
+ * states show.
+ */
+export function firstOpen(graph: Graph, depth: number, limit: number): Set<Path> {
   const open = new Set<Path>();
   let count = 1;
   let level: Path[] = [graph.model.root];
-  while (level.length) {
+  for (let at = 0; at < depth && level.length; at += 1) {
     const next: Path[] = [];
     for (const path of level) {
       const node = graph.nodes.get(path);
       if (!node || !isContainer(node) || isWrapped(graph, node)) continue;
-      if (count + node.children.length > limit && path !== graph.model.root) continue;
+      if (count + node.children.length > limit && at > 0) continue;
       open.add(path);
       count += node.children.length;
       next.push(...node.children);

@@ -90,7 +90,7 @@ function outcomes(graph: Graph, node: StateNode, actions: PanelActions): HTMLEle
   const leaving = graph.leaving.get(node.path) ?? [];
   const rows = node.outcomes.map((outcome) => {
     const edges = leaving.filter((edge) => edge.outcome === outcome.name);
-    const name = html("span", { class: outcome.failure ? "outcome failure" : "outcome" }, outcome.name);
+    const name = html("span", { class: `outcome${outcome.failure ? " failure" : outcome.success ? " success" : ""}` }, outcome.name);
     const targets = html("span", { class: "targets" }, ...edges.map((edge) => target(graph, edge, actions)));
     return html("li", {}, name, targets);
   });
@@ -161,6 +161,7 @@ const KEYS: [string, string][] = [
   ["f", "whole machine"],
   ["+ and -", "zoom"],
   ["e and c", "open and close all containers"],
+  ["d", "down or to the right"],
 ];
 
 function machineSections(graph: Graph, actions: PanelActions): (HTMLElement | null)[] {

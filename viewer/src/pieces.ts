@@ -13,6 +13,7 @@ export interface Piece {
   height: number;
   path?: Path;
   failure?: boolean;
+  success?: boolean;
 }
 
 /** A drawn line: all edges between two nodes with one look. `from` and `to` are ids of pieces. */
@@ -23,8 +24,12 @@ export interface Line {
   labels: string[];
   failure: boolean;
   implicit: boolean;
+  /** Whether all its outcomes follow requests to stop: it is drawn lighter. */
+  stop: boolean;
   edges: string[];
 }
+
+type Drawn = Omit<Line, "edges" | "labels" | "stop">;
 
 export interface Content {
   path: Path;
@@ -79,22 +84,24 @@ export function contentOf(
       width: width(label, "exit") + 22,
       height: EXIT_HEIGHT,
       failure: outcome.failure,
+      success: outcome.success,
     });
   }
   const lines = new Map<string, Line>();
-  const add = (line: Omit<Line, "edges" | "labels">, edge: string, label: string): void => {
+  const add = (line: Drawn, edge: string, label: string): void => {
     // The lines of an open state start at its outcomes, so that each outcome has lines of its own.
     const own = open.has(line.from) ? line.outcome : "";
     const key = JSON.stringify([line.from, line.to, line.failure, line.implicit, own]);
-    const known = lines.get(key) ?? { ...line, labels: [], edges: [] };
+    const known = lines.get(key) ?? { ...line, stop: true, labels: [], edges: [] };
     lines.set(key, known);
+    known.stop &&= line.outcome === "preempted";
     if (edge && !known.edges.includes(edge)) known.edges.push(edge);
     if (label && !open.has(line.from) && !known.labels.includes(label)) known.labels.push(label);
   };
   const joined = joins(container, pieces, add);
   for (const edge of graph.inside.get(path) ?? []) {
     for (const line of linesOf(container, edge, joined)) {
-      add(line, edgeId(edge), labelOf(edge, line));
+      add(line, edgeId(edge), labelOf(container, edge, line));
     }
   }
   return { path, pieces, lines: [...lines.values()] };
@@ -106,7 +113,7 @@ function startPiece(container: StateNode): Piece {
     return { id: START, what: "fork", label: "all start together", width: size, height: 5 };
   }
   if (container.kind === "iterator") {
-    const label = fitting(container.role ?? kindInWords(container), "label");
+    const label = container.role ? "next try" : "next item";
     return { id: START, what: "loop", label, width: width(label, "label") + 24, height: 24 };
   }
   return { id: START, what: "start", label: "start", width: 12, height: 12 };
@@ -116,15 +123,15 @@ function startPiece(container: StateNode): Piece {
 function joins(
   container: StateNode,
   pieces: Piece[],
-  add: (line: Omit<Line, "edges" | "labels">, edge: string, label: string) => void,
+  add: (line: Drawn, edge: string, label: string) => void,
 ): Map<string, string[]> {
   const joined = new Map<string, string[]>();
   (container.rules ?? []).forEach((rule, index) => {
     const exit = pieces.find((each) => each.id === exitId(rule.outcome));
     if (rule.when.length < 2 || !exit) return;
     const id = `join ${index}`;
-    const failure = exit.failure ?? false;
-    pieces.push({ id, what: "join", label: `all: ${rule.outcome}`, width: 64, height: 5, failure });
+    const { failure = false, success } = exit;
+    pieces.push({ id, what: "join", label: `all: ${rule.outcome}`, width: 64, height: 5, failure, success });
     for (const [child, outcome] of rule.when) {
       const key = JSON.stringify([child, outcome, rule.outcome]);
       joined.set(key, [...(joined.get(key) ?? []), id]);
@@ -139,7 +146,7 @@ function linesOf(
   container: StateNode,
   edge: ModelEdge,
   joined: Map<string, string[]>,
-): Omit<Line, "edges" | "labels">[] {
+): Drawn[] {
   const { outcome, failure, implicit } = edge;
   const look = { outcome, failure, implicit };
   const from = edge.source ?? START;
@@ -165,9 +172,9 @@ function linesOf(
 }
 
 /** The label of an edge on its line; empty where the end of the line has the same name. */
-function labelOf(edge: ModelEdge, line: { from: string; to: string }): string {
+function labelOf(container: StateNode, edge: ModelEdge, line: { from: string; to: string }): string {
   if (edge.kind === "default") return "otherwise";
   if (edge.kind === "caught") return "exception";
-  if (edge.kind === "exhausted") return edge.source === null ? "" : "no more items";
+  if (edge.kind === "exhausted") return edge.source === null ? "" : container.role ? "no tries left" : "no more items";
   return line.to === exitId(edge.outcome) ? "" : edge.outcome;
 }

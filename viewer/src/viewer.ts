@@ -4,7 +4,7 @@ import { Camera } from "./camera";
 import { button, html, svg } from "./dom";
 import type { Highlight, Picture } from "./draw";
 import { draw, markRun, markSelection } from "./draw";
-import type { Box, Scene } from "./layout";
+import type { Box, Direction, Scene } from "./layout";
 import { Layouts } from "./layout";
 import type { Graph, Model, Path } from "./model";
 import { ancestors, firstOpen, indexed, isContainer, nearest } from "./model";
@@ -42,15 +42,19 @@ export interface Viewer {
 /** The number of states that are shown at first, if the machine has more. */
 const SHOWN_AT_FIRST = 150;
 
+/** The least scale at first: containers that would make the picture smaller are closed. */
+const READABLE = 0.55;
+
 export async function createViewer(page: HTMLElement, model: Model, compute: ComputeLayout): Promise<Viewer> {
   let graph = indexed(model);
-  let layouts = new Layouts(graph, compute);
-  let open = firstOpen(graph, SHOWN_AT_FIRST);
+  let direction: Direction = "DOWN";
+  let layouts = new Layouts(graph, compute, direction);
+  let open = new Set<Path>([graph.model.root]);
   let selected: Path | null = null;
   let scene: Scene = { width: 0, height: 0, boxes: [], pieces: [], lines: [] };
   let picture: Picture | null = null;
   let run: Highlight | null = null;
-  let turn = 0;
+  let latest = 0;
   const sections: Section[] = [];
   const listeners: ((path: Path | null) => void)[] = [];
 
@@ -65,10 +69,28 @@ export async function createViewer(page: HTMLElement, model: Model, compute: Com
   const boxOf = (path: Path | null): Box | undefined => scene.boxes.find((box) => box.path === path);
   const whole = (): void => camera.fit({ x: -6, y: -6, width: scene.width + 12, height: scene.height + 12 });
 
+  /** Open as many levels of containers as can be read without moving the picture. */
+  async function openFirst(): Promise<void> {
+    for (let depth = 1; ; depth += 1) {
+      const deeper = firstOpen(graph, depth, SHOWN_AT_FIRST);
+      if (depth > 1 && deeper.size === open.size) break;
+      if (depth > 1 && camera.fitting(await layouts.scene(deeper)) < READABLE) break;
+      open = deeper;
+    }
+    await redraw(null);
+    showStart();
+  }
+
+  function showStart(): void {
+    const start = scene.pieces.find((each) => each.container === graph.model.root && each.piece.id === "start");
+    if (start && camera.fitting(scene) < READABLE / 1.5) camera.start({ x: start.x, y: 0 }, READABLE);
+    else whole();
+  }
+
   /** Lay out and draw again; `anchor` is the state that stays where it is on the screen. */
   async function redraw(anchor: Path | null): Promise<void> {
-    turn += 1;
-    const mine = turn;
+    latest += 1;
+    const mine = latest;
     const before = boxOf(anchor);
     let next: Scene;
     try {
@@ -77,7 +99,7 @@ export async function createViewer(page: HTMLElement, model: Model, compute: Com
       notice.textContent = `The layout failed: ${error instanceof Error ? error.message : String(error)}`;
       return;
     }
-    if (mine !== turn) return;
+    if (mine !== latest) return;
     const focused = frame.contains(document.activeElement);
     scene = next;
     picture = draw(graph, scene);
@@ -134,14 +156,18 @@ export async function createViewer(page: HTMLElement, model: Model, compute: Com
     whole();
   }
 
+  async function turn(): Promise<void> {
+    direction = direction === "DOWN" ? "RIGHT" : "DOWN";
+    layouts = new Layouts(graph, compute, direction);
+    await redraw(null);
+    whole();
+  }
+
   async function setModel(next: Model): Promise<void> {
-    const known = new Set(graph.nodes.keys());
     const opened = open;
     graph = indexed(next);
-    layouts = new Layouts(graph, compute);
-    const fresh = firstOpen(graph, SHOWN_AT_FIRST);
-    open = new Set(next.nodes.filter((node) => (known.has(node.path) ? opened : fresh).has(node.path)).map((node) => node.path));
-    open.add(next.root);
+    layouts = new Layouts(graph, compute, direction);
+    open = new Set([next.root, ...[...opened].filter((path) => graph.nodes.has(path))]);
     if (selected !== null && !graph.nodes.has(selected)) selected = nearest(graph, selected)?.path ?? null;
     document.title = next.name;
     title.textContent = next.name;
@@ -157,6 +183,7 @@ export async function createViewer(page: HTMLElement, model: Model, compute: Com
     button("Zoom in", "+", () => camera.zoom(1.25), "Zoom in (+)"),
     button("Open all containers", "Open all", () => void openAll(true), "Open all containers (e)"),
     button("Close all containers", "Close all", () => void openAll(false), "Close all containers (c)"),
+    button("Turn the picture: down or to the right", "Turn", () => void turn(), "Down or to the right (d)"),
     themeSwitch(),
   );
   page.append(
@@ -220,14 +247,14 @@ export async function createViewer(page: HTMLElement, model: Model, compute: Com
       "0": whole,
       e: () => void openAll(true),
       c: () => void openAll(false),
+      d: () => void turn(),
     };
     actions[event.key]?.();
     return event.key in actions;
   }
 
   refresh();
-  await redraw(null);
-  whole();
+  await openFirst();
   await select(readFragment());
 
   return {

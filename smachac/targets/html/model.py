@@ -16,7 +16,7 @@ from smachac.diagnostics.source import NOWHERE, Source, Span
 from smachac.ir import graph, nodes
 from smachac.ir.graph import START, Edge
 from smachac.ir.nodes import Concurrence, Container, Key, Leaf, Machine, Node
-from smachac.ir.outcome_names import fails
+from smachac.ir.outcome_names import fails, successes
 from smachac.ir.properties import in_words
 from smachac.ir.script_paths import name_in_script, role_in_words
 from smachac.ir.traversal import remapping
@@ -75,6 +75,7 @@ def _node(
 ) -> dict[str, Any]:
     file, line = _place(node.span)
     children = () if isinstance(node, Leaf) else node.children
+    good = successes(node)
     data: dict[str, Any] = {
         "path": path,
         "name": name_in_script(node),
@@ -89,7 +90,12 @@ def _node(
         "line": line,
         "snippet": _snippet(node.span),
         "outcomes": [
-            {"name": each.name, "failure": fails(node, each.name), "doc": each.doc}
+            {
+                "name": each.name,
+                "failure": fails(node, each.name),
+                "success": each.name in good,
+                "doc": each.doc,
+            }
             for each in node.outcomes
         ],
         "inputs": _keys(path, node, node.inputs, context.types.inputs),

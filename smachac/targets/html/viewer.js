@@ -17,14 +17,26 @@
     scale = 1;
     x = 0;
     y = 0;
-    /** Show an area as a whole, not enlarged. */
-    fit(area) {
+    /** The scale at which an area is seen as a whole. */
+    fitting(area) {
       const { clientWidth, clientHeight } = this.frame;
       const across = (clientWidth - 2 * MARGIN) / Math.max(1, area.width);
       const down = (clientHeight - 2 * MARGIN) / Math.max(1, area.height);
-      this.scale = Math.min(1.25, Math.max(LEAST, Math.min(across, down)));
+      return Math.min(1.25, Math.max(LEAST, Math.min(across, down)));
+    }
+    /** Show an area as a whole, hardly enlarged. */
+    fit(area) {
+      const { clientWidth, clientHeight } = this.frame;
+      this.scale = this.fitting(area);
       this.x = (clientWidth - area.width * this.scale) / 2 - area.x * this.scale;
       this.y = (clientHeight - area.height * this.scale) / 2 - area.y * this.scale;
+      this.apply();
+    }
+    /** Show the surroundings of a place, which is put near the upper edge, at a scale. */
+    start(place, scale) {
+      this.scale = scale;
+      this.x = this.frame.clientWidth / 2 - place.x * scale;
+      this.y = MARGIN - place.y * scale;
       this.apply();
     }
     /** Zoom by a factor; the point (in pixels of the frame) stays where it is. */
@@ -171,16 +183,16 @@ ${target2}`;
     if (node.kind === "machine") return "state machine";
     return node.type ?? "state";
   }
-  function firstOpen(graph, limit) {
+  function firstOpen(graph, depth, limit) {
     const open = /* @__PURE__ */ new Set();
     let count = 1;
     let level = [graph.model.root];
-    while (level.length) {
+    for (let at = 0; at < depth && level.length; at += 1) {
       const next = [];
       for (const path of level) {
         const node = graph.nodes.get(path);
         if (!node || !isContainer(node) || isWrapped(graph, node)) continue;
-        if (count + node.children.length > limit && path !== graph.model.root) continue;
+        if (count + node.children.length > limit && at > 0) continue;
         open.add(path);
         count += node.children.length;
         next.push(...node.children);
@@ -266,22 +278,24 @@ ${target2}`;
         label,
         width: width(label, "exit") + 22,
         height: EXIT_HEIGHT,
-        failure: outcome.failure
+        failure: outcome.failure,
+        success: outcome.success
       });
     }
     const lines = /* @__PURE__ */ new Map();
     const add = (line, edge, label) => {
       const own = open.has(line.from) ? line.outcome : "";
       const key = JSON.stringify([line.from, line.to, line.failure, line.implicit, own]);
-      const known = lines.get(key) ?? { ...line, labels: [], edges: [] };
+      const known = lines.get(key) ?? { ...line, stop: true, labels: [], edges: [] };
       lines.set(key, known);
+      known.stop &&= line.outcome === "preempted";
       if (edge && !known.edges.includes(edge)) known.edges.push(edge);
       if (label && !open.has(line.from) && !known.labels.includes(label)) known.labels.push(label);
     };
     const joined = joins(container, pieces, add);
     for (const edge of graph.inside.get(path) ?? []) {
       for (const line of linesOf(container, edge, joined)) {
-        add(line, edgeId(edge), labelOf(edge, line));
+        add(line, edgeId(edge), labelOf(container, edge, line));
       }
     }
     return { path, pieces, lines: [...lines.values()] };
@@ -292,7 +306,7 @@ ${target2}`;
       return { id: START, what: "fork", label: "all start together", width: size, height: 5 };
     }
     if (container.kind === "iterator") {
-      const label = fitting(container.role ?? kindInWords(container), "label");
+      const label = container.role ? "next try" : "next item";
       return { id: START, what: "loop", label, width: width(label, "label") + 24, height: 24 };
     }
     return { id: START, what: "start", label: "start", width: 12, height: 12 };
@@ -303,8 +317,8 @@ ${target2}`;
       const exit = pieces.find((each) => each.id === exitId(rule.outcome));
       if (rule.when.length < 2 || !exit) return;
       const id = `join ${index}`;
-      const failure = exit.failure ?? false;
-      pieces.push({ id, what: "join", label: `all: ${rule.outcome}`, width: 64, height: 5, failure });
+      const { failure = false, success } = exit;
+      pieces.push({ id, what: "join", label: `all: ${rule.outcome}`, width: 64, height: 5, failure, success });
       for (const [child, outcome] of rule.when) {
         const key = JSON.stringify([child, outcome, rule.outcome]);
         joined.set(key, [...joined.get(key) ?? [], id]);
@@ -315,11 +329,11 @@ ${target2}`;
   }
   function linesOf(container, edge, joined) {
     const { outcome, failure, implicit } = edge;
-    const look2 = { outcome, failure, implicit };
+    const look3 = { outcome, failure, implicit };
     const from = edge.source ?? START;
     const to = typeof edge.target === "string" ? edge.target : exitId(edge.target.outcome);
-    if (edge.kind === "loop") return [{ ...look2, from, to: START }];
-    if (edge.kind === "exhausted") return [{ ...look2, outcome: "", failure: false, from: START, to }];
+    if (edge.kind === "loop") return [{ ...look3, from, to: START }];
+    if (edge.kind === "exhausted") return [{ ...look3, outcome: "", failure: false, from: START, to }];
     if (edge.kind === "rule" && typeof edge.target !== "string") {
       const key = JSON.stringify([edge.source, edge.outcome, edge.target.outcome]);
       const bars = joined.get(key) ?? [];
@@ -327,17 +341,17 @@ ${target2}`;
         (rule) => rule.outcome === edge.target.outcome && rule.when.length < 2 && rule.when.every(([child, name]) => child === edge.source && name === edge.outcome)
       );
       return [
-        ...bars.map((bar) => ({ ...look2, from, to: bar })),
-        ...alone ? [{ ...look2, from, to }] : []
+        ...bars.map((bar) => ({ ...look3, from, to: bar })),
+        ...alone ? [{ ...look3, from, to }] : []
       ];
     }
-    if (edge.kind === "default") return [{ ...look2, failure: false, from, to }];
-    return [{ ...look2, from, to }];
+    if (edge.kind === "default") return [{ ...look3, failure: false, from, to }];
+    return [{ ...look3, from, to }];
   }
-  function labelOf(edge, line) {
+  function labelOf(container, edge, line) {
     if (edge.kind === "default") return "otherwise";
     if (edge.kind === "caught") return "exception";
-    if (edge.kind === "exhausted") return edge.source === null ? "" : "no more items";
+    if (edge.kind === "exhausted") return edge.source === null ? "" : container.role ? "no tries left" : "no more items";
     return line.to === exitId(edge.outcome) ? "" : edge.outcome;
   }
 
@@ -354,7 +368,8 @@ ${target2}`;
     }
     const lines = scene.lines.map((line) => ({ line, element: drawLine(line) }));
     const edges = svg("g", { "aria-hidden": "true" }, ...lines.map((each) => each.element));
-    const labels = svg("g", { "aria-hidden": "true" }, ...scene.lines.map(drawLabel));
+    const grounds = new Map(scene.boxes.map((box) => [box.path, ground(graph.nodes.get(box.path), box)]));
+    const labels = svg("g", { "aria-hidden": "true" }, ...scene.lines.map(({ line, label, container }) => drawLabel(line, label, grounds.get(container) ?? "")));
     const marks = svg("g", { "aria-hidden": "true" }, ...scene.pieces.map((piece) => drawPiece(graph, piece)));
     return { root: svg("g", {}, tree, edges, marks, labels), states, lines };
   }
@@ -380,15 +395,18 @@ ${target2}`;
     }
     const radius = box.open ? 12 : 8;
     group.append(svg("rect", { class: "body", width: box.width, height: box.height, rx: radius }));
-    if (box.open) drawTitle(group, node, box);
-    else drawText(group, node, box);
+    if (box.open) drawTitle(graph, group, node, box);
+    else drawText(graph, group, node, box);
     return group;
   }
   function classes(node, box) {
-    const names = ["state", node.kind, box.open ? "open" : "closed"];
-    if (node.role) names.push("sugar");
-    if (box.open && box.level % 2) names.push("odd");
-    return names.join(" ");
+    const kind = box.open ? `open ${ground(node, box)}` : `closed ${isContainer(node) ? ground(node, box) : ""}`;
+    return `state ${node.kind} ${kind.trim()}`;
+  }
+  function ground(node, box) {
+    if (node?.role || node?.kind === "iterator") return "looping";
+    if (node?.kind === "concurrence") return "parallel";
+    return box.level % 2 ? "odd" : "even";
   }
   function spoken(node) {
     const parts = [node.name, kindInWords(node)];
@@ -396,7 +414,7 @@ ${target2}`;
     if (node.findings.length) parts.push(`${node.findings.length} findings`);
     return parts.join("; ");
   }
-  function drawTitle(group, node, box) {
+  function drawTitle(graph, group, node, box) {
     const name = fitting(node.name, "title");
     const detail = fitting(kindInWords(node), "detail");
     group.append(
@@ -404,9 +422,9 @@ ${target2}`;
       svg("text", { class: "title", x: 32, y: 22 }, name),
       svg("text", { class: "detail", x: 32 + width(name, "title") + 10, y: 22 }, detail)
     );
-    if (node.findings.length) group.append(badge(box.width - 18, 17));
+    if (node.findings.length) group.append(badge(graph, node, box.width - 18, 17));
   }
-  function drawText(group, node, box) {
+  function drawText(graph, group, node, box) {
     const middle = box.width / 2;
     const detail = fitting(boxDetail(node, node.children.length), "detail");
     const name = fitting(node.name, "name");
@@ -416,7 +434,7 @@ ${target2}`;
       group.append(svg("text", { class: "detail", x: middle, y: 37, "text-anchor": "middle" }, detail));
     }
     if (isContainer(node)) group.append(chevron(14, y - 4, false));
-    if (node.findings.length) group.append(badge(box.width - 13, 13));
+    if (node.findings.length) group.append(badge(graph, node, box.width - 13, 13));
   }
   function chevron(x, y, open) {
     const points = open ? "-4,-2 0,3 4,-2" : "-2,-4 3,0 -2,4";
@@ -427,12 +445,16 @@ ${target2}`;
       svg("polyline", { points })
     );
   }
-  function badge(x, y) {
+  function badge(graph, node, x, y) {
+    const found = new Set(node.findings.map((index) => graph.model.findings[index]?.severity));
+    const severity = found.has("error") ? "error" : found.has("warning") ? "warning" : "info";
+    const shape = severity === "warning" ? "M0-7 7.5 6H-7.5Z" : "M0-7A7 7 0 1 1 0 7 7 7 0 1 1 0-7Z";
+    const sign = { error: "M-2.5-2.5 2.5 2.5M2.5-2.5-2.5 2.5", warning: "M0-2.5V1.5M0 3.6V3.8", info: "M0-3.4V-3.2M0-.6V3.6" };
     return svg(
       "g",
-      { class: "badge", transform: `translate(${x} ${y})` },
-      svg("path", { d: "M0-7 7.5 6H-7.5Z" }),
-      svg("path", { class: "stroke", d: "M0-2.5V1.5M0 3.6V3.8" })
+      { class: `badge ${severity}`, transform: `translate(${x} ${y})` },
+      svg("path", { d: shape }),
+      svg("path", { class: "stroke", d: sign[severity] })
     );
   }
   function drawPiece(graph, { piece, container, x, y, width: width2, height }) {
@@ -456,6 +478,7 @@ ${target2}`;
       }
     }
     if (piece.failure) group.classList.add("failure");
+    if (piece.success) group.classList.add("success");
     return group;
   }
   var CORNER = 7;
@@ -485,17 +508,25 @@ ${target2}`;
     const length = distance(from, to) || 1;
     return { x: from.x + (to.x - from.x) * by / length, y: from.y + (to.y - from.y) * by / length };
   }
+  function look(line) {
+    return [line.failure && "failure", line.implicit && "implicit", line.stop && "stop"].filter(Boolean).join(" ");
+  }
   function drawLine({ line, points }) {
     const d = roundedPath(points);
-    const group = svg("g", { class: `line${line.failure ? " failure" : ""}${line.implicit ? " implicit" : ""}` });
+    const group = svg("g", { class: `line ${look(line)}` });
     const end = points[points.length - 1];
+    const before = points[points.length - 2];
     group.append(svg("path", { class: "stroke", d }));
-    if (end) group.append(svg("path", { class: "head", d: `M${end.x} ${end.y}l-4-7.5q4 1.6 8 0z` }));
+    if (end && before) {
+      const turn = Math.atan2(end.y - before.y, end.x - before.x) * 180 / Math.PI;
+      const transform = `translate(${end.x} ${end.y}) rotate(${turn})`;
+      group.append(svg("path", { class: "head", d: "M0 0L-7.5-4Q-5.9 0-7.5 4Z", transform }));
+    }
     return group;
   }
-  function drawLabel({ line, label }) {
+  function drawLabel(line, label, ground2) {
     if (!label) return null;
-    const group = svg("g", { class: `label${line.failure ? " failure" : ""}${line.implicit ? " implicit" : ""}` });
+    const group = svg("g", { class: `label ${ground2} ${look(line)}` });
     group.append(background(label));
     line.labels.forEach((text, index) => {
       const y = label.y + 2 + LINE_HEIGHT * index + 10.5;
@@ -576,15 +607,14 @@ ${target2}`;
   var MANY = 300;
   var ROOMY = {
     "elk.algorithm": "layered",
-    "elk.direction": "DOWN",
     "elk.edgeRouting": "ORTHOGONAL",
     "elk.separateConnectedComponents": "false",
-    "elk.padding": `[top=${TITLE_HEIGHT + 14},left=${SIDE},bottom=0,right=${SIDE}]`,
     "elk.spacing.nodeNode": "28",
     "elk.spacing.edgeNode": "18",
     "elk.spacing.edgeEdge": "12",
     "elk.spacing.edgeLabel": "3",
     "elk.spacing.nodeSelfLoop": "14",
+    "elk.spacing.portsSurrounding": "[top=12,left=18,bottom=12,right=18]",
     "elk.layered.spacing.nodeNodeBetweenLayers": "30",
     "elk.layered.spacing.edgeNodeBetweenLayers": "14",
     "elk.layered.spacing.edgeEdgeBetweenLayers": "10",
@@ -592,6 +622,7 @@ ${target2}`;
     "elk.layered.cycleBreaking.strategy": "MODEL_ORDER",
     "elk.layered.nodePlacement.strategy": "NETWORK_SIMPLEX",
     "elk.layered.nodePlacement.favorStraightEdges": "true",
+    "elk.layered.nodePlacement.networkSimplex.nodeFlexibility.default": "PORT_POSITION",
     "elk.layered.edgeLabels.centerLabelPlacementStrategy": "TAIL_LAYER"
   };
   var FAST = {
@@ -601,12 +632,14 @@ ${target2}`;
     "elk.layered.thoroughness": "1"
   };
   var Layouts = class {
-    constructor(graph, compute) {
+    constructor(graph, compute, direction) {
       this.graph = graph;
       this.compute = compute;
+      this.direction = direction;
     }
     graph;
     compute;
+    direction;
     known = /* @__PURE__ */ new Map();
     async scene(open) {
       const root = this.graph.model.root;
@@ -642,9 +675,9 @@ ${target2}`;
         node.children.map((child) => [child, placed.get(child)?.full ?? this.size(child)])
       );
       const content = contentOf(this.graph, path, open, sizes);
-      const done = await this.compute(elkGraph(content, placed));
+      const done = await this.compute(elkGraph(content, placed, this.direction));
       const title = width(fitting(node.name, "title"), "title") + width(fitting(kindInWords(node), "detail"), "detail") + 96;
-      return readLayout(content, done, title);
+      return readLayout(content, done, title, this.direction);
     }
     size(path) {
       const node = this.graph.nodes.get(path);
@@ -675,8 +708,11 @@ ${target2}`;
   function moved(point, by) {
     return { ...point, x: point.x + by.x, y: point.y + by.y };
   }
-  function elkGraph(content, placed) {
+  function elkGraph(content, placed, direction) {
     const options = content.lines.length > MANY ? FAST : ROOMY;
+    const [before, after] = direction === "DOWN" ? ["NORTH", "SOUTH"] : ["WEST", "EAST"];
+    const padding = direction === "DOWN" ? `bottom=0,right=${SIDE}` : `bottom=${SIDE},right=0`;
+    const exits = Math.max(0, ...content.pieces.map((each) => each.what === "exit" ? each.width : 0));
     const ports = /* @__PURE__ */ new Map();
     const port = (piece, name, side) => {
       const known = ports.get(piece) ?? /* @__PURE__ */ new Map();
@@ -691,38 +727,82 @@ ${name}`;
     const inner = (piece) => placed.get(piece);
     const edges = content.lines.map((line, index) => ({
       id: `line ${index}`,
-      sources: [port(line.from, inner(line.from) ? `out ${line.outcome}` : `out ${index}`, "SOUTH")],
-      targets: [port(line.to, inner(line.to) ? "in" : `in ${look(line)}`, "NORTH")],
+      sources: [port(line.from, inner(line.from) ? `out ${line.outcome}` : `out ${index}`, after)],
+      targets: [port(line.to, inner(line.to) ? "in" : `in ${look2(line)}`, before)],
       labels: line.labels.length ? [labelBox(line)] : [],
       layoutOptions: priorities(line)
     }));
     return {
       id: content.path,
-      layoutOptions: options,
+      layoutOptions: {
+        ...options,
+        "elk.direction": direction,
+        "elk.padding": `[top=${TITLE_HEIGHT + 14},left=${SIDE},${padding}]`
+      },
       children: content.pieces.map((piece) => ({
         id: piece.id,
-        width: piece.width,
-        height: piece.height,
-        ports: placedPorts(piece, [...ports.get(piece.id)?.values() ?? []], inner(piece.id)),
-        layoutOptions: {
-          "elk.portConstraints": inner(piece.id) ? "FIXED_POS" : "FIXED_SIDE",
-          "elk.spacing.portPort": "14",
-          ...constraint(piece)
-        }
+        ...sizeOf(piece, direction, exits),
+        ...connections(piece, content, [...ports.get(piece.id)?.values() ?? []], inner(piece.id), direction)
       })),
       edges
     };
   }
-  var look = (line) => line.failure ? "failure" : line.implicit ? "implicit" : "plain";
+  function connections(piece, content, ports, inner, direction) {
+    const layoutOptions = { "elk.portConstraints": "FIXED_SIDE", "elk.spacing.portPort": "14", ...constraint(piece) };
+    if (inner) {
+      const fixed = { ...layoutOptions, "elk.portConstraints": "FIXED_POS" };
+      return { ports: portsOfOpen(piece, ports, inner), layoutOptions: fixed };
+    }
+    const main2 = piece.what === "state" || piece.what === "start" ? mainLine(piece, content) : null;
+    if (main2 !== null) {
+      const fixed = { ...layoutOptions, "elk.portConstraints": "FIXED_POS" };
+      return { ports: portsAroundMain(piece, ports, `out ${main2}`, direction), layoutOptions: fixed };
+    }
+    const name = "elk.layered.nodePlacement.networkSimplex.nodeFlexibility";
+    if (piece.what === "state" || piece.what === "fork") return { ports, layoutOptions };
+    const centred = { "elk.spacing.portsSurrounding": "[top=0,left=0,bottom=0,right=0]", [name]: "NONE" };
+    return { ports, layoutOptions: { ...layoutOptions, ...centred } };
+  }
+  function mainLine(piece, content) {
+    const own = content.lines.flatMap((line, index) => line.from === piece.id ? [{ line, index }] : []);
+    const good = own.filter(({ line }) => !line.failure && !line.stop);
+    return good.length === 1 ? good[0].index : null;
+  }
+  var STEP = 18;
+  function portsAroundMain(piece, ports, main2, direction) {
+    const size = direction === "DOWN" ? piece.width : piece.height;
+    const outs = ports.filter((port) => nameOf(port, piece).startsWith("out "));
+    const ins = ports.filter((port) => !outs.includes(port));
+    const step = Math.min(STEP, (size / 2 - 8) / Math.max(1, outs.length - 1));
+    let others = 0;
+    return ports.map((port) => {
+      const name = nameOf(port, piece);
+      let along = size / 2;
+      if (outs.includes(port)) along += name === main2 ? 0 : (others += 1) * step;
+      else if (ins.length > 1) along += { plain: 0, failure: 1, implicit: -1 }[name.slice(3)] * Math.min(STEP, size / 4);
+      const far = outs.includes(port);
+      const [x, y] = direction === "DOWN" ? [along, far ? piece.height : 0] : [far ? piece.width : 0, along];
+      return { ...port, x, y };
+    });
+  }
+  var nameOf = (port, piece) => port.id.slice(piece.id.length + 1);
+  function sizeOf(piece, direction, exits) {
+    const { width: width2, height } = piece;
+    if (direction === "DOWN") return { width: width2, height };
+    if (piece.what === "exit") return { width: exits, height };
+    if (piece.what === "join" || piece.what === "fork") return { width: height, height: width2 };
+    return { width: width2, height };
+  }
+  var look2 = (line) => line.failure ? "failure" : line.implicit ? "implicit" : "plain";
   function constraint(piece) {
     const name = "elk.layered.layering.layerConstraint";
     if (piece.what === "exit") return { [name]: "LAST_SEPARATE" };
     return piece.what === "start" || piece.what === "fork" ? { [name]: "FIRST_SEPARATE" } : {};
   }
   function priorities(line) {
-    const main2 = !line.failure && !line.implicit;
+    const main2 = !line.failure && !line.implicit && !line.stop;
     return {
-      "elk.layered.priority.straightness": main2 ? "10" : "1",
+      "elk.layered.priority.straightness": main2 ? "100" : "1",
       "elk.layered.priority.shortness": main2 ? "5" : "1"
     };
   }
@@ -736,25 +816,32 @@ ${name}`;
       layoutOptions: { "elk.edgeLabels.inline": "true", "elk.edgeLabels.placement": "CENTER" }
     };
   }
-  function placedPorts(piece, ports, inner) {
-    if (!inner) return ports;
+  function portsOfOpen(piece, ports, inner) {
+    const down = inner.direction === "DOWN";
     const exits = new Map(
-      inner.pieces.filter((each) => each.piece.what === "exit").map((each) => [each.piece.id, each.x + each.width / 2])
+      inner.pieces.filter((each) => each.piece.what === "exit").map((each) => [each.piece.id, down ? each.x + each.width / 2 : each.y + each.height / 2])
     );
     return ports.map((port) => {
-      const name = port.id.slice(piece.id.length + 1);
-      if (name === "in") return { ...port, x: inner.entry, y: 0 };
-      const x = exits.get(exitId(name.slice("out ".length))) ?? inner.full.width / 2;
-      return { ...port, x, y: inner.full.height };
+      const name = nameOf(port, piece);
+      if (name === "in") {
+        const side2 = { "elk.port.side": down ? "NORTH" : "WEST" };
+        return { ...port, layoutOptions: side2, x: down ? inner.entry : 0, y: down ? 0 : inner.entry };
+      }
+      const along = exits.get(exitId(name.slice("out ".length))) ?? inner.full.width / 2;
+      const side = { "elk.port.side": down ? "SOUTH" : "EAST" };
+      const [x, y] = down ? [along, inner.full.height] : [inner.full.width, along];
+      return { ...port, layoutOptions: side, x, y };
     });
   }
-  function readLayout(content, done, title) {
+  function readLayout(content, done, title, direction) {
     const places = new Map((done.children ?? []).map((each) => [each.id, each]));
+    const down = direction === "DOWN";
     const least = Math.max(title, 120);
-    const shift = { x: Math.max(0, (least - (done.width ?? 0)) / 2), y: 0 };
+    const spare = Math.max(0, least - (done.width ?? 0));
+    const shift = { x: down ? spare / 2 : spare, y: 0 };
     const pieces = content.pieces.map((piece) => {
-      const { x = 0, y = 0 } = places.get(piece.id) ?? {};
-      return { container: content.path, piece, ...moved({ x, y }, shift), width: piece.width, height: piece.height };
+      const { x = 0, y = 0, width: width2 = 0, height = 0 } = places.get(piece.id) ?? {};
+      return { container: content.path, piece, ...moved({ x, y }, shift), width: width2, height };
     });
     const lines = (done.edges ?? []).map((edge, index) => {
       const section2 = edge.sections?.[0];
@@ -768,18 +855,23 @@ ${name}`;
         label: label ? moved(label, shift) : null
       };
     });
-    const exits = pieces.filter((each) => each.piece.what === "exit");
-    const bottom = Math.max(0, ...exits.map((each) => each.y + each.height));
-    const frameWidth = Math.max(least, done.width ?? 0);
-    const frameHeight = exits.length ? bottom - EXIT_HEIGHT / 2 : (done.height ?? 0) + SIDE;
     const start = pieces[0];
-    return {
-      frame: { width: frameWidth, height: frameHeight },
-      full: { width: frameWidth, height: Math.max(bottom, frameHeight) },
-      entry: start.x + start.width / 2,
-      pieces,
-      lines
-    };
+    const entry = down ? start.x + start.width / 2 : start.y + start.height / 2;
+    return { direction, ...frames(pieces, done, least, down), entry, pieces, lines };
+  }
+  function frames(pieces, done, least, down) {
+    const exits = pieces.filter((each) => each.piece.what === "exit");
+    const width2 = Math.max(least, done.width ?? 0);
+    const height = done.height ?? 0;
+    if (down) {
+      const bottom = Math.max(0, ...exits.map((each) => each.y + each.height));
+      const frame2 = { width: width2, height: exits.length ? bottom - EXIT_HEIGHT / 2 : height + SIDE };
+      return { frame: frame2, full: { width: width2, height: Math.max(bottom, frame2.height) } };
+    }
+    const right = Math.max(0, ...exits.map((each) => each.x + each.width));
+    const widest = Math.max(0, ...exits.map((each) => each.width));
+    const frame = { width: exits.length ? right - widest / 2 : width2 + SIDE, height };
+    return { frame, full: { width: Math.max(right, frame.width), height } };
   }
 
   // src/navigation.ts
@@ -883,7 +975,7 @@ ${name}`;
     const leaving = graph.leaving.get(node.path) ?? [];
     const rows = node.outcomes.map((outcome) => {
       const edges = leaving.filter((edge) => edge.outcome === outcome.name);
-      const name = html("span", { class: outcome.failure ? "outcome failure" : "outcome" }, outcome.name);
+      const name = html("span", { class: `outcome${outcome.failure ? " failure" : outcome.success ? " success" : ""}` }, outcome.name);
       const targets = html("span", { class: "targets" }, ...edges.map((edge) => target(graph, edge, actions)));
       return html("li", {}, name, targets);
     });
@@ -953,7 +1045,8 @@ ${name}`;
     ["Escape", "container around the state"],
     ["f", "whole machine"],
     ["+ and -", "zoom"],
-    ["e and c", "open and close all containers"]
+    ["e and c", "open and close all containers"],
+    ["d", "down or to the right"]
   ];
   function machineSections(graph, actions) {
     const { model } = graph;
@@ -1126,15 +1219,17 @@ ${name}`;
 
   // src/viewer.ts
   var SHOWN_AT_FIRST = 150;
+  var READABLE = 0.55;
   async function createViewer(page, model, compute) {
     let graph = indexed(model);
-    let layouts = new Layouts(graph, compute);
-    let open = firstOpen(graph, SHOWN_AT_FIRST);
+    let direction = "DOWN";
+    let layouts = new Layouts(graph, compute, direction);
+    let open = /* @__PURE__ */ new Set([graph.model.root]);
     let selected = null;
     let scene = { width: 0, height: 0, boxes: [], pieces: [], lines: [] };
     let picture = null;
     let run = null;
-    let turn = 0;
+    let latest = 0;
     const sections = [];
     const listeners = [];
     const world = svg("g", {});
@@ -1146,9 +1241,24 @@ ${name}`;
     const camera = new Camera(frame, world);
     const boxOf = (path) => scene.boxes.find((box) => box.path === path);
     const whole = () => camera.fit({ x: -6, y: -6, width: scene.width + 12, height: scene.height + 12 });
+    async function openFirst() {
+      for (let depth = 1; ; depth += 1) {
+        const deeper = firstOpen(graph, depth, SHOWN_AT_FIRST);
+        if (depth > 1 && deeper.size === open.size) break;
+        if (depth > 1 && camera.fitting(await layouts.scene(deeper)) < READABLE) break;
+        open = deeper;
+      }
+      await redraw(null);
+      showStart();
+    }
+    function showStart() {
+      const start = scene.pieces.find((each) => each.container === graph.model.root && each.piece.id === "start");
+      if (start && camera.fitting(scene) < READABLE / 1.5) camera.start({ x: start.x, y: 0 }, READABLE);
+      else whole();
+    }
     async function redraw(anchor) {
-      turn += 1;
-      const mine = turn;
+      latest += 1;
+      const mine = latest;
       const before = boxOf(anchor);
       let next;
       try {
@@ -1157,7 +1267,7 @@ ${name}`;
         notice.textContent = `The layout failed: ${error instanceof Error ? error.message : String(error)}`;
         return;
       }
-      if (mine !== turn) return;
+      if (mine !== latest) return;
       const focused = frame.contains(document.activeElement);
       scene = next;
       picture = draw(graph, scene);
@@ -1207,14 +1317,17 @@ ${name}`;
       await redraw(null);
       whole();
     }
+    async function turn() {
+      direction = direction === "DOWN" ? "RIGHT" : "DOWN";
+      layouts = new Layouts(graph, compute, direction);
+      await redraw(null);
+      whole();
+    }
     async function setModel(next) {
-      const known = new Set(graph.nodes.keys());
       const opened = open;
       graph = indexed(next);
-      layouts = new Layouts(graph, compute);
-      const fresh = firstOpen(graph, SHOWN_AT_FIRST);
-      open = new Set(next.nodes.filter((node) => (known.has(node.path) ? opened : fresh).has(node.path)).map((node) => node.path));
-      open.add(next.root);
+      layouts = new Layouts(graph, compute, direction);
+      open = /* @__PURE__ */ new Set([next.root, ...[...opened].filter((path) => graph.nodes.has(path))]);
       if (selected !== null && !graph.nodes.has(selected)) selected = nearest(graph, selected)?.path ?? null;
       document.title = next.name;
       title.textContent = next.name;
@@ -1231,6 +1344,7 @@ ${name}`;
       button("Zoom in", "+", () => camera.zoom(1.25), "Zoom in (+)"),
       button("Open all containers", "Open all", () => void openAll(true), "Open all containers (e)"),
       button("Close all containers", "Close all", () => void openAll(false), "Close all containers (c)"),
+      button("Turn the picture: down or to the right", "Turn", () => void turn(), "Down or to the right (d)"),
       themeSwitch()
     );
     page.append(
@@ -1267,9 +1381,9 @@ ${name}`;
       if (path !== selected) void select(path);
     });
     function key(event, inPicture) {
-      const direction = readDirection(event.key);
-      if (direction && inPicture) {
-        const next = neighbour(scene.boxes, selected ?? graph.model.root, direction, graph);
+      const direction2 = readDirection(event.key);
+      if (direction2 && inPicture) {
+        const next = neighbour(scene.boxes, selected ?? graph.model.root, direction2, graph);
         if (next !== null) void select(next).then(focusSelected);
         return true;
       }
@@ -1290,14 +1404,14 @@ ${name}`;
         f: whole,
         "0": whole,
         e: () => void openAll(true),
-        c: () => void openAll(false)
+        c: () => void openAll(false),
+        d: () => void turn()
       };
       actions[event.key]?.();
       return event.key in actions;
     }
     refresh();
-    await redraw(null);
-    whole();
+    await openFirst();
     await select(readFragment());
     return {
       get graph() {
