@@ -64,9 +64,11 @@ golden: ## Rewrite the expected output of the tests and in docs; review it with 
 	@scripts/setup.sh dev
 	SMACHAC_GOLDEN=rewrite $(RUN) pytest -q -k golden
 
-docs: ## Rewrite docs/rules.md from the docstrings of the rules
+docs: ## Rewrite docs/rules.md from the docstrings of the rules, and build the site of docs/ in build/site
 	@scripts/setup.sh dev
 	.venv/bin/python -c 'import pathlib, smachac.report.explain_code as e, smachac.driver as d; pathlib.Path("docs/rules.md").write_text(e.render_rules(d.CODES), "utf-8")'
+	NO_MKDOCS_2_WARNING=1 $(RUN) mkdocs build --quiet
+	@echo "$(RUN) http.server -d build/site shows the site, with its search"
 
 bench: ## Run the benchmarks; never part of the tests
 	@scripts/setup.sh dev

@@ -125,20 +125,26 @@ class ScriptError(Exception):
 def check(
     source: Text, *, name: str | None = None, scripts: Folders = (), templates: Folders = ()
 ) -> list[Diagnostic]:
-    """All findings in a script, in order; an empty list if there are none.
+    """All findings in a script, in order; an empty list if there are none. A notebook shows them as
+    a table.
 
     `scripts` and `templates` are more folders with sub-scripts and with state types.
     """
-    return _analysis(source, name, scripts, templates, render=True).report
+    from smachac.report.notebook import Findings
+
+    return Findings(_analysis(source, name, scripts, templates, render=True).report)
 
 
 def load(
     source: Text, *, name: str | None = None, scripts: Folders = (), templates: Folders = ()
 ) -> Checked:
-    """The checked machine of a script. Raises ScriptError."""
+    """The checked machine of a script. A notebook shows it as a picture. Raises ScriptError."""
+    from smachac.report.notebook import show_machines
+
     analysis = _analysis(source, name, scripts, templates)
     if analysis.checked is None:
         raise ScriptError(analysis.report)
+    show_machines()
     return analysis.checked
 
 

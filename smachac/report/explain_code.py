@@ -109,7 +109,7 @@ def _contents(known: Mapping[str, Code]) -> str:
         for code in codes:
             heading = f"{code.code} {code.name}"
             summary = explanation(code).summary
-            lines.append(f"  - [{heading}](#{_anchor(heading)}): {summary}")
+            lines.append(f"    - [{heading}](#{_anchor(heading)}): {summary}")
     return "\n".join(lines)
 
 

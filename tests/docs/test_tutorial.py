@@ -7,11 +7,13 @@ import re
 import shlex
 import shutil
 import subprocess
+import sys
 from collections.abc import Iterator
 from pathlib import Path
 
 import pytest
 
+from bench import tutorial
 from smachac.commands.cli import main
 
 DOCS = Path(__file__).parents[2] / "docs"
@@ -85,3 +87,42 @@ def test_golden_page_prints_what_is_shown(
 def test_pages_have_files_and_commands(page: str) -> None:
     kinds = [kind for kind, _ in blocks(page)]
     assert {"yaml", "console"} <= set(kinds) <= {"yaml", "python", "xml", "console", "sh"}
+
+
+@pytest.mark.slow
+def test_a_shell_runs_the_tutorial_as_printed(tmp_path: Path) -> None:
+    """All but its installation, which needs the network: bench/tutorial.py runs it as well."""
+    pytest.importorskip("pybullet")
+    if shutil.which("g++") is None:
+        pytest.skip("no g++")
+    program = tmp_path / "bin" / "smachac"
+    program.parent.mkdir()
+    program.write_text(f'#!/bin/sh\nexec "{sys.executable}" -m smachac "$@"\n')
+    program.chmod(0o755)
+    path = f"{program.parent}{os.pathsep}{os.environ['PATH']}"
+    environment = {**os.environ, "PATH": path, "PYTHONPATH": str(tutorial.ROOT)}
+    folder = tmp_path / "empty"
+    folder.mkdir()
+    done = list(tutorial.typed(folder, installed=True, environment=environment))
+    page = tutorial.PAGE.read_text("utf-8")
+    assert len(done) == page.count("\n$ ")
+    assert [(each.step.command, each.printed) for each in done if not each.as_printed] == []
+
+
+def test_the_tutorial_begins_with_the_installation() -> None:
+    first = next(tutorial.steps(tutorial.PAGE.read_text("utf-8")))
+    assert isinstance(first, tutorial.Step)
+    assert first.section == tutorial.INSTALL
+    assert first.command.startswith(f"git clone {tutorial.ADDRESS}")
+
+
+@pytest.mark.parametrize(
+    ("printed", "code", "right"),
+    [("a 0.10 s\n", 1, True), ("b 0.10 s\n", 0, False), ("a 0.10\n", 0, False)],
+)
+def test_a_command_that_prints_something_else_is_found(
+    printed: str, code: int, right: bool
+) -> None:
+    step = tutorial.Step(section="2", command="x", shown="a 0.25 s\n")
+    done = tutorial.Done(step=step, printed=printed, code=code, seconds=1.0)
+    assert done.as_printed is right

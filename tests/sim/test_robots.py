@@ -14,6 +14,7 @@ import pytest
 
 from smachac import sim
 from smachac.sim import transforms
+from tests.support.arm_examples import carry
 
 pytest.importorskip("pybullet")
 
@@ -121,52 +122,18 @@ def test_the_files_are_those_of_the_script() -> None:
         assert "<mesh" not in content
 
 
-GROUND = {"baxter": (-0.13, "cafe_table", 1.0), "iiwa": (0.025, "table", 0.55)}
-"""Height of a block in the base frame, table, and where it stands (x)."""
-
-
-def carried(robot: str, limb: str, seed: int) -> float:
-    """Carry a block between two random poses: how far it lies from its goal (m)."""
-    z, table, x = GROUND[robot]
-    sign = -1 if limb == "right" else 1
-    with sim.World(robot=robot, seed=seed) as world:
-        world.load(table, [x, 0, 0], frame="world")
-
-        def pose() -> list[list[float]]:
-            place = [world.random.uniform(0.58, 0.72), sign * world.random.uniform(0.0, 0.3), z]
-            return [place, list(transforms.about_z(world.random.uniform(-math.pi, math.pi)))]
-
-        start, goal = pose(), pose()
-        while math.dist(start[0], goal[0]) < 0.12:
-            goal = pose()
-        world.load("block", start)
-        arm, hover = world.arm(limb), [[0, 0, 0.12], [0, 0, 0, 1]]
-        outcomes = [arm.grip("open").outcome]
-        for where, command in ((arm.grasp_pose(start), "close"), (arm.grasp_pose(goal), "open")):
-            moves = [
-                arm.move_to_joints(arm.solve_ik(where, hover) or []),
-                arm.move_along(where),
-                arm.grip(command),
-                arm.move_along(where, hover),
-            ]
-            outcomes += [each.outcome for each in moves]
-        assert set(outcomes) == {"succeeded"}
-        assert world.at_rest("block")
-        return world.error("block", goal)
-
-
 MANY = [0, *(pytest.param(seed, marks=pytest.mark.slow) for seed in range(1, 6))]
 
 
 @pytest.mark.parametrize("seed", MANY)
 @pytest.mark.parametrize("limb", ["left", "right"])
 def test_baxter_places_a_block_within_1_mm(limb: str, seed: int) -> None:
-    assert carried("baxter", limb, seed) < 0.001
+    assert carry("baxter", limb, seed) < 0.001
 
 
 @pytest.mark.parametrize("seed", MANY)
 def test_the_iiwa_places_a_block_within_2_mm(seed: int) -> None:
-    assert carried("iiwa", "arm", seed) < 0.002
+    assert carry("iiwa", "arm", seed) < 0.002
 
 
 STATION = """

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass, field
 from functools import cache
@@ -12,6 +13,7 @@ from smachac import sim
 from smachac.driver import analyse, build
 from smachac.frontend.files import disk_library, read_source
 from smachac.runtime.tracing import trace
+from smachac.sim import transforms
 from smachac.targets.python import TARGET
 from tests.support.silent_smach import silent_smach
 
@@ -98,3 +100,39 @@ STACKING = ("09_stacking", {"first": "goal_pose", "second": "top_pose"})
 BAXTER_STACKING = ("11_baxter_stacking", {"first": "goal_pose", "second": "top_pose"})
 DUAL_ARM = ("12_dual_arm_stacking", {"first": "goal_pose", "second": "top_pose"})
 RECOVERY = ("13_recovery", {"block": "goal_pose"})
+
+
+GROUND = {"baxter": (-0.13, "cafe_table", 1.0), "iiwa": (0.025, "table", 0.55)}
+"""Height of a block in the base frame, table, and where it stands (x)."""
+
+
+def carry(robot: str, limb: str, seed: int) -> float:
+    """Carry a block between two random poses: its distance from the goal at the end (m).
+
+    NaN if a movement fails or the block does not come to rest.
+    """
+    z, table, x = GROUND[robot]
+    sign = -1 if limb == "right" else 1
+    with sim.World(robot=robot, seed=seed) as world:
+        world.load(table, [x, 0, 0], frame="world")
+
+        def pose() -> list[list[float]]:
+            place = [world.random.uniform(0.58, 0.72), sign * world.random.uniform(0.0, 0.3), z]
+            return [place, list(transforms.about_z(world.random.uniform(-math.pi, math.pi)))]
+
+        start, goal = pose(), pose()
+        while math.dist(start[0], goal[0]) < 0.12:
+            goal = pose()
+        world.load("block", start)
+        arm, hover = world.arm(limb), [[0, 0, 0.12], [0, 0, 0, 1]]
+        outcomes = [arm.grip("open").outcome]
+        for where, command in ((arm.grasp_pose(start), "close"), (arm.grasp_pose(goal), "open")):
+            moves = [
+                arm.move_to_joints(arm.solve_ik(where, hover) or []),
+                arm.move_along(where),
+                arm.grip(command),
+                arm.move_along(where, hover),
+            ]
+            outcomes += [each.outcome for each in moves]
+        fine = set(outcomes) == {"succeeded"} and world.at_rest("block")
+        return world.error("block", goal) if fine else math.nan
