@@ -19,7 +19,7 @@ LAYERS = (
     ("driver", "report"),
     ("__init__", "batch"),
     ("refactor", "verify"),
-    ("lsp",),
+    ("lsp", "view"),
     ("commands",),
     ("__main__",),
 )
