@@ -26,8 +26,9 @@ await build({
   banner: { js: "// The viewer of smachac, built from viewer/. Apache-2.0." },
 });
 await build({
-  entryPoints: { viewer: join(here, "src/viewer.css") },
+  entryPoints: { viewer: join(here, "src/page.css") },
   outdir: out,
+  bundle: true,
   charset: "ascii",
   logLevel: "warning",
 });

@@ -74,6 +74,11 @@ def build_command(arguments: Namespace) -> int:
             message = f"target `{target.name}` has no option `{name}`"
             return usage(message, name, list(target.options))
         options[name] = value
+    for name in target.file_options & options.keys():
+        text = _text_of(options[name])
+        if text is None:
+            return usage(f"--option {name}: the file {options[name]} cannot be read")
+        options[name] = text
     try:
         with limited_memory(arguments.memory_limit), limited_time(arguments.time_limit):
             analysis = analyse_script(arguments.script, arguments.scripts, arguments.templates)
@@ -86,6 +91,14 @@ def build_command(arguments: Namespace) -> int:
         return FINDINGS
     print_report(without_notes(report), arguments, sys.stderr)
     return _put(files, arguments) if files else FINDINGS
+
+
+def _text_of(name: str) -> str | None:
+    """The text of a file; None if it cannot be read."""
+    from smachac.frontend.files import read_source
+
+    source = read_source(as_path(name), [])
+    return None if source is None else source.text
 
 
 def _levels(script: Path, output: Path) -> int:

@@ -28,6 +28,7 @@ COMMANDS = {
     "build": ("build", "generate code from a script"),
     "run": ("run", "run a script on the simulated arm or with mock states"),
     "sweep": ("sweep", "run a script many times: success rates, failures, coverage"),
+    "view": ("view", "show a script, a run or a trace in a browser"),
     "verify": ("verify", "compare the generated code with the script, path by path"),
     "trace": ("trace", "compare recorded traces with a script"),
     "stats": ("trace", "predict outcomes and costly failures from recorded traces"),

@@ -14,6 +14,7 @@ from smachac.commands.arguments import SCRIPT, as_path, colour, count, names, se
 from smachac.commands.interrupts import end_at_once
 from smachac.commands.output import FINDINGS, OK, print_report, usage, without_notes
 from smachac.commands.terminal import wants_colour
+from smachac.commands.view import PortError, browser, port, run_view
 
 TYPE_CHECKING = False  # annotations only: `--help` imports none of this
 if TYPE_CHECKING:
@@ -21,6 +22,7 @@ if TYPE_CHECKING:
     from pathlib import Path
     from typing import Any
 
+    from smachac.commands.view import RunView
     from smachac.diagnostics.diagnostic import Report
     from smachac.diagnostics.source import Span
     from smachac.driver import Analysis
@@ -29,9 +31,12 @@ if TYPE_CHECKING:
     from smachac.interpreter.scenario import Scenario, ScenarioProblem
     from smachac.ir.nodes import Machine
     from smachac.robots.faults import Fault
+    from smachac.runtime.tracing.gate import Gate
     from smachac.runtime.tracing.progress import Sugar
+    from smachac.view.live import LiveTrace
 
     Event = dict[str, Any]
+    Go = Callable[[Callable[[Event], None], Gate | None], str]
 
 EXAMPLES = """\
 examples:
@@ -42,6 +47,7 @@ examples:
   smachac run main.yml --mock scenario.yml --orders 100   try 100 orders of concurrent branches
   smachac run main.yml --faults faults.yml       inject faults into the simulation
   smachac run main.yml --seed 7 --set userdata.speed=0.2   with another value
+  smachac run main.yml --view                    watch and control it in a browser
   smachac run main.yml --expect succeeded        fail if the outcome is another one (CI)
   smachac run main.yml --ros                     run it as a ROS node, here and now
   smachac run main.yml --ros --ros-args -p speed:=0.2 -r __ns:=/robot_1
@@ -76,6 +82,12 @@ def run_arguments(parser: argparse.ArgumentParser) -> None:
     parser.add_argument("--orders", type=count, metavar="N",
                         help="with --mock: try N orders of turns; fail if the results"
                         " differ")  # fmt: skip
+    parser.add_argument("--view", type=port, nargs="?", const=0, metavar="PORT",
+                        help="show the run in a browser (default of PORT: one that is"
+                        " free)")  # fmt: skip
+    parser.add_argument("--view-paused", action="store_true",
+                        help="with --view: wait before the first state")  # fmt: skip
+    browser(parser)
     parser.add_argument("--expect", metavar="OUTCOME",
                         help="fail if the outcome is another one")  # fmt: skip
     parser.add_argument("--quiet", "-q", action="store_true",
@@ -97,6 +109,10 @@ def run_command(arguments: Namespace) -> int:
         return usage("--ros runs a node, --mock plays a scenario: choose one")
     if arguments.ros_args is not None and not arguments.ros:
         return usage("--ros-args needs --ros")
+    if arguments.view is None and arguments.view_paused:
+        return usage("--view-paused needs --view")
+    if arguments.view is not None and arguments.orders is not None:
+        return usage("--view shows one run, --orders tries many: choose one")
     for option, path, is_ours in (
         ("trace", arguments.trace, _is_trace),
         ("record", record, _is_film),
@@ -192,7 +208,7 @@ def _run_program(arguments: Namespace, analysis: Analysis) -> int:
         return FINDINGS
     ((name, text),) = files.items()
     go = partial(perform, name, text, machine, arguments, faults)
-    return _observed(arguments, machine, go)
+    return _observed(arguments, machine, report, go)
 
 
 def _run_scenario(arguments: Namespace, analysis: Analysis) -> int:
@@ -213,7 +229,8 @@ def _run_scenario(arguments: Namespace, analysis: Analysis) -> int:
         print(text)
         return OK if agree else FINDINGS
     seed, schedule = arguments.seed, arguments.schedule
-    return _observed(arguments, machine, partial(play, machine, scenario, seed, schedule))
+    go = partial(play, machine, scenario, seed, schedule)
+    return _observed(arguments, machine, analysis.report, go)
 
 
 def _playable(analysis: Analysis) -> Machine | None:
@@ -225,16 +242,27 @@ def _playable(analysis: Analysis) -> Machine | None:
     return analysis.machine if errors and set(errors) == {"SM701"} else None
 
 
-def _observed(
-    arguments: Namespace, machine: Machine, go: Callable[[Callable[[Event], None]], str]
-) -> int:
+def _observed(arguments: Namespace, machine: Machine, report: Report, go: Go) -> int:
+    """Run a machine, with a view if the arguments require one; the exit code."""
+    if arguments.view is None:
+        return _traced(arguments, machine, go, None)
+    try:
+        with run_view(arguments, machine, report) as view:
+            code = _traced(arguments, machine, go, view)
+            view.stay()
+            return code
+    except PortError as error:
+        return usage(str(error))
+
+
+def _traced(arguments: Namespace, machine: Machine, go: Go, view: RunView | None) -> int:
     """Run a machine with trace and progress, and print its outcome; the exit code."""
     from smachac.sweep.play import FailedError
 
     try:
-        with watching(arguments, machine) as (observe, errors):
+        with watching(arguments, machine, view.trace if view else None) as (observe, errors):
             try:
-                outcome = go(observe)
+                outcome = go(observe, view.control if view else None)
             except FailedError as error:
                 sys.stdout.flush()
                 print(f"the run failed{_where(errors)}\n{error}", file=sys.stderr)
@@ -331,6 +359,7 @@ def perform(
     arguments: Namespace,
     faults: tuple[Fault, ...],
     observe: Callable[[Event], None],
+    gate: Gate | None = None,
 ) -> str:
     """Run the generated module; the outcome. Raises FailedError."""
     from smachac.frontend.files import module_folders
@@ -353,6 +382,7 @@ def perform(
             faults=faults,
             poses=arguments.poses,
             arguments=arguments.node,
+            gate=gate,
             on_preempt=lambda: print(
                 "preemption requested: the states stop; Ctrl-C again ends at once", file=sys.stderr
             ),
@@ -367,28 +397,30 @@ def perform(
 
 @contextmanager
 def watching(
-    arguments: Namespace, machine: Machine
+    arguments: Namespace, machine: Machine, view: LiveTrace | None = None
 ) -> Iterator[tuple[Callable[[Event], None], list[Event]]]:
-    """An observer that writes the trace and shows progress, and the error events it received."""
+    """An observer that writes the trace, shows progress and feeds the view, and the error events it
+    received."""
     from smachac.runtime.tracing.progress import Progress
     from smachac.runtime.tracing.writer import TraceWriter
 
-    errors: list[Event] = []
-    sinks: list[Callable[[Event], None]] = []
+    recorders: list[TraceWriter | LiveTrace] = [] if view is None else [view]
     with ExitStack() as stack:
         if arguments.trace is not None:
             arguments.trace.parent.mkdir(parents=True, exist_ok=True)
             stream = stack.enter_context(arguments.trace.open("wb", buffering=0))
             failures: list[OSError] = []
-            writer = TraceWriter(partial(_write_lines, stream.fileno(), failures))
+            recorders.append(TraceWriter(partial(_write_lines, stream.fileno(), failures)))
             stack.callback(_raise_first, failures)
-            if arguments.quiet:
-                yield writer, writer.errors
-                return
-            sinks.append(writer)
+        if arguments.quiet and len(recorders) == 1:
+            (recorder,) = recorders
+            yield recorder, recorder.errors
+            return
+        sinks: list[Callable[[Event], None]] = [*recorders]
         if not arguments.quiet:
             colour = wants_colour(arguments, sys.stdout)
             sinks.append(Progress(sys.stdout, sugar_of(machine), colour=colour))
+        errors: list[Event] = []
 
         def observe(event: Event) -> None:
             if event["event"] == "error":

@@ -49,6 +49,7 @@ from smachac.ir.nodes import (
 )
 from smachac.ir.recursion import deep_recursion
 from smachac.ir.traversal import PREEMPTED, containers, leads_to_child, outcome_names, walk
+from smachac.runtime.tracing.gate import Gate
 
 MAX_STEPS = 1_000_000
 """Default limit on the states that one run enters."""
@@ -68,6 +69,7 @@ def run(
     max_steps: int = MAX_STEPS,
     userdata: Mapping[str, object] | None = None,
     preempt_at: Collection[int] = (),
+    gate: Gate | None = None,
 ) -> InterpreterResult:
     """Run a machine once, from its start to an outcome or an error.
 
@@ -76,8 +78,8 @@ def run(
     first branch continues. Without a schedule the choice is random, seeded by `seed`. `userdata`
     overrides the presets of the outermost container. `preempt_at` holds numbers of leaf visits: a
     request to stop arrives during the n-th visit, 0 is before the start. A run that enters more
-    than `max_steps` states ends with an error. Raises ScheduleError if the schedule names a branch
-    that cannot continue.
+    than `max_steps` states ends with an error. `gate` lets a debugger stop the run between two
+    states. Raises ScheduleError if the schedule names a branch that cannot continue.
     """
     interpreter = Interpreter(
         machine,
@@ -88,6 +90,7 @@ def run(
         max_steps=max_steps,
         userdata=userdata,
         preempt_at=preempt_at,
+        gate=gate,
     )
     return interpreter.execute()
 
@@ -110,12 +113,15 @@ class Interpreter:
         max_steps: int = MAX_STEPS,
         userdata: Mapping[str, object] | None = None,
         preempt_at: Collection[int] = (),
+        gate: Gate | None = None,
     ) -> None:
         self._root = machine.root
         self._behaviour = behaviour
         self._on_event = on_event
         self._max_steps = max_steps
         self._preempt_at = frozenset(preempt_at)
+        self._gate = gate
+        self._stop_asked = False
         self.schedule = Scheduler(seed, schedule)
         self.preemption = Preemption(lambda path: self.emit("preempt", path))
         self.clock = 0.0
@@ -129,6 +135,8 @@ class Interpreter:
         }
         self._scopes[self._root.name].update(userdata or {})
         self._sources = _trace_sources(self._root) if on_event else {}
+        if gate is not None:
+            gate.opened(self._ask_to_stop)
 
     def execute(self, parent: dict[str, object] | None = None) -> InterpreterResult:
         """Run the machine once more. `parent` is the userdata around it, as if it were a nested
@@ -192,7 +200,11 @@ class Interpreter:
         if self._steps >= self._max_steps:
             self.fail("no-end", path, f"did not end after {self._max_steps} states", node.span)
         self._steps += 1
+        forced = self._pass_gate(node, path)
         self.emit("enter", path)
+        if forced is not None:
+            self.emit("exit", path, outcome=forced, forced=True)
+            return forced
         own = self._scopes.get(path, {})
         try:
             if isinstance(node, Leaf):
@@ -205,13 +217,30 @@ class Interpreter:
                 raise
             self.emit("exit", path, outcome=node.catches)
             return node.catches
+        if outcome is not None and self._gate is not None and self._gate.armed:
+            ended, outcome = outcome, self._gate.after(path, outcome, outcome_names(node))
+            forced = outcome if outcome != ended else None
         if outcome is not None:
-            self.emit("exit", path, outcome=outcome)
+            self.emit("exit", path, outcome=outcome, **({"forced": True} if forced else {}))
         elif isinstance(node, Leaf):
             self.emit("error", path, message=NO_OUTCOME)
         if not isinstance(node, Leaf):
             copy_out(node, own, around)
         return outcome
+
+    def _pass_gate(self, node: Node, path: str) -> str | None:
+        """Wait for a debugger; the outcome that it forces, if any."""
+        if self._gate is None:
+            return None
+        forced = self._gate.before(path, outcome_names(node)) if self._gate.armed else None
+        if self._stop_asked:
+            self._stop_asked = False
+            self._stop_machine()
+        return forced
+
+    def _ask_to_stop(self) -> None:
+        """Make a request to stop at the start of the next state; for other threads."""
+        self._stop_asked = True
 
     def _leaf(
         self, leaf: Leaf, path: str, around: dict[str, object], unrestricted: bool

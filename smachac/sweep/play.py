@@ -7,6 +7,7 @@ from typing import Any
 
 from smachac.interpreter.scenario import Scenario
 from smachac.ir.nodes import Machine
+from smachac.runtime.tracing.gate import Gate
 
 Event = dict[str, Any]
 
@@ -21,8 +22,12 @@ def play(
     seed: int,
     schedule: Sequence[str] | None,
     observe: Callable[[Event], None],
+    gate: Gate | None = None,
 ) -> str:
-    """Play a scenario on the interpreter; the outcome. Raises FailedError."""
+    """Play a scenario on the interpreter; the outcome. Raises FailedError.
+
+    `gate` lets a debugger stop the run between two states.
+    """
     from smachac.interpreter.behaviours import builtin_behaviour
     from smachac.interpreter.interpreter import run
     from smachac.interpreter.scenario import scenario_behaviour
@@ -35,7 +40,9 @@ def play(
     full = {shown: path for path, shown in paths.items()}
     turns = None if schedule is None else [full.get(turn, turn) for turn in schedule]
     try:
-        result = run(machine, behaviour, _shown(observe, paths), seed=seed, schedule=turns)
+        result = run(
+            machine, behaviour, _shown(observe, paths), seed=seed, schedule=turns, gate=gate
+        )
     except ScheduleError as error:
         raise FailedError(f"--schedule: {error}") from None
     if result.error is not None:

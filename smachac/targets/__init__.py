@@ -67,7 +67,8 @@ class Target:
     `emit(machine, context, report)` returns the files, the main file first. It appends to `report`
     what the language cannot express and the faults of the user's templates, and returns no files
     if there is an error among them. It raises OptionError, and nothing else that the user can
-    cause. `options` maps the name of each option to a line of help. `runtime(machine, context)` is
+    cause. `options` maps the name of each option to a line of help. The value of those in
+    `file_options` is the name of a file: the target gets its text. `runtime(machine, context)` is
     the support code that the files need beside them: file name to path under smachac/runtime.
     `has_code(type, library)` is whether the target can emit states of a type.
     `declared(type, library)` is the interface that the user's class for a type declares; None if it
@@ -78,6 +79,7 @@ class Target:
     description: str
     emit: Emit
     options: Mapping[str, str] = field(default_factory=dict)
+    file_options: frozenset[str] = frozenset()
     runtime: Callable[[Checked, BuildContext], Mapping[str, str]] = _no_runtime
     has_code: Callable[[StateType, Library], bool] = _no_code
     declared: Callable[[StateType, Library], Declared | None] = _nothing_declared

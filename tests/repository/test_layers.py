@@ -19,7 +19,7 @@ LAYERS = (
     ("driver", "report"),
     ("__init__", "batch"),
     ("refactor", "verify", "diff"),
-    ("lsp", "sweep"),
+    ("lsp", "sweep", "view"),
     ("commands",),
     ("__main__",),
 )

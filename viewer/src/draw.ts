@@ -12,6 +12,8 @@ export interface Highlight {
   active: Iterable<Path>;
   taken?: Iterable<string>;
   visits?: ReadonlyMap<Path, number>;
+  waiting?: Iterable<Path>;
+  breakpoints?: Iterable<Path>;
 }
 
 /** The elements of the picture that change after it is drawn. */
@@ -245,20 +247,37 @@ export function markSelection(picture: Picture, path: Path | null): void {
 
 /** Mark what a run does. A state inside a closed container marks that container. */
 export function markRun(graph: Graph, picture: Picture, run: Highlight | null): void {
-  const active = new Set<Path>();
-  for (const path of run?.active ?? []) {
-    let node = nearest(graph, path);
-    while (node && !picture.states.has(node.path) && node.parent !== null) node = graph.nodes.get(node.parent);
-    if (node) active.add(node.path);
-  }
+  const active = drawnStates(graph, picture, run?.active);
+  const waiting = drawnStates(graph, picture, run?.waiting);
+  const breakpoints = drawnStates(graph, picture, run?.breakpoints);
   const taken = new Set(run?.taken ?? []);
   for (const [path, element] of picture.states) {
     element.classList.toggle("active", active.has(path));
+    element.classList.toggle("waiting", waiting.has(path));
+    setBreakpoint(element, breakpoints.has(path));
     setVisits(element, run?.visits?.get(path) ?? 0);
   }
   for (const { line, element } of picture.lines) {
     element.classList.toggle("taken", line.line.edges.some((edge) => taken.has(edge)));
   }
+}
+
+/** The states that are drawn for some states: themselves, or the closed containers that hide them. */
+function drawnStates(graph: Graph, picture: Picture, paths: Iterable<Path> = []): Set<Path> {
+  const found = new Set<Path>();
+  for (const path of paths) {
+    let node = nearest(graph, path);
+    while (node && !picture.states.has(node.path) && node.parent !== null) node = graph.nodes.get(node.parent);
+    if (node) found.add(node.path);
+  }
+  return found;
+}
+
+function setBreakpoint(element: SVGGElement, is: boolean): void {
+  element.classList.toggle("breakpoint", is);
+  const mark = element.querySelector(":scope > .stop");
+  if (!is) mark?.remove();
+  else if (!mark) element.append(svg("circle", { class: "stop", cx: 0, cy: 0, r: 6.5 }));
 }
 
 function setVisits(element: SVGGElement, count: number): void {

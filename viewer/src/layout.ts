@@ -83,6 +83,7 @@ const ROOMY: Record<string, string> = {
   "elk.layered.cycleBreaking.strategy": "MODEL_ORDER",
   "elk.layered.nodePlacement.strategy": "NETWORK_SIMPLEX",
   "elk.layered.nodePlacement.favorStraightEdges": "true",
+  "elk.layered.nodePlacement.networkSimplex.nodeFlexibility.default": "PORT_POSITION",
   "elk.layered.edgeLabels.centerLabelPlacementStrategy": "TAIL_LAYER",
 };
 

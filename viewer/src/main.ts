@@ -1,6 +1,7 @@
 // The start of the page: the model in it, the layout program, the viewer.
 
 import type { Model } from "./model";
+import { showRuns } from "./run_view";
 import { createViewer } from "./viewer";
 import { startLayout } from "./worker";
 
@@ -9,7 +10,8 @@ const VERSION = 1;
 async function main(): Promise<void> {
   const model = JSON.parse(textOf("smachac-model")) as Model;
   if (model.version !== VERSION) throw new Error(`the model has version ${model.version}, not ${VERSION}`);
-  await createViewer(document.body, model, startLayout(textOf("smachac-layout")));
+  const viewer = await createViewer(document.body, model, startLayout(textOf("smachac-layout")));
+  showRuns(viewer, textOf("smachac-trace"));
   document.documentElement.dataset["ready"] = "true";
 }
 

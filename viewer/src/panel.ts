@@ -9,6 +9,8 @@ import { isContainer, kindInWords } from "./model";
 export interface Section {
   id: string;
   title: string;
+  /** Whether it stands right below the heading. */
+  first?: boolean;
   /** The content for a selected state, null for the machine; null leaves the section out. */
   fill(node: StateNode | null): Node | null;
 }
@@ -26,11 +28,13 @@ export function fillPanel(
   actions: PanelActions,
 ): void {
   const own = node ? stateSections(graph, node, actions) : machineSections(graph, actions);
-  const added = sections.map((each) => {
-    const content = each.fill(node);
-    return content && section(each.title, content, each.id);
-  });
-  panel.replaceChildren(...[...own, ...added].filter((each) => each !== null));
+  const added = (first: boolean): (HTMLElement | null)[] =>
+    sections.filter((each) => (each.first ?? false) === first).map((each) => {
+      const content = each.fill(node);
+      return content && section(each.title, content, each.id);
+    });
+  const parts = [own[0]!, ...added(true), ...own.slice(1), ...added(false)];
+  panel.replaceChildren(...parts.filter((each) => each !== null));
   panel.scrollTop = 0;
 }
 

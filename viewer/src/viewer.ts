@@ -33,6 +33,8 @@ export interface Viewer {
   refresh(): void;
   /** Show another version of the machine: selection, zoom and open containers stay. */
   setModel(model: Model): Promise<void>;
+  /** Zoom so that the whole machine is seen. */
+  fit(): void;
   /** A message in the line below the picture; empty removes it. */
   notice(text: string): void;
   /** Call a function after each selection. */
@@ -277,6 +279,7 @@ export async function createViewer(page: HTMLElement, model: Model, compute: Com
     },
     refresh,
     setModel,
+    fit: whole,
     notice(text) {
       notice.textContent = text;
     },

@@ -8,6 +8,7 @@ from operator import itemgetter
 from typing import Any
 
 from smachac.runtime.messages import message_of
+from smachac.runtime.tracing.gate import Gate
 from smachac.runtime.tracing.writer import Event, Recorder
 
 
@@ -43,11 +44,16 @@ class InstrumentedState:
     """
 
     def __init__(
-        self, state: Any, recorder: Recorder, others: Mapping[int, InstrumentedState]
+        self,
+        state: Any,
+        recorder: Recorder,
+        others: Mapping[int, InstrumentedState],
+        gate: Gate | None = None,
     ) -> None:
         self.state = state
         self.recorder = recorder
         self._others = others
+        self._gate = gate
         self.places: list[tuple[InstrumentedState | None, str]] = []
         self.path = ""
         self.failed = False
@@ -75,6 +81,12 @@ class InstrumentedState:
         parent = here.parent
         if parent is not None and parent._iteration is not None:
             parent.record_next_iteration()
+        if self._gate is not None and self._gate.armed and parent is not None:
+            forced = self._gate.before(here.path, self._outcomes())
+            if forced is not None:
+                self._iteration = None
+                self.recorder.record(here.entered)
+                return self._ends(here, forced, forced=True)
         if self._is_container:
             self.failed, self._iteration = False, None
         elif arguments:
@@ -92,21 +104,38 @@ class InstrumentedState:
         if outcome is None:
             self._record_failure(parent, "ended without an outcome")
             return outcome
+        if self._gate is not None and self._gate.armed and parent is not None:
+            chosen = self._gate.after(here.path, outcome, self._outcomes())
+            if chosen != outcome:
+                return self._ends(here, chosen, forced=True)
+        return self._ends(here, outcome)
+
+    def _ends(self, here: PathEvents, outcome: Any, *, forced: bool = False) -> Any:
+        """Record the end of a visit; its outcome."""
         if self._iteration is not None:
             self._record_last_iteration(outcome)
-        try:
-            ended = here.exits[outcome]
-        except (KeyError, TypeError):
-            ended = self._ended(here, outcome)
+        if forced:
+            ended = self._ended(here, outcome, forced=True)
+        else:
+            try:
+                ended = here.exits[outcome]
+            except (KeyError, TypeError):
+                ended = self._ended(here, outcome)
         if ended is not None:
-            record(ended)
-        if parent is not None and parent._is_iterator:
-            parent._iteration = (here.path, outcome)
+            self.recorder.record(ended)
+        if here.parent is not None and here.parent._is_iterator:
+            here.parent._iteration = (here.path, outcome)
         return outcome
 
+    def _outcomes(self) -> tuple[str, ...]:
+        return tuple(self.state.get_registered_outcomes())
+
     def _traced_request(self) -> None:
-        self.recorder.emit("preempt", self._path(*self._place()))
+        place = self._place()
+        self.recorder.emit("preempt", self._path(*place))
         self._request_preempt()
+        if self._gate is not None and place[0] is None:
+            self._gate.release()  # after the request, which the state that waits must find
 
     def _trace_writes(self, here: PathEvents, userdata: Any) -> Any:
         """The leaf's userdata, wrapped so that every write to an output key is recorded."""
@@ -191,11 +220,13 @@ class InstrumentedState:
         path, ended = self._iteration
         self.recorder.emit("transition", path, outcome=ended, to=f"{self.path}:{outcome}")
 
-    def _ended(self, here: PathEvents, outcome: Any) -> Any:
+    def _ended(self, here: PathEvents, outcome: Any, *, forced: bool = False) -> Any:
         """The events of an end with this outcome; None, and an error, if it is not registered."""
         parent, path = here.parent, here.path
         kind = "finish" if parent is None else "exit"
         events: list[Event] = [{"event": kind, "path": path, "outcome": outcome}]
+        if forced:
+            events[0]["forced"] = True
         if parent is not None and not (parent._is_iterator or parent._is_concurrence):
             if outcome not in self.state.get_registered_outcomes():
                 self.recorder.record(self.recorder.prepare(*events))
@@ -204,7 +235,9 @@ class InstrumentedState:
                 return None
             to = parent.target(here.label, outcome)
             events.append({"event": "transition", "path": path, "outcome": outcome, "to": to})
-        prepared = here.exits[outcome] = self.recorder.prepare(*events)
+        prepared = self.recorder.prepare(*events)
+        if not forced:
+            here.exits[outcome] = prepared
         return prepared
 
     def target(self, label: str, outcome: str) -> str:

@@ -20,8 +20,9 @@ from collections.abc import Callable, Iterator, Mapping, Sequence
 from itertools import count
 from typing import Any, NamedTuple
 
+from smachac.runtime.tracing.gate import Gate
 from smachac.runtime.tracing.instrument import InstrumentedState, is_container
-from smachac.runtime.tracing.writer import Event, Observer, Recorder, TraceWriter, trace_value
+from smachac.runtime.tracing.writer import Event, Observer, Recorder, Sink, TraceWriter, trace_value
 
 __all__ = ["Event", "StrictScript", "TraceWriter", "Visit", "attach", "script", "trace_value"]
 
@@ -66,11 +67,12 @@ class StrictScript(NamedTuple):
 def attach(
     machine: Any,
     name: str,
-    observe: Observer | TraceWriter,
+    observe: Observer | Sink,
     sources: Mapping[str, str] = {},
     *,
     clock: Callable[[], float] = time.monotonic,
     paths: Mapping[str, str] = {},
+    gate: Gate | None = None,
 ) -> Callable[..., None]:
     """Trace a built machine: `observe` is called with every event from now on.
 
@@ -81,16 +83,19 @@ def attach(
     `clock` returns seconds. `paths` are paths to show in place of those of states that SMACH's
     labels make. `observe` is called by the threads of the machine, one call at a time.
     If a call raises, the error is printed to stderr, the machine continues, and no more calls are
-    made. A `TraceWriter` is not called: it writes lines that are prepared at their first use.
+    made. A sink, as a `TraceWriter` is one, is not called: it receives events that are prepared at
+    their first use. `gate` lets a debugger stop the machine between two states.
     """
     recorder = Recorder(observe, sources, clock, paths)
     instrumented: dict[int, InstrumentedState] = {}
     for parent, label, state in _walk(machine, name):
         known = instrumented.get(id(state))
         if known is None:
-            known = InstrumentedState(state, recorder, instrumented)
+            known = InstrumentedState(state, recorder, instrumented, gate)
             instrumented[id(state)] = known
         known.places.append((None if parent is None else instrumented[id(parent)], label))
+    if gate is not None:
+        gate.opened(machine.request_preempt)
     return recorder.emit
 
 

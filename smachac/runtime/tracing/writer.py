@@ -8,7 +8,7 @@ import sys
 import threading
 from collections import deque
 from collections.abc import Callable, Mapping, Sequence
-from typing import Any, Protocol
+from typing import Any, Protocol, runtime_checkable
 
 from smachac.runtime.messages import described
 
@@ -19,6 +19,7 @@ NO_VALUE: object = object()
 """Stands for the value in an event that is not a write."""
 
 
+@runtime_checkable
 class Sink(Protocol):
     """The destination of events. It takes them in two steps, as the same events recur.
 
@@ -108,14 +109,12 @@ class Recorder:
 
     def __init__(
         self,
-        observe: Observer | TraceWriter,
+        observe: Observer | Sink,
         sources: Mapping[str, str],
         clock: Callable[[], float],
         paths: Mapping[str, str] = {},
     ) -> None:
-        self._sink: Sink | None = (
-            observe if isinstance(observe, TraceWriter) else ObserverSink(observe)
-        )
+        self._sink: Sink | None = observe if isinstance(observe, Sink) else ObserverSink(observe)
         self._sources = sources
         self._paths = paths
         self._clock = clock

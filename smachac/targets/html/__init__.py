@@ -6,12 +6,15 @@ from smachac.diagnostics.diagnostic import Report
 from smachac.ir.nodes import Checked
 from smachac.targets import BuildContext, Files, Target, stem
 from smachac.targets.html.model import machine_model
-from smachac.targets.html.page import render_page
+from smachac.targets.html.page import TRACE_ID, render_page
+from smachac.targets.html.trace import read_trace
 
 
 def emit(machine: Checked, context: BuildContext, report: Report) -> Files:
-    """One page, named after the machine."""
-    page = render_page(machine, machine_model(machine, context.findings))
+    """One page, named after the machine. Raises OptionError if `trace` is not one of it."""
+    text = context.options.get("trace")
+    data = None if text is None else {TRACE_ID: read_trace(machine, text)}
+    page = render_page(machine, machine_model(machine, context.findings), data)
     return {f"{stem(machine)}.html": page}
 
 
@@ -19,4 +22,6 @@ TARGET = Target(
     name="html",
     description="a picture to explore in a browser: one file, no network",
     emit=emit,
+    options={"trace": "a trace of a run: the page replays it (a file of `run --trace`)"},
+    file_options=frozenset({"trace"}),
 )

@@ -57,7 +57,7 @@ def machine_model(
             for path, node in context.states
         ],
         "edges": [edge for path, node in context.containers for edge in _edges(path, node)],
-        "findings": [_finding(item) for item in findings],
+        "findings": [finding_data(item) for item in findings],
         "properties": [
             {
                 "name": each.property.name,
@@ -181,7 +181,7 @@ def _edges(path: str, container: Container) -> Iterator[dict[str, Any]]:
         }
 
 
-def _finding(item: Diagnostic) -> dict[str, Any]:
+def finding_data(item: Diagnostic) -> dict[str, Any]:
     file, line = _place(item.span)
     return {
         "code": item.code,

@@ -18,8 +18,8 @@ _ESCAPES = {ord("<"): "\\u003c", ord(">"): "\\u003e", ord("&"): "\\u0026"}
 
 _NONE, _SELF = "'none'", "'self'"
 
-LAYOUT_ID, MODEL_ID = "smachac-layout", "smachac-model"
-"""The ids of the elements with the program that computes layouts, and with the model."""
+LAYOUT_ID, MODEL_ID, TRACE_ID = "smachac-layout", "smachac-model", "smachac-trace"
+"""The ids of the elements with the program that computes layouts, the model, and a trace."""
 
 
 def render_page(
@@ -72,18 +72,18 @@ def render_page(
     )
 
 
-def escaped_json(data: Mapping[str, Any]) -> str:
+def escaped_json(data: object) -> str:
     """JSON that can stand in an element `script`: ASCII, and without `<`, `>` and `&`."""
     return json.dumps(data, separators=(",", ":")).translate(_ESCAPES)
 
 
-def _json_block(name: str, data: Mapping[str, Any]) -> str:
+def _json_block(name: str, data: object) -> str:
     return f'<script type="application/json" id="{name}">{escaped_json(data)}</script>'
 
 
 def _asset(name: str) -> str:
     """A file of the built viewer (viewer/ in the repository)."""
-    return (files(__package__) / name).read_text("utf-8")
+    return (files("smachac.targets.html") / name).read_text("utf-8")
 
 
 def _hash(text: str) -> str:

@@ -1,9 +1,935 @@
 // The viewer of smachac, built from viewer/. Apache-2.0.
 "use strict";
 (() => {
+  // src/connection.ts
+  function connect(listener) {
+    const source = new EventSource("events");
+    source.addEventListener("open", () => listener.opened());
+    source.addEventListener("message", (message) => listener.received(JSON.parse(message.data)));
+    source.addEventListener("error", () => listener.interrupted());
+    source.addEventListener("end", () => {
+      source.close();
+      listener.ended();
+    });
+  }
+  var TOKEN = "smachac-token";
+  function takeToken() {
+    const parameters = new URLSearchParams(location.hash.slice(1));
+    const given = parameters.get("token");
+    if (given === null) return sessionStorage.getItem(TOKEN);
+    sessionStorage.setItem(TOKEN, given);
+    parameters.delete("token");
+    const rest = parameters.toString().replaceAll("%2F", "/");
+    history.replaceState(null, "", rest ? `#${rest}` : location.pathname + location.search);
+    return given;
+  }
+  async function act(token, path, body) {
+    try {
+      const answer = await fetch(path, {
+        method: "POST",
+        headers: { "Content-Type": "application/json", "X-Smachac-Token": token },
+        body: JSON.stringify(body)
+      });
+      if (answer.ok) return null;
+      const { error } = await answer.json();
+      return error ?? answer.statusText;
+    } catch {
+      return "the server does not answer";
+    }
+  }
+
+  // src/dom.ts
+  var SVG = "http://www.w3.org/2000/svg";
+  function filled(element, attributes, children2) {
+    for (const [name, value] of Object.entries(attributes)) {
+      if (value === null || value === void 0 || value === false) continue;
+      element.setAttribute(name, value === true ? "" : String(value));
+    }
+    for (const child of children2) if (child) element.append(child);
+    return element;
+  }
+  function html(tag, attributes = {}, ...children2) {
+    return filled(document.createElement(tag), attributes, children2);
+  }
+  function svg(tag, attributes = {}, ...children2) {
+    return filled(document.createElementNS(SVG, tag), attributes, children2);
+  }
+  function button(label, text, action, title = label) {
+    const made = html("button", { type: "button", "aria-label": label, title }, text);
+    made.addEventListener("click", action);
+    return made;
+  }
+
+  // src/control.ts
+  var Control = class {
+    /** `changed` is called after each change, `refused` with the reason of an action that was refused. */
+    constructor(token, changed, refused) {
+      this.token = token;
+      this.changed = changed;
+      this.refused = refused;
+      if (token !== null) this.element.append(this.pause, this.step, this.stop);
+      this.show();
+    }
+    token;
+    changed;
+    refused;
+    element = html("div", { class: "control", role: "group", "aria-label": "Control of the run" });
+    status = null;
+    pause = button("Pause", "Pause", () => this.pauseOrResume(), "Pause before the next state, or go on (r)");
+    step = button("Step", "Step", () => this.do({ action: "step" }), "Run one state (s)");
+    stop = button("Stop the run", "Stop", () => this.do({ action: "stop" }), "Request the run to stop");
+    received(status) {
+      this.status = status;
+      this.show();
+      this.changed();
+    }
+    /** Whether the page may act on a run that goes on. */
+    get able() {
+      return this.token !== null && this.status !== null && !this.status.ended;
+    }
+    pauseOrResume() {
+      this.do({ action: this.status?.paused ? "resume" : "pause" });
+    }
+    do(body) {
+      if (!this.able) return;
+      void act(this.token, "control", body).then((reason) => this.refused(reason ?? ""));
+    }
+    hasBreakpoint(path, outcome) {
+      return this.status?.breakpoints.some((each) => each.path === path && each.outcome === outcome) ?? false;
+    }
+    toggleBreakpoint(path, outcome) {
+      const action = this.hasBreakpoint(path, outcome) ? "unbreak" : "break";
+      this.do(outcome === null ? { action, path } : { action, path, outcome });
+    }
+    /** What can be done at a state: breakpoints, and for one that waits, its step and its outcomes. */
+    partFor(node) {
+      if (!this.able) return null;
+      const path = node.shown ?? node.path;
+      const part = html("div", { class: "breakpoints" }, this.box("Pause before it starts", path, null));
+      for (const { name } of node.outcomes) part.append(this.box(`Pause when it ends with ${name}`, path, name));
+      const waiting = this.status.at.find((each) => each.path === path);
+      if (waiting) part.prepend(this.waiting(waiting));
+      return part;
+    }
+    waiting({ path, outcome, outcomes: outcomes2 }) {
+      const force = outcomes2.map((name) => button(`End with ${name}`, name, () => this.do({ action: "outcome", path, outcome: name })));
+      return html(
+        "div",
+        { class: "waiting" },
+        html("p", {}, outcome === null ? "It waits before its start." : `It has ended with ${outcome} and waits.`),
+        button("Run this state", outcome === null ? "Run it" : "Go on", () => this.do({ action: "step", path })),
+        html("p", {}, "Force an outcome:"),
+        html("p", { class: "forced" }, ...force)
+      );
+    }
+    box(label, path, outcome) {
+      const input = html("input", { type: "checkbox" });
+      input.checked = this.hasBreakpoint(path, outcome);
+      input.addEventListener("change", () => this.toggleBreakpoint(path, outcome));
+      return html("label", {}, input, ` ${label}`);
+    }
+    show() {
+      this.element.hidden = !this.able;
+      const paused = this.status?.paused ?? false;
+      this.pause.textContent = paused ? "Resume" : "Pause";
+      this.pause.setAttribute("aria-label", paused ? "Resume" : "Pause");
+      this.step.disabled = !this.status?.at.length;
+      this.stop.disabled = this.status?.stopping ?? false;
+    }
+  };
+
+  // src/run_state.ts
+  function emptyState() {
+    return {
+      active: /* @__PURE__ */ new Map(),
+      visited: /* @__PURE__ */ new Map(),
+      taken: /* @__PURE__ */ new Map(),
+      written: /* @__PURE__ */ new Map(),
+      error: null,
+      root: null,
+      outcome: null,
+      ended: false,
+      t: 0,
+      count: 0,
+      writes: 0
+    };
+  }
+  function copyState(state) {
+    const visited = /* @__PURE__ */ new Map();
+    for (const [path, each] of state.visited) visited.set(path, { ...each, outcomes: new Map(each.outcomes) });
+    return {
+      ...state,
+      active: new Map(state.active),
+      visited,
+      taken: new Map(state.taken),
+      written: new Map(state.written)
+    };
+  }
+  function transitionKey(path, outcome, to) {
+    return `${path}
+${outcome}
+${to}`;
+  }
+  function advance(state, event) {
+    if (event.event === "start") {
+      Object.assign(state, emptyState(), { root: event.path });
+    }
+    state.count += 1;
+    state.t = event.t ?? state.t;
+    const { path } = event;
+    switch (event.event) {
+      case "start":
+      case "enter":
+        enter(state, path);
+        break;
+      case "exit":
+      case "finish":
+        leave(state, path, event.outcome ?? "");
+        if (event.event === "finish") end(state, event.outcome ?? null);
+        break;
+      case "transition":
+        count(state.taken, transitionKey(path, event.outcome ?? "", event.to ?? ""));
+        break;
+      case "write": {
+        state.writes += 1;
+        const key = event.key ?? "";
+        state.written.set(`${path}
+${key}`, { path, key, value: event.value, t: state.t, order: state.writes });
+        break;
+      }
+      case "error":
+        state.error = { path, message: event.message ?? "" };
+        break;
+    }
+    return state;
+  }
+  function enter(state, path) {
+    state.active.set(path, state.t);
+    const known2 = state.visited.get(path);
+    if (known2) known2.visits += 1;
+    else state.visited.set(path, { visits: 1, seconds: 0, outcomes: /* @__PURE__ */ new Map(), lastOutcome: null });
+  }
+  function leave(state, path, outcome) {
+    const since = state.active.get(path);
+    state.active.delete(path);
+    const visited = state.visited.get(path);
+    if (!visited) return;
+    if (since !== void 0) visited.seconds += state.t - since;
+    count(visited.outcomes, outcome);
+    visited.lastOutcome = outcome;
+  }
+  function end(state, outcome) {
+    state.ended = true;
+    state.outcome = outcome;
+    state.active.clear();
+  }
+  function count(counts, key) {
+    counts.set(key, (counts.get(key) ?? 0) + 1);
+  }
+  function activeLeaves(state) {
+    const containers = /* @__PURE__ */ new Set();
+    for (const path of state.active.keys()) {
+      for (let at = path.lastIndexOf("/"); at > 0; at = path.lastIndexOf("/", at - 1)) containers.add(path.slice(0, at));
+    }
+    return [...state.active.keys()].filter((path) => !containers.has(path));
+  }
+
+  // src/recording.ts
+  var MOST = 3e5;
+  var PART = 1e5;
+  var APART = 2e3;
+  var Recording = class {
+    constructor(most = MOST, part = PART) {
+      this.most = most;
+      this.part = part;
+    }
+    most;
+    part;
+    events = [];
+    /** The number of events that are no longer kept, or never arrived. */
+    dropped = 0;
+    first = emptyState();
+    last = emptyState();
+    kept = [];
+    cursor = { position: 0, state: emptyState() };
+    add(events) {
+      for (const event of events) {
+        advance(this.last, event);
+        this.events.push(event);
+        if (this.events.length % APART === 0) this.kept.push(copyState(this.last));
+      }
+      if (this.events.length > this.most) this.forget();
+    }
+    clear() {
+      this.events.length = 0;
+      this.dropped = 0;
+      this.kept = [];
+      this.first = emptyState();
+      this.last = emptyState();
+      this.cursor = { position: 0, state: emptyState() };
+    }
+    /** The state after the first `position` events. It must not be changed. */
+    at(position) {
+      if (position >= this.events.length) return this.last;
+      const before = Math.floor(position / APART);
+      const { cursor } = this;
+      if (cursor.position > position || cursor.position < before * APART) {
+        const start = before ? this.kept[before - 1] : this.first;
+        this.cursor = { position: before * APART, state: copyState(start) };
+      }
+      while (this.cursor.position < position) {
+        advance(this.cursor.state, this.events[this.cursor.position]);
+        this.cursor.position += 1;
+      }
+      return this.cursor.state;
+    }
+    /** The time of the first event that is kept, and of the last one, in seconds. */
+    get times() {
+      return [this.events[0]?.t ?? 0, this.events[this.events.length - 1]?.t ?? 0];
+    }
+    /** The number of events up to a time. Two runs in one trace start at zero: the first one counts. */
+    until(t) {
+      let low = 0;
+      let high = this.events.length;
+      while (low < high) {
+        const middle = low + high >> 1;
+        if ((this.events[middle].t ?? 0) <= t) low = middle + 1;
+        else high = middle;
+      }
+      return low;
+    }
+    forget() {
+      const part = Math.floor(this.part / APART) * APART || this.part;
+      for (const event of this.events.slice(0, part)) advance(this.first, event);
+      this.events.splice(0, part);
+      this.dropped += part;
+      this.kept = [];
+      const state = copyState(this.first);
+      this.events.forEach((event, index) => {
+        advance(state, event);
+        if ((index + 1) % APART === 0) this.kept.push(copyState(state));
+      });
+      this.cursor = { position: 0, state: copyState(this.first) };
+    }
+  };
+
+  // src/model.ts
+  function indexed(model) {
+    const graph = {
+      model,
+      nodes: new Map(model.nodes.map((node) => [node.path, node])),
+      byShown: new Map(model.nodes.map((node) => [node.shown ?? node.path, node])),
+      inside: /* @__PURE__ */ new Map(),
+      leaving: /* @__PURE__ */ new Map()
+    };
+    for (const edge of model.edges) {
+      append(graph.inside, edge.container, edge);
+      if (edge.source !== null) append(graph.leaving, edge.source, edge);
+    }
+    return graph;
+  }
+  function append(map, key, value) {
+    const known2 = map.get(key);
+    if (known2) known2.push(value);
+    else map.set(key, [value]);
+  }
+  function edgeId(edge) {
+    const target2 = typeof edge.target === "string" ? edge.target : `${edge.container}:${edge.target.outcome}`;
+    return `${edge.source ?? edge.container}
+${edge.outcome}
+${target2}`;
+  }
+  function isContainer(node) {
+    return node.kind !== "leaf";
+  }
+  function ancestors(graph, path) {
+    const found = [];
+    let node = graph.nodes.get(path);
+    while (node && node.parent !== null) {
+      found.unshift(node.parent);
+      node = graph.nodes.get(node.parent);
+    }
+    return found;
+  }
+  function nearest(graph, path) {
+    let here = path;
+    while (here) {
+      const node = graph.nodes.get(here);
+      if (node) return node;
+      here = here.slice(0, Math.max(0, here.lastIndexOf("/")));
+    }
+    return void 0;
+  }
+  function kindInWords(node) {
+    if (node.role) return node.role;
+    if (node.kind === "concurrence") return node.join === "any" ? "in parallel, first to end" : "in parallel";
+    if (node.kind === "iterator" && node.items) return `for each ${node.items}`;
+    if (node.kind === "sequence") return "sequence";
+    if (node.kind === "machine") return "state machine";
+    return node.type ?? "state";
+  }
+  function firstOpen(graph, depth, limit) {
+    const open = /* @__PURE__ */ new Set();
+    let count2 = 1;
+    let level = [graph.model.root];
+    for (let at = 0; at < depth && level.length; at += 1) {
+      const next = [];
+      for (const path of level) {
+        const node = graph.nodes.get(path);
+        if (!node || !isContainer(node) || isWrapped(graph, node)) continue;
+        if (count2 + node.children.length > limit && at > 0) continue;
+        open.add(path);
+        count2 += node.children.length;
+        next.push(...node.children);
+      }
+      level = next;
+    }
+    return open;
+  }
+  function isWrapped(graph, node) {
+    if (!node.role) return false;
+    return node.children.every((path) => {
+      const child = graph.nodes.get(path);
+      return child !== void 0 && (!isContainer(child) || isWrapped(graph, child));
+    });
+  }
+
+  // src/run_marks.ts
+  function nodeAt(graph, shown) {
+    return graph.byShown.get(shown) ?? graph.nodes.get(shown);
+  }
+  function highlightOf(graph, state, control) {
+    const visits = /* @__PURE__ */ new Map();
+    for (const [path, each] of state.visited) {
+      const node = nodeAt(graph, path);
+      if (node && node.path !== graph.model.root) visits.set(node.path, each.visits);
+    }
+    return {
+      active: known(graph, activeLeaves(state)).filter((path) => !isContainer(graph.nodes.get(path))),
+      taken: takenEdges(graph, state),
+      visits,
+      waiting: known(graph, control?.at.map((each) => each.path) ?? []),
+      breakpoints: known(graph, control?.breakpoints.map((each) => each.path) ?? [])
+    };
+  }
+  function known(graph, paths) {
+    return paths.map((path) => nodeAt(graph, path)?.path).filter((path) => path !== void 0);
+  }
+  function takenEdges(graph, state) {
+    const found = /* @__PURE__ */ new Set();
+    for (const key of state.taken.keys()) {
+      const [path = "", outcome = "", to = ""] = key.split("\n");
+      const source = nodeAt(graph, path);
+      if (!source) continue;
+      const target2 = nodeAt(graph, to)?.path ?? exitOf(graph, source, to);
+      found.add(`${source.path}
+${outcome}
+${target2}`);
+    }
+    for (const [path, visited] of state.visited) {
+      const node = nodeAt(graph, path);
+      if (!node || !isContainer(node)) continue;
+      for (const edge of graph.inside.get(node.path) ?? []) {
+        const end2 = typeof edge.target === "string" ? edge.target : null;
+        if (edge.source === null) {
+          if (end2 !== null && state.visited.has(shownPath(graph, end2))) found.add(edgeId(edge));
+        } else if (node.kind === "concurrence" && end2 === null) {
+          const branch = state.visited.get(shownPath(graph, edge.source));
+          const outcome = edge.target.outcome;
+          if (branch?.lastOutcome === edge.outcome && visited.lastOutcome === outcome) found.add(edgeId(edge));
+        }
+      }
+    }
+    return found;
+  }
+  function exitOf(graph, source, to) {
+    const container = source.parent ?? source.path;
+    const shown = shownPath(graph, container);
+    return to.startsWith(`${shown}:`) ? `${container}:${to.slice(shown.length + 1)}` : to;
+  }
+  function shownPath(graph, path) {
+    return graph.nodes.get(path)?.shown ?? path;
+  }
+  function keyValues(graph, state) {
+    const found = /* @__PURE__ */ new Map();
+    for (const written of state.written.values()) {
+      const node = nodeAt(graph, written.path);
+      if (!node) continue;
+      const place = placeOf(graph, node, written.key);
+      const id = `${place.scope}
+${place.key}`;
+      const before = found.get(id);
+      if (!before || before.written.order < written.order) found.set(id, { ...place, written });
+    }
+    return [...found.values()].sort((a, b) => b.written.order - a.written.order);
+  }
+  function placeOf(graph, node, key) {
+    let here = node;
+    let name = key;
+    let type = "";
+    let secret = false;
+    for (; ; ) {
+      const declared = [...here.outputs, ...here.inputs].find((each) => each.name === name);
+      if (declared) {
+        type = declared.type;
+        secret ||= declared.secret ?? false;
+      }
+      const around = here.parent === null ? void 0 : graph.nodes.get(here.parent);
+      if (!around || !declared && here !== node) return { scope: here.path, key: name, type, secret };
+      name = declared?.key ?? name;
+      here = around;
+    }
+  }
+  var SHORT = 90;
+  function inline(value, most = SHORT) {
+    const text = JSON.stringify(value, (_, each) => typeof each === "number" && !Number.isInteger(each) ? Number(each.toPrecision(6)) : each) ?? "";
+    return text.length > most ? `${text.slice(0, most)}\u2026` : text;
+  }
+  function inWords(graph, event) {
+    const node = nodeAt(graph, event.path);
+    const name = node?.name ?? event.path;
+    const failure = node?.outcomes.find((each) => each.name === event.outcome)?.failure ?? false;
+    const tone = failure ? "bad" : "good";
+    switch (event.event) {
+      case "start":
+        return { text: `${name} starts`, tone: "" };
+      case "enter":
+        return { text: `${name} starts`, tone: "" };
+      case "exit": {
+        const kind = node?.parent ? graph.nodes.get(node.parent)?.kind : void 0;
+        if (!event.forced && (kind === "machine" || kind === "sequence")) return null;
+        return { text: `${name} ends with ${event.outcome}${event.forced ? " (forced)" : ""}`, tone };
+      }
+      case "transition": {
+        const to = event.to ?? "";
+        const target2 = nodeAt(graph, to)?.name ?? `end of ${to.replace(":", " with ").split("/").pop()}`;
+        return { text: `${name}: ${event.outcome} \u2192 ${target2}`, tone };
+      }
+      case "write":
+        return { text: `${name} writes ${event.key} = ${inline(event.value)}`, tone: "" };
+      case "preempt":
+        return { text: `${name} is requested to stop`, tone: "" };
+      case "error":
+        return { text: `${name}: error: ${event.message}`, tone: "bad" };
+      case "fault":
+        return { text: `injected fault: ${event.fault}`, tone: "bad" };
+      case "finish":
+        return { text: `${name} ends with ${event.outcome}`, tone };
+      default:
+        return { text: `${name}: ${event.event}`, tone: "" };
+    }
+  }
+  function seconds(t) {
+    if (t < 1) return `${Math.round(t * 1e3)} ms`;
+    if (t < 100) return `${t.toFixed(1)} s`;
+    const minutes = Math.floor(t / 60);
+    return minutes < 60 ? `${minutes} min ${Math.floor(t % 60)} s` : `${Math.floor(minutes / 60)} h ${minutes % 60} min`;
+  }
+
+  // src/timeline.ts
+  var SPEEDS = [0.25, 1, 4, 16, 64];
+  var EVENTS_A_SECOND = 4;
+  var Timeline = class {
+    /** `moved` is called when the position has changed through the user or the replay. */
+    constructor(recording, moved2) {
+      this.recording = recording;
+      this.moved = moved2;
+      this.slider.addEventListener("input", () => this.goTo(Number(this.slider.value)));
+      this.element = html(
+        "div",
+        { class: "timeline", role: "group", "aria-label": "Time line" },
+        button("First event", "First", () => this.goTo(0), "Go to the start"),
+        button("Previous event", "\u2039", () => this.step(-1), "Previous event (,)"),
+        this.play,
+        button("Next event", "\u203A", () => this.step(1), "Next event (.)"),
+        this.latest,
+        this.slider,
+        this.label,
+        this.speed
+      );
+    }
+    recording;
+    moved;
+    element;
+    /** The number of events before the position. */
+    position = 0;
+    /** Whether the position moves with the run. */
+    follows = true;
+    playing = false;
+    /** The time of the replay: seconds of the run, or a number of events. */
+    clock = 0;
+    last = 0;
+    slider = html("input", {
+      type: "range",
+      min: 0,
+      max: 0,
+      value: 0,
+      step: 1,
+      "aria-label": "Position in the run"
+    });
+    label = html("span", { class: "position" });
+    play = button("Play", "Play", () => this.toggle(), "Play the recorded run (p)");
+    latest = button("Latest event", "Latest", () => this.goTo(Infinity), "Go to the latest event");
+    speed = html(
+      "select",
+      { "aria-label": "Speed" },
+      ...SPEEDS.map((each) => html("option", { value: each, selected: each === 1 }, `${each} \xD7`))
+    );
+    /** Follow the run after new events. */
+    update() {
+      if (this.follows) this.position = this.recording.events.length;
+      this.position = Math.min(this.position, this.recording.events.length);
+      this.show();
+    }
+    goTo(position) {
+      this.playing = false;
+      this.move(position);
+    }
+    step(by) {
+      this.goTo(this.position + by);
+    }
+    /** Start or stop the replay; at the end it starts at the first event. */
+    toggle() {
+      this.playing = !this.playing;
+      if (this.playing) {
+        if (this.position >= this.recording.events.length) this.move(0);
+        this.clock = this.timed ? this.timeAt(this.position) : this.position;
+        this.last = performance.now();
+        requestAnimationFrame((now) => this.tick(now));
+      }
+      this.show();
+    }
+    tick(now) {
+      if (!this.playing) return;
+      const passed = Math.min(1, (now - this.last) / 1e3) * Number(this.speed.value);
+      this.last = now;
+      this.clock += this.timed ? passed : passed * EVENTS_A_SECOND;
+      const next = this.timed ? this.recording.until(this.clock) : Math.floor(this.clock);
+      if (next > this.position) this.move(next);
+      if (this.position >= this.recording.events.length) this.playing = false;
+      else requestAnimationFrame((then) => this.tick(then));
+      this.show();
+    }
+    get timed() {
+      const [first, last] = this.recording.times;
+      return last > first;
+    }
+    timeAt(position) {
+      return this.recording.events[Math.max(0, position - 1)]?.t ?? this.recording.times[0];
+    }
+    move(position) {
+      const end2 = this.recording.events.length;
+      this.position = Math.max(0, Math.min(position, end2));
+      this.follows = this.position === end2 && !this.playing;
+      this.show();
+      this.moved();
+    }
+    show() {
+      const end2 = this.recording.events.length;
+      this.slider.max = String(end2);
+      this.slider.value = String(this.position);
+      const { dropped } = this.recording;
+      const time = end2 ? `, ${seconds(this.position ? this.timeAt(this.position) : 0)} of ${seconds(this.recording.times[1])}` : "";
+      this.label.textContent = `event ${this.position + dropped} of ${end2 + dropped}${time}`;
+      this.slider.setAttribute("aria-valuetext", this.label.textContent);
+      this.play.textContent = this.playing ? "Stop" : "Play";
+      this.play.setAttribute("aria-label", this.playing ? "Stop the replay" : "Play");
+      this.latest.setAttribute("aria-pressed", String(this.follows));
+    }
+  };
+
+  // src/run_view.ts
+  var APART2 = 80;
+  var FOLLOW_APART = 400;
+  var LOG_LINES = 200;
+  var KEY_ROWS = 60;
+  function showRuns(viewer, trace) {
+    const { live } = viewer.graph.model;
+    const token = live ? takeToken() : null;
+    if (!live && !trace) return;
+    const view = new RunView(viewer, token, live);
+    if (trace) view.replay(JSON.parse(trace));
+    if (live) view.connect();
+  }
+  var RunView = class {
+    constructor(viewer, token, live) {
+      this.viewer = viewer;
+      this.live = live;
+      this.timeline = new Timeline(this.recording, () => this.draw());
+      this.control = new Control(token, () => this.controlled(), (reason) => viewer.notice(reason));
+      this.bar = html("div", { class: "run-bar" }, this.status, this.control.element, this.follow, this.timeline.element);
+      this.details = html("div", { class: "run-details", hidden: true }, this.log, this.keys);
+      viewer.footer.append(this.bar, this.details);
+      viewer.addSection({ id: "run", title: "Run", first: true, fill: (node) => this.fill(node) });
+      viewer.addSection({ id: "errors", title: "Errors in the script now", first: true, fill: (node) => node ? null : this.errorList() });
+      document.addEventListener("keydown", (event) => this.key(event));
+      setInterval(() => this.tick(), 500);
+      this.draw();
+    }
+    viewer;
+    live;
+    recording = new Recording();
+    timeline;
+    control;
+    status = html("p", { class: "run-status", role: "status" });
+    log = html("ol", { class: "log", tabindex: "0", "aria-label": "Log" });
+    keys = html("div", { class: "values", tabindex: "0", "aria-label": "Values of keys" });
+    bar;
+    details;
+    part = html("div", { class: "run-part" });
+    follow = button("Follow", "Follow", () => this.toggleFollow(), "Select the state that runs (o)");
+    follows = false;
+    followed = 0;
+    shownNode = null;
+    errors = [];
+    link = "";
+    arrived = performance.now();
+    drawn = 0;
+    waiting = false;
+    loggedTo = -1;
+    replay(events) {
+      this.recording.add(events);
+      this.timeline.update();
+      this.draw();
+    }
+    connect() {
+      connect({
+        opened: () => {
+          this.link = "";
+          this.recording.clear();
+          this.loggedTo = -1;
+          this.timeline.follows = true;
+          this.changed();
+        },
+        received: (message) => this.received(message),
+        interrupted: () => this.disconnected("The connection is interrupted."),
+        ended: () => this.disconnected("")
+      });
+    }
+    disconnected(link2) {
+      this.link = link2;
+      if (!link2 && this.control.status) this.control.received({ ...this.control.status, ended: true });
+      this.changed();
+    }
+    received(message) {
+      switch (message.kind) {
+        case "model":
+          void this.remodel(message.model);
+          break;
+        case "report":
+          this.report(message.broken, message.findings);
+          break;
+        case "trace":
+          this.recording.add(message.events);
+          this.arrived = performance.now();
+          this.timeline.update();
+          this.changed();
+          break;
+        case "dropped":
+          this.recording.dropped += message.count;
+          break;
+        case "control":
+          this.control.received(message);
+      }
+    }
+    async remodel(model) {
+      if (JSON.stringify(model) === JSON.stringify(this.viewer.graph.model)) return;
+      await this.viewer.setModel(model);
+      this.loggedTo = -1;
+      this.draw();
+    }
+    report(broken, findings2) {
+      this.errors = broken ? findings2.filter((each) => each.severity === "error") : [];
+      const [first] = this.errors;
+      const more = this.errors.length > 1 ? ` (and ${this.errors.length - 1} more)` : "";
+      this.viewer.notice(first ? `${first.file}:${first.line}: error ${first.code}: ${first.message}${more}. The picture is that of the last version without errors.` : "");
+      this.viewer.refresh();
+    }
+    errorList() {
+      if (!this.errors.length) return null;
+      return html("ul", { class: "findings" }, ...this.errors.map((each) => html(
+        "li",
+        { class: "error" },
+        html("p", {}, html("strong", {}, `error ${each.code}`), " ", each.message),
+        each.help ? html("p", { class: "help" }, `help: ${each.help}`) : null,
+        each.file ? html("p", { class: "place" }, `${each.file}:${each.line}`) : null
+      )));
+    }
+    controlled() {
+      const [first] = this.control.status?.at ?? [];
+      const node = first && nodeAt(this.viewer.graph, first.path);
+      if (node && this.control.able && this.viewer.selected !== node.path) void this.viewer.select(node.path);
+      this.fillPart(this.shownNode);
+      this.changed();
+    }
+    /** Draw soon: at once if nothing was drawn lately, else after a short time, once for all changes. */
+    changed() {
+      if (this.waiting) return;
+      this.waiting = true;
+      setTimeout(() => requestAnimationFrame(() => this.draw()), Math.max(0, APART2 - (performance.now() - this.drawn)));
+    }
+    draw() {
+      this.waiting = false;
+      this.drawn = performance.now();
+      const any = this.recording.events.length > 0 || this.control.status !== null;
+      if (any && this.details.hidden) this.open();
+      this.bar.hidden = !any && !this.link;
+      const state = this.recording.at(this.timeline.position);
+      const control = this.timeline.follows ? this.control.status : null;
+      this.viewer.highlight(any ? highlightOf(this.viewer.graph, state, control) : null);
+      this.status.textContent = this.inWords(state);
+      this.drawLog();
+      this.drawKeys(state);
+      this.fillPart(this.shownNode);
+      this.followRun(state);
+    }
+    /** Show what belongs to a run: the picture gets smaller. */
+    open() {
+      this.details.hidden = false;
+      this.bar.hidden = false;
+      this.viewer.fit();
+    }
+    /** Count the seconds of the active states on, also without events. */
+    tick() {
+      if (this.live && this.timeline.follows && !this.bar.hidden) {
+        this.status.textContent = this.inWords(this.recording.at(this.timeline.position));
+      }
+    }
+    toggleFollow() {
+      this.follows = !this.follows;
+      this.follow.setAttribute("aria-pressed", String(this.follows));
+      this.draw();
+    }
+    /** Select the state that runs, if that is wanted, and not more often than one can see. */
+    followRun(state) {
+      const [path] = activeLeaves(state);
+      const node = path === void 0 ? void 0 : nodeAt(this.viewer.graph, path);
+      if (!this.follows || !node || node.path === this.viewer.selected) return;
+      if (performance.now() - this.followed < FOLLOW_APART) return;
+      this.followed = performance.now();
+      void this.viewer.select(node.path);
+    }
+    inWords(state) {
+      const { graph } = this.viewer;
+      const name = (path) => nodeAt(graph, path)?.name ?? path;
+      if (this.link) return this.link;
+      if (state.ended) return `ended with ${state.outcome}`;
+      if (state.error && !state.active.size) return `failed in ${name(state.error.path)}`;
+      const status = this.timeline.follows ? this.control.status : null;
+      if (status?.ended) return state.error ? `failed in ${name(state.error.path)}: ${state.error.message}` : "ended";
+      const running = activeLeaves(state).map((path) => `${name(path)} ${this.since(state, path)}`);
+      const waits = (status?.at ?? []).map(({ path, outcome }) => outcome === null ? `paused before ${name(path)}` : `paused after ${name(path)}: ${outcome}`);
+      if (waits.length) return waits.join(", ");
+      if (status?.stopping) return `stopping: ${running.join(", ")}`;
+      if (status?.paused) return `pauses before the next state: ${running.join(", ")}`;
+      if (!running.length || state.root === null) return "not started";
+      return running.join(", ");
+    }
+    since(state, path) {
+      const waited = this.live && this.timeline.follows ? (performance.now() - this.arrived) / 1e3 : 0;
+      return seconds(state.t - (state.active.get(path) ?? state.t) + waited);
+    }
+    drawLog() {
+      const { position } = this.timeline;
+      if (position === this.loggedTo) return;
+      this.loggedTo = position;
+      const { graph } = this.viewer;
+      const rows = [];
+      for (let index = position - 1; index >= 0 && rows.length < LOG_LINES; index -= 1) {
+        const event = this.recording.events[index];
+        const words = inWords(graph, event);
+        if (!words) continue;
+        const row = html(
+          "li",
+          { class: words.tone, title: event.src ?? "" },
+          html("time", {}, (event.t ?? 0).toFixed(2)),
+          " ",
+          words.text
+        );
+        row.addEventListener("click", () => void this.viewer.select(nodeAt(graph, event.path)?.path ?? null));
+        rows.push(row);
+      }
+      this.log.replaceChildren(...rows.reverse());
+      this.log.scrollTop = this.log.scrollHeight;
+    }
+    drawKeys(state) {
+      const rows = keyValues(this.viewer.graph, state).slice(0, KEY_ROWS).map((each) => {
+        const value = each.secret ? "(secret)" : inline(each.written.value, 300);
+        const where = `${each.scope}, written by ${each.written.path} at ${each.written.t.toFixed(2)} s`;
+        return html(
+          "tr",
+          { title: where },
+          html("th", { scope: "row" }, each.key),
+          html("td", { class: "type" }, each.type),
+          html("td", {}, html("code", {}, value))
+        );
+      });
+      const caption = rows.length ? "Values of keys, the newest first" : "No key was written yet";
+      this.keys.replaceChildren(html("table", {}, html("caption", {}, caption), html("tbody", {}, ...rows)));
+    }
+    fill(node) {
+      this.shownNode = node;
+      this.fillPart(node);
+      return node && (this.recording.events.length || this.control.able) ? this.part : null;
+    }
+    /** The section of the selected state; it is filled again as the run goes on. */
+    fillPart(node) {
+      if (!node) return;
+      const focused = this.part.contains(document.activeElement);
+      const control = this.control.partFor(node);
+      if (!focused || !control) this.part.replaceChildren(...control ? [control] : []);
+      else this.part.querySelector(".facts")?.remove();
+      this.part.append(this.facts(node));
+    }
+    facts(node) {
+      const { graph } = this.viewer;
+      const state = this.recording.at(this.timeline.position);
+      const path = node.shown ?? node.path;
+      const visited = state.visited.get(path);
+      const rows = [];
+      const row = (name, value) => {
+        rows.push(html("li", {}, html("span", { class: "key" }, name), html("code", {}, value)));
+      };
+      if (visited) {
+        row("visits", String(visited.visits));
+        if (state.active.has(path)) row("in it since", this.since(state, path));
+        const done = [...visited.outcomes.values()].reduce((a, b) => a + b, 0);
+        if (done) row("mean time", seconds(visited.seconds / done));
+        for (const [outcome, count2] of visited.outcomes) row(outcome, `${count2} of ${done}`);
+      } else {
+        row("visits", "0");
+      }
+      const values = new Map(keyValues(graph, state).map((each) => [`${each.scope}
+${each.key}`, each]));
+      for (const key of new Set([...node.inputs, ...node.outputs].map((each) => each.name))) {
+        const place = placeOf(graph, node, key);
+        const found = values.get(`${place.scope}
+${place.key}`);
+        if (found) row(key, place.secret || found.secret ? "(secret)" : inline(found.written.value, 500));
+      }
+      return html("ul", { class: "rows facts" }, ...rows);
+    }
+    key(event) {
+      if (event.ctrlKey || event.metaKey || event.altKey) return;
+      if (event.target.closest("input, select, textarea")) return;
+      const { selected, graph } = this.viewer;
+      const path = selected === null ? null : graph.nodes.get(selected)?.shown ?? selected;
+      const actions = {
+        ",": () => this.timeline.step(-1),
+        ".": () => this.timeline.step(1),
+        p: () => this.timeline.toggle(),
+        s: () => this.control.do({ action: "step" }),
+        o: () => this.toggleFollow(),
+        r: () => this.control.pauseOrResume(),
+        b: () => path !== null && this.control.toggleBreakpoint(path, null)
+      };
+      actions[event.key]?.();
+    }
+  };
+
   // src/camera.ts
   var LEAST = 0.02;
-  var MOST = 3;
+  var MOST2 = 3;
   var MARGIN = 24;
   var Camera = class {
     constructor(frame, content) {
@@ -41,7 +967,7 @@
     }
     /** Zoom by a factor; the point (in pixels of the frame) stays where it is. */
     zoom(factor, x = this.frame.clientWidth / 2, y = this.frame.clientHeight / 2) {
-      const scale = Math.min(MOST, Math.max(LEAST, this.scale * factor));
+      const scale = Math.min(MOST2, Math.max(LEAST, this.scale * factor));
       this.x = x - (x - this.x) * scale / this.scale;
       this.y = y - (y - this.y) * scale / this.scale;
       this.scale = scale;
@@ -87,127 +1013,24 @@
         this.pan(event.clientX - clientX, event.clientY - clientY);
         ({ clientX, clientY } = event);
       };
-      const end = () => {
+      const end2 = () => {
         this.frame.classList.remove("moving");
         this.frame.removeEventListener("pointermove", move);
-        this.frame.removeEventListener("pointerup", end);
-        this.frame.removeEventListener("pointercancel", end);
+        this.frame.removeEventListener("pointerup", end2);
+        this.frame.removeEventListener("pointercancel", end2);
         if (moving) this.frame.addEventListener("click", stop, { capture: true, once: true });
         window.setTimeout(() => this.frame.removeEventListener("click", stop, { capture: true }));
       };
       const stop = (event) => event.stopPropagation();
       this.frame.addEventListener("pointermove", move);
-      this.frame.addEventListener("pointerup", end);
-      this.frame.addEventListener("pointercancel", end);
+      this.frame.addEventListener("pointerup", end2);
+      this.frame.addEventListener("pointercancel", end2);
     }
     apply() {
       this.content.setAttribute("transform", `translate(${this.x} ${this.y}) scale(${this.scale})`);
       this.frame.classList.toggle("far", this.scale < 0.4);
     }
   };
-
-  // src/dom.ts
-  var SVG = "http://www.w3.org/2000/svg";
-  function filled(element, attributes, children2) {
-    for (const [name, value] of Object.entries(attributes)) {
-      if (value === null || value === void 0 || value === false) continue;
-      element.setAttribute(name, value === true ? "" : String(value));
-    }
-    for (const child of children2) if (child) element.append(child);
-    return element;
-  }
-  function html(tag, attributes = {}, ...children2) {
-    return filled(document.createElement(tag), attributes, children2);
-  }
-  function svg(tag, attributes = {}, ...children2) {
-    return filled(document.createElementNS(SVG, tag), attributes, children2);
-  }
-  function button(label, text, action, title = label) {
-    const made = html("button", { type: "button", "aria-label": label, title }, text);
-    made.addEventListener("click", action);
-    return made;
-  }
-
-  // src/model.ts
-  function indexed(model) {
-    const graph = {
-      model,
-      nodes: new Map(model.nodes.map((node) => [node.path, node])),
-      byShown: new Map(model.nodes.map((node) => [node.shown ?? node.path, node])),
-      inside: /* @__PURE__ */ new Map(),
-      leaving: /* @__PURE__ */ new Map()
-    };
-    for (const edge of model.edges) {
-      append(graph.inside, edge.container, edge);
-      if (edge.source !== null) append(graph.leaving, edge.source, edge);
-    }
-    return graph;
-  }
-  function append(map, key, value) {
-    const known = map.get(key);
-    if (known) known.push(value);
-    else map.set(key, [value]);
-  }
-  function edgeId(edge) {
-    const target2 = typeof edge.target === "string" ? edge.target : `${edge.container}:${edge.target.outcome}`;
-    return `${edge.source ?? edge.container}
-${edge.outcome}
-${target2}`;
-  }
-  function isContainer(node) {
-    return node.kind !== "leaf";
-  }
-  function ancestors(graph, path) {
-    const found = [];
-    let node = graph.nodes.get(path);
-    while (node && node.parent !== null) {
-      found.unshift(node.parent);
-      node = graph.nodes.get(node.parent);
-    }
-    return found;
-  }
-  function nearest(graph, path) {
-    let here = path;
-    while (here) {
-      const node = graph.nodes.get(here);
-      if (node) return node;
-      here = here.slice(0, Math.max(0, here.lastIndexOf("/")));
-    }
-    return void 0;
-  }
-  function kindInWords(node) {
-    if (node.role) return node.role;
-    if (node.kind === "concurrence") return node.join === "any" ? "in parallel, first to end" : "in parallel";
-    if (node.kind === "iterator" && node.items) return `for each ${node.items}`;
-    if (node.kind === "sequence") return "sequence";
-    if (node.kind === "machine") return "state machine";
-    return node.type ?? "state";
-  }
-  function firstOpen(graph, depth, limit) {
-    const open = /* @__PURE__ */ new Set();
-    let count = 1;
-    let level = [graph.model.root];
-    for (let at = 0; at < depth && level.length; at += 1) {
-      const next = [];
-      for (const path of level) {
-        const node = graph.nodes.get(path);
-        if (!node || !isContainer(node) || isWrapped(graph, node)) continue;
-        if (count + node.children.length > limit && at > 0) continue;
-        open.add(path);
-        count += node.children.length;
-        next.push(...node.children);
-      }
-      level = next;
-    }
-    return open;
-  }
-  function isWrapped(graph, node) {
-    if (!node.role) return false;
-    return node.children.every((path) => {
-      const child = graph.nodes.get(path);
-      return child !== void 0 && (!isContainer(child) || isWrapped(graph, child));
-    });
-  }
 
   // src/text.ts
   var FAMILY = 'system-ui, -apple-system, "Segoe UI", Roboto, "Helvetica Neue", "Noto Sans", "Liberation Sans", Arial, sans-serif';
@@ -223,13 +1046,13 @@ ${target2}`;
   var widths = /* @__PURE__ */ new Map();
   function width(text, font) {
     const key = `${font} ${text}`;
-    let known = widths.get(key);
-    if (known === void 0) {
+    let known2 = widths.get(key);
+    if (known2 === void 0) {
       context.font = FONTS[font];
-      known = Math.ceil(context.measureText(text).width);
-      widths.set(key, known);
+      known2 = Math.ceil(context.measureText(text).width);
+      widths.set(key, known2);
     }
-    return known;
+    return known2;
   }
   function fitting(text, font, most = LONGEST) {
     if (width(text, font) <= most) return text;
@@ -260,8 +1083,8 @@ ${target2}`;
     for (const { exit } of leaving) counts.set(exit, (counts.get(exit) ?? 0) + 1);
     for (const { edge, source, exit } of leaving) {
       if (counts.get(exit) <= MANY_LEAVE) continue;
-      const known = bySource.get(source) ?? [];
-      bySource.set(source, [...known, edge]);
+      const known2 = bySource.get(source) ?? [];
+      bySource.set(source, [...known2, edge]);
     }
     return bySource;
   }
@@ -278,9 +1101,9 @@ ${target2}`;
     return texts.join("; ");
   }
   var WRITTEN_HEIGHT = 16;
-  function boxSize(node, count, written = []) {
+  function boxSize(node, count2, written = []) {
     const name = width(fitting(node.name, "name"), "name") + (node.findings.length ? 20 : 0);
-    const detail = boxDetail(node, count);
+    const detail = boxDetail(node, count2);
     const chevron2 = isContainer(node) ? 22 : 0;
     const exits = written.length ? width(fitting(exitsInWords(written), "detail"), "detail") : 0;
     return {
@@ -288,10 +1111,10 @@ ${target2}`;
       height: (detail ? 48 : 36) + (written.length ? WRITTEN_HEIGHT : 0)
     };
   }
-  function boxDetail(node, count) {
+  function boxDetail(node, count2) {
     if (!isContainer(node)) return node.type ?? "";
     const words = kindInWords(node);
-    return node.role ? words : `${words}, ${count} ${count === 1 ? "state" : "states"}`;
+    return node.role ? words : `${words}, ${count2} ${count2 === 1 ? "state" : "states"}`;
   }
   function contentOf(graph, path, open, sizes) {
     const container = graph.nodes.get(path);
@@ -316,11 +1139,11 @@ ${target2}`;
     const add = (line, edge, label) => {
       const own = open.has(line.from) ? line.outcome : "";
       const key = JSON.stringify([line.from, line.to, line.failure, line.implicit, own]);
-      const known = lines.get(key) ?? { ...line, stop: true, labels: [], edges: [] };
-      lines.set(key, known);
-      known.stop &&= line.outcome === "preempted";
-      if (edge && !known.edges.includes(edge)) known.edges.push(edge);
-      if (label && !open.has(line.from) && !known.labels.includes(label)) known.labels.push(label);
+      const known2 = lines.get(key) ?? { ...line, stop: true, labels: [], edges: [] };
+      lines.set(key, known2);
+      known2.stop &&= line.outcome === "preempted";
+      if (edge && !known2.edges.includes(edge)) known2.edges.push(edge);
+      if (label && !open.has(line.from) && !known2.labels.includes(label)) known2.labels.push(label);
     };
     const joined = joins(container, pieces, add);
     const written = new Set([...writtenExits(graph, path)].flatMap(([source, edges]) => open.has(source) ? [] : edges));
@@ -535,8 +1358,8 @@ ${target2}`;
       }
       const radius = Math.min(CORNER, distance(before, here) / 2, distance(here, next) / 2);
       const start = towards(here, before, radius);
-      const end = towards(here, next, radius);
-      path += `L${start.x} ${start.y}Q${here.x} ${here.y} ${end.x} ${end.y}`;
+      const end2 = towards(here, next, radius);
+      path += `L${start.x} ${start.y}Q${here.x} ${here.y} ${end2.x} ${end2.y}`;
     }
     return path;
   }
@@ -553,12 +1376,12 @@ ${target2}`;
   function drawLine({ line, points }) {
     const d = roundedPath(points);
     const group = svg("g", { class: `line ${look(line)}` });
-    const end = points[points.length - 1];
+    const end2 = points[points.length - 1];
     const before = points[points.length - 2];
     group.append(svg("path", { class: "stroke", d }));
-    if (end && before) {
-      const turn = Math.atan2(end.y - before.y, end.x - before.x) * 180 / Math.PI;
-      const transform = `translate(${end.x} ${end.y}) rotate(${turn})`;
+    if (end2 && before) {
+      const turn = Math.atan2(end2.y - before.y, end2.x - before.x) * 180 / Math.PI;
+      const transform = `translate(${end2.x} ${end2.y}) rotate(${turn})`;
       group.append(svg("path", { class: "head", d: "M0 0L-7.5-4Q-5.9 0-7.5 4Z", transform }));
     }
     return group;
@@ -589,25 +1412,39 @@ ${target2}`;
     }
   }
   function markRun(graph, picture, run) {
-    const active = /* @__PURE__ */ new Set();
-    for (const path of run?.active ?? []) {
-      let node = nearest(graph, path);
-      while (node && !picture.states.has(node.path) && node.parent !== null) node = graph.nodes.get(node.parent);
-      if (node) active.add(node.path);
-    }
+    const active = drawnStates(graph, picture, run?.active);
+    const waiting = drawnStates(graph, picture, run?.waiting);
+    const breakpoints = drawnStates(graph, picture, run?.breakpoints);
     const taken = new Set(run?.taken ?? []);
     for (const [path, element] of picture.states) {
       element.classList.toggle("active", active.has(path));
+      element.classList.toggle("waiting", waiting.has(path));
+      setBreakpoint(element, breakpoints.has(path));
       setVisits(element, run?.visits?.get(path) ?? 0);
     }
     for (const { line, element } of picture.lines) {
       element.classList.toggle("taken", line.line.edges.some((edge) => taken.has(edge)));
     }
   }
-  function setVisits(element, count) {
-    element.classList.toggle("visited", count > 0);
+  function drawnStates(graph, picture, paths = []) {
+    const found = /* @__PURE__ */ new Set();
+    for (const path of paths) {
+      let node = nearest(graph, path);
+      while (node && !picture.states.has(node.path) && node.parent !== null) node = graph.nodes.get(node.parent);
+      if (node) found.add(node.path);
+    }
+    return found;
+  }
+  function setBreakpoint(element, is) {
+    element.classList.toggle("breakpoint", is);
+    const mark = element.querySelector(":scope > .stop");
+    if (!is) mark?.remove();
+    else if (!mark) element.append(svg("circle", { class: "stop", cx: 0, cy: 0, r: 6.5 }));
+  }
+  function setVisits(element, count2) {
+    element.classList.toggle("visited", count2 > 0);
     let mark = element.querySelector(":scope > .visits");
-    if (count < 2) {
+    if (count2 < 2) {
       mark?.remove();
       return;
     }
@@ -618,7 +1455,7 @@ ${target2}`;
       mark.setAttribute("y", "-4");
       element.append(mark);
     }
-    mark.textContent = `\xD7${count}`;
+    mark.textContent = `\xD7${count2}`;
   }
   function legend() {
     const sign = (name) => svg(
@@ -661,6 +1498,7 @@ ${target2}`;
     "elk.layered.cycleBreaking.strategy": "MODEL_ORDER",
     "elk.layered.nodePlacement.strategy": "NETWORK_SIMPLEX",
     "elk.layered.nodePlacement.favorStraightEdges": "true",
+    "elk.layered.nodePlacement.networkSimplex.nodeFlexibility.default": "PORT_POSITION",
     "elk.layered.edgeLabels.centerLabelPlacementStrategy": "TAIL_LAYER"
   };
   var FAST = {
@@ -759,12 +1597,12 @@ ${target2}`;
     const exits = Math.max(0, ...content.pieces.map((each) => each.what === "exit" ? each.width : 0));
     const ports = /* @__PURE__ */ new Map();
     const port = (piece, name, side) => {
-      const known = ports.get(piece) ?? /* @__PURE__ */ new Map();
-      ports.set(piece, known);
+      const known2 = ports.get(piece) ?? /* @__PURE__ */ new Map();
+      ports.set(piece, known2);
       const id = `${piece}
 ${name}`;
-      if (!known.has(id)) {
-        known.set(id, { id, width: 0, height: 0, layoutOptions: { "elk.port.side": side } });
+      if (!known2.has(id)) {
+        known2.set(id, { id, width: 0, height: 0, layoutOptions: { "elk.port.side": side } });
       }
       return id;
     };
@@ -964,11 +1802,12 @@ ${name}`;
   // src/panel.ts
   function fillPanel(panel, graph, node, sections, actions) {
     const own = node ? stateSections(graph, node, actions) : machineSections(graph, actions);
-    const added = sections.map((each) => {
+    const added = (first) => sections.filter((each) => (each.first ?? false) === first).map((each) => {
       const content = each.fill(node);
       return content && section(each.title, content, each.id);
     });
-    panel.replaceChildren(...[...own, ...added].filter((each) => each !== null));
+    const parts = [own[0], ...added(true), ...own.slice(1), ...added(false)];
+    panel.replaceChildren(...parts.filter((each) => each !== null));
     panel.scrollTop = 0;
   }
   function section(title, content, id) {
@@ -1124,7 +1963,7 @@ ${name}`;
   }
 
   // src/search.ts
-  var MOST2 = 50;
+  var MOST3 = 50;
   function search(graph, text) {
     const wanted = text.trim().toLowerCase();
     if (!wanted) return [];
@@ -1133,7 +1972,7 @@ ${name}`;
       const hit = match(node, wanted);
       if (hit) hits.push({ node, ...hit });
     }
-    return hits.sort((a, b) => a.rank - b.rank).slice(0, MOST2);
+    return hits.sort((a, b) => a.rank - b.rank).slice(0, MOST3);
   }
   function match(node, wanted) {
     const name = node.name.toLowerCase();
@@ -1152,7 +1991,7 @@ ${name}`;
     if (has(node.shown ?? node.path)) return { rank: 6, reason: "path" };
     return has(node.doc) ? { rank: 7, reason: "doc" } : null;
   }
-  function searchField(graph, select, leave) {
+  function searchField(graph, select, leave2) {
     const list = html("ul", { id: "hits", role: "listbox", "aria-label": "States found", hidden: true });
     const field = html("input", {
       type: "search",
@@ -1220,7 +2059,7 @@ ${name}`;
       event.stopPropagation();
       if (event.key === "Escape") {
         clear();
-        leave();
+        leave2();
       } else if (event.key === "Enter") go(chosen);
       else if ((event.key === "ArrowDown" || event.key === "ArrowUp") && hits.length) {
         event.preventDefault();
@@ -1480,6 +2319,7 @@ ${name}`;
       },
       refresh,
       setModel,
+      fit: whole,
       notice(text) {
         notice.textContent = text;
       },
@@ -1529,7 +2369,8 @@ ${name}`;
   async function main() {
     const model = JSON.parse(textOf("smachac-model"));
     if (model.version !== VERSION) throw new Error(`the model has version ${model.version}, not ${VERSION}`);
-    await createViewer(document.body, model, startLayout(textOf("smachac-layout")));
+    const viewer = await createViewer(document.body, model, startLayout(textOf("smachac-layout")));
+    showRuns(viewer, textOf("smachac-trace"));
     document.documentElement.dataset["ready"] = "true";
   }
   function textOf(id) {

@@ -22,6 +22,8 @@ from smachac.ir.script_paths import script_paths
 from smachac.ir.traversal import walk
 from smachac.robots.faults import Fault
 from smachac.runtime.smach.failures import one_line
+from smachac.runtime.tracing.gate import Gate
+from smachac.runtime.tracing.writer import Observer, Sink
 
 Event = dict[str, Any]
 
@@ -52,7 +54,7 @@ def execute(
     name: str,
     text: str,
     machine: Machine,
-    observe: Callable[[Event], None] | None,
+    observe: Observer | Sink | None,
     *,
     folders: Sequence[Path],
     seed: int = 0,
@@ -63,16 +65,17 @@ def execute(
     on_preempt: Callable[[], None] = lambda: None,
     on_interrupt: Callable[..., Any] = signal.default_int_handler,
     arguments: Sequence[str] | None = None,
+    gate: Gate | None = None,
 ) -> RunResult:
     """Run the module `text`; the result has no events, which `observe` receives.
 
     `folders` are those from which the program may import modules of the user (`module_folders` of
     frontend/files.py), and where it finds descriptions of robots and scenes. `observe` gets every
     event of the trace, with paths of the script; `faults` are injected into the simulation, and are
-    events of the trace; `poses` replace those of bodies in its scene (`sim.configure`). Ctrl-C
-    requests the machine to preempt and calls `on_preempt`; a second one calls the signal handler
-    `on_interrupt`. `arguments` are those of a node of ROS 2, which handles Ctrl-C itself.
-    Exceptions of the program are not caught.
+    events of the trace; `poses` replace those of bodies in its scene (`sim.configure`). `gate` lets
+    a debugger stop the machine between two states. Ctrl-C requests the machine to preempt and calls
+    `on_preempt`; a second one calls the signal handler `on_interrupt`. `arguments` are those of a
+    node of ROS 2, which handles Ctrl-C itself. Exceptions of the program are not caught.
     """
     from smachac.runtime.tracing import trace
 
@@ -95,7 +98,9 @@ def execute(
             if observe is not None:
                 name, shown = machine.root.name, script_paths(machine.root)
                 at = places(machine)
-                emits.append(trace.attach(root, name, observe, at, clock=_clock(), paths=shown))
+                emits.append(
+                    trace.attach(root, name, observe, at, clock=_clock(), paths=shown, gate=gate)
+                )
             built.append(root)
 
         with (

@@ -1,0 +1,312 @@
+"""The command `view`: the picture of a machine in a browser, live; and the view of a run."""
+
+from __future__ import annotations
+
+import argparse
+import gc
+import os
+import sys
+import time
+from argparse import Namespace
+from contextlib import contextmanager, suppress
+
+from smachac.commands.arguments import SCRIPT, as_path, colour, search_folders
+from smachac.commands.output import OK, usage
+
+TYPE_CHECKING = False  # annotations only: `--help` imports none of this
+if TYPE_CHECKING:
+    from collections.abc import Iterator, Mapping
+    from pathlib import Path
+
+    from smachac.diagnostics.diagnostic import Report
+    from smachac.frontend.files import Disk, Stamp
+    from smachac.ir.nodes import Machine
+    from smachac.view.control import Control
+    from smachac.view.feed import Feed
+    from smachac.view.live import LiveTrace
+    from smachac.view.picture import Picture
+    from smachac.view.server import ViewServer
+    from smachac.view.trace_file import TraceText
+
+EXAMPLES = """\
+examples:
+  smachac view main.yml                        the picture, drawn again when a file changes
+  smachac view main.yml --attach run.jsonl     replay a trace; follow it while it is written
+  smachac run main.yml --view                  watch a run, and control it
+  smachac run main.yml --view=8123 --view-paused   wait before the first state
+  smachac view --attach 8123                   open the page of a run at this port
+
+exit codes: 0 the page of a run was found, 2 wrong usage, 70 a bug in smachac, 130 interrupted
+(the usual end: Ctrl-C)
+"""
+
+PAUSE = 0.2
+"""Seconds between two looks at the files."""
+
+CHUNK = 1_000_000
+"""The most bytes of a trace that are read at a time."""
+
+
+class PortError(Exception):
+    """A port that cannot be used; the message gives the reason."""
+
+
+def view_arguments(parser: argparse.ArgumentParser) -> None:
+    parser.epilog = EXAMPLES
+    parser.add_argument("script", type=as_path, nargs="?", help=SCRIPT)
+    parser.add_argument("--attach", metavar="TRACE|PORT",
+                        help="show the events of this trace, or open the page of the run with"
+                        " --view=PORT")  # fmt: skip
+    parser.add_argument("--port", type=port, default=0, metavar="PORT",
+                        help="the port of the page (default: one that is free)")  # fmt: skip
+    browser(parser)
+    search_folders(parser)
+    colour(parser)
+
+
+def browser(parser: argparse.ArgumentParser) -> None:
+    """`--no-browser`."""
+    parser.add_argument("--no-browser", action="store_true",
+                        help="print the address of the page, do not open it")  # fmt: skip
+
+
+def port(text: str) -> int:
+    """A port, or 0."""
+    if not text.isdecimal() or len(text) > 5 or int(text) > 65535:
+        raise argparse.ArgumentTypeError(f"must be a port, 0 to 65535, not `{text[:40]}`")
+    return int(text)
+
+
+def view_command(arguments: Namespace) -> int:
+    """Serve the view of a script until Ctrl-C; the exit code."""
+    attach: str | None = arguments.attach
+    if attach is not None and attach.isdecimal():
+        return _open_run(int(attach), arguments)
+    if arguments.script is None:
+        return usage("a script is needed: smachac view main.yml" + (
+            " --attach TRACE" if attach is not None else ""))  # fmt: skip
+    if not os.path.lexists(arguments.script):
+        return usage(f"there is no file {arguments.script}")
+    trace = as_path(attach) if attach is not None else None
+    if trace is not None and not trace.is_file():
+        return usage(f"there is no trace {trace}, and it is no port")
+    return _serve(arguments, trace)
+
+
+def _serve(arguments: Namespace, trace: Path | None) -> int:
+    """Serve the picture of a script, and a trace, until Ctrl-C."""
+    from smachac.frontend.files import Disk
+    from smachac.view.feed import Feed
+    from smachac.view.picture import Picture
+    from smachac.view.trace_file import TraceText
+
+    feed = Feed()
+    picture = Picture(feed, arguments.script.stem)
+    try:
+        server = _server(arguments.port, picture, feed)
+    except PortError as error:
+        return usage(str(error))
+    script = _Script(arguments, Disk(), picture)
+    script.check()
+    text = None if trace is None else _TraceFile(trace, TraceText(feed))
+    if text is not None:
+        text.read()
+    server.start()
+    announce(server.url, open_page=not arguments.no_browser)
+    while True:
+        gc.collect()  # automatic collection is off
+        while not script.has_changed():
+            time.sleep(PAUSE)
+            if text is not None:
+                text.read()
+        script.check()
+
+
+class _Script:
+    """A script on disk, checked again when one of its files changes."""
+
+    def __init__(self, arguments: Namespace, disk: Disk, picture: Picture) -> None:
+        self._arguments, self._disk, self._picture = arguments, disk, picture
+        self._known: dict[str, Stamp] = {}
+
+    def check(self) -> None:
+        """Check it, and publish the result."""
+        from smachac.driver import CODES, analyse
+        from smachac.frontend.files import disk_library, stamps
+
+        arguments, disk, path = self._arguments, self._disk, self._arguments.script
+        disk.refresh()
+        disk.asked.clear()
+        report: Report = []
+        source = disk.read(path, report)
+        machine: Machine | None = None
+        if source is not None:
+            library = disk_library(
+                path,
+                report,
+                scripts=arguments.scripts,
+                templates=arguments.templates,
+                disk=disk,
+                codes=CODES,
+            )
+            analysis = analyse(source, library, report)
+            machine, report = analysis.machine, analysis.report
+        self._known = stamps({str(path), *disk.asked})
+        self._picture.update(machine, report)
+
+    def has_changed(self) -> bool:
+        """Whether a file has changed, or one that was searched has come into being."""
+        from smachac.frontend.files import stamps
+
+        return stamps(self._known) != self._known
+
+
+class _TraceFile:
+    """A trace on disk that may grow, or begin anew."""
+
+    def __init__(self, path: Path, text: TraceText) -> None:
+        self._path, self._text = path, text
+        self._position = self._wrong = 0
+
+    def read(self) -> None:
+        """Publish what is new."""
+        with suppress(OSError), self._path.open("rb") as stream:
+            if stream.seek(0, os.SEEK_END) < self._position:
+                self._position = 0
+                self._text.restart()
+            stream.seek(self._position)
+            while data := stream.read(CHUNK):
+                self._position += len(data)
+                self._text.add(data)
+        if self._text.wrong > self._wrong:
+            self._wrong = self._text.wrong
+            words = "1 line is" if self._wrong == 1 else f"{self._wrong} lines are"
+            print(f"{self._path}: {words} no event of a trace", file=sys.stderr)
+
+
+def _open_run(number: int, arguments: Namespace) -> int:
+    """Open the page of a run on this computer, without its token: the page only shows."""
+    import json
+    from http.client import HTTPConnection, HTTPException
+
+    from smachac.view.server import HOST
+
+    if number > 65535:
+        return usage(f"{number} is no port: it is larger than 65535")
+    connection = HTTPConnection(HOST, number, timeout=5)
+    status = None
+    try:
+        connection.request("GET", "/status")
+        status = json.loads(connection.getresponse().read(10_000))
+    except (OSError, HTTPException, ValueError):
+        pass
+    finally:
+        connection.close()
+    if not isinstance(status, dict) or status.get("program") != "smachac":
+        return usage(f"no run with --view={number} answers on this computer")
+    announce(f"http://{HOST}:{number}/", open_page=not arguments.no_browser)
+    return OK
+
+
+def _server(
+    number: int, picture: Picture, feed: Feed, control: Control | None = None
+) -> ViewServer:
+    """A server for a picture and, with a control, for a run. Raises PortError."""
+    from smachac.view.control import ControlError
+    from smachac.view.server import ActionError, ViewServer
+
+    def act(body: Mapping[str, object]) -> object:
+        if control is None:
+            raise ActionError("nothing runs here")
+        words = [body.get(name) for name in ("action", "path", "outcome")]
+        action, path, outcome = (word if isinstance(word, str) else None for word in words)
+        try:
+            control.act(action or "", path, outcome)
+        except ControlError as error:
+            raise ActionError(str(error)) from None
+        return control.status()
+
+    try:
+        return ViewServer(number, picture.page, feed, {"/control": act}, name=picture.name)
+    except OSError as error:
+        reason = (error.strerror or str(error)).lower()
+        raise PortError(f"port {number} cannot be used: {reason}") from None
+
+
+def announce(url: str, *, open_page: bool) -> None:
+    """Print the address of a page, and open it in a browser where there is one."""
+    print(f"view: {url}", file=sys.stderr, flush=True)
+    if open_page and (
+        sys.platform in ("darwin", "win32") or os.environ.keys() & {"DISPLAY", "WAYLAND_DISPLAY"}
+    ):
+        _open(url)
+
+
+def _open(url: str) -> None:
+    """Open a page through a file that only the user can read: the address has the token, and the
+    arguments of a process can be seen by all users of a computer."""
+    import atexit
+    import json
+    import tempfile
+    import webbrowser
+    from pathlib import Path
+
+    handle, name = tempfile.mkstemp(prefix="smachac-", suffix=".html")
+    with open(handle, "w", encoding="utf-8") as stream:  # noqa: PTH123 (a file descriptor)
+        stream.write(f"<!DOCTYPE html><script>location.replace({json.dumps(url)})</script>")
+    atexit.register(Path(name).unlink, missing_ok=True)
+    with suppress(webbrowser.Error):
+        webbrowser.open(Path(name).as_uri())
+
+
+# The view of a run
+
+
+class RunView:
+    """The view of one run: a sink for its events, a gate for its states."""
+
+    def __init__(self, server: ViewServer, trace: LiveTrace, control: Control) -> None:
+        self.trace, self.control = trace, control
+        self._server = server
+
+    def stay(self) -> None:
+        """After the run: where a person is at the terminal, serve the page until Ctrl-C."""
+        from smachac.commands.interrupts import interrupts_raise
+
+        self.control.ended()
+        if not sys.stdin or not sys.stdin.isatty():
+            return
+        print("the run has ended; the view stays until Ctrl-C", file=sys.stderr, flush=True)
+        with interrupts_raise(), suppress(KeyboardInterrupt):
+            while True:
+                time.sleep(3600)
+
+
+@contextmanager
+def run_view(arguments: Namespace, machine: Machine, report: Report) -> Iterator[RunView]:
+    """The view of a run with `--view`. Raises PortError."""
+    from smachac.ir.script_paths import script_paths
+    from smachac.ir.traversal import walk
+    from smachac.view.control import Control
+    from smachac.view.feed import Feed
+    from smachac.view.live import LiveTrace
+    from smachac.view.picture import Picture
+
+    feed = Feed()
+    trace = LiveTrace(feed)
+    paths = script_paths(machine.root)
+    places = frozenset(paths.get(path, path) for path, _ in walk(machine.root))
+    control = Control(paths, trace.send, paused=arguments.view_paused, places=places)
+    picture = Picture(feed, machine.root.name)
+    picture.update(machine, report)
+    server = _server(arguments.view, picture, feed, control)
+    trace.send(control.status())
+    trace.start()
+    server.start()
+    on_terminal = bool(sys.stdin) and sys.stdin.isatty()
+    announce(server.url, open_page=on_terminal and not arguments.no_browser)
+    try:
+        yield RunView(server, trace, control)
+    finally:
+        trace.close()
+        server.stop()

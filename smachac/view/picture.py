@@ -1,0 +1,47 @@
+"""The picture of a view: the page and the messages with the machine and its findings."""
+
+from __future__ import annotations
+
+import threading
+from collections.abc import Mapping
+from typing import Any
+
+from smachac.diagnostics.diagnostic import Report, Severity
+from smachac.diagnostics.source import Source, Span
+from smachac.ir.nodes import Machine, StateMachine
+from smachac.targets.html.model import finding_data, machine_model
+from smachac.targets.html.page import render_page
+from smachac.view.feed import Feed
+
+
+class Picture:
+    """The last machine of a script that has no error, and what is found in the script now.
+
+    As long as there was no such machine, the picture is that of the machine as far as it can be
+    read, or an empty one with the name `name`.
+    """
+
+    def __init__(self, feed: Feed, name: str) -> None:
+        self.name = name
+        self._feed = feed
+        self._lock = threading.Lock()
+        self._is_good = False
+        nothing = StateMachine(type="", name=name, span=Span(Source(name, ""), 0, 0))
+        self._machine = Machine(root=nothing)
+        self._model: Mapping[str, Any] = machine_model(self._machine, live=True)
+
+    def update(self, machine: Machine | None, report: Report) -> None:
+        """Publish the result of a check."""
+        broken = machine is None or any(item.severity is Severity.ERROR for item in report)
+        if machine is not None and not (broken and self._is_good):
+            with self._lock:
+                self._machine, self._is_good = machine, not broken
+                self._model = machine_model(machine, report, live=True)
+            self._feed.publish({"kind": "model", "model": self._model})
+        findings = [finding_data(item) for item in report]
+        self._feed.publish({"kind": "report", "broken": broken, "findings": findings})
+
+    def page(self) -> str:
+        """The page as it is now."""
+        with self._lock:
+            return render_page(self._machine, self._model, connect=True)

@@ -1,0 +1,48 @@
+"""A trace that is read from a file, also while it grows, as messages of a view."""
+
+from __future__ import annotations
+
+import json
+from typing import Any
+
+from smachac.targets.html.trace import read_event
+from smachac.view.feed import Feed
+from smachac.view.live import BATCH
+
+
+class TraceText:
+    """Publishes the events in the bytes of a trace, which come in pieces of any size.
+
+    A line that is no event is counted in `wrong` and left out.
+    """
+
+    def __init__(self, feed: Feed) -> None:
+        self._feed = feed
+        self._rest = b""
+        self.wrong = 0
+
+    def add(self, data: bytes) -> None:
+        """Publish the events of the lines that are complete."""
+        *lines, self._rest = (self._rest + data).split(b"\n")
+        events: list[Any] = []
+        for line in lines:
+            if not line.strip():
+                continue
+            event = read_event(line)
+            if event is None:
+                self.wrong += 1
+                continue
+            events.append(event)
+            if len(events) >= BATCH:
+                self._publish(events)
+        self._publish(events)
+
+    def restart(self) -> None:
+        """The file begins anew."""
+        self._rest = b""
+
+    def _publish(self, events: list[Any]) -> None:
+        if events:
+            data = json.dumps({"kind": "trace", "events": events}).encode()
+            self._feed.append("trace", data, len(events))
+            events.clear()

@@ -1,0 +1,90 @@
+"""A process of smachac that serves a view, with a reader of its stream."""
+
+from __future__ import annotations
+
+import json
+import re
+import subprocess
+import sys
+from collections.abc import Callable, Iterator
+from contextlib import contextmanager
+from http.client import HTTPConnection
+from typing import Any
+
+from smachac.view.server import HOST, TOKEN
+
+
+class Viewed:
+    """A process of smachac that serves a view, and a reader of its stream."""
+
+    def __init__(self, *words: object) -> None:
+        self.process = subprocess.Popen(
+            [sys.executable, "-m", "smachac", *map(str, words)],
+            stdin=subprocess.DEVNULL,
+            stdout=subprocess.PIPE,
+            stderr=subprocess.PIPE,
+            text=True,
+        )
+        assert self.process.stderr is not None
+        self.lines: list[str] = []
+        found = None
+        while found is None:
+            line = self.process.stderr.readline()
+            assert line, self.lines
+            self.lines.append(line)
+            found = re.fullmatch(rf"view: http://{HOST}:(\d+)/#token=(\S+)\n", line)
+        self.port, self.token = int(found[1]), found[2]
+        self.url = line.split()[1]
+        self._connection = HTTPConnection(HOST, self.port, timeout=60)
+        self._connection.request("GET", "/events")
+        self._stream = self._connection.getresponse()
+
+    def message(self) -> Any:
+        """The next message of the stream; None at its end."""
+        while line := self._stream.readline():
+            if line.startswith(b"event: end"):
+                return None
+            if line.startswith(b"data: "):
+                return json.loads(line[6:])
+        return None
+
+    def until(self, condition: Callable[[Any], bool]) -> Any:
+        """The next message that fulfils a condition."""
+        while (message := self.message()) is not None:
+            if condition(message):
+                return message
+        raise AssertionError("the stream has ended")
+
+    def act(self, **body: str) -> int:
+        connection = HTTPConnection(HOST, self.port, timeout=60)
+        connection.request("POST", "/control", json.dumps(body), {TOKEN: self.token})
+        status = connection.getresponse().status
+        connection.close()
+        return status
+
+    def page(self) -> str:
+        connection = HTTPConnection(HOST, self.port, timeout=60)
+        connection.request("GET", "/")
+        text = connection.getresponse().read().decode()
+        connection.close()
+        return text
+
+    def end(self) -> tuple[int, str, str]:
+        """Wait for the end: exit code, standard output, standard error."""
+        out, err = self.process.communicate(timeout=60)
+        return self.process.returncode, out, err
+
+
+@contextmanager
+def starter() -> Iterator[Callable[..., Viewed]]:
+    """Starts processes, which end with the context."""
+    begun: list[Viewed] = []
+
+    def started(*words: object) -> Viewed:
+        begun.append(Viewed(*words))
+        return begun[-1]
+
+    yield started
+    for each in begun:
+        each.process.kill()
+        each.process.communicate()
