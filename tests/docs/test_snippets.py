@@ -33,6 +33,7 @@ ELSEWHERE = {
     "ros": "tests/ros, tests/targets/test_ros_2.py",
     "rules": "tests/checks/test_examples.py",
     "semantics": "tests/docs/test_semantics.py",
+    "sweep": "tests/docs/test_tutorial.py",
     "targets": "tests/docs/test_targets.py",
     "tutorial": "tests/docs/test_tutorial.py",
     "verify": "tests/cpp, tests/verify",
