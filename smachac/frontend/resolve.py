@@ -27,7 +27,7 @@ from smachac.frontend.errors.script import (
     too_big,
     wrong_shape,
 )
-from smachac.frontend.fields import as_name, kind_of, name_of, pairs_of, wrong
+from smachac.frontend.fields import as_name, kind_of, name_of, name_text, pairs_of, wrong
 from smachac.frontend.loader import Library
 from smachac.frontend.message_definitions import definitions_of, missing_definitions_of
 from smachac.frontend.params import (
@@ -179,13 +179,12 @@ class _Resolver:
         """The fields by long name; duplicates are reported (SM002)."""
         fields: dict[str, Entry] = {}
         for entry in entries:
-            word = as_name(entry.key, self.report)
-            if word is None:
+            text = name_text(entry.key, self.report)
+            if text is None:
                 continue
-            name = schema.LONG.get(word.text, word.text)
-            first = fields.setdefault(name, entry)
+            first = fields.setdefault(schema.LONG.get(text, text), entry)
             if first is not entry and first.key.value != entry.key.value:
-                self.report.append(duplicate_key(word, first.key.span))
+                self.report.append(duplicate_key(Word(text, entry.key.span), first.key.span))
         return fields
 
     def state(
