@@ -16,7 +16,7 @@ a machine is parsed to the same machine.
 from __future__ import annotations
 
 from collections import deque
-from collections.abc import Iterable, Mapping
+from collections.abc import Collection, Mapping
 from dataclasses import dataclass, field, replace
 from functools import reduce
 from typing import Literal, TypeAlias
@@ -415,9 +415,9 @@ def _read(cells: list[Cell], groups: Groups) -> dict[Cell, set[Type]]:
     return read
 
 
-def _common(types: Iterable[Type]) -> Type:
+def _common(types: Collection[Type]) -> Type:
     """The type that can be read as all of these; `any` where there is none."""
-    return reduce(meet, sorted(types, key=repr), ANY)
+    return reduce(meet, sorted(types, key=repr) if len(types) > 1 else types, ANY)
 
 
 class Groups:
@@ -493,7 +493,16 @@ class TypeFlow:
 
     def moved_to(self, cell: Cell) -> TypeFlow:
         """The same value one link later."""
-        return replace(self, cell=cell, before=self, first=self.origin)
+        return TypeFlow(
+            type=self.type,
+            how=self.how,
+            span=self.span,
+            cell=cell,
+            value=self.value,
+            before=self,
+            first=self.first or self,
+            judged=self.judged,
+        )
 
 
 @dataclass(frozen=True, slots=True, eq=False, kw_only=True)
