@@ -2,12 +2,13 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from functools import cached_property
 from typing import TYPE_CHECKING
 
 from smachac.analysis.accesses import Accesses, accesses
 from smachac.analysis.control_flow import Linear, endless_states, mended
-from smachac.analysis.definite_assignment import DataFlow, data_flow
+from smachac.analysis.definite_assignment import DataFlow, UserdataScope, data_flow
 from smachac.analysis.error_recovery import mended_machine
 from smachac.analysis.expression_errors import Fault
 from smachac.analysis.expression_sites import ExpressionSite, expression_sites
@@ -37,8 +38,10 @@ class Context:
     shared, so nobody may change them.
     """
 
-    def __init__(self, machine: Machine) -> None:
+    def __init__(self, machine: Machine, known: Mapping[str, UserdataScope] = {}) -> None:
+        """`known`: the scopes of the machine before a change (see `data_flow`)."""
         self.machine = machine
+        self._known = known
 
     @cached_property
     def states(self) -> tuple[tuple[str, Node], ...]:
@@ -98,13 +101,13 @@ class Context:
     @cached_property
     def flow(self) -> DataFlow:
         """The data flow of the machine as written."""
-        return data_flow(self.machine)
+        return data_flow(self.machine, self._known)
 
     @cached_property
     def mended_flow(self) -> DataFlow:
         """The data flow of the machine with misspelt names corrected."""
         mended = mended_machine(self.machine, self.containers)
-        return self.flow if mended is self.machine else data_flow(mended)
+        return self.flow if mended is self.machine else data_flow(mended, self._known)
 
     @cached_property
     def _missing_keys(self) -> tuple[Missing, ...]:

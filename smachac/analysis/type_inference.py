@@ -360,6 +360,8 @@ def _written(leaf: Leaf) -> dict[str, list[tuple[Span, Data]]]:
     """The values that the script gives to the outputs of a leaf, by key: results of callbacks, for
     keys that nothing else writes, and data of steps."""
     found: dict[str, list[tuple[Span, Data]]] = {}
+    if not leaf.variables:
+        return found
     callbacks = functions(leaf, "callbacks")
     if callbacks:
         others = {key.name for key in leaf.outputs} - key_names(leaf.outputs, "result")
@@ -379,14 +381,15 @@ def _written(leaf: Leaf) -> dict[str, list[tuple[Span, Data]]]:
 def key_types(cells: list[Cell]) -> dict[Cell, Type]:
     """The type of each cell. Linked cells without a declaration have one type."""
     groups = Groups()
-    for cell in cells:
+    free = [cell for cell in cells if cell.declared == ANY]
+    for cell in free:
         for link in cell.links:
-            if cell.declared == ANY and link.declared == ANY:
+            if link.declared == ANY:
                 groups.unite(cell, link)
-    read = _read(cells, groups)
+    read = _read(free, groups)
     written: dict[Cell, set[Type]] = {}
-    for cell in cells:
-        fresh = (alike[0].type for alike in cell.flows.values() if not alike[0].judged)
+    for cell in free:
+        fresh = [alike[0].type for alike in cell.flows.values() if not alike[0].judged]
         written.setdefault(groups.of(cell), set()).update(fresh)
     types = {
         group: settled(joined(found), _common(read.get(group, ())))
@@ -397,14 +400,15 @@ def key_types(cells: list[Cell]) -> dict[Cell, Type]:
     }
 
 
-def _read(cells: list[Cell], groups: Groups) -> dict[Cell, set[Type]]:
-    """The types that the readers of each group require; the readers of an item require a list."""
+def _read(free: list[Cell], groups: Groups) -> dict[Cell, set[Type]]:
+    """The types that the readers of each group require; the readers of an item require a list.
+    `free` are the cells without a declaration."""
     read: dict[Cell, set[Type]] = {}
-    for cell in cells:
+    for cell in free:
         wanted = [link.declared for link in cell.links if link.declared != ANY]
         if wanted:
             read.setdefault(groups.of(cell), set()).update(wanted)
-    for cell in cells:
+    for cell in free:
         for computation in cell.readers:
             if computation.items and computation.expression is None:
                 item = computation.cell.declared
@@ -463,9 +467,10 @@ class Cell:
     holds: Type | None = None
 
 
-@dataclass(frozen=True, slots=True, eq=False, kw_only=True)
+@dataclass(slots=True, eq=False, kw_only=True)
 class TypeFlow:
-    """A typed value that has arrived at a cell.
+    """A typed value that has arrived at a cell. Nobody changes it; it is not frozen, because a
+    frozen one takes four times as long to make.
 
     `how`: the script gives a literal (`value`), the cell declares it, or code computes it.
     `before` is the same value one link earlier, `first` where the value came to be (none: here).

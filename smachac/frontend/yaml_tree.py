@@ -300,7 +300,7 @@ class _Open:
 
 
 def _identity(key: Scalar) -> str | tuple[type, object]:
-    """What two duplicate keys have in common: 1, 1.0 and true differ, though Python equates them."""
+    """What duplicate keys have in common. 1, 1.0 and true differ, though Python equates them."""
     value = key.value
     return value if isinstance(value, str) else (type(value), value)
 

@@ -17,7 +17,7 @@ from smachac.analysis.context import Context
 from smachac.batch import Batch, check_scripts
 from smachac.diagnostics.diagnostic import Report, in_order
 from smachac.diagnostics.source import Source
-from smachac.driver import CODES, Analysis, read_machine
+from smachac.driver import CODES, Analysis, Previous, read_machine
 from smachac.frontend.discovery import NothingFoundError, scripts_of
 from smachac.frontend.files import Disk, disk_library, find_project
 from smachac.frontend.loader import Library
@@ -70,6 +70,7 @@ class Session:
         self.open: dict[str, None] = {}
         self._uses: dict[str, frozenset[str]] = {}
         self._contexts: dict[str, tuple[Analysis, Context | None]] = {}
+        self._previous: dict[str, Previous] = {}
         self._views: dict[str, View] = {}
         self._checked: dict[str, dict[str, Report]] = {}
         self._listed: dict[tuple[Path, ...], list[Path]] = {}
@@ -100,6 +101,7 @@ class Session:
         self.disk.refresh()
         self._forget([*self._contexts, *self.open])
         self._contexts.clear()
+        self._previous.clear()
         self._listed.clear()
 
     def source(self, path: str) -> Source | None:
@@ -232,18 +234,11 @@ class Session:
 
     def _check_scripts(self, roots: list[str]) -> Batch:
         """Check scripts, and keep their machines with the facts that the rules computed."""
-        made: list[Context] = []
-
-        def make_context(machine: Machine) -> Context:
-            made.append(Context(machine))
-            return made[-1]
-
-        batch = check_scripts([Path(root) for root in roots], self.disk, make_context=make_context)
+        batch = check_scripts([Path(root) for root in roots], self.disk, previous=self._previous)
         for root, analysis in batch.analyses.items():
             self._uses[root] = batch.uses[root]
-            machine = analysis.machine
-            context = next((each for each in made if each.machine is machine), None)
-            self._contexts[root] = analysis, context
+            last = self._previous.get(root)
+            self._contexts[root] = analysis, last.context if last is not None else None
         self._views.clear()
         return batch
 
