@@ -181,12 +181,11 @@ def _analysis(
 
 
 def _context(machine: Machine | None, previous: Previous | None) -> Context | None:
-    """The context of a machine, with the scopes of the previous one that still hold. It becomes the
+    """The context of a machine, with the facts of the previous one that still hold. It becomes the
     previous context."""
     if previous is None:
         return None
-    known = previous.context.mended_flow.scopes if previous.context is not None else {}
-    previous.context = Context(machine, known) if machine is not None else None
+    previous.context = Context(machine, previous.context) if machine is not None else None
     return previous.context
 
 

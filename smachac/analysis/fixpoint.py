@@ -127,8 +127,9 @@ def _some_path(
         unchanged = (bits.whole, 0)
         moves = [
             [
-                (order[to], *(unchanged if writes is NOTHING else effect(bits, writes)))
+                (order[to], kept, added)
                 for to, _, writes in steps.get(vertex, ())
+                for kept, added in [unchanged if writes is NOTHING else effect(bits, writes)]
             ]
             for vertex in order
         ]

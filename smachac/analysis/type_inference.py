@@ -17,7 +17,7 @@ from __future__ import annotations
 
 from collections import deque
 from collections.abc import Collection, Mapping
-from dataclasses import dataclass, field, replace
+from dataclasses import dataclass, field
 from functools import reduce
 from typing import Literal, TypeAlias
 
@@ -276,7 +276,7 @@ class _Inference:
             if found is not None or flow.how != "value":
                 return
             self.constants.append(flow)
-            flow = replace(flow, judged=True)
+            flow = flow.accepted()
         mark = flow.mark
         if mark in cell.flows:
             cell.flows[mark].append(flow)
@@ -495,6 +495,19 @@ class TypeFlow:
     def origin(self) -> TypeFlow:
         """The flow where the value originates."""
         return self.first or self
+
+    def accepted(self) -> TypeFlow:
+        """The same value after a declaration has accepted it."""
+        return TypeFlow(
+            type=self.type,
+            how=self.how,
+            span=self.span,
+            cell=self.cell,
+            value=self.value,
+            before=self.before,
+            first=self.first,
+            judged=True,
+        )
 
     def moved_to(self, cell: Cell) -> TypeFlow:
         """The same value one link later."""

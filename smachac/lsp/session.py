@@ -126,7 +126,8 @@ class Session:
         key = tuple(folders)
         if key not in self._listed:
             try:
-                self._listed[key] = scripts_of(folders, self.disk)
+                found = scripts_of(folders, self.disk)
+                self._listed[key] = [Path(os.path.realpath(each)) for each in found]
             except NothingFoundError:
                 self._listed[key] = []
         return self._listed[key]
@@ -176,12 +177,14 @@ class Session:
         texts = {}
         for each in self._scripts([*folders, Path(path).parent]):
             source = self.disk.read(each, [])
-            texts[os.path.realpath(each)] = source.text if source is not None else ""
+            texts[str(each)] = source.text if source is not None else ""
         found = {path: None}
         todo = [path]
         while todo:
-            stem = re.compile(rf"(?<![\w.-]){re.escape(Path(todo.pop()).stem)}(?![\w-])")
-            new = [name for name, text in texts.items() if name not in found and stem.search(text)]
+            word = Path(todo.pop()).stem
+            stem = re.compile(rf"(?<![\w.-]){re.escape(word)}(?![\w-])")
+            new = [name for name, text in texts.items()
+                   if name not in found and word in text and stem.search(text)]  # fmt: skip
             found.update(dict.fromkeys(new))
             todo += new
         return [name for name in found if not isinstance(self._tree(name), Seq)]
