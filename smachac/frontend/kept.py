@@ -15,9 +15,11 @@ from typing import NamedTuple, TypeAlias
 from smachac.diagnostics.diagnostic import Report
 from smachac.diagnostics.source import Source, Span
 from smachac.frontend.loader import Library
+from smachac.frontend.params import Scope
 from smachac.frontend.script import State
 from smachac.frontend.state_types import find_state_type
 from smachac.frontend.unused import Uses
+from smachac.frontend.yaml_tree import Entry
 from smachac.ir.nodes import Node, Preset, StateType
 
 Answers: TypeAlias = "list[object]"
@@ -31,12 +33,14 @@ KeptNodes: TypeAlias = "dict[tuple[Span, tuple[Span, ...]], tuple[State, Node]]"
 class KeptCall(NamedTuple):
     """The state of a called sub-script, and all else that its reading has found.
 
-    `around`: the surroundings of the call. `texts`: those of the sub-scripts inside, by their names
-    and the calling texts. `calls`: those inside. `states` and `keys`: the numbers of states and of
-    userdata values; `most_keys`: the most values of one state.
+    `own`: the fields of the call. `around`: its surroundings, except `scope`. `texts`: those of the
+    sub-scripts inside, by their names and the calling texts. `calls`: those inside. `states` and
+    `keys`: the numbers of states and of userdata values; `most_keys`: the most values of one state.
     """
 
+    own: Mapping[str, Entry]
     around: object
+    scope: Scope
     state: State
     texts: Mapping[tuple[str, str], Source]
     sources: Mapping[Source, None]
@@ -46,6 +50,11 @@ class KeptCall(NamedTuple):
     states: int
     keys: int
     most_keys: tuple[Preset, ...]
+
+
+def same_objects(one: Mapping[str, object], other: Mapping[str, object]) -> bool:
+    """Whether two mappings have the same objects under the same names, with the same places."""
+    return one.keys() == other.keys() and all(other[name] is each for name, each in one.items())
 
 
 @dataclass(slots=True)

@@ -28,7 +28,7 @@ from smachac.frontend.errors.script import (
     wrong_shape,
 )
 from smachac.frontend.fields import as_name, kind_of, name_of, name_text, pairs_of, wrong
-from smachac.frontend.kept import Kept, KeptCall
+from smachac.frontend.kept import Kept, KeptCall, same_objects
 from smachac.frontend.loader import Library
 from smachac.frontend.message_definitions import definitions_of, missing_definitions_of
 from smachac.frontend.params import (
@@ -82,7 +82,7 @@ class _Environment:
     """
 
     source: Source
-    scope: Scope = field(default_factory=dict)
+    scope: Scope = field(default_factory=dict, compare=False)
     calls: tuple[tuple[str, Span], ...] = ()
     depth: int = 0
     inner: Word | None = None
@@ -359,7 +359,7 @@ class _Resolver:
         if self.kept is None or "script" not in own:
             return self.called(name, own, around)
         kept = self.kept.calls.get(name.span)
-        if kept is not None and self.is_current(kept, around):
+        if kept is not None and self.is_current(kept, own, around):
             self.count += kept.states
             self.keys += kept.keys
             self.add(kept)
@@ -370,7 +370,9 @@ class _Resolver:
         self.texts, self.sources, self.types, self.calls = {}, {}, {}, {}
         self.uses, self.most_keys = Uses(), ()
         new = KeptCall(
+            own=dict(own),
             around=around,
+            scope=around.scope,
             state=self.called(name, own, around),
             texts=self.texts,
             sources=self.sources,
@@ -387,11 +389,13 @@ class _Resolver:
             self.calls[name.span] = new
         return new.state
 
-    def is_current(self, kept: KeptCall, around: _Environment) -> bool:
+    def is_current(self, kept: KeptCall, own: dict[str, Entry], around: _Environment) -> bool:
         """Whether reading a call would give the same state again. The surroundings have the spans
-        of the calls around it, and so their texts, which determine everything in scope."""
+        of the calls around it, and so the main text, which has the aliases of types."""
         return (
-            kept.around == around
+            same_objects(kept.own, own)
+            and kept.around == around
+            and same_objects(kept.scope, around.scope)
             and self.count + kept.states < MAX_STATES
             and all(self.text(*each) is source for each, source in kept.texts.items())
             and all(self.state_type(name) is type_ for name, type_ in kept.types.items())

@@ -158,3 +158,42 @@ def test_a_sub_script_that_has_not_changed_keeps_its_nodes_and_scopes(tmp_path: 
     new = session.view(main).context.mended_flow.scopes  # type: ignore[union-attr]
     assert new["sm/FIRST"] is scopes["sm/FIRST"]
     assert new["sm"] is not scopes["sm"]
+
+
+ALIASED = """\
+name: sm
+template: Base
+outcomes: [succeeded, preempted]
+states:
+- FIRST:
+    template: StateMachine
+    outcomes: [succeeded, preempted]
+    params: {seconds: -1}
+    states:
+    - &wait {WAIT: {script: wait}}
+    transitions: {succeeded: SECOND}
+- SECOND:
+    template: StateMachine
+    outcomes: [succeeded, preempted]
+    params: {seconds: -1}
+    states:
+    - *wait
+    transitions: {succeeded: THIRD}
+- THIRD: {script: rest}
+"""
+"""One call in two containers: its params have the same values at two places."""
+
+
+def test_a_call_that_is_used_twice_by_an_alias_keeps_the_places_of_both(tmp_path: Path) -> None:
+    folder = Path(os.path.realpath(tmp_path))
+    rest = "- REST: {template: SleepState, time: 1}\n"
+    texts = {"main.yml": ALIASED, "wait.yml": FILES["wait.yml"], "rest.yml": rest}
+    for name, text in texts.items():
+        (folder / name).write_text(text, "utf-8")
+    main, other = str(folder / "main.yml"), str(folder / "rest.yml")
+    session = Session([folder])
+    places = {item.span.start for each in session.check(main).values() for item in each}
+    assert {at for at in range(len(ALIASED)) if ALIASED.startswith("-1", at)} <= places
+    for _ in range(2):
+        session.change(other, session.text(other).replace("1", "2") + "\n")
+        assert found(session, main) == fresh(main, {other: session.text(other)})
