@@ -30,7 +30,7 @@ from smachac.frontend.errors import script as script_errors
 from smachac.frontend.files import disk_library, read_source
 from smachac.frontend.kept import Kept
 from smachac.frontend.loader import ROS_VERSIONS, Library
-from smachac.frontend.lower import lower
+from smachac.frontend.lower import KeptNodes, lower
 from smachac.frontend.resolve import resolve
 from smachac.frontend.script import Script
 from smachac.frontend.suppressions import Suppression, suppress
@@ -92,6 +92,7 @@ class Previous:
     changed. Whoever checks a script again owns one: a language server, `check --watch`."""
 
     kept: Kept = field(default_factory=Kept)
+    nodes: KeptNodes = field(default_factory=dict)
     context: Context | None = None
 
 
@@ -153,7 +154,8 @@ def _analysis(
     kept = previous.kept if previous is not None else None
     with deep_recursion():
         script = parse_and_resolve(source, library, report, kept)
-        machine = lower(script, kept) if script is not None else None
+        nodes = previous.nodes if previous is not None else None
+        machine = lower(script, nodes) if script is not None else None
         context = _context(machine, previous)
         if machine is not None:
             report.extend(check_machine(machine, context=context))

@@ -20,14 +20,10 @@ from smachac.frontend.script import State
 from smachac.frontend.state_types import find_state_type
 from smachac.frontend.unused import Uses
 from smachac.frontend.yaml_tree import Entry
-from smachac.ir.nodes import Node, Preset, StateType
+from smachac.ir.nodes import Preset, StateType
 
 Answers: TypeAlias = "list[object]"
 """The answers of a library: texts, each equal to itself alone, and names of files."""
-
-
-KeptNodes: TypeAlias = "dict[tuple[Span, tuple[Span, ...]], tuple[State, Node]]"
-"""Nodes with the states that they were made from, by the spans of the name and of the calls."""
 
 
 class KeptCall(NamedTuple):
@@ -59,12 +55,11 @@ def same_objects(one: Mapping[str, object], other: Mapping[str, object]) -> bool
 
 @dataclass(slots=True)
 class Kept:
-    """The results of the last reading: the calls by the span of the state's name, the state types
-    with the answers that they were made from, and the nodes of the containers."""
+    """The results of the last reading: the calls by the span of the state's name, and the state
+    types with the answers that they were made from."""
 
     calls: Mapping[Span, KeptCall] = field(default_factory=dict)
     types: dict[str, tuple[Answers, StateType]] = field(default_factory=dict)
-    nodes: KeptNodes = field(default_factory=dict)
 
     def state_type(self, name: str, library: Library, report: Report) -> StateType | None:
         """As `find_state_type`; the same object as before if the answers are the same."""

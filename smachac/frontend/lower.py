@@ -7,12 +7,11 @@ import re
 from collections.abc import Iterable, Mapping
 from dataclasses import replace
 from pathlib import PurePath
-from typing import Any, NamedTuple
+from typing import Any, NamedTuple, TypeAlias
 
 from smachac.diagnostics.source import NOWHERE, Span, Word, assert_never
 from smachac.frontend import schema
 from smachac.frontend.desugar import desugared
-from smachac.frontend.kept import Kept, KeptNodes
 from smachac.frontend.script import ANY_OUTCOME, ERROR, Keys, Pairs, Script, State
 from smachac.ir import nodes
 from smachac.ir.graph import is_unread
@@ -47,15 +46,21 @@ _VARIABLE = re.compile(r"(\.?)\{(\w+)\}")
 """A part of a claim that the value of a variable replaces."""
 
 
-def lower(script: Script, kept: Kept | None = None) -> Machine:
-    """The machine that a script describes. `kept` are the results of the last reading, whose nodes
-    become those of this one."""
+KeptNodes: TypeAlias = "dict[tuple[Span, tuple[Span, ...]], tuple[State, Node]]"
+"""The nodes of containers with the states that they were made from, by the spans of the name and of
+the calls around."""
+
+
+def lower(script: Script, kept: KeptNodes | None = None) -> Machine:
+    """The machine that a script describes. `kept` are the nodes of the machine before a change,
+    which become those of this one: a state that is the same object has the same node."""
     base = script.base
-    nodes = _Nodes(kept.nodes if kept is not None else {}, {})
+    nodes = _Nodes(kept or {}, {})
     root = _container(base, "StateMachine", nodes)
     assert isinstance(root, StateMachine)
     if kept is not None:
-        kept.nodes = nodes.new
+        kept.clear()
+        kept.update(nodes.new)
     digest = hashlib.sha256()
     for source in script.sources:
         digest.update(source.text.encode("utf-8", "surrogatepass"))
@@ -243,8 +248,7 @@ def _without_optional(child: Node, state: State, outcomes: frozenset[str]) -> No
 
 
 class _Nodes(NamedTuple):
-    """The nodes of containers with their states, by the spans of the name and of the calls around:
-    those of the last reading, and those of this one."""
+    """The kept nodes of the machine before a change, and those of this one."""
 
     old: KeptNodes
     new: KeptNodes
