@@ -7,20 +7,18 @@ from __future__ import annotations
 
 import json
 import os
-from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
+from collections.abc import Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from pathlib import Path
 
-from smachac.analysis.context import Context
 from smachac.diagnostics.diagnostic import Diagnostic, Report, identity, in_order
 from smachac.diagnostics.source import Source, Word
-from smachac.driver import CODES, Analysis, MachineCheck, analyse, read_machine
+from smachac.driver import CODES, Analysis, MachineCheck, Previous, analyse, read_machine
 from smachac.frontend.errors.suppressions import unused_allowances
 from smachac.frontend.files import Disk, disk_library
 from smachac.frontend.loader import Library
 from smachac.frontend.suppressions import Suppression
 from smachac.frontend.yaml_tree import Seq
-from smachac.ir.nodes import Machine
 from smachac.ir.recursion import deep_recursion
 from smachac.ir.traversal import remapping
 
@@ -67,11 +65,12 @@ def check_scripts(
     scripts: Sequence[Path] = (),
     templates: Sequence[Path] = (),
     extra: MachineCheck | None = None,
-    make_context: Callable[[Machine], Context] = Context,
+    previous: dict[str, Previous] | None = None,
 ) -> Batch:
     """Check scripts by all rules and by `extra`: sub-scripts through their callers, or alone.
 
-    Templates of the user are rendered, for their findings.
+    Templates of the user are rendered, for their findings. `previous` are the results of the last
+    analyses by path, which become those of these ones.
     """
     analyses: dict[str, Analysis] = {}
     uses: dict[str, frozenset[str]] = {}
@@ -84,12 +83,13 @@ def check_scripts(
             library = disk_library(
                 path, report, scripts=scripts, templates=templates, disk=disk, codes=CODES
             )
+            last = None if previous is None else previous.setdefault(str(path), Previous())
             if called:
                 analyses[str(path)] = analyse(
-                    source, library, report, extra, render=True, make_context=make_context
+                    source, library, report, extra, render=True, previous=last
                 )
             else:
-                analyses[str(path)] = analyse_alone(source, library, report, make_context)
+                analyses[str(path)] = analyse_alone(source, library, report, last)
         uses[str(path)] = frozenset(disk.asked)
 
     for path in paths:
@@ -137,7 +137,7 @@ def analyse_alone(
     source: Source,
     library: Library,
     report: Report,
-    make_context: Callable[[Machine], Context] = Context,
+    previous: Previous | None = None,
 ) -> Analysis:
     """The analysis of a sub-script that no script calls: a script is generated that calls it.
 
@@ -164,7 +164,7 @@ def analyse_alone(
             for part in (state.inputs, state.outputs)
         )
         caller = _caller(name, [outcome.name for outcome in state.outcomes], *keys)
-    found = analyse(caller, own, report, make_context=make_context)
+    found = analyse(caller, own, report, previous=previous)
     return replace(found, report=list(_without(caller, found.report)), checked=None)
 
 

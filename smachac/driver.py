@@ -6,7 +6,7 @@ Every command and the public API pass through these functions. Only this module 
 from __future__ import annotations
 
 from collections.abc import Callable, Iterable, Mapping, Sequence
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, field, replace
 from os import PathLike
 from pathlib import Path
 from typing import NamedTuple, TypeAlias
@@ -28,8 +28,9 @@ from smachac.diagnostics.source import Source, Span
 from smachac.frontend.errors import references, suppressions
 from smachac.frontend.errors import script as script_errors
 from smachac.frontend.files import disk_library, read_source
+from smachac.frontend.kept import Kept
 from smachac.frontend.loader import ROS_VERSIONS, Library
-from smachac.frontend.lower import lower
+from smachac.frontend.lower import KeptNodes, lower
 from smachac.frontend.resolve import resolve
 from smachac.frontend.script import Script
 from smachac.frontend.suppressions import Suppression, suppress
@@ -85,6 +86,16 @@ class Analysis:
     unused: tuple[Suppression, ...] = ()
 
 
+@dataclass(slots=True)
+class Previous:
+    """The results of the last analysis of a script that the next one can use, after some texts have
+    changed. Whoever checks a script again owns one: a language server, `check --watch`."""
+
+    kept: Kept = field(default_factory=Kept)
+    nodes: KeptNodes = field(default_factory=dict)
+    context: Context | None = None
+
+
 def analyse_script(
     script: str | PathLike[str] | Source,
     scripts: Folders = (),
@@ -115,18 +126,17 @@ def analyse(
     extra: MachineCheck | None = None,
     *,
     render: bool = False,
-    make_context: Callable[[Machine], Context] = Context,
+    previous: Previous | None = None,
 ) -> Analysis:
     """Parse, resolve, lower and check a script, then apply suppressions and severities.
 
     Findings that are already in `report` belong to the result as well. `render`: the findings of
     the Python program are reported too, for which the templates of the user are rendered; a build
-    does that in any case. `make_context`
-    makes the context of the machine; a caller may keep it. If there is not enough memory, that is
-    the only finding.
+    does that in any case. `previous` are the results of the last analysis, which become those of
+    this one. If there is not enough memory, that is the only finding.
     """
     try:
-        return _analysis(source, library, report, extra, make_context, render=render)
+        return _analysis(source, library, report, extra, previous, render=render)
     except MemoryError:
         pass  # after this clause, the frames of the exception no longer hold the script
     return Analysis(script=source.name, report=[_out_of_memory(source)], library=library)
@@ -137,15 +147,18 @@ def _analysis(
     library: Library,
     report: Report,
     extra: MachineCheck | None,
-    make_context: Callable[[Machine], Context],
+    previous: Previous | None,
     *,
     render: bool,
 ) -> Analysis:
+    kept = previous.kept if previous is not None else None
     with deep_recursion():
-        script = parse_and_resolve(source, library, report)
-        machine = lower(script) if script is not None else None
+        script = parse_and_resolve(source, library, report, kept)
+        nodes = previous.nodes if previous is not None else None
+        machine = lower(script, nodes) if script is not None else None
+        context = _context(machine, previous)
         if machine is not None:
-            report.extend(check_machine(machine, context=make_context(machine)))
+            report.extend(check_machine(machine, context=context))
             report.extend(code_faults(machine, library, load_target))
             report.extend(undefined_names(machine, library))
             report.extend(extra(machine) if extra is not None else ())
@@ -169,17 +182,28 @@ def _analysis(
     )
 
 
+def _context(machine: Machine | None, previous: Previous | None) -> Context | None:
+    """The context of a machine, with the facts of the previous one that still hold. It becomes the
+    previous context."""
+    if previous is None:
+        return None
+    previous.context = Context(machine, previous.context) if machine is not None else None
+    return previous.context
+
+
 def _out_of_memory(source: Source) -> Diagnostic:
     message = "there is not enough memory for this script"
     help = "split it into several scripts, or raise `--memory-limit`"
     return script_errors.too_big(Span(source, 0, 0), message, help, arguments=("memory",))
 
 
-def parse_and_resolve(source: Source, library: Library, report: Report) -> Script | None:
+def parse_and_resolve(
+    source: Source, library: Library, report: Report, kept: Kept | None = None
+) -> Script | None:
     """The script of a text, with its sub-scripts and look-ups filled in, as far as it can be
-    read."""
+    read. `kept`: see `resolve`."""
     tree = library.parse(source, report)
-    return resolve(source, tree, library, report)
+    return resolve(source, tree, library, report, kept)
 
 
 def read_machine(source: Source, library: Library, report: Report) -> Machine | None:

@@ -2,13 +2,14 @@
 
 from __future__ import annotations
 
-from functools import cached_property
-from typing import TYPE_CHECKING
+from collections.abc import Callable
+from functools import cached_property, partial
+from typing import TYPE_CHECKING, TypeAlias, TypeVar, cast
 
 from smachac.analysis.accesses import Accesses, accesses
 from smachac.analysis.control_flow import Linear, endless_states, mended
 from smachac.analysis.definite_assignment import DataFlow, data_flow
-from smachac.analysis.error_recovery import mended_machine
+from smachac.analysis.error_recovery import mended_container, mended_machine
 from smachac.analysis.expression_errors import Fault
 from smachac.analysis.expression_sites import ExpressionSite, expression_sites
 from smachac.analysis.failure_paths import Failure, failures
@@ -28,6 +29,12 @@ from smachac.ir.nodes import Container, Machine, Node, StateMachine
 if TYPE_CHECKING:
     from smachac.analysis.properties import Judgement
 
+C = TypeVar("C", bound=Container)
+T = TypeVar("T")
+
+Facts: TypeAlias = "dict[tuple[Callable[..., object], str], tuple[Container, object]]"
+"""Facts about containers with the containers, by the function that computes them and the path."""
+
 
 class Context:
     """The analysis results of one machine.
@@ -37,8 +44,22 @@ class Context:
     shared, so nobody may change them.
     """
 
-    def __init__(self, machine: Machine) -> None:
+    def __init__(self, machine: Machine, previous: Context | None = None) -> None:
+        """`previous` is the context of the machine before a change. What it knows of a container
+        holds for this machine if the container is the same object."""
         self.machine = machine
+        self._scopes = previous.mended_flow.scopes if previous is not None else {}
+        self._known = previous._facts if previous is not None else {}
+        self._facts: Facts = {}
+
+    def of_container(self, fact: Callable[[C], T], path: str, container: C) -> T:
+        """A fact about one container, which is a function of nothing else; computed once."""
+        which = fact, path
+        found = self._facts.get(which) or self._known.get(which)
+        if found is None or found[0] is not container:
+            found = container, fact(container)
+        self._facts[which] = found
+        return cast(T, found[1])
 
     @cached_property
     def states(self) -> tuple[tuple[str, Node], ...]:
@@ -62,7 +83,7 @@ class Context:
     @cached_property
     def mended(self) -> tuple[Linear, ...]:
         """The containers of `linear`, with misspelt names corrected."""
-        return tuple(mended(container) for _, container in self.linear)
+        return tuple(self.of_container(mended, path, container) for path, container in self.linear)
 
     @cached_property
     def spans(self) -> dict[str, Span]:
@@ -98,13 +119,15 @@ class Context:
     @cached_property
     def flow(self) -> DataFlow:
         """The data flow of the machine as written."""
-        return data_flow(self.machine)
+        return data_flow(self.machine, self._scopes)
 
     @cached_property
     def mended_flow(self) -> DataFlow:
         """The data flow of the machine with misspelt names corrected."""
-        mended = mended_machine(self.machine, self.containers)
-        return self.flow if mended is self.machine else data_flow(mended)
+        mended = mended_machine(
+            self.machine, self.containers, partial(self.of_container, mended_container)
+        )
+        return self.flow if mended is self.machine else data_flow(mended, self._scopes)
 
     @cached_property
     def _missing_keys(self) -> tuple[Missing, ...]:

@@ -83,11 +83,15 @@ class DataFlow:
     repeated: frozenset[str]
 
 
-def data_flow(machine: Machine) -> DataFlow:
-    """The data flow of userdata in a machine."""
+def data_flow(machine: Machine, known: Mapping[str, UserdataScope] = {}) -> DataFlow:
+    """The data flow of userdata in a machine. `known` are the scopes of the machine before a
+    change: those of containers that have not changed, nor any inside, hold for this machine."""
     found: dict[str, UserdataScope] = {}
     for path, container in reversed(list(containers(machine.root))):
-        found[path] = _scope(path, container, found, machine.root)
+        scope = known.get(path)
+        if scope is None or not _is_unchanged(scope, container, found, known):
+            scope = _scope(path, container, found, machine.root)
+        found[path] = scope
     entered = {machine.root.name}
     repeated: set[str] = set()
     scopes = {path: found[path] for path, _ in containers(machine.root)}
@@ -106,6 +110,16 @@ def data_flow(machine: Machine) -> DataFlow:
         entered=frozenset(entered),
         repeated=frozenset(repeated),
     )
+
+
+def _is_unchanged(
+    scope: UserdataScope,
+    container: Container,
+    found: Mapping[str, UserdataScope],
+    known: Mapping[str, UserdataScope],
+) -> bool:
+    inner = (f"{scope.path}/{name}" for name in scope.inner)
+    return scope.container is container and all(found[each] is known[each] for each in inner)
 
 
 def _scope(

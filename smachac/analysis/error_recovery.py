@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
 from collections.abc import Sequence as PathSequence
 from dataclasses import replace
 from typing import NamedTuple, cast
@@ -72,25 +72,38 @@ PERHAPS = Type("optional", (ANY,))
 """The type of a key that code reads without a declaration: used but not required (SM310)."""
 
 
-def mended_machine(machine: Machine, containers: PathSequence[tuple[str, Container]]) -> Machine:
-    """The machine with misspelt targets, outcomes and remaps corrected, and with the keys declared
-    that code of the script reads and writes. Iterative, so that nesting can be deep."""
+def mended_machine(
+    machine: Machine,
+    containers: PathSequence[tuple[str, Container]],
+    mend: Callable[[str, Container], Container],
+) -> Machine:
+    """The machine with each container as `mend` returns it by its path: `mended_container`.
+    Iterative, so that nesting can be deep."""
     # In reversed preorder the containers inside one have just been built, its first child last.
     built: list[Container] = []
-    for _, container in reversed(containers):
-        raw = isinstance(container, nodes.Iterator)
+    for path, container in reversed(containers):
         children = tuple(
-            _meant(child, raw=raw) if isinstance(child, Leaf) else _meant(built.pop(), raw=False)
-            for child in container.children
+            child if isinstance(child, Leaf) else built.pop() for child in container.children
         )
         whole = container
         if any(new is not old for new, old in zip(children, container.children, strict=True)):
             whole = replace(container, children=children)
-        if isinstance(whole, StateMachine | Sequence):
-            whole = mended(whole)
-        built.append(whole)
+        built.append(mend(path, whole))
     root = cast(StateMachine, built.pop())
     return machine if root is machine.root else replace(machine, root=root)
+
+
+def mended_container(container: Container) -> Container:
+    """A container with misspelt targets, outcomes and remaps corrected, and with the keys declared
+    that code of the script reads and writes in its states."""
+    raw = isinstance(container, nodes.Iterator)
+    children = tuple(
+        _meant(child, raw=raw and isinstance(child, Leaf)) for child in container.children
+    )
+    whole = container
+    if any(new is not old for new, old in zip(children, container.children, strict=True)):
+        whole = replace(container, children=children)
+    return mended(whole) if isinstance(whole, StateMachine | Sequence) else whole
 
 
 def _meant(node: Node, *, raw: bool) -> Node:

@@ -2,11 +2,11 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterable, Mapping
+from collections.abc import Callable, Iterable, Mapping, Sequence
 from heapq import heappop, heappush
 from typing import NamedTuple, TypeAlias
 
-from smachac.analysis.accesses import Writes
+from smachac.analysis.accesses import NOTHING, Writes
 from smachac.ir.graph import START, Vertex
 
 
@@ -124,39 +124,45 @@ def _some_path(
     found: dict[Vertex, list[str]] = {}
     for first in range(0, len(keys), size):
         bits = _Bits(keys[first : first + size])
-        moves = {
-            vertex: [(step.target, *effect(bits, step.writes)) for step in leading]
-            for vertex, leading in steps.items()
-        }
-        arrived = _spread(bits.whole if from_start else 0, moves, order)
+        unchanged = (bits.whole, 0)
+        moves = [
+            [
+                (order[to], kept, added)
+                for to, _, writes in steps.get(vertex, ())
+                for kept, added in [unchanged if writes is NOTHING else effect(bits, writes)]
+            ]
+            for vertex in order
+        ]
+        arrived = _spread(bits.whole if from_start else 0, moves)
         for vertex, several in here.items():
-            mask = arrived[vertex]
+            mask = arrived[order[vertex]]
             some = [key for key in several if bits.of.get(key, 0) & mask]
             if some:
                 found.setdefault(vertex, []).extend(some)
     return {vertex: tuple(several) for vertex, several in found.items()}
 
 
-Moves = Mapping[Vertex, list[tuple[Vertex, int, int]]]
-"""From each vertex the targets, the bits that stay on the way, and those that are added."""
+Moves: TypeAlias = Sequence[Sequence[tuple[int, int, int]]]
+"""From each vertex, by its number in the order, the numbers of the targets, the bits that stay on
+the way, and those that are added."""
 
 
-def _spread(start: int, moves: Moves, order: Order) -> Mapping[Vertex, int]:
+def _spread(start: int, moves: Moves) -> Sequence[int]:
     """The union over all paths of the bits that arrive, by rounds in the order of the flow."""
-    vertices = list(order)
-    found: dict[Vertex, int] = {START: start}
-    todo = [order[START]]
-    waiting = set(todo)
+    found = [-1] * len(moves)  # not reached yet
+    found[0] = start
+    todo = [0]
+    waiting = {0}
     while todo:
         number = heappop(todo)
         waiting.discard(number)
-        here = found[vertices[number]]
-        for target, kept, added in moves.get(vertices[number], ()):
-            before = found.get(target)
-            after = (here & kept) | added | (before or 0)
+        here = found[number]
+        for target, kept, added in moves[number]:
+            before = found[target]
+            after = (here & kept) | added | (before if before >= 0 else 0)
             if before != after:
                 found[target] = after
-                if order[target] not in waiting:
-                    waiting.add(order[target])
-                    heappush(todo, order[target])
+                if target not in waiting:
+                    waiting.add(target)
+                    heappush(todo, target)
     return found

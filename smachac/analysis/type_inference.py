@@ -16,8 +16,8 @@ a machine is parsed to the same machine.
 from __future__ import annotations
 
 from collections import deque
-from collections.abc import Iterable, Mapping
-from dataclasses import dataclass, field, replace
+from collections.abc import Collection, Mapping
+from dataclasses import dataclass, field
 from functools import reduce
 from typing import Literal, TypeAlias
 
@@ -276,7 +276,7 @@ class _Inference:
             if found is not None or flow.how != "value":
                 return
             self.constants.append(flow)
-            flow = replace(flow, judged=True)
+            flow = flow.accepted()
         mark = flow.mark
         if mark in cell.flows:
             cell.flows[mark].append(flow)
@@ -360,6 +360,8 @@ def _written(leaf: Leaf) -> dict[str, list[tuple[Span, Data]]]:
     """The values that the script gives to the outputs of a leaf, by key: results of callbacks, for
     keys that nothing else writes, and data of steps."""
     found: dict[str, list[tuple[Span, Data]]] = {}
+    if not leaf.variables:
+        return found
     callbacks = functions(leaf, "callbacks")
     if callbacks:
         others = {key.name for key in leaf.outputs} - key_names(leaf.outputs, "result")
@@ -379,14 +381,15 @@ def _written(leaf: Leaf) -> dict[str, list[tuple[Span, Data]]]:
 def key_types(cells: list[Cell]) -> dict[Cell, Type]:
     """The type of each cell. Linked cells without a declaration have one type."""
     groups = Groups()
-    for cell in cells:
+    free = [cell for cell in cells if cell.declared == ANY]
+    for cell in free:
         for link in cell.links:
-            if cell.declared == ANY and link.declared == ANY:
+            if link.declared == ANY:
                 groups.unite(cell, link)
-    read = _read(cells, groups)
+    read = _read(free, groups)
     written: dict[Cell, set[Type]] = {}
-    for cell in cells:
-        fresh = (alike[0].type for alike in cell.flows.values() if not alike[0].judged)
+    for cell in free:
+        fresh = [alike[0].type for alike in cell.flows.values() if not alike[0].judged]
         written.setdefault(groups.of(cell), set()).update(fresh)
     types = {
         group: settled(joined(found), _common(read.get(group, ())))
@@ -397,14 +400,15 @@ def key_types(cells: list[Cell]) -> dict[Cell, Type]:
     }
 
 
-def _read(cells: list[Cell], groups: Groups) -> dict[Cell, set[Type]]:
-    """The types that the readers of each group require; the readers of an item require a list."""
+def _read(free: list[Cell], groups: Groups) -> dict[Cell, set[Type]]:
+    """The types that the readers of each group require; the readers of an item require a list.
+    `free` are the cells without a declaration."""
     read: dict[Cell, set[Type]] = {}
-    for cell in cells:
+    for cell in free:
         wanted = [link.declared for link in cell.links if link.declared != ANY]
         if wanted:
             read.setdefault(groups.of(cell), set()).update(wanted)
-    for cell in cells:
+    for cell in free:
         for computation in cell.readers:
             if computation.items and computation.expression is None:
                 item = computation.cell.declared
@@ -415,9 +419,9 @@ def _read(cells: list[Cell], groups: Groups) -> dict[Cell, set[Type]]:
     return read
 
 
-def _common(types: Iterable[Type]) -> Type:
+def _common(types: Collection[Type]) -> Type:
     """The type that can be read as all of these; `any` where there is none."""
-    return reduce(meet, sorted(types, key=repr), ANY)
+    return reduce(meet, sorted(types, key=repr) if len(types) > 1 else types, ANY)
 
 
 class Groups:
@@ -463,9 +467,10 @@ class Cell:
     holds: Type | None = None
 
 
-@dataclass(frozen=True, slots=True, eq=False, kw_only=True)
+@dataclass(slots=True, eq=False, kw_only=True)
 class TypeFlow:
-    """A typed value that has arrived at a cell.
+    """A typed value that has arrived at a cell. Nobody changes it; it is not frozen, because a
+    frozen one takes four times as long to make.
 
     `how`: the script gives a literal (`value`), the cell declares it, or code computes it.
     `before` is the same value one link earlier, `first` where the value came to be (none: here).
@@ -491,9 +496,31 @@ class TypeFlow:
         """The flow where the value originates."""
         return self.first or self
 
+    def accepted(self) -> TypeFlow:
+        """The same value after a declaration has accepted it."""
+        return TypeFlow(
+            type=self.type,
+            how=self.how,
+            span=self.span,
+            cell=self.cell,
+            value=self.value,
+            before=self.before,
+            first=self.first,
+            judged=True,
+        )
+
     def moved_to(self, cell: Cell) -> TypeFlow:
         """The same value one link later."""
-        return replace(self, cell=cell, before=self, first=self.origin)
+        return TypeFlow(
+            type=self.type,
+            how=self.how,
+            span=self.span,
+            cell=cell,
+            value=self.value,
+            before=self,
+            first=self.first or self,
+            judged=self.judged,
+        )
 
 
 @dataclass(frozen=True, slots=True, eq=False, kw_only=True)

@@ -293,8 +293,10 @@ def _join_lists(one: Type, other: Type) -> Type:
 
 def joined(types: Iterable[Type]) -> Type:
     """The least type that all fit; `any` of none at all."""
-    found = sorted(set(types), key=repr)
-    return reduce(join, found) if found else ANY
+    found = set(types)
+    if len(found) > 1:
+        return reduce(join, sorted(found, key=repr))
+    return found.pop() if found else ANY
 
 
 def item_of(type_: Type) -> Type:

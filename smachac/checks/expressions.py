@@ -142,15 +142,16 @@ def _missing_code(leaf: Leaf, path: str) -> Iterator[Finding]:
 def unknown_endings(path: str, leaf: Leaf) -> Iterator[Finding]:
     """The unknown outcomes in the conditions and steps of a leaf (SM102)."""
     outcomes = outcome_names(leaf)
-    guess = guesser(outcomes)
-    known = f"use one of its outcomes: {listed(outcomes)}"
-    for word, what in _endings(leaf) if outcomes and not leaf.open else ():
+    if not (leaf.variables and outcomes) or leaf.open:
+        return
+    for word, what in _endings(leaf):
         if word.text not in outcomes:
+            meant = did_you_mean(guesser(outcomes)(word.text))
             yield Finding(
                 span=word.span,
                 message=f"{what} `{word.text}`, which is not one of its outcomes",
                 arguments=(word.text,),
-                help=did_you_mean(guess(word.text)) or known,
+                help=meant or f"use one of its outcomes: {listed(outcomes)}",
                 related=calls(leaf, word.span),
                 node=path,
             )

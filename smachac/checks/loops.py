@@ -71,7 +71,7 @@ def trap(context: Context) -> Iterator[Finding]:
         if isinstance(container, StateMachine) and container.forever:
             continue
         flow = outline(path, container, endless, mended)
-        stuck = stuck_states(flow)
+        stuck = context.of_container(stuck_states, path, flow)
         if not stuck:
             continue
         steps = steps_of(flow)

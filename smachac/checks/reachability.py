@@ -63,7 +63,7 @@ def unreachable_state(context: Context) -> Iterator[Finding]:
               transitions: {done: lost}
     """
     for (path, container), whole in zip(context.linear, context.mended, strict=True):
-        seen = reachable(whole)
+        seen = context.of_container(reachable, path, whole)
         hidden = [child for child in container.children if child.name not in seen]
         if hidden and isinstance(container, Sequence) and _never_continues(container):
             yield _wrong_connector(path, container)
@@ -159,7 +159,7 @@ def impossible_outcome(context: Context) -> Iterator[Finding]:
     again = {found.stop.path for found in context.stop_paths.again}
     for path, container in context.containers:
         whole = next(linear) if isinstance(container, StateMachine | Sequence) else container
-        possible = _possible_outcomes(whole)
+        possible = context.of_container(_possible_outcomes, path, whole)
         # Where SM209 is reported, a state does not lead `preempted` out of the container.
         stops = path in again or ends_preempted(container)
         known = {container.catches, PREEMPTED if stops else ""}

@@ -358,11 +358,13 @@ def _millimetres(flow: TypeFlow, simulated: frozenset[str]) -> list[int | float]
     node, wanted = flow.cell.node, present(flow.cell.declared)
     if wanted.name not in POINTS or not isinstance(node, Leaf) or flow.cell.role == "output":
         return []
-    parts = [claim.partition(".")[0] for claim in node.claims]
-    in_reach = "arm" in parts or "gripper" in parts or role_of(flow.cell) == "goal_pose"
-    in_reach = in_reach or node.type in simulated
     value = flow.value
     point = value[0] if isinstance(value, tuple) and len(value) == 2 else value
-    if not in_reach or not isinstance(point, tuple):
+    if not isinstance(point, tuple):
         return []
-    return [each for each in numbers(point) if FARTHEST < abs(each) < math.inf]
+    large = [each for each in numbers(point) if FARTHEST < abs(each) < math.inf]
+    if not large:
+        return []
+    parts = [claim.partition(".")[0] for claim in node.claims]
+    in_reach = "arm" in parts or "gripper" in parts or role_of(flow.cell) == "goal_pose"
+    return large if in_reach or node.type in simulated else []

@@ -30,6 +30,7 @@ if TYPE_CHECKING:
 
     from smachac.batch import Batch
     from smachac.diagnostics.diagnostic import Report
+    from smachac.driver import Previous
     from smachac.frontend.files import Disk
     from smachac.refactor.autofix import FixResult
 
@@ -125,8 +126,11 @@ def _codes_of(words: list[str]) -> list[str]:
     return [code.strip().upper() for word in words for code in word.split(",") if code.strip()]
 
 
-def _check_once(arguments: Namespace, used: set[str], disk: Disk) -> int:
-    """Check once; the exit code. The real paths of all files that were read go into `used`."""
+def _check_once(
+    arguments: Namespace, used: set[str], disk: Disk, previous: dict[str, Previous] | None = None
+) -> int:
+    """Check once; the exit code. The real paths of all files that were read go into `used`.
+    `previous`: see `check_scripts`."""
     from smachac.batch import check_scripts
     from smachac.checks.workspace import unreachable
     from smachac.diagnostics.diagnostic import Severity
@@ -137,10 +141,11 @@ def _check_once(arguments: Namespace, used: set[str], disk: Disk) -> int:
     paths = scripts_of(arguments.script, disk)
     sim_rule = unreachable if arguments.sim else None
 
-    def check(disk: Disk) -> Batch:
-        return check_scripts(paths, disk, arguments.scripts, arguments.templates, sim_rule)
+    def check(disk: Disk, previous: dict[str, Previous] | None = None) -> Batch:
+        folders = arguments.scripts, arguments.templates
+        return check_scripts(paths, disk, *folders, sim_rule, previous)
 
-    whole = check(disk)
+    whole = check(disk, previous)
     used.update(*whole.uses.values())
     changed = changed_since(arguments.changed_since) if arguments.changed_since else None
     found, notes = _select(whole, changed, arguments)
@@ -312,13 +317,14 @@ def _watch(arguments: Namespace) -> int:
     from smachac.frontend.files import Disk, stamps
 
     disk = Disk()  # files that did not change are read and parsed once
+    previous: dict[str, Previous] = {}
     known: set[str] = set()
     while True:
         before = stamps(_watched(arguments, known))
         used: set[str] = set()
         try:
             disk.refresh()
-            _check_once(arguments, used, disk)
+            _check_once(arguments, used, disk, previous)
         except _wrong_usage() as error:
             if not known:
                 raise

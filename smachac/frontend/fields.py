@@ -76,12 +76,18 @@ def name_of(tree: Tree) -> Word | None:
 
 def as_name(tree: Tree, report: Report) -> Word | None:
     """A name: of a state, an outcome, a key, a script, a template."""
+    text = name_text(tree, report)
+    return Word(text, tree.span) if text is not None else None
+
+
+def name_text(tree: Tree, report: Report) -> str | None:
+    """The text of a name, without its span."""
     if not isinstance(tree, Scalar):
         wrong(tree, "name", report)
         return None
     value = tree.value
     if isinstance(value, str) and (value not in _YAML_1_1_BOOLEANS or not tree.plain):
-        return Word(value, tree.span)
+        return value
     if value is None:
         wrong(tree, "name", report)
         return None
@@ -95,9 +101,9 @@ def as_name(tree: Tree, report: Report) -> Word | None:
                 arguments=("boolean", text),
             )
         )
-        return Word(text, tree.span)
+        return text
     # A number is a fine name for a state or an outcome once it is text.
-    return Word(tree.span.text, tree.span)
+    return tree.span.text
 
 
 def as_names(tree: Tree, report: Report, shape: str = "names") -> tuple[Word, ...]:

@@ -7,7 +7,7 @@ import re
 from collections.abc import Iterable, Mapping
 from dataclasses import replace
 from pathlib import PurePath
-from typing import Any
+from typing import Any, NamedTuple, TypeAlias
 
 from smachac.diagnostics.source import NOWHERE, Span, Word, assert_never
 from smachac.frontend import schema
@@ -46,11 +46,21 @@ _VARIABLE = re.compile(r"(\.?)\{(\w+)\}")
 """A part of a claim that the value of a variable replaces."""
 
 
-def lower(script: Script) -> Machine:
-    """The machine that a script describes."""
+KeptNodes: TypeAlias = "dict[tuple[Span, tuple[Span, ...]], tuple[State, Node]]"
+"""The nodes of containers with the states that they were made from, by the spans of the name and of
+the calls around."""
+
+
+def lower(script: Script, kept: KeptNodes | None = None) -> Machine:
+    """The machine that a script describes. `kept` are the nodes of the machine before a change,
+    which become those of this one: a state that is the same object has the same node."""
     base = script.base
-    root = _container(base, "StateMachine")
+    nodes = _Nodes(kept or {}, {})
+    root = _container(base, "StateMachine", nodes)
     assert isinstance(root, StateMachine)
+    if kept is not None:
+        kept.clear()
+        kept.update(nodes.new)
     digest = hashlib.sha256()
     for source in script.sources:
         digest.update(source.text.encode("utf-8", "surrogatepass"))
@@ -237,8 +247,15 @@ def _without_optional(child: Node, state: State, outcomes: frozenset[str]) -> No
     return child if len(kept) == len(child.outcomes) else replace(child, outcomes=kept)
 
 
-def _container(state: State, owner: ContainerKind) -> Container:
-    children = tuple([_node(child) for child in state.states])
+class _Nodes(NamedTuple):
+    """The kept nodes of the machine before a change, and those of this one."""
+
+    old: KeptNodes
+    new: KeptNodes
+
+
+def _container(state: State, owner: ContainerKind, kept: _Nodes) -> Container:
+    children = tuple([_node(child, kept) for child in state.states])
     fields = _interface(state)
     fields["outcomes"] = state.outcomes
     fields["userdata"] = presets(state)
@@ -283,9 +300,20 @@ def _text(word: Word | None, default: str = "") -> str:
     return word.text if word is not None else default
 
 
-def _node(state: State) -> Node:
+def _node(state: State, kept: _Nodes) -> Node:
     assert state.owner != "base"
-    node = _leaf(state) if state.owner == "state" else _container(state, state.owner)
+    if state.owner == "state":
+        return _with_sugar(_leaf(state), state)
+    place = state.name.span, state.via
+    known = kept.old.get(place)
+    if known is None or known[0] is not state:
+        known = state, _with_sugar(_container(state, state.owner, kept), state)
+    kept.new[place] = known
+    return known[1]
+
+
+def _with_sugar(node: Node, state: State) -> Node:
+    """The node with its transition on errors, in the containers of its sugar."""
     words = [key for key, _ in state.transitions]
     for part in (state.sugar.retry, state.sugar.for_each):
         words += part.on if part is not None else ()

@@ -27,7 +27,8 @@ from smachac.frontend.errors.script import (
     too_big,
     wrong_shape,
 )
-from smachac.frontend.fields import as_name, kind_of, name_of, pairs_of, wrong
+from smachac.frontend.fields import as_name, kind_of, name_of, name_text, pairs_of, wrong
+from smachac.frontend.kept import Kept, KeptCall, same_objects
 from smachac.frontend.loader import Library
 from smachac.frontend.message_definitions import definitions_of, missing_definitions_of
 from smachac.frontend.params import (
@@ -81,7 +82,7 @@ class _Environment:
     """
 
     source: Source
-    scope: Scope = field(default_factory=dict)
+    scope: Scope = field(default_factory=dict, compare=False)
     calls: tuple[tuple[str, Span], ...] = ()
     depth: int = 0
     inner: Word | None = None
@@ -93,8 +94,15 @@ class _Environment:
         return tuple(span for _, span in self.calls)
 
 
-def resolve(source: Source, tree: Tree | None, library: Library, report: Report) -> Script | None:
-    """The script that a tree describes, without its wrong parts; None if it is no script."""
+def resolve(
+    source: Source,
+    tree: Tree | None,
+    library: Library,
+    report: Report,
+    kept: Kept | None = None,
+) -> Script | None:
+    """The script that a tree describes, without its wrong parts; None if it is no script. `kept`
+    are the results of the last reading, which become those of this one."""
     if tree is None:
         if not report:
             span = Span(source, 0, 0)
@@ -110,26 +118,35 @@ def resolve(source: Source, tree: Tree | None, library: Library, report: Report)
             help = "check or build the script that calls it"
         report.append(wrong_shape(span, message, help, arguments=("script", kind_of(tree))))
         return None
-    resolver = _Resolver(library, report)
+    resolver = _Resolver(library, report, kept)
     script = resolver.script(source, tree)
+    if kept is not None:
+        kept.calls = resolver.calls
     return None if resolver.has_too_many_keys() else script
 
 
 class _Resolver:
     """One run of `resolve`: the library, the report, and what was read so far.
 
-    `count` is the number of states, `looked_up` the number of nodes that look-ups have added.
+    `found_types` and `found_texts` are the library's answers, `types` and `texts` those that the
+    part which is being read uses. `count` is the number of states, `looked_up` the number of nodes
+    that look-ups have added.
     """
 
-    def __init__(self, library: Library, report: Report) -> None:
+    def __init__(self, library: Library, report: Report, kept: Kept | None) -> None:
         self.library = library
         self.report = report
+        self.kept = kept
         self.main = ""
         self.aliases: Aliases = {}
         self.sources: dict[Source, None] = {}
+        self.found_types: dict[str, StateType | None] = {}
         self.types: dict[str, StateType | None] = {}
-        self.sub_scripts: dict[tuple[str, str], tuple[Source, Tree | None, bool] | None] = {}
+        self.found_texts: dict[tuple[str, str], Source | None] = {}
+        self.texts: dict[tuple[str, str], Source] = {}
+        self.parsed: dict[tuple[str, str], tuple[Tree | None, bool]] = {}
         self.templates: tuple[Sequence[str], Sequence[str]] | None = None
+        self.calls: dict[Span, KeptCall] = {}
         self.count = self.looked_up = self.keys = 0
         self.most_keys: tuple[Preset, ...] = ()
         self.uses = Uses()
@@ -179,13 +196,12 @@ class _Resolver:
         """The fields by long name; duplicates are reported (SM002)."""
         fields: dict[str, Entry] = {}
         for entry in entries:
-            word = as_name(entry.key, self.report)
-            if word is None:
+            text = name_text(entry.key, self.report)
+            if text is None:
                 continue
-            name = schema.LONG.get(word.text, word.text)
-            first = fields.setdefault(name, entry)
+            first = fields.setdefault(schema.LONG.get(text, text), entry)
             if first is not entry and first.key.value != entry.key.value:
-                self.report.append(duplicate_key(word, first.key.span))
+                self.report.append(duplicate_key(Word(text, entry.key.span), first.key.span))
         return fields
 
     def state(
@@ -314,7 +330,7 @@ class _Resolver:
             return None
         nothing = isinstance(first.value, Scalar) and first.value.value is None
         if nothing and rest:
-            return self.called(name, self.expand(rest), around)
+            return self.call(name, self.expand(rest), around)
         if nothing or not isinstance(first.value, Map):
             found = kind_of(first.value)
             fault = "is empty" if nothing else f"must be a mapping of variables, not {found}"
@@ -335,7 +351,64 @@ class _Resolver:
                     arguments=("item", name.text, str(other.value)),
                 )
             )
-        return self.called(name, self.expand(first.value.entries), around)
+        return self.call(name, self.expand(first.value.entries), around)
+
+    def call(self, name: Word, own: dict[str, Entry], around: _Environment) -> State:
+        """As `called`; for the call of a sub-script, the state of the last reading if it is still
+        the same."""
+        if self.kept is None or "script" not in own:
+            return self.called(name, own, around)
+        kept = self.kept.calls.get(name.span)
+        if kept is not None and self.is_current(kept, own, around):
+            self.count += kept.states
+            self.keys += kept.keys
+            self.add(kept)
+            self.calls[name.span] = kept
+            return kept.state
+        before = len(self.report), self.looked_up, self.count, self.keys
+        outer = self.texts, self.sources, self.types, self.calls, self.uses, self.most_keys
+        self.texts, self.sources, self.types, self.calls = {}, {}, {}, {}
+        self.uses, self.most_keys = Uses(), ()
+        new = KeptCall(
+            own=dict(own),
+            around=around,
+            scope=around.scope,
+            state=self.called(name, own, around),
+            texts=self.texts,
+            sources=self.sources,
+            types=self.types,
+            calls=self.calls,
+            uses=self.uses,
+            states=self.count - before[2],
+            keys=self.keys - before[3],
+            most_keys=self.most_keys,
+        )
+        self.texts, self.sources, self.types, self.calls, self.uses, self.most_keys = outer
+        self.add(new)
+        if (len(self.report), self.looked_up) == before[:2]:
+            self.calls[name.span] = new
+        return new.state
+
+    def is_current(self, kept: KeptCall, own: dict[str, Entry], around: _Environment) -> bool:
+        """Whether reading a call would give the same state again. The surroundings have the spans
+        of the calls around it, and so the main text, which has the aliases of types."""
+        return (
+            same_objects(kept.own, own)
+            and kept.around == around
+            and same_objects(kept.scope, around.scope)
+            and self.count + kept.states < MAX_STATES
+            and all(self.text(*each) is source for each, source in kept.texts.items())
+            and all(self.state_type(name) is type_ for name, type_ in kept.types.items())
+        )
+
+    def add(self, call: KeptCall) -> None:
+        """Add what the reading of a call has found to the part around it."""
+        self.texts |= call.texts
+        self.sources |= call.sources
+        self.types |= call.types
+        self.calls |= call.calls
+        self.uses.add(call.uses)
+        self.most_keys = max(self.most_keys, call.most_keys, key=len)
 
     def called(self, name: Word, own: dict[str, Entry], around: _Environment) -> State:
         """The state or, if it calls a sub-script, the state of that sub-script with the fields of
@@ -369,21 +442,19 @@ class _Resolver:
         self, word: Word, around: _Environment
     ) -> tuple[Source, Word, tuple[Entry, ...]] | None:
         """The source of a sub-script, the name of its state, and that state's fields."""
-        key = (word.text, around.source.name)
-        if key not in self.sub_scripts:
-            source = self.library.script(word.text, around.source.name)
-            before = len(self.report)
-            tree = self.library.parse(source, self.report) if source else None
-            broken = len(self.report) > before
-            self.sub_scripts[key] = (source, tree, broken) if source else None
-        found = self.sub_scripts[key]
-        if found is None:
-            caller = around.source.name
+        caller = around.source.name
+        source = self.text(word.text, caller)
+        if source is None:
             searched = self.library.script_folders(caller)
             known = self.library.script_names(caller)
             self.not_found(script_not_found(word, searched, known))
             return None
-        source, tree, broken = found
+        self.texts[word.text, caller] = source
+        if (word.text, caller) not in self.parsed:
+            before = len(self.report)
+            tree = self.library.parse(source, self.report)
+            self.parsed[word.text, caller] = tree, len(self.report) > before
+        tree, broken = self.parsed[word.text, caller]
         chain = [*around.calls, (source.name, word.span)]
         if source.name == self.main or source.name in [name for name, _ in around.calls]:
             self.report.append(recursive_include(chain))
@@ -399,6 +470,12 @@ class _Resolver:
         state = sub_script_state(tree, word, self.report)
         return None if state is None else (source, *state)
 
+    def text(self, name: str, caller: str) -> Source | None:
+        """The text of a sub-script, from the library at its first use."""
+        if (name, caller) not in self.found_texts:
+            self.found_texts[name, caller] = self.library.script(name, caller)
+        return self.found_texts[name, caller]
+
     def known_templates(self) -> tuple[Sequence[str], Sequence[str]]:
         """The folders of templates and the names in them, for messages."""
         if self.templates is None:
@@ -407,8 +484,10 @@ class _Resolver:
 
     def state_type(self, name: str) -> StateType | None:
         """The state type of that name, read from the library at its first use."""
-        if name not in self.types:
-            self.types[name] = find_state_type(name, self.library, self.report)
+        if name not in self.found_types:
+            find = self.kept.state_type if self.kept is not None else find_state_type
+            self.found_types[name] = find(name, self.library, self.report)
+        self.types[name] = self.found_types[name]
         return self.types[name]
 
     def meant_template(self, entries: Entries) -> Entry | None:

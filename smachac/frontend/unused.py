@@ -37,6 +37,13 @@ class Uses:
         if key in TYPED:
             self.types.update(type_words(key, tree))
 
+    def add(self, inner: Uses) -> None:
+        """Add the uses in a part of the script that was read on its own."""
+        self.looked_up += inner.looked_up
+        self.types |= inner.types
+        self.unknown += inner.unknown
+        self.found += inner.found
+
     def type(self, type_: StateType) -> None:
         """Count a state whose type may use any param."""
         self.unknown += type_.open or "variables" in type_.given

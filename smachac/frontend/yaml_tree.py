@@ -3,6 +3,9 @@
 Events come from ruamel.yaml's C parser if it is installed (the extra `fast`), else from its pure
 Python parser; the tree is the same. Scalars are resolved here, by the YAML 1.2 core schema: `on`
 and `yes` are strings, `010` is ten. Duplicate keys stay in the tree.
+
+Nobody changes a tree. Its nodes are not frozen dataclasses, which take two to four times as long to
+make: a long script has hundreds of thousands.
 """
 
 from __future__ import annotations
@@ -43,7 +46,7 @@ MOST_REREAD, DEEPEST_REREAD = 50_000, 100
 takes 7 us for a character and 2 ms for a bracket."""
 
 
-@dataclass(frozen=True, slots=True)
+@dataclass(slots=True, unsafe_hash=True)
 class Scalar:
     """A single value. `plain`: without quotes, so that it may be a look-up or code."""
 
@@ -59,14 +62,14 @@ class Scalar:
         return Span(self.source, self.start, self.end)
 
 
-@dataclass(frozen=True, slots=True)
+@dataclass(slots=True, unsafe_hash=True)
 class Joined(Scalar):
     """The text of a string construct. `parts` are its texts, and its params with their values."""
 
     parts: tuple[str | Scalar, ...] = field(default=(), compare=False)
 
 
-@dataclass(frozen=True, slots=True)
+@dataclass(slots=True, unsafe_hash=True)
 class Seq:
     """A list."""
 
@@ -74,7 +77,7 @@ class Seq:
     span: Span = field(compare=False)
 
 
-@dataclass(frozen=True, slots=True)
+@dataclass(slots=True, unsafe_hash=True)
 class Entry:
     """One key of a mapping with its value."""
 
@@ -82,7 +85,7 @@ class Entry:
     value: Tree
 
 
-@dataclass(frozen=True, slots=True)
+@dataclass(slots=True, unsafe_hash=True)
 class Map:
     """A mapping in the order of the text. The first of duplicate keys counts."""
 
@@ -296,6 +299,12 @@ class _Open:
         self.size = 1
 
 
+def _identity(key: Scalar) -> str | tuple[type, object]:
+    """What duplicate keys have in common. 1, 1.0 and true differ, though Python equates them."""
+    value = key.value
+    return value if isinstance(value, str) else (type(value), value)
+
+
 class _BeyondLimitError(Exception):
     """A limit is exceeded and reported; parsing ends."""
 
@@ -327,20 +336,22 @@ class _Builder:
             raise _BeyondLimitError
 
     def drive(self, events: Iterator[Any]) -> None:
-        steps: dict[str, Callable[[Any], None]] = {
-            "ScalarEvent": self._scalar,
-            "MappingStartEvent": self._open,
-            "SequenceStartEvent": self._open,
-            "MappingEndEvent": self._close,
-            "SequenceEndEvent": self._close,
-            "AliasEvent": self._alias,
+        from ruamel.yaml import events as kinds
+
+        steps: dict[type, Callable[[Any], None]] = {
+            kinds.ScalarEvent: self._scalar,
+            kinds.MappingStartEvent: self._open,
+            kinds.SequenceStartEvent: self._open,
+            kinds.MappingEndEvent: self._close,
+            kinds.SequenceEndEvent: self._close,
+            kinds.AliasEvent: self._alias,
         }
         for event in events:
             self.seen = True
-            step = steps.get(type(event).__name__)
+            step = steps.get(type(event))
             if step is not None:
                 step(event)
-            elif self.root is not None and type(event).__name__ == "DocumentStartEvent":
+            elif self.root is not None and type(event) is kinds.DocumentStartEvent:
                 span = Span(self.source, event.start_mark.index, event.end_mark.index)
                 self.report.append(
                     wrong_shape(
@@ -358,11 +369,11 @@ class _Builder:
         plain = not event.style
         if plain and start == end and not text:  # positions of nothing differ between parsers
             start = end = self.end
+        self.end = end
         tag = event.tag
         if tag is not None and str(tag) not in ("tag:yaml.org,2002:str", "!"):
             self._unknown_tag(event)
         value = _resolve(text) if plain and tag is None else text
-        self.end = end
         self._add(Scalar(value, plain, self.source, start, end), 1, event.anchor)
 
     def _unknown_tag(self, event: Any) -> None:
@@ -381,11 +392,12 @@ class _Builder:
         start = event.start_mark.index
         if event.tag is not None:
             self._unknown_tag(event)
-        if len(self.stack) >= MAX_DEPTH:
+        depth = len(self.stack)
+        if depth >= MAX_DEPTH:
             message = f"the nesting is deeper than {MAX_DEPTH:,} levels"
             self._stop(start, message, "split the script into sub-scripts", "depth")
-        if len(self.stack) > self.deepest:
-            self.deepest = len(self.stack)
+        if depth > self.deepest:
+            self.deepest = depth
         self.stack.append(_Open(mapping, bool(event.flow_style), start, event.anchor))
         self.end = event.end_mark.index
 
@@ -425,8 +437,8 @@ class _Builder:
             return
         around = self.stack[-1]
         around.items.append(node)
-        around.size += size
-        if around.size > self.most:
+        around.size = whole = around.size + size
+        if whole > self.most:
             message = f"the script has more than {self.most:,} values"
             self._stop(node.span.start, message, "read large data when the program runs", "nodes")
 
@@ -438,7 +450,7 @@ class _Builder:
     def _entries(self, items: list[Tree], flow: bool) -> tuple[Entry, ...]:
         entries: list[Entry] = []
         merged: list[Entry] = []
-        first: dict[object, Scalar] = {}
+        first: dict[str | tuple[type, object], Scalar] = {}
         pairs = iter(items)
         for key, value in zip(pairs, pairs, strict=True):
             if not isinstance(key, Scalar):
@@ -451,7 +463,7 @@ class _Builder:
                 continue
             if flow and isinstance(value, Scalar) and value.value is None:
                 key, value = self._separated(key, value)
-            known = first.setdefault((type(key.value), key.value), key)
+            known = first.setdefault(_identity(key), key)
             if known is not key:
                 self.report.append(duplicate_key(Word(str(key.value), key.span), known.span))
                 if len(self.report) > MAX_DUPLICATES:
@@ -459,8 +471,8 @@ class _Builder:
                     self._stop(key.span.start, message, "use each key once", "duplicates")
             entries.append(Entry(key, value))
         for entry in merged:
-            if (type(entry.key.value), entry.key.value) not in first:
-                first[(type(entry.key.value), entry.key.value)] = entry.key
+            if _identity(entry.key) not in first:
+                first[_identity(entry.key)] = entry.key
                 entries.append(entry)
         return tuple(entries)
 

@@ -7,9 +7,8 @@ from __future__ import annotations
 
 import json
 import re
-from dataclasses import dataclass
 from functools import cache, lru_cache
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, NamedTuple
 
 from smachac.grammars import load
 
@@ -31,9 +30,8 @@ name is known."""
 _WORD = re.compile(r"[^\W\d]\w*(?:[./-]\w+)*")
 
 
-@dataclass(frozen=True, slots=True)
-class Type:
-    """A type: a name and its arguments.
+class Type(NamedTuple):
+    """A type: a name and its arguments. A tuple, because types are compared and hashed often.
 
     `float<rad>` is `Type("float", ("rad",))`, `list[T]` is `Type("list", (T,))`, `T[7]` is
     `Type("array", (T, 7))`, `dict[str, T]` is `Type("dict", (T,))`, `T?` is `Type("optional",

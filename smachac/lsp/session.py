@@ -17,7 +17,7 @@ from smachac.analysis.context import Context
 from smachac.batch import Batch, check_scripts
 from smachac.diagnostics.diagnostic import Report, in_order
 from smachac.diagnostics.source import Source
-from smachac.driver import CODES, Analysis, read_machine
+from smachac.driver import CODES, Analysis, Previous, read_machine
 from smachac.frontend.discovery import NothingFoundError, scripts_of
 from smachac.frontend.files import Disk, disk_library, find_project
 from smachac.frontend.loader import Library
@@ -70,6 +70,7 @@ class Session:
         self.open: dict[str, None] = {}
         self._uses: dict[str, frozenset[str]] = {}
         self._contexts: dict[str, tuple[Analysis, Context | None]] = {}
+        self._previous: dict[str, Previous] = {}
         self._views: dict[str, View] = {}
         self._checked: dict[str, dict[str, Report]] = {}
         self._listed: dict[tuple[Path, ...], list[Path]] = {}
@@ -100,6 +101,7 @@ class Session:
         self.disk.refresh()
         self._forget([*self._contexts, *self.open])
         self._contexts.clear()
+        self._previous.clear()
         self._listed.clear()
 
     def source(self, path: str) -> Source | None:
@@ -124,7 +126,8 @@ class Session:
         key = tuple(folders)
         if key not in self._listed:
             try:
-                self._listed[key] = scripts_of(folders, self.disk)
+                found = scripts_of(folders, self.disk)
+                self._listed[key] = [Path(os.path.realpath(each)) for each in found]
             except NothingFoundError:
                 self._listed[key] = []
         return self._listed[key]
@@ -174,12 +177,14 @@ class Session:
         texts = {}
         for each in self._scripts([*folders, Path(path).parent]):
             source = self.disk.read(each, [])
-            texts[os.path.realpath(each)] = source.text if source is not None else ""
+            texts[str(each)] = source.text if source is not None else ""
         found = {path: None}
         todo = [path]
         while todo:
-            stem = re.compile(rf"(?<![\w.-]){re.escape(Path(todo.pop()).stem)}(?![\w-])")
-            new = [name for name, text in texts.items() if name not in found and stem.search(text)]
+            word = Path(todo.pop()).stem
+            stem = re.compile(rf"(?<![\w.-]){re.escape(word)}(?![\w-])")
+            new = [name for name, text in texts.items()
+                   if name not in found and word in text and stem.search(text)]  # fmt: skip
             found.update(dict.fromkeys(new))
             todo += new
         return [name for name in found if not isinstance(self._tree(name), Seq)]
@@ -232,18 +237,11 @@ class Session:
 
     def _check_scripts(self, roots: list[str]) -> Batch:
         """Check scripts, and keep their machines with the facts that the rules computed."""
-        made: list[Context] = []
-
-        def make_context(machine: Machine) -> Context:
-            made.append(Context(machine))
-            return made[-1]
-
-        batch = check_scripts([Path(root) for root in roots], self.disk, make_context=make_context)
+        batch = check_scripts([Path(root) for root in roots], self.disk, previous=self._previous)
         for root, analysis in batch.analyses.items():
             self._uses[root] = batch.uses[root]
-            machine = analysis.machine
-            context = next((each for each in made if each.machine is machine), None)
-            self._contexts[root] = analysis, context
+            last = self._previous.get(root)
+            self._contexts[root] = analysis, last.context if last is not None else None
         self._views.clear()
         return batch
 

@@ -161,6 +161,7 @@ def test_state_types_are_looked_up_in_few_places() -> None:
     assert users == [
         "smachac/commands/new.py",
         "smachac/commands/states.py",
+        "smachac/frontend/kept.py",
         "smachac/frontend/resolve.py",
         "smachac/lsp/complete_templates.py",
         "smachac/lsp/facts.py",

@@ -50,7 +50,7 @@ def types() -> st.SearchStrategy[Type]:
     """Every type that the notation can name."""
     quantities = st.builds(lambda unit: Type("float", (unit,)), UNITS)
     choices = st.lists(CHOICES, min_size=1, max_size=3)
-    leaves = st.builds(Type, WORDS) | quantities | choices.map(lambda all: Type("one_of", (*all,)))
+    leaves = WORDS.map(Type) | quantities | choices.map(lambda all: Type("one_of", (*all,)))
     wrappers = st.sampled_from(["list", "dict", "optional", "array", "record"])
 
     def wrap(item: Type, names: list[str]) -> Type:
