@@ -76,8 +76,10 @@ export async function createViewer(page: HTMLElement, model: Model, compute: Com
     for (let depth = 1; ; depth += 1) {
       const deeper = firstOpen(graph, depth, SHOWN_AT_FIRST);
       if (depth > 1 && deeper.size === open.size) break;
-      if (depth > 1 && camera.fitting(await layouts.scene(deeper)) < READABLE) break;
-      open = deeper;
+      // A picture becomes no smaller when containers open.
+      const readable = camera.fitting(await layouts.scene(deeper)) >= READABLE;
+      if (depth === 1 || readable) open = deeper;
+      if (!readable) break;
     }
     await redraw(null);
     showStart();
