@@ -57,8 +57,6 @@ function drawState(graph: Graph, node: StateNode, box: Box): SVGGElement {
     "aria-expanded": isContainer(node) ? String(box.open) : null,
     "aria-selected": "false",
   });
-  const tip = [node.shown ?? node.path, node.doc].filter(Boolean).join("\n");
-  group.append(svg("title", {}, tip));
   if (isContainer(node) && !box.open) {
     group.append(svg("rect", { class: "below", x: 4, y: 4, width: box.width, height: box.height, rx: 8 }));
   }
@@ -81,6 +79,13 @@ function ground(node: StateNode | undefined, box: Box): string {
   return box.level % 2 ? "odd" : "even";
 }
 
+/** Give a state its tooltip, once: a tooltip is no part of its name for screen readers. */
+export function addTooltip(element: Element, node: StateNode): void {
+  if (element.querySelector(":scope > title")) return;
+  const text = [node.shown ?? node.path, node.doc].filter(Boolean).join("\n");
+  element.prepend(svg("title", {}, text));
+}
+
 /** The name of a state for screen readers: the words of its box, then what only signs show. */
 function spoken(node: StateNode, box: Box): string {
   const words = box.open ? kindInWords(node) : boxDetail(node, node.children.length);
@@ -96,6 +101,7 @@ function drawTitle(graph: Graph, group: SVGGElement, node: StateNode, box: Box):
   group.append(
     chevron(16, TITLE_HEIGHT / 2 + 1, true),
     svg("text", { class: "title", x: 32, y: 22 }, name),
+    " ",
     svg("text", { class: "detail", x: 32 + width(name, "title") + 10, y: 22 }, detail),
   );
   if (node.findings.length) group.append(badge(graph, node, box.width - 18, 17));
@@ -108,13 +114,13 @@ function drawText(graph: Graph, group: SVGGElement, node: StateNode, box: Box): 
   const y = detail ? 21 : 23;
   group.append(svg("text", { class: "name", x: middle, y, "text-anchor": "middle" }, name));
   if (detail) {
-    group.append(svg("text", { class: "detail", x: middle, y: 37, "text-anchor": "middle" }, detail));
+    group.append(" ", svg("text", { class: "detail", x: middle, y: 37, "text-anchor": "middle" }, detail));
   }
   if (box.written.length) {
     const exits = fitting(exitsInWords(box.written), "detail");
     const failure = box.written.every((edge) => edge.failure);
     const look = failure ? "detail written failure" : "detail written";
-    group.append(svg("text", { class: look, x: middle, y: y + (detail ? 32 : 16), "text-anchor": "middle" }, exits));
+    group.append(" ", svg("text", { class: look, x: middle, y: y + (detail ? 32 : 16), "text-anchor": "middle" }, exits));
   }
   if (isContainer(node)) group.append(chevron(14, y - 4, false));
   if (node.findings.length) group.append(badge(graph, node, box.width - 13, 13));

@@ -3,7 +3,7 @@
 import { Camera } from "./camera";
 import { button, html, svg } from "./dom";
 import type { Highlight, Picture } from "./draw";
-import { draw, markRun, markSelection } from "./draw";
+import { addTooltip, draw, markRun, markSelection } from "./draw";
 import type { Box, Direction, Scene } from "./layout";
 import { Layouts } from "./layout";
 import type { Graph, Model, Path } from "./model";
@@ -76,8 +76,10 @@ export async function createViewer(page: HTMLElement, model: Model, compute: Com
     for (let depth = 1; ; depth += 1) {
       const deeper = firstOpen(graph, depth, SHOWN_AT_FIRST);
       if (depth > 1 && deeper.size === open.size) break;
-      if (depth > 1 && camera.fitting(await layouts.scene(deeper)) < READABLE) break;
-      open = deeper;
+      // A picture becomes no smaller when containers open.
+      const readable = camera.fitting(await layouts.scene(deeper)) >= READABLE;
+      if (depth === 1 || readable) open = deeper;
+      if (!readable) break;
     }
     await redraw(null);
     showStart();
@@ -202,6 +204,11 @@ export async function createViewer(page: HTMLElement, model: Model, compute: Com
       return;
     }
     void select(path).then(() => path !== null && focusSelected());
+  });
+  frame.addEventListener("pointerover", (event) => {
+    const element = (event.target as Element).closest("[data-path]");
+    const node = graph.nodes.get(element?.getAttribute("data-path") ?? "");
+    if (element && node) addTooltip(element, node);
   });
   frame.addEventListener("dblclick", (event) => {
     const path = (event.target as Element).closest("[data-path]")?.getAttribute("data-path");

@@ -1243,8 +1243,6 @@ ${place.key}`);
       "aria-expanded": isContainer(node) ? String(box.open) : null,
       "aria-selected": "false"
     });
-    const tip = [node.shown ?? node.path, node.doc].filter(Boolean).join("\n");
-    group.append(svg("title", {}, tip));
     if (isContainer(node) && !box.open) {
       group.append(svg("rect", { class: "below", x: 4, y: 4, width: box.width, height: box.height, rx: 8 }));
     }
@@ -1263,6 +1261,11 @@ ${place.key}`);
     if (node?.kind === "concurrence") return "parallel";
     return box.level % 2 ? "odd" : "even";
   }
+  function addTooltip(element, node) {
+    if (element.querySelector(":scope > title")) return;
+    const text = [node.shown ?? node.path, node.doc].filter(Boolean).join("\n");
+    element.prepend(svg("title", {}, text));
+  }
   function spoken(node, box) {
     const words = box.open ? kindInWords(node) : boxDetail(node, node.children.length);
     const parts = [[node.name, words, exitsInWords(box.written)].filter(Boolean).join(" ")];
@@ -1276,6 +1279,7 @@ ${place.key}`);
     group.append(
       chevron(16, TITLE_HEIGHT / 2 + 1, true),
       svg("text", { class: "title", x: 32, y: 22 }, name),
+      " ",
       svg("text", { class: "detail", x: 32 + width(name, "title") + 10, y: 22 }, detail)
     );
     if (node.findings.length) group.append(badge(graph, node, box.width - 18, 17));
@@ -1287,13 +1291,13 @@ ${place.key}`);
     const y = detail ? 21 : 23;
     group.append(svg("text", { class: "name", x: middle, y, "text-anchor": "middle" }, name));
     if (detail) {
-      group.append(svg("text", { class: "detail", x: middle, y: 37, "text-anchor": "middle" }, detail));
+      group.append(" ", svg("text", { class: "detail", x: middle, y: 37, "text-anchor": "middle" }, detail));
     }
     if (box.written.length) {
       const exits = fitting(exitsInWords(box.written), "detail");
       const failure = box.written.every((edge) => edge.failure);
       const look3 = failure ? "detail written failure" : "detail written";
-      group.append(svg("text", { class: look3, x: middle, y: y + (detail ? 32 : 16), "text-anchor": "middle" }, exits));
+      group.append(" ", svg("text", { class: look3, x: middle, y: y + (detail ? 32 : 16), "text-anchor": "middle" }, exits));
     }
     if (isContainer(node)) group.append(chevron(14, y - 4, false));
     if (node.findings.length) group.append(badge(graph, node, box.width - 13, 13));
@@ -2131,8 +2135,9 @@ ${name}`;
       for (let depth = 1; ; depth += 1) {
         const deeper = firstOpen(graph, depth, SHOWN_AT_FIRST);
         if (depth > 1 && deeper.size === open.size) break;
-        if (depth > 1 && camera.fitting(await layouts.scene(deeper)) < READABLE) break;
-        open = deeper;
+        const readable = camera.fitting(await layouts.scene(deeper)) >= READABLE;
+        if (depth === 1 || readable) open = deeper;
+        if (!readable) break;
       }
       await redraw(null);
       showStart();
@@ -2246,6 +2251,11 @@ ${name}`;
         return;
       }
       void select(path).then(() => path !== null && focusSelected());
+    });
+    frame.addEventListener("pointerover", (event) => {
+      const element = event.target.closest("[data-path]");
+      const node = graph.nodes.get(element?.getAttribute("data-path") ?? "");
+      if (element && node) addTooltip(element, node);
     });
     frame.addEventListener("dblclick", (event) => {
       const path = event.target.closest("[data-path]")?.getAttribute("data-path");
