@@ -53,6 +53,10 @@ viewer: ## Build the viewer of the html target (viewer/) into smachac/targets/ht
 test-lowest: ## Run core tests with the lowest versions of the dependencies that pyproject.toml states
 	@scripts/lowest.sh $(ARGS)
 
+test-package: ## Build the package, install it on every Python on PATH and try it in an empty folder
+	@scripts/setup.sh dev
+	@scripts/package.sh
+
 check: ## Lint, formatting and types; a warning fails
 	@scripts/setup.sh dev
 	$(RUN) ruff check
