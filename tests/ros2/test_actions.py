@@ -26,7 +26,14 @@ report("chosen", chosen.execute(ud))
 failing = goal_state(1, result_cb=lambda ud, status, result: 1 / 0)
 report("failing", failing.execute(ud))
 got = []
-state = goal_state(8, feedback_cb=lambda ud, feedback: got.append(feedback.sequence[0]))
+client = node.create_client(Trigger, "trigger")
+
+def on_feedback(ud, feedback):
+    got.append(feedback.sequence[0])
+    if len(got) == 3:
+        client.call_async(Trigger.Request())
+
+state = goal_state(9, feedback_cb=on_feedback)
 report("feedback", state.execute(ud), got)
 """
     )

@@ -304,31 +304,48 @@ states:
       outcomes: [succeeded, preempted]
       states:
         - GO:
-            template: SleepState
-            time: 0.05
-            transitions: {succeeded: succeeded, preempted: preempted}
+            template: WaitForMsgState
+            topic: seen
+            qos: latched
+            msg_type: std_msgs/String
+            msg_cb: 'lambda message, userdata: message.data == "/NAVIGATE/GO"'
+            timeout: 100.0
+            transitions: {succeeded: succeeded, aborted: preempted, preempted: preempted}
       transitions: {succeeded: DOCK, preempted: preempted}
   - DOCK:
-      template: SleepState
-      time: 0.05
-      transitions: {succeeded: succeeded, preempted: preempted}
+      template: WaitForMsgState
+      topic: seen
+      qos: latched
+      msg_type: std_msgs/String
+      msg_cb: 'lambda message, userdata: message.data == "/DOCK"'
+      timeout: 100.0
+      transitions: {succeeded: succeeded, aborted: preempted, preempted: preempted}
 """
 
 DRIVER = """
 import threading
 import rclpy
 from rclpy.action import ActionClient
+from rclpy.qos import DurabilityPolicy, QoSProfile
+from std_msgs.msg import String
 from smachac_test_interfaces.action import Drive
 
 rclpy.init()
 node = rclpy.create_node("caller")
+latched = QoSProfile(depth=1, durability=DurabilityPolicy.TRANSIENT_LOCAL)
+seen = node.create_publisher(String, "seen", latched)
 client = ActionClient(node, Drive, "machine")
 threading.Thread(target=rclpy.spin, args=(node,), daemon=True).start()
 client.wait_for_server()
 paths = []
-response = client.send_goal(
-    Drive.Goal(speed=0.5), feedback_callback=lambda each: paths.append(each.feedback.state)
-)
+
+
+def show(message):  # each state ends after this
+    paths.append(message.feedback.state)
+    seen.publish(String(data=message.feedback.state))
+
+
+response = client.send_goal(Drive.Goal(speed=0.5), feedback_callback=show)
 print("paths", paths)
 print("result", response.result.message)
 rclpy.shutdown()

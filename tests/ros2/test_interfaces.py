@@ -85,11 +85,10 @@ node = rclpy.create_node("caller")
 client = ActionClient(node, Drive, "machine")
 threading.Thread(target=rclpy.spin, args=(node,), daemon=True).start()
 client.wait_for_server()
-states = []
 response = client.send_goal(
-    Drive.Goal(speed=0.5), feedback_callback=lambda each: states.append(each.feedback.state)
+    Drive.Goal(speed=0.5),
+    feedback_callback=lambda each: print("state", each.feedback.state, flush=True),
 )
-print("states", states)
 print("result", response.result.message)
 rclpy.shutdown()
 """
@@ -100,11 +99,12 @@ def test_the_feedback_of_a_machine_is_the_path_of_its_active_state(graph2: Graph
     program = graph2.start(
         START
         + """
-import sys, time
+import sys, threading
 ends = ["succeeded", "preempted"]
+ends_of_states = threading.Semaphore(0)
 
 def wait(ud):
-    time.sleep(0.05)
+    ends_of_states.acquire()
     return "succeeded"
 
 inner = smach.StateMachine(ends)
@@ -119,12 +119,16 @@ smach_ros.ActionServerWrapper(
     node, "machine", Drive, machine, ["succeeded"], [], ["preempted"],
     expand_goal_slots=True, pack_result_slots=True, path_slot="state",
 )
-sys.stdin.readline()
+while sys.stdin.readline() != "end\\n":
+    ends_of_states.release()
 report("speed", machine.userdata.speed)
 """
     )
     caller = graph2.start(CALLER)
-    caller.expect("states ['/NAVIGATE', '/NAVIGATE/GO', '/DOCK']")
+    for state in ("/NAVIGATE", "/NAVIGATE/GO", "/DOCK"):
+        assert caller.expect("state") == f"state {state}"
+        if state != "/NAVIGATE":
+            program.say("end of the state")
     caller.expect("result docked")
     program.say("end")
     assert program.end() == 0, program.output

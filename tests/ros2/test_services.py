@@ -11,6 +11,22 @@ pytestmark = pytest.mark.ros2
 START = "from machine_node import *\n"
 
 
+def test_the_log_names_a_service_that_is_waited_for(graph2: Graph) -> None:
+    output = graph2.run(
+        """
+from machine_node import *
+from smachac.runtime.smach_ros2 import ros_state
+
+ros_state.SILENCE_LIMIT = 0.1
+state = smach_ros.ServiceState(node, "dock", Trigger, server_wait_timeout=0.3)
+report("outcome", state.execute(smach.UserData()))
+"""
+    )
+    assert "there is no server for service '/dock' yet: it is waited for, up to 0.3 s" in output
+    assert "service '/dock' is not available" in output
+    assert "outcome: aborted" in output
+
+
 def test_a_call_passes_request_and_response(graph2: Graph) -> None:
     graph2.node("server")
     output = graph2.run(

@@ -9,7 +9,7 @@ from dataclasses import dataclass, field
 from textwrap import indent
 
 from smachac.frontend.loader import Ros
-from smachac.ir.nodes import Machine
+from smachac.ir.nodes import DEFINITION_KINDS, Leaf, Machine
 from smachac.ir.traversal import expressions, walk
 from smachac.targets.python.formatter import WIDTH, laid_out, names
 
@@ -177,14 +177,14 @@ class Names:
     everything: set[str] = field(default_factory=set)
     messages: set[str] = field(default_factory=set)
 
-    def add(self, tree: ast.AST) -> None:
-        """Add the names in a piece of code."""
+    def add(self, tree: ast.AST, *, messages: bool = True) -> None:
+        """Add the names in a piece of code; `messages`: also the modules of messages."""
         for node in ast.walk(tree):
             match node:
                 case ast.Attribute(value=ast.Name(id=name)):
                     self.used.add(name)
                 case ast.Attribute() if (module := message_module(node)) is not None:
-                    self.messages.add(module)
+                    self.messages.update([module] * messages)
                 case ast.Name(id=name, ctx=ast.Load()):
                     self.named.add(name)
                 case ast.Name(id=name, ctx=ast.Store()) | ast.arg(arg=name):
@@ -238,6 +238,19 @@ def expression_texts(machine: Machine) -> list[str]:
     """The code of the script, each text once."""
     found = (each.text.strip() for _, node in walk(machine.root) for each in expressions(node))
     return [*dict.fromkeys(found)]
+
+
+def type_texts(machine: Machine) -> set[str]:
+    """The texts of the script that name types of messages, services and actions, and are no code
+    elsewhere: a program imports these classes by their names."""
+    types: set[str] = set()
+    code: set[str] = set()
+    for _, node in walk(machine.root):
+        held = node.variables if isinstance(node, Leaf) else ()
+        own = [each.value.data for each in held if each.role in DEFINITION_KINDS]
+        for each in expressions(node):
+            (types if each in own else code).add(each.text.strip())
+    return types - code
 
 
 def standard_imports(trees: Iterable[ast.AST]) -> list[str]:

@@ -25,6 +25,7 @@ from smachac.targets.python.imports import (
     expression_texts,
     import_lines,
     standard_imports,
+    type_texts,
     unbound_names,
     with_fallback,
 )
@@ -151,7 +152,11 @@ def _text(
     template = _program_template(template, parts, texts, module)
     expressions = expression_texts(machine)
     module.names.bound.add(root)
-    imports = [*_imports(expressions, module), *needed, *_node_imports(template, settable, module)]
+    imports = [
+        *_imports(expressions, type_texts(machine), module),
+        *needed,
+        *_node_imports(template, settable, module),
+    ]
     code, function_code = indent(lines, "    "), "\n\n\n".join(built)
     variables: dict[str, object] = {
         **{variable.name: plain(variable.value.data) for variable in machine.variables},
@@ -231,14 +236,15 @@ def _node_imports(template: str, settable: RosParameters, module: ModuleParts) -
     return [*NODE_IMPORTS[module.ros], *more]
 
 
-def _imports(expressions: list[str], module: ModuleParts) -> list[str]:
+def _imports(expressions: list[str], types: set[str], module: ModuleParts) -> list[str]:
     """The imports that templates print, and those that the code of the script and of templates
-    needs."""
-    trees = [tree for tree in map(parsed, expressions) if isinstance(tree, ast.Module)]
-    for tree in trees:
-        module.names.add(tree)
+    needs. `types` are the expressions that name types of messages."""
+    read = [(text, parsed(text)) for text in expressions]
+    trees = [(text, tree) for text, tree in read if isinstance(tree, ast.Module)]
+    for text, tree in trees:
+        module.names.add(tree, messages=text not in types)
     needed = unbound_names(module.names, module.ros, node=module.node)
-    return [*module.buffers["imports"], *standard_imports(trees), *needed]
+    return [*module.buffers["imports"], *standard_imports(tree for _, tree in trees), *needed]
 
 
 def _frame(text: str, parts: Iterable[str]) -> tuple[str, dict[str, str]]:

@@ -2,7 +2,8 @@
 
 Orders: 1 succeeds, 2 aborts, 3 is rejected, 4 runs until it is cancelled, 5 refuses to be cancelled
 and runs until a line on the input, 6 accepts to be cancelled and never ends, 7 ends the process,
-8 succeeds after three messages of feedback. Each goal and each cancel request is printed.
+8 succeeds after three messages of feedback, 9 after these and a call of `trigger`. Each goal and
+each cancel request is printed.
 """
 
 import os
@@ -23,6 +24,7 @@ rclpy.init(signal_handler_options=SignalHandlerOptions.NO)
 node = rclpy.create_node("server")
 group = ReentrantCallbackGroup()
 released = threading.Event()
+triggered = threading.Event()
 
 
 def accept(goal: Any) -> Any:
@@ -46,10 +48,12 @@ def execute(handle: Any) -> Any:
         return Fibonacci.Result(sequence=[4])
     if order in (5, 6):
         released.wait(60)
-    if order == 8:
+    if order in (8, 9):
         for number in range(3):
             handle.publish_feedback(Fibonacci.Feedback(sequence=[number]))
             time.sleep(0.02)
+    if order == 9:
+        triggered.wait(60)
     if order == 2:
         handle.abort()
     else:
@@ -58,6 +62,7 @@ def execute(handle: Any) -> Any:
 
 
 def trigger(request: Any, response: Any) -> Any:
+    triggered.set()
     response.success, response.message = True, "done"
     return response
 
