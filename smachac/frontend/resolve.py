@@ -16,9 +16,11 @@ from smachac.diagnostics.spelling import guesser_of
 from smachac.frontend import schema
 from smachac.frontend.errors.references import (
     bad_sub_script,
+    look_up_of_call,
     recursive_include,
     script_not_found,
     template_not_found,
+    unresolved_look_up,
 )
 from smachac.frontend.errors.script import (
     Owner,
@@ -174,12 +176,17 @@ class _Resolver:
             robot=robot,
             definitions=definitions,
             missing_definitions=missing_definitions_of(base, definitions, self.library),
-            unused=self.uses.unused(self.report),
+            unused=self.uses.unused(self.report, self.trees(tree)),
             properties=properties_of(entries.get("properties"), source, self.library, self.report),
             params=_params(entries.get("params")),
             fixed_params=tuple(self.fixed_params),
             state_types={name: type_ for name, type_ in self.types.items() if type_ is not None},
         )
+
+    def trees(self, main: Tree) -> list[Tree]:
+        """The trees of the script and of its sub-scripts."""
+        found = {each[0]: each[1] for each in self.sub_scripts.values() if each is not None}
+        return [main, *(tree for tree in found.values() if tree is not None)]
 
     def has_too_many_keys(self) -> bool:
         """Whether the script has too much userdata, which is reported where most of it is."""
@@ -414,6 +421,7 @@ class _Resolver:
         """The state or, if it calls a sub-script, the state of that sub-script with the fields of
         the call."""
         begin = self.uses.mark(self.report)
+        called: list[tuple[Word, tuple[Entry, ...]]] = []
         while "script" in own:
             entry = own.pop("script")
             params = own["params"].value if "params" in own else None
@@ -421,7 +429,7 @@ class _Resolver:
             self.uses.value("script", entry.value, flat=is_flat(entry.value))
             word = as_name(fill_in(entry.value, scope, self.report), self.report)
             found = self.sub_script(word, around) if word is not None and word.text else None
-            if found is None:
+            if word is None or found is None:
                 transitions = own.get("transitions")
                 pairs = pairs_of(transitions.value) if transitions is not None else ()
                 return _unknown(name, pairs, around)
@@ -429,8 +437,27 @@ class _Resolver:
             call = Span(around.source, entry.key.span.start, entry.value.span.end)
             calls = (*around.calls, (source.name, call))
             around = replace(around, source=source, calls=calls, inner=inner)
-            own = overridden(self.expand(entries), own)
-        return self.state(name, own, around, begin=begin)
+            fields = self.expand(entries)
+            self.uses.replaced(fields, own)
+            called.append((Word(word.text, call), _entries_of(params)))
+            own = overridden(fields, own)
+        state = self.state(name, own, around, begin=begin)
+        for script, given in called:
+            self.misspelt_params(script, given, begin)
+        return state
+
+    def misspelt_params(self, script: Word, given: tuple[Entry, ...], begin: Mark) -> None:
+        """Puts the look-ups of a sub-script that failed at the call that misspells the param, or
+        beside the call that does not give it."""
+        looked_up, _, before = begin
+        if len(self.report) == before:
+            return
+        used = set(self.uses.looked_up[looked_up:])
+        idle = [name for each in given if (name := as_name(each.key, [])) and name.text not in used]
+        for at in range(before, len(self.report)):
+            item = self.report[at]
+            if item.kind is unresolved_look_up.code and item.span.source is not script.span.source:
+                self.report[at] = look_up_of_call(item, script, idle)
 
     def not_found(self, item: Diagnostic) -> None:
         """Reports a file that was not found, except as a consequence: its folder may be in settings
@@ -533,6 +560,10 @@ class _Resolver:
         # Some meta blocks of SMACHA name the kind `container` for a state.
         is_container = found.kind == "container" and not found.prints_itself
         return found, role or ("StateMachine" if is_container else nested)
+
+
+def _entries_of(tree: Tree | None) -> tuple[Entry, ...]:
+    return tree.entries if isinstance(tree, Map) else ()
 
 
 def _remapping_in_iterator(span: Span) -> Diagnostic:
