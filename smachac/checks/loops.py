@@ -318,11 +318,19 @@ def _retries(
         message=f"the retries of `{child.name}` have no limit: while it ends with"
         f" `{step.outcome}`, `{container.name}` does not end",
         arguments=(own_name(child, step.span), step.outcome),
-        help="count the retries, and leave the loop after the last one",
+        help=_limited(child, step),
         related=calls(child, step.span),
         path=tuple(circle(path, region, kept)),
         node=f"{path}/{child.name}",
     )
+
+
+def _limited(child: Node, step: Transition) -> str:
+    """The help for retries without a limit: where the failure leads straight back, the field."""
+    if step.target != child.name or step.origin != "written":
+        return "count the retries, and leave the loop after the last one"
+    retry = f"retry: {{on: [{step.outcome}], max: 3}}"
+    return f"remove this transition, write `{retry}`, and lead `exhausted` out of the loop"
 
 
 def _spin(

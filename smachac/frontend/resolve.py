@@ -157,6 +157,7 @@ class _Resolver:
     def script(self, source: Source, tree: Map) -> Script:
         """The script of a tree: its outermost state machine, with the robot and the types."""
         self.sources[source] = None
+        self.uses.trees[source] = tree
         self.main = source.name
         begin = self.uses.mark(self.report)
         entries = self.expand(tree.entries)
@@ -176,17 +177,12 @@ class _Resolver:
             robot=robot,
             definitions=definitions,
             missing_definitions=missing_definitions_of(base, definitions, self.library),
-            unused=self.uses.unused(self.report, self.trees(tree)),
+            unused=self.uses.unused(self.report),
             properties=properties_of(entries.get("properties"), source, self.library, self.report),
             params=_params(entries.get("params")),
             fixed_params=tuple(self.fixed_params),
             state_types={name: type_ for name, type_ in self.types.items() if type_ is not None},
         )
-
-    def trees(self, main: Tree) -> list[Tree]:
-        """The trees of the script and of its sub-scripts."""
-        found = {each[0]: each[1] for each in self.sub_scripts.values() if each is not None}
-        return [main, *(tree for tree in found.values() if tree is not None)]
 
     def has_too_many_keys(self) -> bool:
         """Whether the script has too much userdata, which is reported where most of it is."""
@@ -235,6 +231,7 @@ class _Resolver:
             self.uses.value(key, entry.value, flat=flat)
             entries[key] = entry if key == "params" else self.fill(key, entry, scope, flat=flat)
         type_, owner = self.type_of(name, entries, role, around)
+        entries |= self.lists(own, scope, type_)
         entries = with_meant_fields(entries, owner, type_)
         self.uses.type(type_)
         self.fixed_params += _fixed_params(own, type_, scope)
@@ -275,6 +272,21 @@ class _Resolver:
         new = fill_in(entry.value, scope, self.report, names=names)
         filled = entry if new is entry.value else self.limit_depth(self.limit_size(entry, new))
         return typed(key, filled, self.aliases, self.report)
+
+    def lists(self, own: dict[str, Entry], scope: Scope, type_: StateType) -> dict[str, Entry]:
+        """The variables of a state type that are lists, such as `goal_slots`, with one item for
+        each look-up: their items are not joined to one string. Faults in them are reported by
+        `fill`."""
+        found: dict[str, Entry] = {}
+        for key, held in type_.variables.items():
+            entry = own.get(key)
+            if entry is None or not (held.keys or held.type.name in ("list", "array")):
+                continue
+            if isinstance(entry.value, Seq) and not is_flat(entry.value):
+                entry = self.limit_depth(entry)
+                new = fill_in(entry.value, scope, [], names=True)
+                found[key] = typed(key, self.limit_size(entry, new), self.aliases, [])
+        return found
 
     def limit_size(self, entry: Entry, new: Tree) -> Entry:
         """The field with its value after the look-ups; too many added nodes are reported and
@@ -494,6 +506,7 @@ class _Resolver:
                     bad_sub_script(start, message, word.span, SUB_SCRIPT_HELP, arguments=("empty",))
                 )
             return None
+        self.uses.trees[source] = tree
         state = sub_script_state(tree, word, self.report)
         return None if state is None else (source, *state)
 

@@ -8,7 +8,7 @@ from dataclasses import dataclass, field
 from typing import TypeAlias
 
 from smachac.diagnostics.diagnostic import Report, has_errors
-from smachac.diagnostics.source import Span, Word
+from smachac.diagnostics.source import Source, Span, Word
 from smachac.frontend.params import look_up_word
 from smachac.frontend.type_annotations import TYPED, type_words, words_of
 from smachac.frontend.yaml_tree import Entry, Map, Scalar, Tree
@@ -25,7 +25,7 @@ class Uses:
     `looked_up` are the names in look-ups, in order. `unknown` counts the states that may use any
     param, such as those of SMACHA's templates. `found` are the unused declarations. `defaults` are
     the places of params that fields of a sub-script use where no call replaces them; `anchored` are
-    the places of the values of unused params.
+    the places of the values of unused params, `trees` those of the script and its sub-scripts.
     """
 
     looked_up: list[str] = field(default_factory=list)
@@ -34,6 +34,7 @@ class Uses:
     found: list[Unused] = field(default_factory=list)
     defaults: set[Span] = field(default_factory=set)
     anchored: dict[Span, list[Span]] = field(default_factory=dict)
+    trees: dict[Source, Tree] = field(default_factory=dict)
 
     def value(self, key: str, tree: Tree, *, flat: bool) -> None:
         """Collect the uses in a field of a state. `flat`: see `is_flat`."""
@@ -48,6 +49,9 @@ class Uses:
         self.types |= inner.types
         self.unknown += inner.unknown
         self.found += inner.found
+        self.defaults |= inner.defaults
+        self.anchored |= inner.anchored
+        self.trees |= inner.trees
 
     def type(self, type_: StateType) -> None:
         """Count a state whose type may use any param."""
@@ -81,7 +85,7 @@ class Uses:
         if params is None or not isinstance(params.value, Map):
             return
         fields = [entry.value for key, entry in inner.items() if key in call]
-        names = {name for value in fields for name in _names(value)}
+        names = {word.text for value in fields for word in look_ups(value)}
         keys = (entry.key for entry in params.value.entries if entry.key.value in names)
         self.defaults.update(key.span for key in keys)
 
@@ -95,15 +99,15 @@ class Uses:
             if name not in self.types | inside:
                 self.found.append(Unused("type", Word(name, entry.key.span)))
 
-    def unused(self, report: Report, trees: Iterable[Tree]) -> tuple[Unused, ...]:
-        """The unused declarations of the trees of a script, without those of use elsewhere.
+    def unused(self, report: Report) -> tuple[Unused, ...]:
+        """The unused declarations, without those of use elsewhere.
 
         A param is of use if another reading of its sub-script uses it, if an alias repeats its
         value, or if a look-up out of scope names it (SM015).
         """
         if not self.found:
             return ()
-        places = Counter(each.span for tree in trees for each in _inside(tree))
+        places = Counter(each.span for tree in self.trees.values() for each in _inside(tree))
         repeated = {
             span
             for span, inside in self.anchored.items()
