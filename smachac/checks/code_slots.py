@@ -28,7 +28,7 @@ from smachac.checks.rule import rule
 from smachac.checks.types import written
 from smachac.diagnostics.diagnostic import Edit, Finding, Severity
 from smachac.diagnostics.source import Span
-from smachac.diagnostics.spelling import guesser
+from smachac.diagnostics.spelling import guesser, in_quotes
 from smachac.diagnostics.wording import listed
 from smachac.ir.code_places import node_place, node_range, place_in
 from smachac.ir.message_types import TEXTS, FieldType
@@ -93,7 +93,7 @@ def not_a_function(context: Context) -> Iterator[Finding]:
                 span=slot.code.span,
                 message=f"`{slot.name}` of `{node.name}` is text, not a function",
                 arguments=(slot.name, text),
-                help=f"write the function in backticks: '`{text}`'",
+                help=f"write the function in backticks: {in_quotes(f'`{text}`')}",
                 related=calls(node, slot.code.span),
                 node=path,
                 edits=_backticks(slot),
@@ -111,7 +111,7 @@ def not_a_function(context: Context) -> Iterator[Finding]:
             span=node_place(slot.code, read) if read is not None else slot.code.span,
             message=f"{_owner(slot, node)} {what}",
             arguments=(slot.name, text),
-            help=_as_key(slot) or f"write `{function}`" + _in_backticks(slot),
+            help=_as_key(slot) or f"write {_as_code(slot, function)}",
             related=calls(node, slot.code.span),
             node=path,
             edits=_as_function(slot, name) if read is not None else (),
@@ -128,10 +128,10 @@ def _with_keys(slot: CodeSlot, tree: ast.expr, name: str, node: Node) -> str:
     return text
 
 
-def _in_backticks(slot: CodeSlot) -> str:
-    """The end of a help line where code without quotes is no function."""
+def _as_code(slot: CodeSlot, text: str) -> str:
+    """Code as the script must write it: in backticks and quotes where a plain text is no code."""
     plain = not slot.must_be_called and "`" not in slot.code.span.text
-    return ", in backticks and quotes" if plain else ""
+    return in_quotes(f"`{text}`") if plain else f"`{text}`"
 
 
 def _as_key(slot: CodeSlot) -> str | None:
@@ -153,12 +153,13 @@ def _owner(slot: CodeSlot, node: Node) -> str:
 
 
 def _backticks(slot: CodeSlot) -> tuple[Edit, ...]:
-    span = slot.code.span
+    """The edit that puts quoted text in backticks, if the quotes hold nothing but the text."""
+    span, text = slot.code.span, slot.code.text
     written = span.text
-    if written[:1] not in ("'", '"') or written[1:-1] != slot.code.text:
+    doubled = text.replace("'", "''")
+    if "\n" in text or written not in (f"'{doubled}'", f'"{text}"'):
         return ()
-    quote = written[0]
-    return (Edit(span=span, text=f"{quote}`{slot.code.text}`{quote}"),)
+    return (Edit(span=span, text=in_quotes(f"`{text}`")),)
 
 
 def _as_function(slot: CodeSlot, name: str) -> tuple[Edit, ...]:

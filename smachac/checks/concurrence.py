@@ -17,6 +17,7 @@ from smachac.analysis.outcome_rules import (
 from smachac.analysis.possible_outcomes import Judged
 from smachac.checks.messages import calls, did_you_mean, other_place
 from smachac.checks.rule import rule
+from smachac.checks.value_places import place_of_value
 from smachac.diagnostics.diagnostic import Finding, Severity
 from smachac.diagnostics.spelling import guesser
 from smachac.diagnostics.wording import listed
@@ -111,7 +112,7 @@ def _dead_rules(path: str, container: Concurrence) -> Iterator[Finding]:
                 node=path,
             )
         for condition in entry.when:
-            child = children.get(condition.child)
+            child, span = children.get(condition.child), condition.span
             if child is None:
                 message = f"`{condition.child}` is not a state of `{container.name}`"
                 help = did_you_mean(guess(condition.child)) or states
@@ -120,9 +121,10 @@ def _dead_rules(path: str, container: Concurrence) -> Iterator[Finding]:
             else:
                 message = f"`{child.name}` has no outcome `{condition.outcome}`"
                 help = _other_outcome(child, condition.outcome)
-            related = calls(container, condition.span)
+                span = place_of_value(span, condition.outcome)
+            related = calls(container, span)
             yield Finding(
-                span=condition.span,
+                span=span,
                 message=message,
                 arguments=(entry.outcome, condition.child, condition.outcome),
                 help=help,

@@ -18,6 +18,7 @@ from smachac.checks.edits import with_output
 from smachac.checks.expressions import unknown_endings
 from smachac.checks.messages import CALLED_HERE, calls, did_you_mean
 from smachac.checks.rule import rule
+from smachac.checks.value_places import place_of_part
 from smachac.diagnostics.diagnostic import Finding, Related, Severity
 from smachac.diagnostics.source import Span, Word
 from smachac.diagnostics.spelling import guesser, respelt
@@ -26,7 +27,7 @@ from smachac.ir import nodes
 from smachac.ir.code_places import key_place
 from smachac.ir.graph import START
 from smachac.ir.leaf import functions, variable, variable_of
-from smachac.ir.nodes import Key, Leaf, Machine, Node
+from smachac.ir.nodes import Key, Leaf, Machine, Node, Struct
 from smachac.ir.traversal import remapping
 
 
@@ -66,6 +67,9 @@ def dead_key(context: Context) -> Iterator[Finding]:
     flow = context.mended_flow
     reported = {(each.keeper.path, each.own) for each in context.lost_outputs}
     reported |= {(each.other, each.key) for each in context.missing_keys("outside")}
+    unset: dict[str, set[str]] = {}
+    for each in context.missing_keys("nowhere"):
+        unset.setdefault(each.scope.path, set()).add(each.key)
     for scope in flow.scopes.values():
         container = scope.container
         if container.sugar or _sees_everything(scope):
@@ -74,6 +78,8 @@ def dead_key(context: Context) -> Iterator[Finding]:
         for key, node, span in _set_by_the_script(scope):
             if key in read or (scope.path, key) in reported:
                 continue
+            if any(guesser([key])(name) for name in unset.get(scope.path, ())):
+                continue  # SM301 is about the same slip
             # The userdata of the machine can be read after the run.
             is_result = container is flow.machine.root and node is not container
             where = container_name(scope, span)
@@ -366,11 +372,20 @@ def _never_set(leaf: Leaf) -> list[str]:
 
 
 def _place_of_write(leaf: Leaf, key: str) -> Span:
+    held = variable_of(leaf, "callbacks")
     code = (functions(leaf, "callbacks") or {}).get(key)
-    if code is not None:
-        return code.span
+    if held is not None and code is not None:
+        place = place_of_part(held.value.span, (key,), key=True)
+        return place if place != held.value.span else code.span
     steps = variable_of(leaf, "steps")
-    return steps.value.span if steps is not None else leaf.span
+    if steps is None:
+        return leaf.span
+    every = steps.value.data if isinstance(steps.value.data, tuple) else ()
+    for at, step in enumerate(every):
+        set_ = dict(step.entries).get("set") if isinstance(step, Struct) else None
+        if isinstance(set_, Struct) and key in dict(set_.entries):
+            return place_of_part(steps.value.span, (at, "set", key), key=True)
+    return steps.value.span
 
 
 @rule("SM310", "undeclared-access", Severity.ERROR)

@@ -11,6 +11,7 @@ from smachac.analysis.expression_sites import ExpressionSite
 from smachac.checks.messages import calls, did_you_mean, other_place
 from smachac.checks.rule import rule
 from smachac.checks.types import written
+from smachac.checks.value_places import place_of_part
 from smachac.diagnostics.diagnostic import Edit, Finding, Related, Severity
 from smachac.diagnostics.source import Span, Word
 from smachac.diagnostics.spelling import guesser, respelt
@@ -159,15 +160,21 @@ def unknown_endings(path: str, leaf: Leaf) -> Iterator[Finding]:
 
 def _endings(leaf: Leaf) -> Iterator[tuple[Word, str]]:
     """The outcomes in the conditions and steps of a leaf, each with the start of its message."""
+    conditions = variable_of(leaf, "conditions")
     for outcome, site in (functions(leaf, "conditions") or {}).items():
-        yield Word(outcome, site.span), f"a condition of `{leaf.name}` leads to"
+        span = site.span
+        if conditions is not None and outcome not in outcome_names(leaf):
+            place = place_of_part(conditions.value.span, (outcome,), key=True)
+            span = place if place != conditions.value.span else span
+        yield Word(outcome, span), f"a condition of `{leaf.name}` leads to"
     held = variable_of(leaf, "steps")
     if held is None or not isinstance(held.value.data, tuple):
         return
-    for step in held.value.data:
+    for at, step in enumerate(held.value.data):
         end = dict(step.entries).get("outcome") if isinstance(step, Struct) else None
-        if isinstance(end, str) and end:
-            yield Word(end, held.value.span), f"a step of `{leaf.name}` ends with"
+        if isinstance(end, str) and end and end not in outcome_names(leaf):
+            place = place_of_part(held.value.span, (at, "outcome"))
+            yield Word(end, place), f"a step of `{leaf.name}` ends with"
 
 
 MOST_SOURCES = 3

@@ -2,12 +2,13 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Iterator
+from collections.abc import Iterable, Iterator, Mapping
 from dataclasses import replace
 from typing import NamedTuple, TypeGuard
 
 from smachac.analysis.context import Context
 from smachac.analysis.control_flow import (
+    MOST_STEPS,
     Linear,
     SiblingSteps,
     circle,
@@ -129,8 +130,10 @@ def unbounded_loop(context: Context) -> Iterator[Finding]:
     leads back to that state, directly or through other states. The retries have no limit if no
     outcome of the container can be reached while every such state fails each time and no preempt
     request comes, but could be reached after a success. A way out of any other state in the loop
-    is a limit. Where a success does not leave the loop either (`forever: true`, or a loop that runs
-    until a preempt request), every cycle must contain a state that can wait: a blocking state, a
+    is a limit. An exception (`on_error`, `error:`) counts if it leads back to its state without a
+    choice on the way, while no other state raises one and no other failure of the state leaves the
+    loop. Where a success does not leave the loop either (`forever: true`, or a loop that runs until
+    a preempt request), every cycle must contain a state that can wait: a blocking state, a
     SleepState, or a state whose type has no interface.
 
     Wrong:
@@ -231,7 +234,7 @@ def _unbounded(flow: Linear, entered: frozenset[str], steps: SiblingSteps) -> It
         child.name
         for child in flow.children
         if any(
-            fails(child, outcome) and part[to] == part[child.name]
+            outcome != child.catches and fails(child, outcome) and part[to] == part[child.name]
             for outcome, to in steps[child.name]
         )
     }
@@ -242,11 +245,51 @@ def _unbounded(flow: Linear, entered: frozenset[str], steps: SiblingSteps) -> It
     left_at_all, left = can_end(flow), can_end(failing)
     stuck = [name for name in steps if name in entered and name not in left]
     by_name = {child.name: child for child in reversed(flow.children)}
+    found: set[str] = set()
     for region in dead_ends(stuck, steps_of(failing)):
         inside = frozenset(region)
+        found |= inside
         tries = [by_name[name] for name in region if name in retrying and name in left_at_all]
         child = next((child for child in tries if _could_leave(child, inside)), None)
         yield _Loop(region, child or by_name[region[0]], _closing_step(child, inside))
+    for loop in _exceptional(flow.children, by_name):
+        if loop.child.name in entered & left_at_all and found.isdisjoint(loop.region):
+            yield loop
+
+
+def _exceptional(children: Iterable[Node], by_name: Mapping[str, Node]) -> Iterator[_Loop]:
+    """The loops that do not end while one state raises an exception each time, and no other does:
+    after the exception each state on the way back has one way, and the state has no other failure
+    that leads out. One for each target."""
+    ways: dict[str, list[str]] = {}
+    looping: set[str] = set()
+    for child in children:
+        step = next((step for step in child.transitions if step.outcome == child.catches), None)
+        if step is None or step.target not in by_name or step.target in looping:
+            continue
+        if step.target not in ways:
+            ways[step.target] = _only_way(step.target, by_name)
+        there = ways[step.target]
+        if child.name not in there:
+            continue
+        region = there[: there.index(child.name) + 1]
+        failures = (each for each in child.transitions if fails(child, each.outcome))
+        if all(each.target in region for each in failures):
+            looping.add(step.target)
+            yield _Loop(region, child, step)
+
+
+def _only_way(start: str, by_name: Mapping[str, Node]) -> list[str]:
+    """The states that follow one after the other, without exceptions, up to a choice."""
+    names = [start]
+    while len(names) < MOST_STEPS:
+        node = by_name[names[-1]]
+        targets = {step.target for step in node.transitions if step.outcome != node.catches}
+        name = targets.pop() if len(targets) == 1 else None
+        if name is None or name not in by_name or name in names:
+            break
+        names.append(name)
+    return names
 
 
 def _could_leave(child: Node, inside: frozenset[str]) -> bool:
@@ -275,11 +318,19 @@ def _retries(
         message=f"the retries of `{child.name}` have no limit: while it ends with"
         f" `{step.outcome}`, `{container.name}` does not end",
         arguments=(own_name(child, step.span), step.outcome),
-        help="count the retries, and leave the loop after the last one",
+        help=_limited(child, step),
         related=calls(child, step.span),
         path=tuple(circle(path, region, kept)),
         node=f"{path}/{child.name}",
     )
+
+
+def _limited(child: Node, step: Transition) -> str:
+    """The help for retries without a limit: where the failure leads straight back, the field."""
+    if step.target != child.name or step.origin != "written":
+        return "count the retries, and leave the loop after the last one"
+    retry = f"retry: {{on: [{step.outcome}], max: 3}}"
+    return f"remove this transition, write `{retry}`, and lead `exhausted` out of the loop"
 
 
 def _spin(

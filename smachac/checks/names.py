@@ -103,6 +103,11 @@ def _was_reported(step: Transition) -> bool:
     return not step.target and step.target_span.text not in ("''", '""', "")
 
 
+def _targets(container: Linear) -> str:
+    """The names that a transition in a container can have as its target."""
+    return listed([*(child.name for child in container.children), *outcome_names(container)])
+
+
 def _nowhere(fault: _Lost, elsewhere: str | None) -> Finding:
     path, container, child, step, meant, sure = fault
     whole = f"`{step.target}` is neither a state nor an outcome of `{container.name}`"
@@ -126,7 +131,7 @@ def _nowhere(fault: _Lost, elsewhere: str | None) -> Finding:
             step.target,
             *(() if step.target else (step.outcome,)),
         ),
-        help=help or f"use a state or an outcome of `{container.name}`",
+        help=help or f"use a state or an outcome of `{container.name}`: {_targets(container)}",
         related=calls(child, step.target_span),
         node=f"{path}/{child.name}",
         edits=respelt(Word(step.target, step.target_span), sure),
@@ -209,8 +214,9 @@ def _unknown_steps(path: str, child: Node) -> Iterator[Finding]:
     for step, meant in unknown:
         retried = _retried(child, step.outcome)
         message = f"`{child.name}` has no outcome `{step.outcome}`"
-        if retried is not None:
-            message = f"`retry` consumes `{step.outcome}`: `{child.name}` is tried again, and never"
+        if retried is not None and isinstance(child, nodes.Iterator):
+            then = "is tried again" if child.sugar == "retry" else "goes on with the next item"
+            message = f"`{child.sugar}` consumes `{step.outcome}`: `{child.name}` {then}, and never"
             message += " ends with it"
         yield Finding(
             span=step.span,
@@ -230,6 +236,12 @@ def _retried(child: Node, outcome: str) -> str | None:
     if child.sugar == "retry":
         end = child.exhausted_outcome
         return f"after the last try with `{outcome}`, `retry` ends with `{end}`: write `{end}:`"
+    if child.sugar == "for_each":
+        first = child.loop_outcomes[0]
+        return (
+            f"after the last item it ends with `{first}`, the first outcome in `on`: remove this"
+            f" transition, or `{outcome}` from `on`"
+        )
     return None
 
 

@@ -55,6 +55,14 @@ def number_meant(text: str, wanted: Type) -> str | None:
     return f"write the number in `{unit}`, without the unit: `{float(found[1]) * factor:.6g}`"
 
 
+def list_meant(text: str) -> str | None:
+    """The help for a text of several numbers where a list is due; None for any other text."""
+    parts = re.split(r"[\s;]+|,\s*", text.strip(" []()")[:LONGEST])
+    if len(parts) < 2 or not all(re.fullmatch(_NUMBER, part) for part in parts):
+        return None
+    return f"write a list without quotes: `[{', '.join(parts)}]`"
+
+
 def decimal_commas(text: str, sizes: Iterable[int]) -> str | None:
     """The help for a list whose decimal commas separate items, as in `[0,5, 0,0, 0,1]`: with points
     it has one of these sizes."""

@@ -13,9 +13,10 @@ from smachac.checks.messages import calls, did_you_mean, other_place
 from smachac.checks.number_help import decimal_commas
 from smachac.checks.rule import rule
 from smachac.checks.types import clash_findings
+from smachac.checks.value_places import place_of_part
 from smachac.diagnostics.diagnostic import Finding, Related, Severity
 from smachac.diagnostics.spelling import guesser
-from smachac.diagnostics.wording import listed
+from smachac.diagnostics.wording import MOST_LISTED, listed
 from smachac.ir.leaf import variable
 from smachac.ir.nodes import Data, Leaf, Struct
 from smachac.ir.robot import Joint, Robot
@@ -116,18 +117,49 @@ def joint_limit(context: Context) -> Iterator[Finding]:
         assert robot is not None
         if not moves_arm(flow):
             continue
-        for number, joint, angle in joint_faults(flow, robot):
-            what = f"joint {number}" if isinstance(flow.value, tuple) else f"`{joint.name}`"
+        faults = joint_faults(flow, robot)
+        degrees = [each for each in faults if abs(as_float(each[2])) > 2 * math.pi]
+        if degrees and isinstance(flow.value, tuple):
+            yield _in_degrees(flow, faults)
+            continue
+        for number, joint, angle in faults:
+            in_list = isinstance(flow.value, tuple)
+            what = f"joint {number}" if in_list else f"`{joint.name}`"
+            limits = f"{joint.lower:g} to {joint.upper:g}"
             yield at(
                 flow,
-                f"{what} of `{flow.origin.cell.key}` is {angle} rad, outside its limits"
-                f" {joint.lower:g} to {joint.upper:g}",
-                "convert the angles from degrees to radians"
+                f"{what} of `{flow.origin.cell.key}` is {angle} rad, outside its limits {limits}",
+                f"convert the angle from degrees to radians: `{_radians(angle)}`"
                 if abs(as_float(angle)) > 2 * math.pi
-                else f"write an angle from {joint.lower:g} to {joint.upper:g}, in radians",
-                (str(number) if isinstance(flow.value, tuple) else joint.name,),
+                else f"write an angle from {limits}, in radians",
+                (str(number) if in_list else joint.name,),
                 other_place(joint.span, f"the limits of `{joint.name}`"),
+                part=(number - 1,) if in_list else (joint.name,),
             )
+
+
+def _in_degrees(flow: TypeFlow, faults: list[tuple[int, Joint, Data]]) -> Finding:
+    """SM502 for a list in which an angle is larger than a full turn in radians."""
+    assert isinstance(flow.value, tuple)
+    number, joint, angle = faults[0]
+    names = ", ".join(f"joint {each} is {given}" for each, _, given in faults[:MOST_LISTED])
+    message = f"`{flow.origin.cell.key}` is outside the limits of the joints, in rad: {names}"
+    if len(faults) == 1:
+        limits = f"outside its limits {joint.lower:g} to {joint.upper:g}"
+        message = f"joint {number} of `{flow.origin.cell.key}` is {angle} rad, {limits}"
+    new = ", ".join(_radians(each) if is_number(each) else str(each) for each in flow.value)
+    return at(
+        flow,
+        message,
+        f"convert the angles from degrees to radians: `[{new}]`",
+        tuple(str(each) for each, _, _ in faults),
+        other_place(joint.span, f"the limits of `{joint.name}`"),
+    )
+
+
+def _radians(angle: Data) -> str:
+    """An angle in degrees as text in radians."""
+    return f"{math.radians(as_float(angle)):.4g}"
 
 
 def joint_faults(flow: TypeFlow, robot: Robot) -> list[tuple[int, Joint, Data]]:
@@ -297,20 +329,23 @@ def at(
     names: tuple[str, ...] = (),
     more: tuple[Related, ...] = (),
     severity: Severity | None = None,
+    part: tuple[int | str, ...] = (),
+    key: bool = False,
 ) -> Finding:
     """A finding at a literal, with the place where it is read; its arguments are the key of the
-    literal and `names`."""
+    literal and `names`. `part` are the steps to a part of the literal, `key` means its key."""
     origin, cell = flow.origin, flow.cell
+    span = place_of_part(origin.span, part, key=key)
     related: tuple[Related, ...] = ()
     if cell.span != origin.span and cell is not origin.cell:
         related = other_place(cell.span, f"{reader(flow)} reads it here as `{cell.key}`")
     node = origin.cell.node
     return Finding(
-        span=origin.span,
+        span=span,
         message=message,
         arguments=(origin.cell.key, *names),
         help=help,
-        related=(*related, *more, *(calls(node, origin.span) if node is not None else ())),
+        related=(*related, *more, *(calls(node, span) if node is not None else ())),
         severity=severity,
         node=origin.cell.path,
     )
@@ -492,6 +527,13 @@ def names_in(data: Data) -> Iterator[str]:
         yield from (name for name, _ in data.entries)
 
 
+def part_named(data: Data, name: str) -> tuple[tuple[int | str, ...], bool]:
+    """The step to a name in a literal (`names_in`), and whether it is a key."""
+    if isinstance(data, tuple):
+        return (data.index(name),), False
+    return ((name,), True) if isinstance(data, Struct) else ((), False)
+
+
 def _strangers(
     flow: TypeFlow, names: Iterable[str], joints: list[str], robot: Robot
 ) -> Iterator[Finding]:
@@ -499,4 +541,6 @@ def _strangers(
     guess = guesser(joints)
     for name in strange:
         help = did_you_mean(guess(name)) or f"its joints are {listed(joints)}"
-        yield at(flow, f"the robot `{robot.name}` has no joint `{name}`", help, (name,))
+        message = f"the robot `{robot.name}` has no joint `{name}`"
+        part, key = part_named(flow.value, name)
+        yield at(flow, message, help, (name,), part=part, key=key)

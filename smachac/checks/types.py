@@ -12,26 +12,27 @@ from smachac.analysis.expression_types import type_of_data
 from smachac.analysis.type_inference import Cell, Clash, TypeFlow
 from smachac.analysis.type_lattice import (
     BOOL,
-    FLOAT,
     fields,
     fits,
     inside,
-    is_open,
-    items,
     misfit,
     present,
     widened,
 )
+from smachac.checks.class_values import wrong_writes
 from smachac.checks.messages import calls, did_you_mean, other_place
-from smachac.checks.number_help import decimal_commas, number_meant, sizes_of
+from smachac.checks.number_help import decimal_commas, list_meant, number_meant, sizes_of
 from smachac.checks.rule import rule
+from smachac.checks.type_words import HELP, example, in_words
+from smachac.checks.value_places import place_of_part, steps_to_misfit
 from smachac.diagnostics.diagnostic import Finding, Related, Severity
 from smachac.diagnostics.source import NOWHERE, Span
 from smachac.diagnostics.spelling import guesser
 from smachac.diagnostics.wording import listed
 from smachac.ir import nodes
-from smachac.ir.nodes import Leaf, StateType
-from smachac.ir.types import Type
+from smachac.ir.leaf import variable_of
+from smachac.ir.nodes import Expression, Leaf, StateType, Struct
+from smachac.ir.traversal import outcome_names
 
 
 @rule("SM304", "type-mismatch", Severity.ERROR)
@@ -41,9 +42,11 @@ def type_mismatch(context: Context) -> Iterator[Finding]:
     The state that reads it fails in the middle of the task, or uses the value with a wrong meaning.
 
     Exactly: types come from interfaces, from the script, from literals and from the results of
-    functions, and are followed through remappings and containers. The default of a variable in an
-    interface must fit its type. An `int` fits a `float`, a `T`
-    fits a `T?`, an enumeration fits one with more choices, and `any` fits every type.
+    functions, and are followed through remappings and containers. Literals that the Python class of
+    a state type writes to an output key are checked against its interface, and the steps of a
+    ScriptedState against the fields of a step. The default of a variable in an interface must fit
+    its type. An `int` fits a `float`, a `T` fits a `T?`, an enumeration fits one with more choices,
+    and `any` fits every type.
 
     Wrong:
         name: sm
@@ -81,6 +84,8 @@ def type_mismatch(context: Context) -> Iterator[Finding]:
     """
     yield from clash_findings([each for each in context.clashes["type"] if not _is_function(each)])
     yield from _without_items(context)
+    yield from _wrong_steps(context)
+    yield from wrong_writes(context)
     for type_ in context.machine.state_types.values():
         yield from _wrong_defaults(type_)
 
@@ -108,6 +113,52 @@ def _without_items(context: Context) -> Iterator[Finding]:
             ),
             node=path,
         )
+
+
+STEP = ("outcome", "set")
+"""The fields of a step."""
+
+
+def _wrong_steps(context: Context) -> Iterator[Finding]:
+    """The steps of ScriptedStates that are no list of mappings with the fields of a step."""
+    for path, leaf in context.states:
+        held = variable_of(leaf, "steps") if isinstance(leaf, Leaf) else None
+        if held is None or isinstance(held.value.data, Expression):
+            continue
+        whole, data = held.value.span, held.value.data
+        shown = f"`{held.name}` of `{leaf.name}`"
+        one = "write each step as a mapping: `- {outcome: NAME, set: {KEY: VALUE}}`"
+        faults: list[tuple[Span, str, str, str]] = []
+        if not isinstance(data, tuple):
+            faults = [(whole, f"{shown} must be a list of steps", one, "")]
+            if isinstance(data, Struct) and "\n" not in whole.text:
+                faults = [
+                    (whole, f"{shown} must be a list of steps", f"write `[{whole.text}]`", "")
+                ]
+        for at, step in enumerate(data if isinstance(data, tuple) else ()):
+            if isinstance(step, Struct):
+                for name in (name for name, _ in step.entries if name not in STEP):
+                    place = place_of_part(whole, (at, name), key=True)
+                    help = did_you_mean(guesser(STEP)(name)) or f"its fields are {listed(STEP)}"
+                    faults.append(
+                        (place, f"a step of `{leaf.name}` has no field `{name}`", help, name)
+                    )
+            elif not isinstance(step, Expression):
+                place = place_of_part(whole, (at,))
+                known = isinstance(step, str) and step in outcome_names(leaf)
+                help = f"write `{{outcome: {step}}}`" if known else one
+                faults.append(
+                    (place, f"step {at + 1} of `{leaf.name}` is not a mapping", help, str(at))
+                )
+        for span, message, help, name in faults:
+            yield Finding(
+                span=span,
+                message=message,
+                arguments=(held.name, name, "step"),
+                help=help,
+                related=calls(leaf, span),
+                node=path,
+            )
 
 
 def _is_function(clash: Clash) -> bool:
@@ -166,8 +217,8 @@ def _finding(group: list[Clash], *, at_origin: bool) -> Finding:
     clash = group[0]
     origin, cell = clash.flow.origin, clash.cell
     about = origin.cell if at_origin else cell
-    span = origin.span if at_origin else cell.span
-    shown = {span}
+    span = _place(clash) if at_origin else cell.span
+    shown = {span, origin.span} if at_origin else {span}
     related: list[Related] = []
 
     def show(where: Span, message: str) -> None:
@@ -177,7 +228,7 @@ def _finding(group: list[Clash], *, at_origin: bool) -> Finding:
 
     for each in group:
         if not at_origin:
-            show(each.flow.origin.span, written(each.flow.origin))
+            show(_place(each), written(each.flow.origin))
         for where, message in _remaps(each):
             show(where, message)
         if at_origin:
@@ -192,6 +243,27 @@ def _finding(group: list[Clash], *, at_origin: bool) -> Finding:
         related=(*related, *(calls(about.node, span) if about.node is not None else ())),
         node=about.path,
     )
+
+
+def _place(clash: Clash) -> Span:
+    """The place of a value, or of the part of a literal that does not fit."""
+    origin, value = clash.flow.origin, clash.flow.value
+    if not isinstance(value, (tuple, Struct)):
+        return origin.span
+    steps = steps_to_misfit(value, clash.cell.declared)
+    near = next((near for _, near in _misspelt_fields(clash)), None)
+    return place_of_part(origin.span, (*steps, *([near] if near else ())), key=near is not None)
+
+
+def _misspelt_fields(clash: Clash) -> Iterator[tuple[str, str]]:
+    """The missing fields of a record, each with the field that is likely meant for it."""
+    given, wanted = clash.misfit.given, clash.misfit.wanted
+    missing = _missing_fields(clash)
+    others = [each for each in fields(given) if each not in fields(wanted)] if missing else []
+    for name in missing:
+        near = guesser(others)(name)
+        if near is not None:
+            yield name, near
 
 
 def _owner(cell: Cell) -> str:
@@ -235,26 +307,13 @@ def is_promised(cell: Cell) -> bool:
     return outermost and node is not None and any(key.name == cell.key for key in node.inputs)
 
 
-def in_words(type_: Type) -> str:
-    """A type as part of a message; literals as in the script."""
-    match type_.name:
-        case "literal":
-            texts = (f'"{each}"' if isinstance(each, str) else str(each) for each in type_.args)
-            return " or ".join(f"`{text}`" for text in texts)
-        case "none":
-            return "nothing (`null`)"
-        case "tuple" if all(fits(item, FLOAT) and not is_open(item) for item in items(type_)):
-            count = len(type_.args)
-            return f"a list of {count} number{'s' if count != 1 else ''}"
-    return f"`{widened(type_)}`"
-
-
 def _part(clash: Clash) -> str:
     """The part of the value that does not fit; empty if it is the whole value."""
     given, wanted = clash.misfit.given, clash.misfit.wanted
     missing = _missing_fields(clash)
     if missing:
-        return f": it lacks the field{'s' if len(missing) > 1 else ''} {listed(missing)}"
+        who = "it" if given == clash.flow.type else "an item"
+        return f": {who} lacks the field{'s' if len(missing) > 1 else ''} {listed(missing)}"
     if given == clash.flow.type or clash.misfit.kind == "unit":
         return ""
     return f": {in_words(given)} does not fit `{wanted}`"
@@ -275,13 +334,6 @@ FLAGS = {
 }
 """Words and numbers that are meant as booleans, which are `true` and `false` in YAML 1.2."""
 
-HELP = {
-    "Pose": "write a pose as `[[x, y, z], [qx, qy, qz, qw]]`",
-    "Transform": "write a transform as `[[x, y, z], [qx, qy, qz, qw]]`",
-    "Point": "write a point as `[x, y, z]`",
-    "Quaternion": "write a rotation as `[qx, qy, qz, qw]`",
-}
-
 
 def _help(clash: Clash) -> str:
     given, wanted = clash.misfit.given, clash.misfit.wanted
@@ -291,14 +343,11 @@ def _help(clash: Clash) -> str:
         choices = [str(choice) for choice in wanted.args]
         guess = did_you_mean(guesser(choices)(str(given.args[0])))
         return guess or f"use one of {', '.join(f'`{choice}`' for choice in choices)}"
+    for name, near in _misspelt_fields(clash):
+        return f"did you mean `{name}` in place of `{near}`?"
     for name in _missing_fields(clash):
-        others = [each for each in fields(given) if each not in fields(wanted)]
-        near = guesser(others)(name)
-        if near is not None:
-            return f"did you mean `{name}` in place of `{near}`?"
-        return (
-            f"add `{name}`, or make it optional where it is read: `{name}: {fields(wanted)[name]}?`"
-        )
+        type_ = fields(wanted)[name]
+        return f"add `{name}`, or make it optional where it is read: `{name}: {type_}?`"
     if clash.flow.how == "value":
         meant = _meant(clash)
         if meant is not None:
@@ -314,7 +363,32 @@ def _help(clash: Clash) -> str:
     if clash.flow.origin.how == "declared" and is_promised(clash.flow.origin.cell):
         owner = _owner(clash.flow.origin.cell)
         return f"change the type in the `input_keys` of {owner}, or where it is read"
-    return f"write a value that fits `{wanted}`, or change the type where it is read"
+    return _rewrite(clash)
+
+
+def _rewrite(clash: Clash) -> str:
+    """The help for a value of a wrong type: how the script writes a right one, and the other place
+    that can be changed, if there is one."""
+    wanted, cell = clash.misfit.wanted, clash.cell
+    found = example(wanted)
+    value = f"a value of the type `{wanted}`" + (f", such as `{found}`" if found else "")
+    node, change = cell.node, f"change the type of `{cell.key}`"
+    own = node.inputs if cell.role == "input" and node is not None else ()
+    listed_here = any(
+        key.name == cell.key and node is not None and key.span.source is node.span.source
+        for key in own
+    )
+    if isinstance(node, Leaf) and not listed_here:
+        if node.built_in:
+            change = ""
+        else:
+            change += f" in the interface `{node.type}`"
+    elif node is not None:
+        change += f" at {_owner(cell)}"
+    if clash.flow.origin.how != "value":
+        owner = _owner(clash.flow.origin.cell)
+        return f"let {owner} write {value}" + (f", or {change}" if change else "")
+    return f"write {value}" + (f", or {change}" if change else "")
 
 
 def _meant(clash: Clash) -> str | None:
@@ -327,6 +401,8 @@ def _meant(clash: Clash) -> str | None:
     if given.name == "literal" and number.name in ("int", "float"):
         texts = [each for each in given.args if isinstance(each, str)]
         return number_meant(texts[0], number) if texts else None
+    if given.name == "literal" and (number.name in ("list", "array") or number.name in HELP):
+        return list_meant(str(given.args[0]))
     return decimal_commas(clash.flow.origin.span.text, sizes_of(clash.cell.declared))
 
 

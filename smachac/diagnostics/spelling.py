@@ -124,6 +124,13 @@ def respelt(word: Word, name: str | None) -> tuple[Edit, ...]:
     return ()
 
 
+def in_quotes(text: str) -> str:
+    """A text of one line as a quoted scalar of YAML, with as few escapes as possible."""
+    if "'" in text and not {'"', "\\"} & set(text):
+        return f'"{text}"'
+    return "'" + text.replace("'", "''") + "'"
+
+
 def guesser(candidates: Iterable[str]) -> Guesser:
     """The guesser for some names."""
     return Guesser(candidates)

@@ -8,9 +8,11 @@ from __future__ import annotations
 
 import ast
 import re
+from collections.abc import Iterator
 
 from smachac.diagnostics.source import Source, Span, Word
 from smachac.diagnostics.spelling import guesser
+from smachac.frontend.class_names import STATE_METHODS, undefined_methods, undefined_names
 from smachac.frontend.loader import Library
 from smachac.frontend.python_flow import Flow, Flows, is_plain
 from smachac.frontend.python_modules import (
@@ -30,13 +32,6 @@ PARAMETERS = ("outcomes", "input_keys", "output_keys", "io_keys")
 
 REGISTERS = re.compile(r"\.(register)?_(outcomes|(io|input|output)_keys)\b")
 """Methods and attributes that change the declared interface; a class that has one is not read."""
-
-STATE_METHODS = frozenset([
-    "execute", "request_preempt", "service_preempt", "recall_preempt", "preempt_requested",
-    "register_outcomes", "get_registered_outcomes", "register_io_keys", "register_input_keys",
-    "get_registered_input_keys", "register_output_keys", "get_registered_output_keys",
-])  # fmt: skip
-"""The methods of `smach.State` that containers call (smachac/runtime/smach/state.py)."""
 
 Words = tuple[Word, ...]
 
@@ -104,7 +99,7 @@ def _facts(module: Module, node: ast.ClassDef, library: Library) -> ClassFacts:
     whole = not any(piece.startswith("{%") for piece in _fillings(module, node))
     return ClassFacts(
         name=Word(node.name, name_span(module.text, node)),
-        faults=tuple(_faults(own, module, node)) if whole else (),
+        faults=(*_faults(own, module, node), *_undefined(own, lists)) if whole else (),
         parameters=_parameters(own) if whole else None,
         outcomes=lists.get("outcomes", ()) if lists is not None else None,
         inputs=_together(lists, "input_keys"),
@@ -118,7 +113,38 @@ def _facts(module: Module, node: ast.ClassDef, library: Library) -> ClassFacts:
         writes=flow.writes,
         stub=execute is not None and all(map(_does_nothing, execute.body)),
         checks_stop=any(_checks_stop(each) for _, each in own.classes),
+        values=_values(own, execute) if execute is not None and flow.writes else (),
     )
+
+
+def _values(own: OwnClass, function: ast.FunctionDef) -> tuple[tuple[str, Word], ...]:
+    """The expressions that `execute` itself writes to userdata keys: `userdata.key = value`."""
+    text = next(module.text for module, node in own.classes if function in node.body)
+    userdata = function.args.args[1].arg
+    found = []
+    for node in ast.walk(function):
+        if not isinstance(node, ast.Assign) or len(node.targets) != 1:
+            continue
+        value = node.value
+        match node.targets[0]:
+            case ast.Attribute(value=ast.Name(id=name), attr=key):
+                pass
+            case ast.Subscript(value=ast.Name(id=name), slice=ast.Constant(value=str(key))):
+                pass
+            case _:
+                continue
+        span = text.span(value)
+        if name == userdata and not text.is_filled(span):
+            found.append((key, Word(span.text, span)))
+    return tuple(found)
+
+
+def _undefined(own: OwnClass, lists: dict[str, Words | None] | None) -> Iterator[ClassFault]:
+    """The names and attributes that nothing defines."""
+    outcomes = (lists or {}).get("outcomes") or ()
+    for module, node in own.classes:
+        yield from undefined_names(module, node, [word.text for word in outcomes])
+    yield from undefined_methods(own)
 
 
 def _fillings(module: Module, node: ast.stmt) -> list[str]:
@@ -178,7 +204,8 @@ def _faults(own: OwnClass, module: Module, node: ast.ClassDef) -> list[ClassFaul
     if own.root == "object":
         certain = not own.binds("get_registered_outcomes")
         return [*found, _at_class("no state", module, node)] if certain else found
-    return [*found, *_execute_faults(own, module, node), *_constructor_faults(own), *_hidden(own)]
+    return [*found, *_execute_faults(own, module, node), *_constructor_faults(own), *_hidden(own),
+            *_list_faults(own)]  # fmt: skip
 
 
 def _at_class(
@@ -246,6 +273,29 @@ def _constructor_faults(own: OwnClass) -> list[ClassFault]:
         for each in ast.walk(owner)
     )
     return [] if calls else [_at_method("no constructor call", *found)]
+
+
+def _list_faults(own: OwnClass) -> Iterator[ClassFault]:
+    """The arguments of `smach.State.__init__` that are no lists: SMACH joins the lists of keys."""
+    found = own.method("__init__")
+    if found is None or len(own.classes) > 1:
+        return
+    module, maker = found
+    for call in ast.walk(maker):
+        if not isinstance(call, ast.Call) or not _is_super(call):
+            continue
+        for key, value in (_given(call) or {}).items():
+            span = module.text.span(value)
+            kinds = ast.Tuple | ast.Set | ast.Dict | ast.SetComp | ast.GeneratorExp
+            text = value.value if isinstance(value, ast.Constant) else None
+            wrong = isinstance(text, str) or (key != "outcomes" and isinstance(value, kinds))
+            if key not in PARAMETERS or not wrong or module.text.is_filled(span):
+                continue
+            items = [word.text for word in _words(module.text, value) or ()]
+            items = [text] if isinstance(text, str) else items
+            listed = ", ".join(f'"{each}"' for each in items)
+            near = f"{key}=[{listed}]" if items else None
+            yield ClassFault(kind="no list", name=Word(key, span), near=near)
 
 
 def _registers(node: ast.ClassDef) -> bool:

@@ -7,8 +7,8 @@ from __future__ import annotations
 
 from collections.abc import Callable
 
-from smachac.diagnostics.diagnostic import Report
-from smachac.diagnostics.source import Word
+from smachac.diagnostics.diagnostic import Edit, Report
+from smachac.diagnostics.source import Span, Word
 from smachac.frontend.errors.script import Owner, duplicate_key, unknown_variable, wrong_shape
 from smachac.frontend.script import Keys, Pairs, Rules
 from smachac.frontend.values import as_value
@@ -64,7 +64,35 @@ def wrong(tree: Tree, shape: str, report: Report, help: str | None = None) -> No
     found = kind_of(tree)
     message = f"expected {expected}, found {found}"
     arguments = (shape, found)
-    report.append(wrong_shape(tree.span, message, help or example, arguments=arguments))
+    words = _words_of(tree) if shape in LISTS else ()
+    edits: tuple[Edit, ...] = ()
+    if words and help is None:
+        text = f"[{', '.join(word.text for word in words)}]"
+        help, edits = f"write it as `{text}`", (Edit(span=tree.span, text=text),)
+    report.append(
+        wrong_shape(tree.span, message, help or example, arguments=arguments, edits=edits)
+    )
+
+
+LISTS = ("names", "outcomes", "keys")
+"""The shapes that are lists of names."""
+
+
+def _words_of(tree: Tree) -> tuple[Word, ...]:
+    """The names in a plain text without brackets, such as `a, b`; none if a part is no name."""
+    if not isinstance(tree, Scalar) or not isinstance(tree.value, str) or not tree.plain:
+        return ()
+    if tree.span.text != tree.value:
+        return ()
+    words, start = [], tree.start
+    for part in tree.value.split(","):
+        name = part.strip()
+        if not name.isidentifier() or name in _YAML_1_1_BOOLEANS:
+            return ()
+        begin = start + part.index(name)
+        words.append(Word(name, Span(tree.source, begin, begin + len(name))))
+        start += len(part) + 1
+    return tuple(words)
 
 
 def name_of(tree: Tree) -> Word | None:
@@ -110,9 +138,9 @@ def as_names(tree: Tree, report: Report, shape: str = "names") -> tuple[Word, ..
     """A list of names, each once. `shape` is that of a tree that is no list, for the message."""
     if not isinstance(tree, Seq):
         wrong(tree, shape, report)
-        # A single name stands for a list of it, so that its uses are not reported too.
+        # Names without brackets stand for the list, so that their uses are not reported too.
         word = name_of(tree)
-        return (word,) if word is not None and word.text else ()
+        return _words_of(tree) or ((word,) if word is not None and word.text else ())
     found: dict[str, Word] = {}
     for item in tree.items:
         word = as_name(item, report)
@@ -205,7 +233,7 @@ def as_keys(tree: Tree, report: Report) -> Keys:
     if isinstance(tree, Map):
         return tuple((key, parse_type(type_.text)) for key, type_ in as_pairs(tree, report))
     wrong(tree, "keys", report)
-    return ()
+    return tuple((word, None) for word in _words_of(tree))
 
 
 def listed_keys(tree: Tree) -> Keys:

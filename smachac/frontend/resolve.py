@@ -16,9 +16,11 @@ from smachac.diagnostics.spelling import guesser_of
 from smachac.frontend import schema
 from smachac.frontend.errors.references import (
     bad_sub_script,
+    look_up_of_call,
     recursive_include,
     script_not_found,
     template_not_found,
+    unresolved_look_up,
 )
 from smachac.frontend.errors.script import (
     Owner,
@@ -155,6 +157,7 @@ class _Resolver:
     def script(self, source: Source, tree: Map) -> Script:
         """The script of a tree: its outermost state machine, with the robot and the types."""
         self.sources[source] = None
+        self.uses.trees[source] = tree
         self.main = source.name
         begin = self.uses.mark(self.report)
         entries = self.expand(tree.entries)
@@ -228,6 +231,7 @@ class _Resolver:
             self.uses.value(key, entry.value, flat=flat)
             entries[key] = entry if key == "params" else self.fill(key, entry, scope, flat=flat)
         type_, owner = self.type_of(name, entries, role, around)
+        entries |= self.lists(own, scope, type_)
         entries = with_meant_fields(entries, owner, type_)
         self.uses.type(type_)
         self.fixed_params += _fixed_params(own, type_, scope)
@@ -268,6 +272,21 @@ class _Resolver:
         new = fill_in(entry.value, scope, self.report, names=names)
         filled = entry if new is entry.value else self.limit_depth(self.limit_size(entry, new))
         return typed(key, filled, self.aliases, self.report)
+
+    def lists(self, own: dict[str, Entry], scope: Scope, type_: StateType) -> dict[str, Entry]:
+        """The variables of a state type that are lists, such as `goal_slots`, with one item for
+        each look-up: their items are not joined to one string. Faults in them are reported by
+        `fill`."""
+        found: dict[str, Entry] = {}
+        for key, held in type_.variables.items():
+            entry = own.get(key)
+            if entry is None or not (held.keys or held.type.name in ("list", "array")):
+                continue
+            if isinstance(entry.value, Seq) and not is_flat(entry.value):
+                entry = self.limit_depth(entry)
+                new = fill_in(entry.value, scope, [], names=True)
+                found[key] = typed(key, self.limit_size(entry, new), self.aliases, [])
+        return found
 
     def limit_size(self, entry: Entry, new: Tree) -> Entry:
         """The field with its value after the look-ups; too many added nodes are reported and
@@ -414,6 +433,7 @@ class _Resolver:
         """The state or, if it calls a sub-script, the state of that sub-script with the fields of
         the call."""
         begin = self.uses.mark(self.report)
+        called: list[tuple[Word, tuple[Entry, ...]]] = []
         while "script" in own:
             entry = own.pop("script")
             params = own["params"].value if "params" in own else None
@@ -421,7 +441,7 @@ class _Resolver:
             self.uses.value("script", entry.value, flat=is_flat(entry.value))
             word = as_name(fill_in(entry.value, scope, self.report), self.report)
             found = self.sub_script(word, around) if word is not None and word.text else None
-            if found is None:
+            if word is None or found is None:
                 transitions = own.get("transitions")
                 pairs = pairs_of(transitions.value) if transitions is not None else ()
                 return _unknown(name, pairs, around)
@@ -429,8 +449,27 @@ class _Resolver:
             call = Span(around.source, entry.key.span.start, entry.value.span.end)
             calls = (*around.calls, (source.name, call))
             around = replace(around, source=source, calls=calls, inner=inner)
-            own = overridden(self.expand(entries), own)
-        return self.state(name, own, around, begin=begin)
+            fields = self.expand(entries)
+            self.uses.replaced(fields, own)
+            called.append((Word(word.text, call), _entries_of(params)))
+            own = overridden(fields, own)
+        state = self.state(name, own, around, begin=begin)
+        for script, given in called:
+            self.misspelt_params(script, given, begin)
+        return state
+
+    def misspelt_params(self, script: Word, given: tuple[Entry, ...], begin: Mark) -> None:
+        """Puts the look-ups of a sub-script that failed at the call that misspells the param, or
+        beside the call that does not give it."""
+        looked_up, _, before = begin
+        if len(self.report) == before:
+            return
+        used = set(self.uses.looked_up[looked_up:])
+        idle = [name for each in given if (name := as_name(each.key, [])) and name.text not in used]
+        for at in range(before, len(self.report)):
+            item = self.report[at]
+            if item.kind is unresolved_look_up.code and item.span.source is not script.span.source:
+                self.report[at] = look_up_of_call(item, script, idle)
 
     def not_found(self, item: Diagnostic) -> None:
         """Reports a file that was not found, except as a consequence: its folder may be in settings
@@ -467,6 +506,7 @@ class _Resolver:
                     bad_sub_script(start, message, word.span, SUB_SCRIPT_HELP, arguments=("empty",))
                 )
             return None
+        self.uses.trees[source] = tree
         state = sub_script_state(tree, word, self.report)
         return None if state is None else (source, *state)
 
@@ -533,6 +573,10 @@ class _Resolver:
         # Some meta blocks of SMACHA name the kind `container` for a state.
         is_container = found.kind == "container" and not found.prints_itself
         return found, role or ("StateMachine" if is_container else nested)
+
+
+def _entries_of(tree: Tree | None) -> tuple[Entry, ...]:
+    return tree.entries if isinstance(tree, Map) else ()
 
 
 def _remapping_in_iterator(span: Span) -> Diagnostic:

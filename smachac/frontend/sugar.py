@@ -18,7 +18,7 @@ from smachac.frontend.errors.script import Owner, missing_variable, unknown_vari
 from smachac.frontend.fields import as_name, as_names, pairs_of, wrong
 from smachac.frontend.script import ERROR, EXHAUSTED, TIMEOUT, ForEach, Retry, Sugar, Timeout
 from smachac.frontend.values import as_value
-from smachac.frontend.yaml_tree import Entry, Map, Scalar, Tree
+from smachac.frontend.yaml_tree import Entry, Map, Scalar, Seq, Tree
 from smachac.ir.nodes import Outcome, StateType
 from smachac.ir.outcome_names import GOOD_OUTCOMES, PREEMPTED
 
@@ -157,7 +157,7 @@ def _parts(
     """The entries of a mapping with known keys, without those that are missing; None for other
     values. All errors are reported."""
     if not isinstance(entry.value, Map):
-        wrong(entry.value, "map", report, f"write a mapping with {listed(known)}")
+        wrong(entry.value, "map", report, _mapping_for(entry))
         return None
     owner = Owner(str(entry.key.value), f"`{entry.key.value}`")
     parts: dict[str, Tree] = {}
@@ -177,6 +177,16 @@ def _parts(
         if name not in parts:
             report.append(missing_variable(entry.key.span, name, owner))
     return parts
+
+
+def _mapping_for(entry: Entry) -> str:
+    """How a field is written whose value is no mapping, with the user's value where it belongs."""
+    value, text = entry.value, entry.value.span.text
+    if entry.key.value == "for_each":
+        items = text if isinstance(value, (Seq, Scalar)) and "\n" not in text and text else "KEY"
+        return f"write `for_each: {{item: NAME, in: {items}}}`"
+    number = value.value if isinstance(value, Scalar) and type(value.value) is int else 3
+    return f"write `retry: {{on: [OUTCOME], max: {number}}}`, with the outcomes to try again after"
 
 
 def _retry(entry: Entry, report: Report) -> Retry:

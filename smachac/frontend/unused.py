@@ -2,12 +2,13 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Iterator
+from collections import Counter
+from collections.abc import Iterable, Iterator, Mapping
 from dataclasses import dataclass, field
 from typing import TypeAlias
 
 from smachac.diagnostics.diagnostic import Report, has_errors
-from smachac.diagnostics.source import Span, Word
+from smachac.diagnostics.source import Source, Span, Word
 from smachac.frontend.params import look_up_word
 from smachac.frontend.type_annotations import TYPED, type_words, words_of
 from smachac.frontend.yaml_tree import Entry, Map, Scalar, Tree
@@ -22,13 +23,18 @@ class Uses:
     """The uses of params and aliases in the part of a script read so far.
 
     `looked_up` are the names in look-ups, in order. `unknown` counts the states that may use any
-    param, such as those of SMACHA's templates. `found` are the unused declarations.
+    param, such as those of SMACHA's templates. `found` are the unused declarations. `defaults` are
+    the places of params that fields of a sub-script use where no call replaces them; `anchored` are
+    the places of the values of unused params, `trees` those of the script and its sub-scripts.
     """
 
     looked_up: list[str] = field(default_factory=list)
     types: set[str] = field(default_factory=set)
     unknown: int = 0
     found: list[Unused] = field(default_factory=list)
+    defaults: set[Span] = field(default_factory=set)
+    anchored: dict[Span, list[Span]] = field(default_factory=dict)
+    trees: dict[Source, Tree] = field(default_factory=dict)
 
     def value(self, key: str, tree: Tree, *, flat: bool) -> None:
         """Collect the uses in a field of a state. `flat`: see `is_flat`."""
@@ -43,6 +49,9 @@ class Uses:
         self.types |= inner.types
         self.unknown += inner.unknown
         self.found += inner.found
+        self.defaults |= inner.defaults
+        self.anchored |= inner.anchored
+        self.trees |= inner.trees
 
     def type(self, type_: StateType) -> None:
         """Count a state whose type may use any param."""
@@ -63,8 +72,22 @@ class Uses:
         used = set(self.looked_up[looked_up:])
         for entry in own.value.entries:
             name = str(entry.key.value)
-            if name not in used:
-                self.found.append(Unused("param", Word(name, entry.key.span), via))
+            if name in used:
+                self.defaults.add(entry.key.span)
+                continue
+            self.found.append(Unused("param", Word(name, entry.key.span), via))
+            self.anchored[entry.key.span] = [each.span for each in _inside(entry.value)]
+
+    def replaced(self, inner: Mapping[str, Entry], call: Mapping[str, Entry]) -> None:
+        """Count the params of a sub-script that its own fields use, of which the call replaces
+        some."""
+        params = inner.get("params")
+        if params is None or not isinstance(params.value, Map):
+            return
+        fields = [entry.value for key, entry in inner.items() if key in call]
+        names = {word.text for value in fields for word in look_ups(value)}
+        keys = (entry.key for entry in params.value.entries if entry.key.value in names)
+        self.defaults.update(key.span for key in keys)
 
     def aliases(self, tree: Tree, report: Report) -> None:
         """Find the unused aliases of a script, after it was read."""
@@ -77,11 +100,26 @@ class Uses:
                 self.found.append(Unused("type", Word(name, entry.key.span)))
 
     def unused(self, report: Report) -> tuple[Unused, ...]:
-        """The unused declarations, without params that a look-up out of scope names (SM015)."""
-        if not has_errors(report):
-            return tuple(self.found)
-        names = set(self.looked_up)
-        return tuple(each for each in self.found if each.word.text not in names)
+        """The unused declarations, without those of use elsewhere.
+
+        A param is of use if another reading of its sub-script uses it, if an alias repeats its
+        value, or if a look-up out of scope names it (SM015).
+        """
+        if not self.found:
+            return ()
+        places = Counter(each.span for tree in self.trees.values() for each in _inside(tree))
+        repeated = {
+            span
+            for span, inside in self.anchored.items()
+            if any(places[each] > 1 for each in inside)
+        }
+        names = set(self.looked_up) if has_errors(report) else set()
+        of_use = self.defaults | repeated
+        return tuple(
+            each
+            for each in self.found
+            if each.word.text not in names and each.word.span not in of_use
+        )
 
 
 def look_ups(tree: Tree) -> Iterator[Word]:
@@ -98,3 +136,15 @@ def look_ups(tree: Tree) -> Iterator[Word]:
         inner: Iterable[Tree]
         inner = (entry.value for entry in each.entries) if isinstance(each, Map) else each.items
         todo.extend(inner)
+
+
+def _inside(tree: Tree) -> Iterator[Tree]:
+    """A value and the values in it, as often as they stand there."""
+    todo: list[Tree] = [tree]
+    while todo:
+        each = todo.pop()
+        yield each
+        if isinstance(each, Map):
+            todo.extend(entry.value for entry in each.entries)
+        elif not isinstance(each, Scalar):
+            todo.extend(each.items)

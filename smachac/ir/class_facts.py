@@ -22,6 +22,9 @@ FaultKind = Literal[
     "no parameter",
     "required parameter",
     "no outcome",
+    "undefined name",
+    "undefined method",
+    "no list",
 ]
 
 
@@ -67,6 +70,7 @@ class ClassFacts:
     `execute` is the place of its name. `silent`: some path through it returns nothing,
     `always_silent`: every path. `reads` and `writes` are the userdata keys that it accesses.
     `stub`: it only returns one constant. `checks_stop`: the class checks for preempt requests.
+    `values` are the expressions that `execute` itself writes, each with its key.
     """
 
     name: Word | None = None
@@ -84,6 +88,7 @@ class ClassFacts:
     writes: tuple[Word, ...] = ()
     stub: bool = False
     checks_stop: bool = False
+    values: tuple[tuple[str, Word], ...] = ()
 
     @property
     def returns(self) -> tuple[Word, ...]:

@@ -416,7 +416,8 @@ def bad_class(
 
     Exactly: the class is read, never run. A program makes the state with the variables that a
     script sets, passed by their names. `check` reports a warning; a build for the language of the
-    class fails.
+    class fails. Found are also misspelt names, methods of `self` that no class defines, and keys
+    that are not in a list. Where a name can be defined elsewhere, nothing is reported.
 
     Wrong:
         name: sm
@@ -463,7 +464,8 @@ def bad_class(
     """
     message, help = _about_class(fault, state_type, name)
     if fault.near is not None:
-        help = f"did you mean `{fault.near}`?"
+        written = fault.kind == "no list" or fault.near.startswith('"')
+        help = f"write `{fault.near}`" if written else f"did you mean `{fault.near}`?"
     return Finding(
         span=fault.name.span,
         message=message,
@@ -504,6 +506,18 @@ def _about_class(fault: ClassFault, state_type: str, name: str) -> tuple[str, st
         case "hidden method":
             return f"`self.{word}` hides the method `{word}` of `smach.State`, which SMACH calls", (
                 "give the attribute another name"
+            )
+        case "undefined name":
+            return f"`{word}` is used in `{name}`, but nothing defines it: Python stops there", (
+                "define it in the module, or import it"
+            )
+        case "undefined method":
+            return f"neither `{name}` nor `smach.State` defines `{word}`: Python stops here", (
+                f"define `{word}` in the class, or correct the name"
+            )
+        case "no list":
+            return f"`{word}` of `{name}` must be a list: SMACH cannot use another collection", (
+                f"write `{word}=[...]`"
             )
         case "defined twice":
             return f"`{word}` is defined twice: only the last definition counts", (

@@ -176,7 +176,7 @@ def test_a_fault(text: str, found: list[str], help: str | None) -> None:
         ('return "lost"', "return OUTCOMES[self.speed]"),
         ('return "lost"', "return self.result"),
         ('return "lost"', 'return "lost" if camera.on else camera.state'),
-        ('                return "preempted"\n', "                return self.stop()\n"),
+        ('                return "preempted"\n', "                return self.robot.stop()\n"),
         # the userdata goes elsewhere
         (SET, "                camera.store(userdata)\n"),
         (SET, "                userdata.update(pose=pose)\n"),

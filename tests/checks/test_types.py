@@ -62,7 +62,7 @@ def move(
         (move(BENT), ["SM502"]),
         (move(BENT, claim='"arm.left"'), ["SM502"]),
         (move(BENT, type="float<rad>[7]?"), ["SM502"]),
-        (move("[9, -9, 0, -2.4, 0, 1.6, 0.8]"), ["SM502", "SM502"]),
+        (move("[9, -9, 0, -2.4, 0, 1.6, 0.8]"), ["SM502"]),
         (move("[3.0542, 0, 0, 0, 0, 0, 0]", robot="baxter"), ["SM502"]),
         (move("[0, 0, 3.0542, 0, 0, 0, 0]", robot="baxter"), []),
         # Of another robot, of what is no angle, or of what moves no arm, nothing is known.

@@ -19,7 +19,13 @@ from smachac.diagnostics.source import NOWHERE
 from smachac.ir.expressions import Expr, parse_expression
 from smachac.ir.nodes import Data, Expression, Struct
 from smachac.ir.types import Type, parse_type
-from smachac.targets.cpp.expressions import Spelling, cpp_condition, cpp_expression, cpp_function
+from smachac.targets.cpp.expressions import (
+    PORTABLE,
+    Spelling,
+    cpp_condition,
+    cpp_expression,
+    cpp_function,
+)
 from smachac.targets.cpp.project import CLANG_FORMAT
 from smachac.targets.cpp.types import UnportableError, cpp_float, cpp_string, cpp_type, cpp_value
 from smachac.verify.players.cpp import HEADERS
@@ -151,6 +157,21 @@ def test_expressions_are_refused_with_a_reason(code: str, wanted: str, reason: s
     with pytest.raises(UnportableError) as found:
         printed(code, wanted)
     assert reason in str(found.value)
+
+
+@pytest.mark.parametrize(
+    ("code", "help"),
+    [
+        ("ud.s is not None", "compare with `!= None`: `ud.s != None`"),
+        ("lambda ud: ud.n if ud.s is None else 0", "compare with `== None`: "),
+        ("ud.s is 5", PORTABLE),
+        ("[x for x in ud.whole if x is None]", PORTABLE),
+    ],
+)
+def test_a_comparison_with_none_has_a_portable_form(code: str, help: str) -> None:
+    with pytest.raises(UnportableError) as found:
+        cpp_function(code, KEYS)
+    assert (found.value.help or "").startswith(help)
 
 
 def test_conditions_are_truth() -> None:

@@ -3,9 +3,11 @@
 from __future__ import annotations
 
 from collections.abc import Iterable, Sequence
+from dataclasses import replace
 from pathlib import PurePath
 
 from smachac.diagnostics.diagnostic import (
+    Diagnostic,
     Finding,
     PathStep,
     Problem,
@@ -15,7 +17,7 @@ from smachac.diagnostics.diagnostic import (
     problem,
 )
 from smachac.diagnostics.source import Span, Word
-from smachac.diagnostics.spelling import guesser_of, respelt
+from smachac.diagnostics.spelling import guesser, guesser_of, respelt
 from smachac.diagnostics.wording import listed
 
 
@@ -216,13 +218,37 @@ def unresolved_look_up(word: Word, scope: Iterable[str]) -> Finding:
     names = sorted(scope)
     help = f"add `params: {{{word.text}: ...}}` to the state, or to a container around it"
     if names:
-        help = did_you_mean(word.text, names) or f"use one of the params in scope: {listed(names)}"
+        others = f"{help}; in scope are {listed(names)}"
+        help = did_you_mean(word.text, names) or others
     return Finding(
         span=word.span,
         message=f"the param `{word.text}` is not in scope here",
         arguments=(word.text,),
         help=help,
     )
+
+
+def look_up_of_call(item: Diagnostic, script: Word, given: Sequence[Word]) -> Diagnostic:
+    """SM015 for a look-up in a sub-script, with the call: `script` is its name and the place of the
+    call; `given` are the params of the call that no look-up reads."""
+    found = item.finding
+    (name,) = found.arguments
+    meant = guesser(each.text for each in given)(name)
+    if meant is not None:
+        wrong = next(each for each in given if each.text == meant)
+        moved = Finding(
+            span=wrong.span,
+            message=f"the sub-script `{script.text}` does not read the param `{wrong.text}`",
+            arguments=(wrong.text,),
+            help=f"did you mean `{name}`?",
+            related=(Related(span=item.span, message=f"it reads `{name}` here"),),
+            edits=respelt(wrong, name),
+        )
+        return replace(item, finding=moved)
+    if found.related:
+        return item
+    call = Related(span=script.span, message=f"this call does not give `{name}`")
+    return replace(item, finding=replace(found, related=(call,)))
 
 
 @problem("SM018", "bad-robot", Severity.ERROR)

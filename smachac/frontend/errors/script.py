@@ -109,6 +109,19 @@ def duplicate_key(key: Word, first: Span) -> Finding:
     )
 
 
+FOREIGN = {
+    "autonomy": "remove it: smachac has no levels of autonomy",
+    "child_termination_cb": "write `join: any` if the first branch that ends must stop the others",
+    "class": "name the state type with `template:`",
+    "initial_state": "write `initial:`",
+    "io_keys": "list the keys in `input_keys` and in `output_keys`",
+    "outcome_cb": "write rules in `outcome_map`",
+    "parameters": "write each parameter as a variable of the state, or constants in `params`",
+    "values": "write initial values in `userdata`",
+}
+"""Fields of SMACH and FlexBE that scripts lack, each with the help for it."""
+
+
 @problem("SM003", "unknown-variable", Severity.ERROR)
 def unknown_variable(
     word: Word,
@@ -164,7 +177,9 @@ def unknown_variable(
         span=word.span,
         message=f"`{word.text}` is not a {owner.part} of {owner.text}",
         arguments=(word.text, owner.name),
-        help=_variable_help(word.text, sure, names, own) or variables,
+        help=(None if sure else FOREIGN.get(word.text))
+        or _variable_help(word.text, sure, names, own)
+        or variables,
         edits=respelt(word, sure),
         severity=severity,
     )

@@ -7,6 +7,7 @@ express raises UnportableError.
 
 from __future__ import annotations
 
+import ast
 import itertools
 from collections.abc import Iterator, Mapping
 from dataclasses import dataclass, field, replace
@@ -129,7 +130,7 @@ def cpp_function(code: str, keys: Mapping[str, Spelling]) -> tuple[Expr, dict[st
     tree = parse_expression(code)
     if tree is None:
         message = f"`{code}` is Python code, not a portable expression"
-        raise UnportableError(message, code, help=PORTABLE)
+        raise UnportableError(message, code, help=_portable_none(code) or PORTABLE)
     parameters: tuple[str, ...] = ("ud", "userdata")
     if isinstance(tree, Lambda):
         parameters = (tree.parameter,) if tree.parameter else ()
@@ -139,6 +140,30 @@ def cpp_function(code: str, keys: Mapping[str, Spelling]) -> tuple[Expr, dict[st
         message = f"`{name}` is defined in Python only"
         raise UnportableError(message, name, help=PORTABLE)
     return tree, {f"{p}.{key}": spelling for p in parameters for key, spelling in keys.items()}
+
+
+def _portable_none(code: str) -> str | None:
+    """The help for code that is portable with `== None` for `is None`."""
+    try:
+        tree = ast.parse(code.strip(), mode="eval")
+    except (SyntaxError, ValueError, RecursionError, MemoryError):
+        return None
+    words = None
+    for node in ast.walk(tree):
+        if not isinstance(node, ast.Compare):
+            continue
+        for at, (sign, right) in enumerate(zip(node.ops, node.comparators, strict=True)):
+            new = _WITHOUT_IS.get(type(sign))
+            if new is not None and isinstance(right, ast.Constant) and right.value is None:
+                node.ops[at] = new()
+                words = "`== None`" if new is ast.Eq else "`!= None`"
+    text = ast.unparse(tree)
+    if words is None or parse_expression(text) is None:
+        return None
+    return f"compare with {words}: `{text}`"
+
+
+_WITHOUT_IS: dict[type[ast.cmpop], type[ast.cmpop]] = {ast.Is: ast.Eq, ast.IsNot: ast.NotEq}
 
 
 def _located(expr: Expr, error: UnportableError) -> UnportableError:

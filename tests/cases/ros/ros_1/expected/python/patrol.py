@@ -12,6 +12,7 @@ import time
 
 import roslib.message
 import rospy
+import std_msgs.msg
 import tf2_geometry_msgs
 import tf2_ros
 from geometry_msgs.msg import (

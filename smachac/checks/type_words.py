@@ -1,0 +1,62 @@
+"""Types in messages: a type in words, and a value of a type as a script writes it."""
+
+from __future__ import annotations
+
+from smachac.analysis.type_lattice import (
+    FLOAT,
+    fields,
+    fits,
+    inside,
+    is_open,
+    items,
+    length_of,
+    present,
+    widened,
+)
+from smachac.ir.types import Type
+
+HELP = {
+    "Pose": "write a pose as `[[x, y, z], [qx, qy, qz, qw]]`",
+    "Transform": "write a transform as `[[x, y, z], [qx, qy, qz, qw]]`",
+    "Point": "write a point as `[x, y, z]`",
+    "Quaternion": "write a rotation as `[qx, qy, qz, qw]`",
+}
+
+
+def in_words(type_: Type) -> str:
+    """A type as part of a message; literals as in the script."""
+    match type_.name:
+        case "literal":
+            texts = (f'"{each}"' if isinstance(each, str) else str(each) for each in type_.args)
+            return " or ".join(f"`{text}`" for text in texts)
+        case "none":
+            return "nothing (`null`)"
+        case "tuple" if all(fits(item, FLOAT) and not is_open(item) for item in items(type_)):
+            count = len(type_.args)
+            return f"a list of {count} number{'s' if count != 1 else ''}"
+    return f"`{widened(type_)}`"
+
+
+EXAMPLES = {"float": "1.5", "int": "3", "bool": "true", "str": "text"}
+"""How a script writes a value of a type."""
+
+MOST_ITEMS = 8
+"""The most items of a list that is shown as an example."""
+
+
+def example(wanted: Type) -> str:
+    """A value of a type as a script writes it; empty if there is no short one."""
+    wanted = present(wanted)
+    if wanted.name in EXAMPLES:
+        return EXAMPLES[wanted.name]
+    if wanted.name == "one_of":
+        return str(wanted.args[0])
+    if wanted.name in ("list", "array"):
+        count, item = length_of(wanted), example(inside(wanted))
+        count = 2 if count is None else count
+        return f"[{', '.join([item] * count)}]" if item and count <= MOST_ITEMS else ""
+    if wanted.name == "record":
+        parts = {name: example(type_) for name, type_ in fields(wanted).items()}
+        whole = ", ".join(f"{name}: {part}" for name, part in parts.items())
+        return f"{{{whole}}}" if all(parts.values()) and len(parts) <= MOST_ITEMS else ""
+    return ""

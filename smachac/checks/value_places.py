@@ -1,0 +1,107 @@
+"""Places of the parts of a value: an item, a field, the key of a field.
+
+A value of the state graph has one span. The text in it is parsed again where a finding is about a
+part; so no part needs a span of its own.
+"""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Iterator, Sequence
+
+from smachac.analysis.expression_types import type_of_data
+from smachac.analysis.type_lattice import (
+    FLOAT,
+    POINT,
+    QUATERNION,
+    fields,
+    inside,
+    length_of,
+    misfit,
+    present,
+)
+from smachac.diagnostics.source import Source, Span
+from smachac.frontend.yaml_tree import Map, Scalar, Seq, Tree, parse
+from smachac.ir.nodes import Data, Struct
+from smachac.ir.types import Type
+
+LONGEST = 20_000
+"""In characters. The parts of a longer value are not searched."""
+
+_TEXT_AFTER = re.compile(r"""\s*:\s*(?:"([^"\n]*)"|'([^'\n]*)'|([^\s,}\]#]+))""")
+
+
+def place_of_part(span: Span, steps: Sequence[int | str], *, key: bool = False) -> Span:
+    """The place of the part of a value to which the steps lead, or of its key; the place of the
+    nearest value around it where the text has an alias or a look-up in its place."""
+    if not steps or span.end - span.start > LONGEST:
+        return span
+    # The spaces keep the first line of a block in its column.
+    column = span.column - 1
+    tree = parse(Source("", " " * column + span.text), [])
+    shift = span.start - column
+    if tree is None or tree.span.start != column:
+        return span
+    found = tree.span
+    for number, step in enumerate(steps):
+        inner = _part(tree, step)
+        if inner is None:
+            break
+        name, tree = inner
+        is_key = key and number == len(steps) - 1 and name is not None
+        found = name.span if is_key and name is not None else tree.span
+    return Span(span.source, found.start + shift, found.end + shift)
+
+
+def _part(tree: Tree, step: int | str) -> tuple[Scalar | None, Tree] | None:
+    """An item of a list, or a field of a mapping with its key."""
+    if isinstance(tree, Seq) and isinstance(step, int) and step < len(tree.items):
+        return None, tree.items[step]
+    if isinstance(tree, Map):
+        entry = tree.get(str(step))
+        return (entry.key, entry.value) if entry is not None else None
+    return None
+
+
+def place_of_value(name: Span, text: str) -> Span:
+    """The place of a text that is written as the value of a name; else that of the name."""
+    found = _TEXT_AFTER.match(name.source.text, name.end)
+    if found is None or found[found.lastindex or 0] != text:
+        return name
+    start, end = found.span(found.lastindex or 0)
+    return Span(name.source, start, end)
+
+
+def steps_to_misfit(data: Data, wanted: Type) -> tuple[int | str, ...]:
+    """The steps to the innermost part of a literal that does not fit a type; none if it is the
+    literal as a whole, such as a list of a wrong length."""
+    for step, part, type_ in _parts(data, present(wanted)):
+        if misfit(type_of_data(part), type_) is not None:
+            return (step, *steps_to_misfit(part, type_))
+    return ()
+
+
+def _parts(data: Data, wanted: Type) -> Iterator[tuple[int | str, Data, Type]]:
+    """The items or fields of a literal, each with the type that it must fit."""
+    if isinstance(data, tuple):
+        yield from ((at, each, type_) for at, (each, type_) in enumerate(_items(data, wanted)))
+    elif isinstance(data, Struct):
+        types = fields(wanted) if wanted.name == "record" else {}
+        held = dict(data.entries)
+        if any(name not in held and type_.name != "optional" for name, type_ in types.items()):
+            return
+        for name, part in data.entries:
+            if wanted.name == "dict":
+                yield name, part, inside(wanted)
+            elif name in types:
+                yield name, part, types[name]
+
+
+def _items(data: tuple[Data, ...], wanted: Type) -> Iterator[tuple[Data, Type]]:
+    count = len(data)
+    if wanted in (POINT, QUATERNION) and count == (3 if wanted == POINT else 4):
+        yield from ((each, FLOAT) for each in data)
+    elif wanted.name in ("Pose", "Transform") and count == 2:
+        yield from zip(data, (POINT, QUATERNION), strict=True)
+    elif wanted.name in ("list", "array") and length_of(wanted) in (None, count):
+        yield from ((each, inside(wanted)) for each in data)
