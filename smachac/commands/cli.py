@@ -41,6 +41,7 @@ COMMANDS = {
     "extract": ("refactor", "move a container into a new sub-script"),
     "inline": ("refactor", "replace the call of a sub-script by its content"),
     "rename": ("refactor", "rename a state, an outcome or a key everywhere"),
+    "edit": ("refactor", "change a transition, add or remove a state"),
     "migrate": ("migrate", "report what to change in SMACHA scripts and templates"),
     "targets": ("targets", "list the targets and their options"),
     "completion": ("completion", "print the completion of commands for a shell"),

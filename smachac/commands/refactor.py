@@ -1,4 +1,4 @@
-"""The commands `contain`, `extract`, `inline` and `rename`.
+"""The commands `contain`, `extract`, `inline`, `rename` and `edit`.
 
 A change is made in memory. The changed script is analysed again and compared with the script
 before; only a change that keeps its behaviour is shown or written.
@@ -58,6 +58,26 @@ examples:
 {EXIT_CODES}"""
 
 
+EDIT_EXAMPLES = f"""\
+examples:
+  smachac edit main.yml transition PICK aborted RECOVER   let an outcome lead to a state or outcome
+  smachac edit main.yml transition PICK aborted           remove the transition from the script
+  smachac edit main.yml add sm RECOVER GripperState       a new state of a type, behind the others
+  smachac edit main.yml add sm RECOVER GripperState --after PICK
+  smachac edit main.yml remove WAIT                       what led to it leads to its successor
+  smachac edit main.yml remove WAIT --to PARK --diff      show a patch
+
+{EXIT_CODES}"""
+
+EDITS = {
+    "transition": ("STATE OUTCOME [TARGET]", ("outcome", "target"), 2),
+    "add": ("CONTAINER NAME TYPE", ("name", "type"), 3),
+    "remove": ("STATE", (), 1),
+}
+"""The operations of `edit`: their words, the arguments that stand behind the path, and the least
+number of words."""
+
+
 def contain_arguments(parser: argparse.ArgumentParser) -> None:
     parser.epilog = CONTAIN_EXAMPLES
     parser.add_argument("script", type=as_path, help=SCRIPT)
@@ -98,6 +118,18 @@ def rename_arguments(parser: argparse.ArgumentParser) -> None:
     _common_arguments(parser)
 
 
+def edit_arguments(parser: argparse.ArgumentParser) -> None:
+    parser.epilog = EDIT_EXAMPLES
+    parser.add_argument("script", type=as_path, help=SCRIPT)
+    parser.add_argument("operation", choices=tuple(EDITS), help="what to do")
+    parser.add_argument("words", nargs="+", metavar="WORD", help="; ".join(
+        f"{name} {words}" for name, (words, _, _) in EDITS.items()))  # fmt: skip
+    parser.add_argument("--after", metavar="STATE", help="with add: the state before the new one")
+    parser.add_argument("--to", metavar="TARGET", help="with remove: where transitions to the state"
+                        " lead afterwards")  # fmt: skip
+    _common_arguments(parser)
+
+
 def _common_arguments(parser: argparse.ArgumentParser) -> None:
     dry_run(parser)
     search_folders(parser)
@@ -116,7 +148,7 @@ def put(script: EditedScript, arguments: Namespace) -> int:
     return put_changes(texts, sources, arguments, "changed", new=frozenset(script.made))
 
 
-def perform(arguments: Namespace, command: str, change: Callable[[EditedScript], None]) -> int:
+def perform(arguments: Namespace, command: str, change: Callable[[EditedScript], object]) -> int:
     """Run one of the commands below, and report why a change is refused; the exit code."""
     from smachac.diagnostics.diagnostic import Code, Diagnostic, Finding, Severity, has_errors
     from smachac.ir.recursion import deep_recursion
@@ -184,3 +216,29 @@ def contain_command(arguments: Namespace) -> int:
     if not is_plain(name):
         return usage(f"`{name}` needs quotes in YAML: choose another name")
     return perform(arguments, "contain", lambda script: contain_states(script, name, type_, states))
+
+
+def edit_command(arguments: Namespace) -> int:
+    """Change a transition, add or remove a state; the exit code."""
+    from smachac.refactor.edit import BadEditError, Edit, EditResult
+    from smachac.refactor.edit import perform as perform_edit
+
+    form, names, least = EDITS[arguments.operation]
+    words = arguments.words
+    if not least <= len(words) <= 1 + len(names):
+        return usage(f"write: smachac edit SCRIPT {arguments.operation} {form}")
+    given = dict(zip(names, words[1:], strict=False))
+    for option, operation in (("after", "add"), ("to", "remove")):
+        if (value := getattr(arguments, option)) is not None:
+            if arguments.operation != operation:
+                return usage(f"--{option} needs the operation `{operation}`")
+            given[option] = value
+    edit = Edit(operation=arguments.operation, path=words[0], arguments=given)
+    found: list[EditResult] = []
+    try:
+        code = perform(arguments, "edit", lambda script: found.append(perform_edit(script, edit)))
+    except BadEditError as error:
+        return usage(str(error))
+    for result in found:
+        print_report(result.findings_added, arguments, sys.stderr)
+    return code

@@ -153,7 +153,9 @@ def rename(
     return _performed(root, texts, lambda script: rename_name(script, word, new, named.kind))
 
 
-def _performed(root: str, texts: dict[str, str], change: Callable[[EditedScript], None]) -> Results:
+def _performed(
+    root: str, texts: dict[str, str], change: Callable[[EditedScript], object]
+) -> Results:
     try:
         with deep_recursion():
             script = EditedScript(Path(root), texts=texts)

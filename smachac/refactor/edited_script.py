@@ -133,6 +133,19 @@ class EditedScript:
                 raise RefusedError(span, f"the machine of {path} would behave differently")
         return after
 
+    def changed(self, span: Span, wanted: Callable[[Machine], bool]) -> Analysis:
+        """The script after a change of its behaviour; it may have errors. Raises RefusedError
+        unless its machine is the wanted one."""
+        after = self.read(Disk({**self.unsaved, **self.texts()}, plain=True))
+        if after.machine is None:
+            first = next(item for item in after.report if item.severity is Severity.ERROR)
+            message = f"the script could not be read any more: {first.message}"
+            raise RefusedError(span, message, first.help)
+        if not wanted(after.machine):
+            help = "write its fields out, or format the script: `smachac fmt`"
+            raise RefusedError(span, "the text would become another machine than wanted", help)
+        return after
+
     def results(self) -> dict[str, tuple[Source, str]]:
         """The changed texts and the new ones with their line ends, by real path, each with the
         source before the change; that of a new file is empty."""

@@ -103,6 +103,24 @@ class ScriptEditor:
             text = f"{written[0]}{text}{written[0]}"
         self._words[span.start, span.end] = text
 
+    def replace(self, start: int, end: int, text: str) -> None:
+        """Replace a range of the text."""
+        self._words[start, end] = text
+
+    def insert(self, at: int, text: str) -> None:
+        """Insert a text at an offset, behind what was inserted there before."""
+        self._words[at, at] = self._words.get((at, at), "") + text
+
+    def insert_lines(self, at: int, lines: Iterable[str]) -> None:
+        """Insert lines at the beginning of a line, or at the end of the text."""
+        text = "".join(f"{line}\n" for line in lines)
+        ended = at == 0 or self.source.text[at - 1] == "\n"
+        self.insert(at, text if ended else f"\n{text}")
+
+    def end_of(self, place: StateItem) -> int:
+        """The offset behind a state: that of the next one, or behind the end of the list."""
+        return self._stretch(place)[1]
+
     @property
     def replaced(self) -> list[Span]:
         """The words that are replaced, in the order of the text."""

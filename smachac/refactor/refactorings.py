@@ -65,12 +65,12 @@ def inline_state(script: EditedScript, state: str) -> None:
     script.proven(node.span, same_machine)
 
 
-def rename_name(script: EditedScript, path: str, new: str, kind: str | None = None) -> None:
+def rename_name(script: EditedScript, path: str, new: str, kind: str | None = None) -> Analysis:
     """Rename the state, outcome or key that a path names, also in the other scripts of the folder
-    that share its text."""
+    that share its text. The analysis afterwards."""
     meant, declared, old = find_named(script.machine, path, kind)
     if old == new:
-        return
+        return script.analysis
     _check_written(script.machine, meant, declared, old)
     work = Renaming(old, new, script.editor)
     rename = RENAME[meant]
@@ -78,11 +78,11 @@ def rename_name(script: EditedScript, path: str, new: str, kind: str | None = No
     shared = script.editors.keys() - {os.path.realpath(script.path)}
     for _, machine in script.others(shared) if shared else ():
         rename(work, machine, declared)
-    script.proven(declared, lambda one, other: equal_after_rename(one, other, old, new))
+    return script.proven(declared, lambda one, other: equal_after_rename(one, other, old, new))
 
 
-def contain_states(script: EditedScript, name: str, type_: str, states: Sequence[str]) -> None:
-    """Move states of one container into a new container."""
+def contain_states(script: EditedScript, name: str, type_: str, states: Sequence[str]) -> Analysis:
+    """Move states of one container into a new container. The analysis afterwards."""
     before = script.machine
     path, _ = find_state(before, states[0])
     above = path.rpartition("/")[0]
@@ -105,6 +105,7 @@ def contain_states(script: EditedScript, name: str, type_: str, states: Sequence
     contain(script.editor, made)
     after = script.proven(inside[0].span, lambda one, two: equal_after_contain(one, two, made))
     _no_worse(script.analysis, after, inside[0].span)
+    return after
 
 
 def _check_written(machine: Machine, kind: str, declared: Span, old: str) -> None:
