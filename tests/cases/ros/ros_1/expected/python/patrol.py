@@ -12,7 +12,6 @@ import time
 
 import roslib.message
 import rospy
-import std_msgs.msg
 import tf2_geometry_msgs
 import tf2_ros
 from geometry_msgs.msg import (

@@ -2,7 +2,6 @@
 """The state machine `patrol`."""
 
 import rclpy.duration
-import std_msgs.msg
 from smachac.runtime.smach_ros2 import parameters, program
 from smachac.runtime.smach_ros2.bag_states import RecordROSBagState
 from smachac.runtime.smach_ros2.message_fields import filled
