@@ -166,8 +166,8 @@ class Stream:
         self.answer = self._connection.getresponse()
 
     def line(self) -> str:
-        """The next line that is not empty; the empty text at the end."""
-        while (line := self.answer.readline()) == b"\n":
+        """The next line with content, which no sign of life has; the empty text at the end."""
+        while (line := self.answer.readline()) == b"\n" or line.startswith(b":"):
             pass
         return line.decode().strip()
 
