@@ -165,11 +165,7 @@ def _text(
         **headers(inside),
         **texts,
         "imports": _separate(import_lines(imports), own),
-        "definitions": [
-            "\n\n\n".join(module.buffers[name])
-            for name in ("defs", "class_defs", "cb_defs")
-            if module.buffers[name]
-        ],
+        "definitions": _definitions(module),
         "sm_name": root,
         "title": _title(machine),
         "made_by": f"# {made_by(machine)}",
@@ -198,6 +194,12 @@ def _text(
     for statement, part in left_out.items():
         tidy = tidy.replace(statement, part)
     return tidy
+
+
+def _definitions(module: ModuleParts) -> list[str]:
+    """The functions and classes of the module, those of one kind as one text."""
+    kinds = (module.buffers[name] for name in ("defs", "class_defs", "cb_defs"))
+    return ["\n\n\n".join(kind) for kind in kinds if kind]
 
 
 def _program_template(
