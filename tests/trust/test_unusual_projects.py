@@ -11,8 +11,12 @@ from pathlib import Path
 import pytest
 
 from smachac.diagnostics.diagnostic import Severity
+from smachac.driver import compile_script
 from smachac.report.text import render_text
-from tests.trust.project_text import MAIN, analysed
+from smachac.targets.python import TARGET
+from smachac.verify import verify
+from smachac.verify.players.python import player
+from tests.trust.project_text import MAIN, ROOT, analysed
 
 PROJECTS = sorted((Path(__file__).parent / "unusual").glob("*.yml"))
 PERMITTED = "# permitted:"
@@ -41,5 +45,29 @@ def test_an_unusual_project_has_no_finding(path: Path) -> None:
     assert render_text(report) == render_text([])
 
 
+def with_code(files: dict[str, str]) -> dict[str, str]:
+    """The project where each state type without code names a class of a package not there."""
+    return {
+        name: f'{text}\ncode: {{python: "stand_ins.states:{Path(name).stem}"}}\n'
+        if name.startswith("templates/") and name.endswith(".yml") and "code:" not in text
+        else text
+        for name, text in files.items()
+    }
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("path", PROJECTS, ids=lambda path: path.stem)
+def test_an_unusual_project_runs_in_python_as_in_the_interpreter(path: Path) -> None:
+    analysis = analysed(with_code(files_in(path.read_text("utf-8"))))
+    compiled = compile_script(analysis, TARGET)
+    errors = [item for item in compiled.report if item.severity is Severity.ERROR]
+    assert render_text(errors) == render_text([])
+    assert analysis.machine is not None
+    name, text = next(iter(compiled.files.items()))
+    played = player(name, text, analysis.machine, folders=[ROOT])
+    verdict = verify(analysis.machine, {"python": played}, script=MAIN, most=20)
+    assert verdict.disagreements == []
+
+
 def test_there_are_many() -> None:
-    assert len(PROJECTS) >= 80
+    assert len(PROJECTS) >= 160
