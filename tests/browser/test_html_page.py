@@ -13,6 +13,7 @@ from smachac.driver import analyse_script, compile_script
 from smachac.ir.traversal import walk
 from smachac.targets.html import TARGET
 from tests.browser.pages import ROOT, SCREENSHOTS, Messages
+from tests.browser.scripts import flat_script, large_script
 from tests.targets.test_html import MARKUP
 
 if TYPE_CHECKING:
@@ -35,28 +36,6 @@ OVERLAPPING_LABELS = """() => {
     .map((b) => [a.text, b.text]));
 }"""
 """The labels of edges that cover each other."""
-
-
-def large_script(machines: int, states: int) -> str:
-    """A machine of machines with states that succeed, try again or fail."""
-    lines = ["name: big", "outcomes: [succeeded, aborted]", "states:"]
-    for machine in range(machines):
-        after = f"M{machine + 1:02}" if machine + 1 < machines else "succeeded"
-        lines += [
-            f"  - M{machine:02}:",
-            "      template: StateMachine",
-            "      outcomes: [succeeded, aborted]",
-            f"      transitions: {{succeeded: {after}}}",
-            "      states:",
-        ]
-        for each in range(states):
-            onward = f"S{each + 1:02}" if each + 1 < states else "succeeded"
-            again = f"S{max(0, each - 3):02}"
-            lines.append(
-                f"        - S{each:02}: {{template: ScriptedState, outcomes: [ok, retry, aborted],"
-                f" transitions: {{ok: {onward}, retry: {again}}}}}"
-            )
-    return "\n".join([*lines, ""])
 
 
 def state(page: Page, path: str) -> Locator:
