@@ -44,6 +44,9 @@ export interface Viewer {
 /** The number of states that are shown at first, if the machine has more. */
 const SHOWN_AT_FIRST = 150;
 
+/** The scale from which on states are seen at all. */
+const TINY = 0.1;
+
 /** The time after which the progress of a layout is shown, in milliseconds. */
 const SLOW = 300;
 
@@ -97,12 +100,13 @@ export async function createViewer(page: HTMLElement, model: Model, compute: Com
       if (!(error instanceof Cancelled)) throw error;
     }
     await redraw(null);
-    showStart();
+    showStart(READABLE / 1.5);
   }
 
-  function showStart(): void {
+  /** Show the whole machine, or its start if the machine is seen as a whole at less than a scale only. */
+  function showStart(least: number): void {
     const start = scene.pieces.find((each) => each.container === graph.model.root && each.piece.id === "start");
-    if (start && camera.fitting(scene) < READABLE / 1.5) camera.start(start, scene.width, READABLE);
+    if (start && camera.fitting(scene) < least) camera.start(start, scene.width, READABLE);
     else whole();
   }
 
@@ -212,13 +216,13 @@ export async function createViewer(page: HTMLElement, model: Model, compute: Com
     const containers = graph.model.nodes.filter(isContainer).map((node) => node.path);
     open = new Set(all ? containers : [graph.model.root]);
     if (selected !== null && !all) selected = ancestors(graph, selected)[1] ?? selected;
-    if (await redraw(null)) whole();
+    if (await redraw(null)) showStart(TINY);
   }
 
   async function turn(): Promise<void> {
     direction = direction === "DOWN" ? "RIGHT" : "DOWN";
     layouts = new Layouts(graph, compute, direction);
-    if (await redraw(null)) whole();
+    if (await redraw(null)) showStart(TINY);
   }
 
   async function setModel(next: Model): Promise<void> {

@@ -2274,6 +2274,7 @@ ${name}`;
 
   // src/viewer.ts
   var SHOWN_AT_FIRST = 150;
+  var TINY = 0.1;
   var SLOW = 300;
   var READABLE = 0.55;
   async function createViewer(page, model, compute) {
@@ -2322,11 +2323,11 @@ ${name}`;
         if (!(error instanceof Cancelled)) throw error;
       }
       await redraw(null);
-      showStart();
+      showStart(READABLE / 1.5);
     }
-    function showStart() {
+    function showStart(least) {
       const start = scene.pieces.find((each) => each.container === graph.model.root && each.piece.id === "start");
-      if (start && camera.fitting(scene) < READABLE / 1.5) camera.start(start, scene.width, READABLE);
+      if (start && camera.fitting(scene) < least) camera.start(start, scene.width, READABLE);
       else whole();
     }
     async function arranged(paths) {
@@ -2423,12 +2424,12 @@ ${name}`;
       const containers = graph.model.nodes.filter(isContainer).map((node) => node.path);
       open = new Set(all ? containers : [graph.model.root]);
       if (selected !== null && !all) selected = ancestors(graph, selected)[1] ?? selected;
-      if (await redraw(null)) whole();
+      if (await redraw(null)) showStart(TINY);
     }
     async function turn() {
       direction = direction === "DOWN" ? "RIGHT" : "DOWN";
       layouts = new Layouts(graph, compute, direction);
-      if (await redraw(null)) whole();
+      if (await redraw(null)) showStart(TINY);
     }
     async function setModel(next) {
       const opened = open;
