@@ -13,6 +13,7 @@ from smachac.driver import analyse_script, compile_script
 from smachac.ir.traversal import walk
 from smachac.targets.html import TARGET
 from tests.browser.pages import ROOT, SCREENSHOTS, Messages
+from tests.browser.scripts import SHAPES, flat_script, large_script
 from tests.targets.test_html import MARKUP
 
 if TYPE_CHECKING:
@@ -36,27 +37,26 @@ OVERLAPPING_LABELS = """() => {
 }"""
 """The labels of edges that cover each other."""
 
+CROSSED_STATES = """() => {
+  const inside = (box, x, y) =>
+    x > box.left + 2 && x < box.right - 2 && y > box.top + 2 && y < box.bottom - 2;
+  const boxes = [...document.querySelectorAll("g.state.closed")].map((state) =>
+    ({ path: state.dataset.path, box: state.getBoundingClientRect() }));
+  const covering = boxes.filter(({ path, box }) => boxes.some((other) => other.path !== path
+    && inside(other.box, (box.left + box.right) / 2, (box.top + box.bottom) / 2)));
+  const points = [...document.querySelectorAll("g.line path.stroke")].flatMap((line) => {
+    const matrix = line.getScreenCTM();
+    const length = line.getTotalLength();
+    return Array.from({ length: 60 }, (_, index) =>
+      line.getPointAtLength((length * index) / 59).matrixTransform(matrix));
+  });
+  const crossed = boxes.filter(({ box }) => points.some(({ x, y }) => inside(box, x, y)));
+  return [...covering, ...crossed].map(({ path }) => path);
+}"""
+"""The states that are covered by another one or crossed by a line."""
 
-def large_script(machines: int, states: int) -> str:
-    """A machine of machines with states that succeed, try again or fail."""
-    lines = ["name: big", "outcomes: [succeeded, aborted]", "states:"]
-    for machine in range(machines):
-        after = f"M{machine + 1:02}" if machine + 1 < machines else "succeeded"
-        lines += [
-            f"  - M{machine:02}:",
-            "      template: StateMachine",
-            "      outcomes: [succeeded, aborted]",
-            f"      transitions: {{succeeded: {after}}}",
-            "      states:",
-        ]
-        for each in range(states):
-            onward = f"S{each + 1:02}" if each + 1 < states else "succeeded"
-            again = f"S{max(0, each - 3):02}"
-            lines.append(
-                f"        - S{each:02}: {{template: ScriptedState, outcomes: [ok, retry, aborted],"
-                f" transitions: {{ok: {onward}, retry: {again}}}}}"
-            )
-    return "\n".join([*lines, ""])
+DONE = "svg.picture:not([aria-busy])"
+"""The picture when no layout goes on."""
 
 
 def state(page: Page, path: str) -> Locator:
@@ -280,14 +280,73 @@ def test_two_thousand_states(browser: Browser, tmp_path: Path, messages: Message
     shoot(page, "two_thousand_states")
     assert len(shown(page)) == 41
     state(page, "big/M00").locator(".toggle").click()
-    state(page, "big/M00/S07").wait_for()
-    state(page, "big/M00/S07").click()
-    assert page.get_by_role("complementary").locator("h2").inner_text() == "S07"
+    page.locator(f"{DONE} .selected.open[data-path='big/M00']").wait_for()
+    # An arrow key, not a click: large containers reach below the panel, where no click arrives.
+    page.keyboard.press("ArrowDown")
+    page.locator(".selected[data-path='big/M00/S00']").wait_for()
+    assert page.get_by_role("complementary").locator("h2").inner_text() == "S00"
     page.keyboard.press("/")
     page.keyboard.type("M39")
     page.keyboard.press("Enter")
     page.locator(".selected[data-path='big/M39']").wait_for()
     assert len(shown(page)) == 91
+
+
+def test_layout_in_progress_can_be_cancelled(
+    browser: Browser, tmp_path: Path, messages: Messages
+) -> None:
+    script = tmp_path / "main.yml"
+    script.write_text(large_script(40, 50), "utf-8")
+    page = opened(browser, write_page(script, tmp_path), messages)
+    progress = page.locator(".progress")
+    page.get_by_role("button", name="Open all").click()
+    progress.get_by_text("of 2,040 states").wait_for()
+    assert page.locator("svg.picture").get_attribute("aria-busy") == "true"
+    page.keyboard.press("Escape")
+    page.locator(DONE).wait_for()
+    progress.wait_for(state="hidden")
+    assert len(shown(page)) == 41
+    page.get_by_role("button", name="Open all").click()
+    progress.get_by_role("button", name="Cancel").click()
+    progress.wait_for(state="hidden")
+    state(page, "big/M00").locator(".toggle").click()
+    page.locator(f"{DONE} .selected.open[data-path='big/M00']").wait_for()
+    assert len(shown(page)) == 91
+
+
+@pytest.mark.parametrize("shape", SHAPES)
+def test_two_thousand_states_in_one_container(
+    browser: Browser, tmp_path: Path, messages: Messages, shape: str
+) -> None:
+    script = tmp_path / "main.yml"
+    script.write_text(flat_script(shape, 2000), "utf-8")
+    page = opened(browser, write_page(script, tmp_path), messages)
+    shoot(page, f"two_thousand_flat_{shape}")
+    assert len(shown(page)) == 2001
+    state(page, "flat/S1").click()
+    assert page.get_by_role("complementary").locator("h2").inner_text() == "S1"
+    page.keyboard.press("/")
+    page.keyboard.type("S1999")
+    page.keyboard.press("Enter")
+    page.locator(".selected[data-path='flat/S1999']").wait_for()
+    page.get_by_role("button", name="Turn").click()
+    page.locator(DONE).wait_for()
+    assert len(shown(page)) == 2001
+
+
+def test_rows_cover_nothing(browser: Browser, tmp_path: Path, messages: Messages) -> None:
+    script = tmp_path / "main.yml"
+    script.write_text(flat_script("random", 200), "utf-8")
+    page = opened(browser, write_page(script, tmp_path), messages)
+    for _ in ("down", "right"):
+        while "far" in (page.locator("svg.picture").get_attribute("class") or "").split():
+            page.keyboard.press("+")
+        assert page.locator("g.label").count() > 300
+        assert page.evaluate(OVERLAPPING_LABELS) == []
+        assert page.evaluate(CROSSED_STATES) == []
+        first = transform(page)
+        page.keyboard.press("d")
+        page.locator(f"{DONE} > g:not([transform='{first}'])").wait_for()
 
 
 def test_committed_files_are_those_of_the_sources(browser: Browser, tmp_path: Path) -> None:

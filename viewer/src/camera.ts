@@ -36,11 +36,12 @@ export class Camera {
     this.apply();
   }
 
-  /** Show the surroundings of a place, which is put near the upper edge, at a scale. */
-  start(place: { x: number; y: number }, scale: number): void {
+  /** Show the upper part of a picture around a place, at a scale: no space is left of a wide picture. */
+  start(place: { x: number }, width: number, scale: number): void {
+    const half = this.frame.clientWidth / 2;
     this.scale = scale;
-    this.x = this.frame.clientWidth / 2 - place.x * scale;
-    this.y = MARGIN - place.y * scale;
+    this.x = half - Math.max(place.x, Math.min(width / 2, half / scale)) * scale;
+    this.y = MARGIN;
     this.apply();
   }
 

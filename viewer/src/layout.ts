@@ -7,6 +7,7 @@ import type { Content, Line, Piece } from "./pieces";
 import { EXIT_HEIGHT, LINE_HEIGHT, TITLE_HEIGHT, boxSize, contentOf, exitId, writtenExits } from "./pieces";
 import { fitting, width } from "./text";
 import { kindInWords } from "./model";
+import { inRows } from "./rows";
 import type { ComputeLayout } from "./worker";
 
 export interface Point {
@@ -63,8 +64,15 @@ interface Placed {
 }
 
 const SIDE = 20;
-const MANY = 120;
+const TOP = TITLE_HEIGHT + 14;
+
 /** The number of lines in a container from which its layout is simpler, and so faster. */
+const MANY = 120;
+
+/** The number of lines, and of states that they pass by, from which the states are put in rows: the
+ * layout program would need minutes. */
+const VERY_MANY = 300;
+const FAR = 1500;
 
 const ROOMY: Record<string, string> = {
   "elk.algorithm": "layered",
@@ -94,6 +102,15 @@ const FAST: Record<string, string> = {
   "elk.layered.thoroughness": "1",
 };
 
+/** How a layout goes on: `placed` is called with the number of states that have their places, `cancelled`
+ * before each container. */
+export interface Progress {
+  placed(states: number): void;
+  cancelled(): boolean;
+}
+
+export class Cancelled extends Error {}
+
 /** Layouts of a machine; a container is laid out again only if something in it changed. */
 export class Layouts {
   private readonly known = new Map<string, Promise<Placed>>();
@@ -104,10 +121,11 @@ export class Layouts {
     private readonly direction: Direction,
   ) {}
 
-  async scene(open: ReadonlySet<Path>): Promise<Scene> {
+  /** The scene with some containers open; throws `Cancelled`. */
+  async scene(open: ReadonlySet<Path>, progress?: Progress): Promise<Scene> {
     const root = this.graph.model.root;
     const placed = new Map<Path, Placed>();
-    await this.place(root, open, placed);
+    await this.place(root, open, placed, progress);
     const scene: Scene = { width: 0, height: 0, boxes: [], pieces: [], lines: [] };
     if (!placed.has(root)) {
       const size = this.size(root);
@@ -119,11 +137,18 @@ export class Layouts {
     return { ...scene, ...full };
   }
 
-  /** Lay out a container and all open ones in it; the key of the layout. */
-  private async place(path: Path, open: ReadonlySet<Path>, placed: Map<Path, Placed>): Promise<string> {
+  /** Lay out a container and all open ones in it, one after the other; the key of the layout. */
+  private async place(
+    path: Path,
+    open: ReadonlySet<Path>,
+    placed: Map<Path, Placed>,
+    progress?: Progress,
+  ): Promise<string> {
     const node = this.graph.nodes.get(path);
     if (!node || !open.has(path)) return "";
-    const inner = await Promise.all(node.children.map((child) => this.place(child, open, placed)));
+    const inner: string[] = [];
+    for (const child of node.children) if (open.has(child)) inner.push(await this.place(child, open, placed, progress));
+    if (progress?.cancelled()) throw new Cancelled();
     const key = JSON.stringify([path, ...inner]);
     let layout = this.known.get(key);
     if (!layout) {
@@ -132,6 +157,7 @@ export class Layouts {
       layout.catch(() => this.known.delete(key));
     }
     placed.set(path, await layout);
+    progress?.placed(node.children.length);
     return key;
   }
 
@@ -146,16 +172,22 @@ export class Layouts {
       node.children.map((child) => [child, placed.get(child)?.full ?? this.size(child, written.get(child))]),
     );
     const content = contentOf(this.graph, path, open, sizes);
-    const compute = (fast: boolean): Promise<ElkNode> =>
-      this.compute(elkGraph(content, placed, this.direction, fast));
-    const many = content.lines.length > MANY;
-    // ELK fails on a few graphs; it does so less often with fewer options.
-    const done = await (many ? compute(true) : compute(false).catch(() => compute(true)));
+    const done = await this.computed(content, placed);
     const title =
       width(fitting(node.name, "title"), "title") +
       width(fitting(kindInWords(node), "detail"), "detail") +
       96;
     return { ...readLayout(content, done, title, this.direction), written };
+  }
+
+  private async computed(content: Content, placed: Map<Path, Placed>): Promise<ElkNode> {
+    const graph = (fast: boolean): ElkNode => elkGraph(content, placed, this.direction, fast);
+    if (content.lines.length > VERY_MANY || reach(content) > FAR) {
+      return inRows(graph(true), this.direction === "DOWN", { x: SIDE, y: TOP });
+    }
+    if (content.lines.length > MANY) return this.compute(graph(true));
+    // ELK fails on a few graphs; it does so less often with fewer options.
+    return this.compute(graph(false)).catch(() => this.compute(graph(true)));
   }
 
   private size(path: Path, written: readonly ModelEdge[] = []): { width: number; height: number } {
@@ -192,6 +224,15 @@ function moved<P extends Point>(point: P, by: Point): P {
   return { ...point, x: point.x + by.x, y: point.y + by.y };
 }
 
+/** The number of states that the lines pass by, if the states are in the order of the script. */
+function reach(content: Content): number {
+  const order = new Map(content.pieces.flatMap((each, index) => (each.what === "state" ? [[each.id, index]] : [])));
+  return content.lines.reduce((sum, { from, to }) => {
+    const [start, end] = [order.get(from), order.get(to)];
+    return start === undefined || end === undefined ? sum : sum + Math.abs(end - start);
+  }, 0);
+}
+
 /** The graph of a container for ELK. */
 function elkGraph(content: Content, placed: Map<Path, Placed>, direction: Direction, fast: boolean): ElkNode {
   const options = fast ? FAST : ROOMY;
@@ -217,26 +258,38 @@ function elkGraph(content: Content, placed: Map<Path, Placed>, direction: Direct
     labels: line.labels.length ? [labelBox(line)] : [],
     layoutOptions: priorities(line),
   }));
+  const leaving = new Map<string, Numbered[]>();
+  content.lines.forEach((line, index) => {
+    const known = leaving.get(line.from);
+    if (known) known.push({ line, index });
+    else leaving.set(line.from, [{ line, index }]);
+  });
+  const portsOf = (piece: string): ElkPort[] => [...(ports.get(piece)?.values() ?? [])];
   return {
     id: content.path,
     layoutOptions: {
       ...options,
       "elk.direction": direction,
-      "elk.padding": `[top=${TITLE_HEIGHT + 14},left=${SIDE},${padding}]`,
+      "elk.padding": `[top=${TOP},left=${SIDE},${padding}]`,
     },
     children: content.pieces.map((piece) => ({
       id: piece.id,
       ...sizeOf(piece, direction, exits),
-      ...connections(piece, content, [...(ports.get(piece.id)?.values() ?? [])], inner(piece.id), direction),
+      ...connections(piece, leaving.get(piece.id) ?? [], portsOf(piece.id), inner(piece.id), direction),
     })),
     edges,
   };
 }
 
-/** The ports of a piece, and how free the layout is to move them. */
+interface Numbered {
+  line: Line;
+  index: number;
+}
+
+/** The ports of a piece with the lines that leave it, and how free the layout is to move them. */
 function connections(
   piece: Piece,
-  content: Content,
+  leaving: Numbered[],
   ports: ElkPort[],
   inner: Placed | undefined,
   direction: Direction,
@@ -246,14 +299,14 @@ function connections(
     const fixed = { ...layoutOptions, "elk.portConstraints": "FIXED_POS" };
     return { ports: portsOfOpen(piece, ports, inner), layoutOptions: fixed };
   }
-  const main = piece.what === "state" || piece.what === "start" ? mainLine(piece, content) : null;
+  const main = piece.what === "state" || piece.what === "start" ? mainLine(leaving) : null;
   if (main !== null) {
     const fixed = { ...layoutOptions, "elk.portConstraints": "FIXED_POS" };
     return { ports: portsAroundMain(piece, ports, `out ${main}`, direction), layoutOptions: fixed };
   }
   if (piece.what === "state" || piece.what === "fork") {
     // ELK fails where ports of a node with an edge to itself are free to move.
-    const loops = content.lines.some((line) => line.from === piece.id && line.to === piece.id);
+    const loops = leaving.some(({ line }) => line.to === piece.id);
     const free = { "elk.layered.nodePlacement.networkSimplex.nodeFlexibility": "PORT_POSITION" };
     return { ports, layoutOptions: { ...layoutOptions, ...(loops ? {} : free) } };
   }
@@ -261,10 +314,9 @@ function connections(
   return { ports, layoutOptions: { ...layoutOptions, ...centred } };
 }
 
-/** The number of the only line from a state that is neither of failure nor of a stop request. */
-function mainLine(piece: Piece, content: Content): number | null {
-  const own = content.lines.flatMap((line, index) => (line.from === piece.id ? [{ line, index }] : []));
-  const good = own.filter(({ line }) => !line.failure && !line.stop);
+/** The number of the only one of the lines that is neither of failure nor of a stop request. */
+function mainLine(leaving: Numbered[]): number | null {
+  const good = leaving.filter(({ line }) => !line.failure && !line.stop);
   return good.length === 1 ? good[0]!.index : null;
 }
 

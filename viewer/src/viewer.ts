@@ -5,7 +5,7 @@ import { button, html, svg } from "./dom";
 import type { Highlight, Picture } from "./draw";
 import { addTooltip, draw, markRun, markSelection } from "./draw";
 import type { Box, Direction, Scene } from "./layout";
-import { Layouts } from "./layout";
+import { Cancelled, Layouts } from "./layout";
 import type { Graph, Model, Path } from "./model";
 import { ancestors, firstOpen, indexed, isContainer, nearest } from "./model";
 import { neighbour, readDirection } from "./navigation";
@@ -44,6 +44,12 @@ export interface Viewer {
 /** The number of states that are shown at first, if the machine has more. */
 const SHOWN_AT_FIRST = 150;
 
+/** The scale from which on states are seen at all. */
+const TINY = 0.1;
+
+/** The time after which the progress of a layout is shown, in milliseconds. */
+const SLOW = 300;
+
 /** The least scale at first: containers that would make the picture smaller are closed. */
 const READABLE = 0.55;
 
@@ -52,6 +58,7 @@ export async function createViewer(page: HTMLElement, model: Model, compute: Com
   let direction: Direction = "DOWN";
   let layouts = new Layouts(graph, compute, direction);
   let open = new Set<Path>([graph.model.root]);
+  let kept = new Set<Path>();
   let selected: Path | null = null;
   let scene: Scene = { width: 0, height: 0, boxes: [], pieces: [], lines: [] };
   let picture: Picture | null = null;
@@ -64,6 +71,9 @@ export async function createViewer(page: HTMLElement, model: Model, compute: Com
   const frame = svg("svg", { class: "picture", role: "group", "aria-label": "State graph" }, world);
   const panel = html("aside", { "aria-label": "Details" });
   const notice = html("p", { class: "notice", role: "status" });
+  const progressText = html("span", { role: "status" });
+  const progress = html("p", { class: "notice progress", hidden: true }, progressText, " ",
+    button("Cancel the layout", "Cancel", () => cancel(), "Keep the picture as it is (Escape)"));
   const footer = html("footer", {});
   const toolbar = html("div", { class: "tools" });
   const camera = new Camera(frame, world);
@@ -72,46 +82,96 @@ export async function createViewer(page: HTMLElement, model: Model, compute: Com
   const whole = (): void => camera.fit({ x: -6, y: -6, width: scene.width + 12, height: scene.height + 12 });
 
   /** Open as many levels of containers as can be read without moving the picture. */
-  async function openFirst(): Promise<void> {
+  async function openReadable(): Promise<void> {
     for (let depth = 1; ; depth += 1) {
       const deeper = firstOpen(graph, depth, SHOWN_AT_FIRST);
       if (depth > 1 && deeper.size === open.size) break;
       // A picture becomes no smaller when containers open.
-      const readable = camera.fitting(await layouts.scene(deeper)) >= READABLE;
-      if (depth === 1 || readable) open = deeper;
+      const readable = camera.fitting(await arranged(deeper)) >= READABLE;
+      if (depth === 1 || readable) open = kept = deeper;
       if (!readable) break;
     }
-    await redraw(null);
-    showStart();
   }
 
-  function showStart(): void {
+  async function openFirst(): Promise<void> {
+    try {
+      await openReadable();
+    } catch (error) {
+      if (!(error instanceof Cancelled)) throw error;
+    }
+    await redraw(null);
+    showStart(READABLE / 1.5);
+  }
+
+  /** Show the whole machine, or its start if the machine is seen as a whole at less than a scale only. */
+  function showStart(least: number): void {
     const start = scene.pieces.find((each) => each.container === graph.model.root && each.piece.id === "start");
-    if (start && camera.fitting(scene) < READABLE / 1.5) camera.start({ x: start.x, y: 0 }, READABLE);
+    if (start && camera.fitting(scene) < least) camera.start(start, scene.width, READABLE);
     else whole();
   }
 
-  /** Lay out and draw again; `anchor` is the state that stays where it is on the screen. */
-  async function redraw(anchor: Path | null): Promise<void> {
+  /** The scene with some containers open. Its progress is a message; a later layout cancels this one. */
+  async function arranged(paths: ReadonlySet<Path>): Promise<Scene> {
     latest += 1;
     const mine = latest;
+    const count = [...paths].reduce((sum, path) => sum + (graph.nodes.get(path)?.children.length ?? 0), 0);
+    let done = 0;
+    frame.setAttribute("aria-busy", "true");
+    const slow = window.setTimeout(() => progress.hidden = false, SLOW);
+    const report = (): void => {
+      const numbers = [done, count].map((each) => each.toLocaleString("en"));
+      progressText.textContent = `Laying out ${numbers[0]} of ${numbers[1]} states`;
+    };
+    report();
+    try {
+      const cancelled = (): boolean => mine !== latest;
+      const placed = (states: number): void => {
+        done += states;
+        if (!cancelled()) report();
+      };
+      const next = await layouts.scene(paths, { placed, cancelled });
+      if (cancelled()) throw new Cancelled();
+      return next;
+    } finally {
+      window.clearTimeout(slow);
+      if (mine === latest) {
+        progress.hidden = true;
+        frame.removeAttribute("aria-busy");
+      }
+    }
+  }
+
+  /** End the layout that goes on; what is drawn stays. */
+  function cancel(): void {
+    latest += 1;
+    open = new Set(kept);
+    progress.hidden = true;
+    frame.removeAttribute("aria-busy");
+  }
+
+  /** Lay out and draw again; `anchor` is the state that stays where it is on the screen. Whether it was
+   * drawn. */
+  async function redraw(anchor: Path | null): Promise<boolean> {
     const before = boxOf(anchor);
+    const paths = new Set(open);
     let next: Scene;
     try {
-      next = await layouts.scene(open);
+      next = await arranged(paths);
     } catch (error) {
+      if (error instanceof Cancelled) return false;
       notice.textContent = `The layout failed: ${error instanceof Error ? error.message : String(error)}`;
-      return;
+      return false;
     }
-    if (mine !== latest) return;
     const focused = frame.contains(document.activeElement);
     scene = next;
+    kept = paths;
     picture = draw(graph, scene);
     world.replaceChildren(picture.root);
     const after = boxOf(anchor);
     if (before && after) camera.keep(before, after);
     mark();
     if (focused) focusSelected();
+    return true;
   }
 
   function mark(): void {
@@ -156,15 +216,13 @@ export async function createViewer(page: HTMLElement, model: Model, compute: Com
     const containers = graph.model.nodes.filter(isContainer).map((node) => node.path);
     open = new Set(all ? containers : [graph.model.root]);
     if (selected !== null && !all) selected = ancestors(graph, selected)[1] ?? selected;
-    await redraw(null);
-    whole();
+    if (await redraw(null)) showStart(TINY);
   }
 
   async function turn(): Promise<void> {
     direction = direction === "DOWN" ? "RIGHT" : "DOWN";
     layouts = new Layouts(graph, compute, direction);
-    await redraw(null);
-    whole();
+    if (await redraw(null)) showStart(TINY);
   }
 
   async function setModel(next: Model): Promise<void> {
@@ -192,7 +250,7 @@ export async function createViewer(page: HTMLElement, model: Model, compute: Com
   );
   page.append(
     html("header", {}, title, toolbar, field, view),
-    html("main", {}, frame, notice, footer),
+    html("main", {}, frame, notice, progress, footer),
     panel,
   );
 
@@ -240,6 +298,10 @@ export async function createViewer(page: HTMLElement, model: Model, compute: Com
     }
     if ((event.key === "Enter" || event.key === " ") && inPicture) {
       void toggle(selected ?? graph.model.root);
+      return true;
+    }
+    if (event.key === "Escape" && !progress.hidden) {
+      cancel();
       return true;
     }
     if (event.key === "Escape") {

@@ -958,11 +958,12 @@ ${place.key}`);
       this.y = (clientHeight - area.height * this.scale) / 2 - area.y * this.scale;
       this.apply();
     }
-    /** Show the surroundings of a place, which is put near the upper edge, at a scale. */
-    start(place, scale) {
+    /** Show the upper part of a picture around a place, at a scale: no space is left of a wide picture. */
+    start(place, width2, scale) {
+      const half = this.frame.clientWidth / 2;
       this.scale = scale;
-      this.x = this.frame.clientWidth / 2 - place.x * scale;
-      this.y = MARGIN - place.y * scale;
+      this.x = half - Math.max(place.x, Math.min(width2 / 2, half / scale)) * scale;
+      this.y = MARGIN;
       this.apply();
     }
     /** Zoom by a factor; the point (in pixels of the frame) stays where it is. */
@@ -1482,9 +1483,148 @@ ${place.key}`);
     );
   }
 
+  // src/rows.ts
+  var MARGIN2 = 12;
+  var TRACK = 5;
+  var ROW_TRACKS = 6;
+  var COLUMN_TRACKS = 4;
+  var RATIO = 1.5;
+  var lengthOf = (each, down) => (down ? each.width : each.height) ?? 0;
+  var depthOf = (each, down) => (down ? each.height : each.width) ?? 0;
+  function inRows(graph, down, origin) {
+    const cells = cellsOf(graph.children ?? [], down);
+    const edges = graph.edges ?? [];
+    const grid = placeCells(cells, edges, down, down ? [origin.x, origin.y] : [origin.y, origin.x]);
+    const ports = portsOf(cells, down);
+    const stacked = /* @__PURE__ */ new Map();
+    const place = (along, across) => down ? { x: along, y: across } : { x: across, y: along };
+    return {
+      id: graph.id,
+      ...down ? { width: grid.size.along, height: grid.size.across } : { width: grid.size.across, height: grid.size.along },
+      children: [...cells.values()].map(({ node, along, across }) => ({ ...node, ...place(along, across) })),
+      edges: edges.map((edge) => {
+        const route = routeOf(edge, grid, ports);
+        const points = route.map(([along, across]) => place(along, across));
+        return {
+          ...edge,
+          sections: [{ id: edge.id, startPoint: points[0], bendPoints: points.slice(1, -1), endPoint: points.at(-1) }],
+          labels: (edge.labels ?? []).map((label) => {
+            const [along, across] = labelPlace(edge, label, route, grid, stacked);
+            return { ...label, ...place(along - lengthOf(label, down) / 2, across) };
+          })
+        };
+      })
+    };
+  }
+  var pieceOf = (port) => port.slice(0, port.indexOf("\n"));
+  var sourceOf = (edge) => pieceOf(edge.sources[0]);
+  var targetOf = (edge) => pieceOf(edge.targets[0]);
+  function cellsOf(nodes, down) {
+    const isExit = (node) => node.id.startsWith(exitId(""));
+    const [first, ...others] = nodes;
+    const inside = others.filter((node) => !isExit(node));
+    const mean = (size) => inside.reduce((sum, node) => sum + size(node), 0) / Math.max(1, inside.length) + 50;
+    const ratio = (down ? RATIO : 1 / RATIO) * (mean((node) => depthOf(node, down)) / mean((node) => lengthOf(node, down)));
+    const columns = Math.max(1, Math.round(Math.sqrt(inside.length * ratio)));
+    const rows = [[first]];
+    for (let at = 0; at < inside.length; at += columns) rows.push(inside.slice(at, at + columns));
+    rows.push(others.filter(isExit));
+    const cells = rows.flatMap((nodes2, row) => nodes2.map((node, column) => ({ node, row, column, along: 0, across: 0 })));
+    return new Map(cells.map((cell) => [cell.node.id, cell]));
+  }
+  function placeCells(cells, edges, down, [left, top]) {
+    const lengths = [];
+    const depths = [];
+    for (const { node, row, column } of cells.values()) {
+      lengths[column] = Math.max(lengths[column] ?? 0, lengthOf(node, down));
+      depths[row] = Math.max(depths[row] ?? 0, depthOf(node, down));
+    }
+    const gaps = lengths.map(() => 2 * MARGIN2 + COLUMN_TRACKS * TRACK);
+    const stacks = /* @__PURE__ */ new Map();
+    const labels = depths.map(() => 0);
+    for (const edge of edges) {
+      const [source, target2, label] = [cells.get(sourceOf(edge)), cells.get(targetOf(edge)), edge.labels?.[0]];
+      if (!label) continue;
+      if (areNeighbours(source, target2)) {
+        gaps[target2.column] = Math.max(gaps[target2.column], lengthOf(label, down) + 2 * MARGIN2);
+      } else {
+        const depth = (stacks.get(source.node.id) ?? 0) + depthOf(label, down);
+        stacks.set(source.node.id, depth);
+        labels[source.row] = Math.max(labels[source.row], depth);
+      }
+    }
+    const grid = { down, cells, ends: [], labelEnds: [], before: [], size: { along: left, across: top } };
+    const starts = [];
+    const columns = lengths.map((length, column) => {
+      grid.before.push(grid.size.along);
+      const start = grid.size.along + (gaps[column] ?? 0);
+      grid.size.along = start + length;
+      return start;
+    });
+    depths.forEach((depth, row) => {
+      starts.push(grid.size.across);
+      grid.ends.push(grid.size.across + depth);
+      grid.labelEnds.push(grid.size.across + depth + labels[row] + 4);
+      grid.size.across = row === depths.length - 1 ? grid.ends[row] : grid.labelEnds[row] + 2 * MARGIN2 + ROW_TRACKS * TRACK;
+    });
+    grid.size.along += left;
+    for (const cell of cells.values()) {
+      cell.along = columns[cell.column] + (lengths[cell.column] - lengthOf(cell.node, down)) / 2;
+      cell.across = starts[cell.row];
+    }
+    return grid;
+  }
+  function areNeighbours(source, target2) {
+    return source.row === target2.row && source.column + 1 === target2.column;
+  }
+  function portsOf(cells, down) {
+    const places = /* @__PURE__ */ new Map();
+    for (const { node } of cells.values()) {
+      const evenly = (ports) => ports.forEach((port, index) => {
+        const given = down ? port.x : port.y;
+        places.set(port.id, given ?? lengthOf(node, down) * (index + 1) / (ports.length + 1));
+      });
+      const isOut = (port) => port.id.startsWith(`${node.id}
+out `);
+      evenly((node.ports ?? []).filter(isOut));
+      evenly((node.ports ?? []).filter((port) => !isOut(port)));
+    }
+    return places;
+  }
+  function routeOf(edge, grid, ports) {
+    const { down } = grid;
+    const source = grid.cells.get(sourceOf(edge));
+    const target2 = grid.cells.get(targetOf(edge));
+    if (areNeighbours(source, target2)) {
+      const across = source.across + Math.min(depthOf(source.node, down), depthOf(target2.node, down)) / 2;
+      return [[source.along + lengthOf(source.node, down), across], [target2.along, across]];
+    }
+    const start = source.along + ports.get(edge.sources[0]);
+    const end2 = target2.along + ports.get(edge.targets[0]);
+    const track = (row) => row < 0 ? target2.across - MARGIN2 / 2 : grid.labelEnds[row] + MARGIN2 + target2.column % ROW_TRACKS * TRACK;
+    const leave2 = track(source.row);
+    const from = [[start, source.across + depthOf(source.node, down)], [start, leave2]];
+    const to = [[end2, target2.across]];
+    if (target2.row === source.row + 1) return [...from, [end2, leave2], ...to];
+    const arrive = track(target2.row - 1);
+    const aside = grid.before[target2.column] + MARGIN2 + target2.row % COLUMN_TRACKS * TRACK;
+    return [...from, [aside, leave2], [aside, arrive], [end2, arrive], ...to];
+  }
+  function labelPlace(edge, label, route, { cells, ends, down }, stacked) {
+    const source = cells.get(sourceOf(edge));
+    const [[start, first], [end2]] = route;
+    if (areNeighbours(source, cells.get(targetOf(edge)))) return [(start + end2) / 2, first - depthOf(label, down) / 2];
+    const before = stacked.get(source.node.id) ?? 0;
+    stacked.set(source.node.id, before + depthOf(label, down));
+    return [start, ends[source.row] + 2 + before];
+  }
+
   // src/layout.ts
   var SIDE = 20;
+  var TOP = TITLE_HEIGHT + 14;
   var MANY = 120;
+  var VERY_MANY = 300;
+  var FAR = 1500;
   var ROOMY = {
     "elk.algorithm": "layered",
     "elk.edgeRouting": "ORTHOGONAL",
@@ -1511,6 +1651,8 @@ ${place.key}`);
     "elk.layered.layering.strategy": "LONGEST_PATH",
     "elk.layered.thoroughness": "1"
   };
+  var Cancelled = class extends Error {
+  };
   var Layouts = class {
     constructor(graph, compute, direction) {
       this.graph = graph;
@@ -1521,10 +1663,11 @@ ${place.key}`);
     compute;
     direction;
     known = /* @__PURE__ */ new Map();
-    async scene(open) {
+    /** The scene with some containers open; throws `Cancelled`. */
+    async scene(open, progress) {
       const root = this.graph.model.root;
       const placed = /* @__PURE__ */ new Map();
-      await this.place(root, open, placed);
+      await this.place(root, open, placed, progress);
       const scene = { width: 0, height: 0, boxes: [], pieces: [], lines: [] };
       if (!placed.has(root)) {
         const size = this.size(root);
@@ -1535,11 +1678,13 @@ ${place.key}`);
       const { full } = placed.get(root);
       return { ...scene, ...full };
     }
-    /** Lay out a container and all open ones in it; the key of the layout. */
-    async place(path, open, placed) {
+    /** Lay out a container and all open ones in it, one after the other; the key of the layout. */
+    async place(path, open, placed, progress) {
       const node = this.graph.nodes.get(path);
       if (!node || !open.has(path)) return "";
-      const inner = await Promise.all(node.children.map((child) => this.place(child, open, placed)));
+      const inner = [];
+      for (const child of node.children) if (open.has(child)) inner.push(await this.place(child, open, placed, progress));
+      if (progress?.cancelled()) throw new Cancelled();
       const key = JSON.stringify([path, ...inner]);
       let layout = this.known.get(key);
       if (!layout) {
@@ -1548,6 +1693,7 @@ ${place.key}`);
         layout.catch(() => this.known.delete(key));
       }
       placed.set(path, await layout);
+      progress?.placed(node.children.length);
       return key;
     }
     async placeContainer(path, open, placed) {
@@ -1557,11 +1703,17 @@ ${place.key}`);
         node.children.map((child) => [child, placed.get(child)?.full ?? this.size(child, written.get(child))])
       );
       const content = contentOf(this.graph, path, open, sizes);
-      const compute = (fast) => this.compute(elkGraph(content, placed, this.direction, fast));
-      const many = content.lines.length > MANY;
-      const done = await (many ? compute(true) : compute(false).catch(() => compute(true)));
+      const done = await this.computed(content, placed);
       const title = width(fitting(node.name, "title"), "title") + width(fitting(kindInWords(node), "detail"), "detail") + 96;
       return { ...readLayout(content, done, title, this.direction), written };
+    }
+    async computed(content, placed) {
+      const graph = (fast) => elkGraph(content, placed, this.direction, fast);
+      if (content.lines.length > VERY_MANY || reach(content) > FAR) {
+        return inRows(graph(true), this.direction === "DOWN", { x: SIDE, y: TOP });
+      }
+      if (content.lines.length > MANY) return this.compute(graph(true));
+      return this.compute(graph(false)).catch(() => this.compute(graph(true)));
     }
     size(path, written = []) {
       const node = this.graph.nodes.get(path);
@@ -1594,6 +1746,13 @@ ${place.key}`);
   function moved(point, by) {
     return { ...point, x: point.x + by.x, y: point.y + by.y };
   }
+  function reach(content) {
+    const order = new Map(content.pieces.flatMap((each, index) => each.what === "state" ? [[each.id, index]] : []));
+    return content.lines.reduce((sum, { from, to }) => {
+      const [start, end2] = [order.get(from), order.get(to)];
+      return start === void 0 || end2 === void 0 ? sum : sum + Math.abs(end2 - start);
+    }, 0);
+  }
   function elkGraph(content, placed, direction, fast) {
     const options = fast ? FAST : ROOMY;
     const [before, after] = direction === "DOWN" ? ["NORTH", "SOUTH"] : ["WEST", "EAST"];
@@ -1618,43 +1777,49 @@ ${name}`;
       labels: line.labels.length ? [labelBox(line)] : [],
       layoutOptions: priorities(line)
     }));
+    const leaving = /* @__PURE__ */ new Map();
+    content.lines.forEach((line, index) => {
+      const known2 = leaving.get(line.from);
+      if (known2) known2.push({ line, index });
+      else leaving.set(line.from, [{ line, index }]);
+    });
+    const portsOf2 = (piece) => [...ports.get(piece)?.values() ?? []];
     return {
       id: content.path,
       layoutOptions: {
         ...options,
         "elk.direction": direction,
-        "elk.padding": `[top=${TITLE_HEIGHT + 14},left=${SIDE},${padding}]`
+        "elk.padding": `[top=${TOP},left=${SIDE},${padding}]`
       },
       children: content.pieces.map((piece) => ({
         id: piece.id,
         ...sizeOf(piece, direction, exits),
-        ...connections(piece, content, [...ports.get(piece.id)?.values() ?? []], inner(piece.id), direction)
+        ...connections(piece, leaving.get(piece.id) ?? [], portsOf2(piece.id), inner(piece.id), direction)
       })),
       edges
     };
   }
-  function connections(piece, content, ports, inner, direction) {
+  function connections(piece, leaving, ports, inner, direction) {
     const layoutOptions = { "elk.portConstraints": "FIXED_SIDE", "elk.spacing.portPort": "14", ...constraint(piece) };
     if (inner) {
       const fixed = { ...layoutOptions, "elk.portConstraints": "FIXED_POS" };
       return { ports: portsOfOpen(piece, ports, inner), layoutOptions: fixed };
     }
-    const main2 = piece.what === "state" || piece.what === "start" ? mainLine(piece, content) : null;
+    const main2 = piece.what === "state" || piece.what === "start" ? mainLine(leaving) : null;
     if (main2 !== null) {
       const fixed = { ...layoutOptions, "elk.portConstraints": "FIXED_POS" };
       return { ports: portsAroundMain(piece, ports, `out ${main2}`, direction), layoutOptions: fixed };
     }
     if (piece.what === "state" || piece.what === "fork") {
-      const loops = content.lines.some((line) => line.from === piece.id && line.to === piece.id);
+      const loops = leaving.some(({ line }) => line.to === piece.id);
       const free = { "elk.layered.nodePlacement.networkSimplex.nodeFlexibility": "PORT_POSITION" };
       return { ports, layoutOptions: { ...layoutOptions, ...loops ? {} : free } };
     }
     const centred = { "elk.spacing.portsSurrounding": "[top=0,left=0,bottom=0,right=0]" };
     return { ports, layoutOptions: { ...layoutOptions, ...centred } };
   }
-  function mainLine(piece, content) {
-    const own = content.lines.flatMap((line, index) => line.from === piece.id ? [{ line, index }] : []);
-    const good = own.filter(({ line }) => !line.failure && !line.stop);
+  function mainLine(leaving) {
+    const good = leaving.filter(({ line }) => !line.failure && !line.stop);
     return good.length === 1 ? good[0].index : null;
   }
   var STEP = 18;
@@ -2109,12 +2274,15 @@ ${name}`;
 
   // src/viewer.ts
   var SHOWN_AT_FIRST = 150;
+  var TINY = 0.1;
+  var SLOW = 300;
   var READABLE = 0.55;
   async function createViewer(page, model, compute) {
     let graph = indexed(model);
     let direction = "DOWN";
     let layouts = new Layouts(graph, compute, direction);
     let open = /* @__PURE__ */ new Set([graph.model.root]);
+    let kept = /* @__PURE__ */ new Set();
     let selected = null;
     let scene = { width: 0, height: 0, boxes: [], pieces: [], lines: [] };
     let picture = null;
@@ -2126,47 +2294,98 @@ ${name}`;
     const frame = svg("svg", { class: "picture", role: "group", "aria-label": "State graph" }, world);
     const panel = html("aside", { "aria-label": "Details" });
     const notice = html("p", { class: "notice", role: "status" });
+    const progressText = html("span", { role: "status" });
+    const progress = html(
+      "p",
+      { class: "notice progress", hidden: true },
+      progressText,
+      " ",
+      button("Cancel the layout", "Cancel", () => cancel(), "Keep the picture as it is (Escape)")
+    );
     const footer = html("footer", {});
     const toolbar = html("div", { class: "tools" });
     const camera = new Camera(frame, world);
     const boxOf = (path) => scene.boxes.find((box) => box.path === path);
     const whole = () => camera.fit({ x: -6, y: -6, width: scene.width + 12, height: scene.height + 12 });
-    async function openFirst() {
+    async function openReadable() {
       for (let depth = 1; ; depth += 1) {
         const deeper = firstOpen(graph, depth, SHOWN_AT_FIRST);
         if (depth > 1 && deeper.size === open.size) break;
-        const readable = camera.fitting(await layouts.scene(deeper)) >= READABLE;
-        if (depth === 1 || readable) open = deeper;
+        const readable = camera.fitting(await arranged(deeper)) >= READABLE;
+        if (depth === 1 || readable) open = kept = deeper;
         if (!readable) break;
       }
-      await redraw(null);
-      showStart();
     }
-    function showStart() {
+    async function openFirst() {
+      try {
+        await openReadable();
+      } catch (error) {
+        if (!(error instanceof Cancelled)) throw error;
+      }
+      await redraw(null);
+      showStart(READABLE / 1.5);
+    }
+    function showStart(least) {
       const start = scene.pieces.find((each) => each.container === graph.model.root && each.piece.id === "start");
-      if (start && camera.fitting(scene) < READABLE / 1.5) camera.start({ x: start.x, y: 0 }, READABLE);
+      if (start && camera.fitting(scene) < least) camera.start(start, scene.width, READABLE);
       else whole();
     }
-    async function redraw(anchor) {
+    async function arranged(paths) {
       latest += 1;
       const mine = latest;
+      const count2 = [...paths].reduce((sum, path) => sum + (graph.nodes.get(path)?.children.length ?? 0), 0);
+      let done = 0;
+      frame.setAttribute("aria-busy", "true");
+      const slow = window.setTimeout(() => progress.hidden = false, SLOW);
+      const report = () => {
+        const numbers = [done, count2].map((each) => each.toLocaleString("en"));
+        progressText.textContent = `Laying out ${numbers[0]} of ${numbers[1]} states`;
+      };
+      report();
+      try {
+        const cancelled = () => mine !== latest;
+        const placed = (states) => {
+          done += states;
+          if (!cancelled()) report();
+        };
+        const next = await layouts.scene(paths, { placed, cancelled });
+        if (cancelled()) throw new Cancelled();
+        return next;
+      } finally {
+        window.clearTimeout(slow);
+        if (mine === latest) {
+          progress.hidden = true;
+          frame.removeAttribute("aria-busy");
+        }
+      }
+    }
+    function cancel() {
+      latest += 1;
+      open = new Set(kept);
+      progress.hidden = true;
+      frame.removeAttribute("aria-busy");
+    }
+    async function redraw(anchor) {
       const before = boxOf(anchor);
+      const paths = new Set(open);
       let next;
       try {
-        next = await layouts.scene(open);
+        next = await arranged(paths);
       } catch (error) {
+        if (error instanceof Cancelled) return false;
         notice.textContent = `The layout failed: ${error instanceof Error ? error.message : String(error)}`;
-        return;
+        return false;
       }
-      if (mine !== latest) return;
       const focused = frame.contains(document.activeElement);
       scene = next;
+      kept = paths;
       picture = draw(graph, scene);
       world.replaceChildren(picture.root);
       const after = boxOf(anchor);
       if (before && after) camera.keep(before, after);
       mark();
       if (focused) focusSelected();
+      return true;
     }
     function mark() {
       if (!picture) return;
@@ -2205,14 +2424,12 @@ ${name}`;
       const containers = graph.model.nodes.filter(isContainer).map((node) => node.path);
       open = new Set(all ? containers : [graph.model.root]);
       if (selected !== null && !all) selected = ancestors(graph, selected)[1] ?? selected;
-      await redraw(null);
-      whole();
+      if (await redraw(null)) showStart(TINY);
     }
     async function turn() {
       direction = direction === "DOWN" ? "RIGHT" : "DOWN";
       layouts = new Layouts(graph, compute, direction);
-      await redraw(null);
-      whole();
+      if (await redraw(null)) showStart(TINY);
     }
     async function setModel(next) {
       const opened = open;
@@ -2240,7 +2457,7 @@ ${name}`;
     );
     page.append(
       html("header", {}, title, toolbar, field, view),
-      html("main", {}, frame, notice, footer),
+      html("main", {}, frame, notice, progress, footer),
       panel
     );
     frame.addEventListener("click", (event) => {
@@ -2285,6 +2502,10 @@ ${name}`;
       }
       if ((event.key === "Enter" || event.key === " ") && inPicture) {
         void toggle(selected ?? graph.model.root);
+        return true;
+      }
+      if (event.key === "Escape" && !progress.hidden) {
+        cancel();
         return true;
       }
       if (event.key === "Escape") {
