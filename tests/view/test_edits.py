@@ -37,19 +37,19 @@ states:
         preempted: stopped
 """
 
-RENAME = {"operation": "rename", "path": "sm/LAST", "arguments": {"new": "FINAL"}}
-MOVE = {
+RENAME: dict[str, Any] = {"operation": "rename", "path": "sm/LAST", "arguments": {"new": "FINAL"}}
+MOVE: dict[str, Any] = {
     "operation": "transition",
     "path": "sm/WAIT",
     "arguments": {"outcome": "succeeded", "target": "done"},
 }
-ADD = {
+ADD: dict[str, Any] = {
     "operation": "add",
     "path": "sm",
     "arguments": {"name": "MORE", "type": "SleepState", "after": "WAIT"},
 }
-REMOVE = {"operation": "remove", "path": "sm/LAST", "arguments": {}}
-CONTAIN = {
+REMOVE: dict[str, Any] = {"operation": "remove", "path": "sm/LAST", "arguments": {}}
+CONTAIN: dict[str, Any] = {
     "operation": "contain",
     "path": "sm/LAST",
     "arguments": {"name": "END", "type": "StateMachine", "states": ["sm/LAST"]},

@@ -3,7 +3,7 @@
 import { post, takeToken } from "./connection";
 import { button, html } from "./dom";
 import type { EditForm, Planned, StateType } from "./edit_fields";
-import { formsOf } from "./edit_fields";
+import { formsOf, labelled } from "./edit_fields";
 import type { Finding, Graph, StateNode } from "./model";
 import { findings } from "./panel";
 import type { Viewer } from "./viewer";
@@ -31,20 +31,21 @@ class Editor {
   private readonly said = html("p", { class: "said", role: "status" });
   private readonly shown = html("div", {});
   private readonly form = html("form", { class: "edit" },
-    html("label", {}, "Edit", this.kinds),
+    labelled("Edit", this.kinds),
     this.fields,
     html("div", { class: "acts" }, this.preview, this.apply, this.undo),
     this.said,
     this.shown,
   );
   private forms: EditForm[] = [];
-  private types: StateType[] = [];
+  private readonly types: Promise<StateType[]>;
   private filledFor: { graph: Graph; path: string | null } | null = null;
   private previewed: { planned: Planned; diff: string } | null = null;
   /** The state that each edit changed the path of: selected again when it is undone. */
   private readonly done: Planned[] = [];
 
   constructor(private readonly viewer: Viewer, private readonly token: string) {
+    this.types = stateTypes(token);
     this.form.addEventListener("submit", (event) => {
       event.preventDefault();
       void this.look();
@@ -54,7 +55,6 @@ class Editor {
     this.forget();
     viewer.addSection({ id: "edit", title: "Edit", first: true, fill: (node) => this.fill(node) });
     document.addEventListener("keydown", (event) => this.key(event));
-    void this.loadTypes();
   }
 
   /** The form of the selected state; what is typed in stays while the state and the machine stay. */
@@ -80,14 +80,6 @@ class Editor {
 
   private chosen(): EditForm | undefined {
     return this.forms.find(({ title }) => title === this.kinds.value);
-  }
-
-  private async loadTypes(): Promise<void> {
-    const answer = await post<{ types: StateType[] }>(this.token, "types", {});
-    if (!answer.ok) return;
-    this.types = answer.content.types;
-    this.filledFor = null;
-    this.viewer.refresh();
   }
 
   /** Show what the edit changes. */
@@ -155,6 +147,12 @@ class Editor {
     event.preventDefault();
     void this.takeBack();
   }
+}
+
+/** The state types that a new state can have. */
+async function stateTypes(token: string): Promise<StateType[]> {
+  const answer = await post<{ types: StateType[] }>(token, "types", {});
+  return answer.ok ? answer.content.types : [];
 }
 
 function described(preview: Preview): HTMLElement[] {

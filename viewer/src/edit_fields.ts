@@ -34,20 +34,25 @@ export interface EditForm {
 
 const NOWHERE = "";
 
-function textField(label: string, value = ""): [HTMLLabelElement, HTMLInputElement] {
-  const input = html("input", { type: "text", required: true, autocomplete: "off", spellcheck: "false" });
-  input.value = value;
-  return [html("label", {}, label, input), input];
+/** A control with its label. */
+export function labelled(text: string, control: HTMLElement): HTMLElement {
+  control.id = `edit-${text.toLowerCase().replaceAll(" ", "-")}`;
+  return html("p", { class: "field" }, html("label", { for: control.id }, text), control);
 }
 
-function choice(label: string, options: [value: string, text: string][], chosen?: string): [HTMLLabelElement, HTMLSelectElement] {
+function textField(label: string, value = ""): [HTMLElement, HTMLInputElement] {
+  const input = html("input", { type: "text", required: true, autocomplete: "off", spellcheck: "false" });
+  input.value = value;
+  return [labelled(label, input), input];
+}
+
+function choice(label: string, options: [value: string, text: string][]): [HTMLElement, HTMLSelectElement] {
   const select = html("select", {}, ...options.map(([value, text]) => html("option", { value }, text)));
-  if (chosen !== undefined) select.value = chosen;
-  return [html("label", {}, label, select), select];
+  return [labelled(label, select), select];
 }
 
 /** The edits of a state; null is the machine. */
-export function formsOf(graph: Graph, node: StateNode | null, types: readonly StateType[]): EditForm[] {
+export function formsOf(graph: Graph, node: StateNode | null, types: Promise<StateType[]>): EditForm[] {
   const root = graph.nodes.get(graph.model.root);
   const state = node ?? root;
   if (!state) return [];
@@ -113,15 +118,18 @@ function transition(graph: Graph, state: StateNode, parent: StateNode): EditForm
   };
 }
 
-function add(title: string, parent: StateNode, types: readonly StateType[], after?: StateNode): EditForm {
+function add(title: string, parent: StateNode, types: Promise<StateType[]>, after?: StateNode): EditForm {
   const [nameLabel, name] = textField("Name of the new state");
-  const [typeLabel, type] = choice("State type", types.map((each) => [each.name, each.name]));
+  const [typeLabel, type] = choice("State type", []);
   const doc = html("p", { class: "help" });
-  const describe = (): void => {
-    doc.textContent = types.find((each) => each.name === type.value)?.doc ?? "";
-  };
-  type.addEventListener("change", describe);
-  describe();
+  void types.then((known) => {
+    const describe = (): void => {
+      doc.textContent = known.find((each) => each.name === type.value)?.doc ?? "";
+    };
+    type.replaceChildren(...known.map((each) => html("option", { value: each.name }, each.name)));
+    type.addEventListener("change", describe);
+    describe();
+  });
   return {
     title,
     fields: [nameLabel, typeLabel, doc],

@@ -27,6 +27,7 @@ export function fillPanel(
   sections: readonly Section[],
   actions: PanelActions,
 ): void {
+  const focused = panel.contains(document.activeElement) ? (document.activeElement as HTMLElement) : null;
   const own = node ? stateSections(graph, node, actions) : machineSections(graph, actions);
   const added = (first: boolean): (HTMLElement | null)[] =>
     sections.filter((each) => (each.first ?? false) === first).map((each) => {
@@ -34,7 +35,6 @@ export function fillPanel(
       return content && section(each.title, content, each.id);
     });
   const parts = [own[0]!, ...added(true), ...own.slice(1), ...added(false)];
-  const focused = panel.contains(document.activeElement) ? (document.activeElement as HTMLElement) : null;
   panel.replaceChildren(...parts.filter((each) => each !== null));
   panel.scrollTop = 0;
   if (focused?.isConnected) focused.focus();

@@ -146,15 +146,18 @@ ${target2}`;
 
   // src/edit_fields.ts
   var NOWHERE = "";
+  function labelled(text, control) {
+    control.id = `edit-${text.toLowerCase().replaceAll(" ", "-")}`;
+    return html("p", { class: "field" }, html("label", { for: control.id }, text), control);
+  }
   function textField(label, value = "") {
     const input = html("input", { type: "text", required: true, autocomplete: "off", spellcheck: "false" });
     input.value = value;
-    return [html("label", {}, label, input), input];
+    return [labelled(label, input), input];
   }
-  function choice(label, options, chosen) {
+  function choice(label, options) {
     const select = html("select", {}, ...options.map(([value, text]) => html("option", { value }, text)));
-    if (chosen !== void 0) select.value = chosen;
-    return [html("label", {}, label, select), select];
+    return [labelled(label, select), select];
   }
   function formsOf(graph, node, types) {
     const root = graph.nodes.get(graph.model.root);
@@ -217,13 +220,16 @@ ${target2}`;
   }
   function add(title, parent, types, after) {
     const [nameLabel, name] = textField("Name of the new state");
-    const [typeLabel, type] = choice("State type", types.map((each) => [each.name, each.name]));
+    const [typeLabel, type] = choice("State type", []);
     const doc = html("p", { class: "help" });
-    const describe = () => {
-      doc.textContent = types.find((each) => each.name === type.value)?.doc ?? "";
-    };
-    type.addEventListener("change", describe);
-    describe();
+    void types.then((known2) => {
+      const describe = () => {
+        doc.textContent = known2.find((each) => each.name === type.value)?.doc ?? "";
+      };
+      type.replaceChildren(...known2.map((each) => html("option", { value: each.name }, each.name)));
+      type.addEventListener("change", describe);
+      describe();
+    });
     return {
       title,
       fields: [nameLabel, typeLabel, doc],
@@ -718,13 +724,13 @@ ${target2}`;
 
   // src/panel.ts
   function fillPanel(panel, graph, node, sections, actions) {
+    const focused = panel.contains(document.activeElement) ? document.activeElement : null;
     const own = node ? stateSections(graph, node, actions) : machineSections(graph, actions);
     const added = (first) => sections.filter((each) => (each.first ?? false) === first).map((each) => {
       const content = each.fill(node);
       return content && section(each.title, content, each.id);
     });
     const parts = [own[0], ...added(true), ...own.slice(1), ...added(false)];
-    const focused = panel.contains(document.activeElement) ? document.activeElement : null;
     panel.replaceChildren(...parts.filter((each) => each !== null));
     panel.scrollTop = 0;
     if (focused?.isConnected) focused.focus();
@@ -890,6 +896,7 @@ ${target2}`;
     constructor(viewer, token) {
       this.viewer = viewer;
       this.token = token;
+      this.types = stateTypes(token);
       this.form.addEventListener("submit", (event) => {
         event.preventDefault();
         void this.look();
@@ -899,7 +906,6 @@ ${target2}`;
       this.forget();
       viewer.addSection({ id: "edit", title: "Edit", first: true, fill: (node) => this.fill(node) });
       document.addEventListener("keydown", (event) => this.key(event));
-      void this.loadTypes();
     }
     viewer;
     token;
@@ -913,14 +919,14 @@ ${target2}`;
     form = html(
       "form",
       { class: "edit" },
-      html("label", {}, "Edit", this.kinds),
+      labelled("Edit", this.kinds),
       this.fields,
       html("div", { class: "acts" }, this.preview, this.apply, this.undo),
       this.said,
       this.shown
     );
     forms = [];
-    types = [];
+    types;
     filledFor = null;
     previewed = null;
     /** The state that each edit changed the path of: selected again when it is undone. */
@@ -946,13 +952,6 @@ ${target2}`;
     }
     chosen() {
       return this.forms.find(({ title }) => title === this.kinds.value);
-    }
-    async loadTypes() {
-      const answer = await post(this.token, "types", {});
-      if (!answer.ok) return;
-      this.types = answer.content.types;
-      this.filledFor = null;
-      this.viewer.refresh();
     }
     /** Show what the edit changes. */
     async look() {
@@ -1015,6 +1014,10 @@ ${target2}`;
       void this.takeBack();
     }
   };
+  async function stateTypes(token) {
+    const answer = await post(token, "types", {});
+    return answer.ok ? answer.content.types : [];
+  }
   function described(preview) {
     const lines = preview.diff.replace(/\n$/, "").split("\n").map((line) => html("span", { class: line.startsWith("+") ? "more" : line.startsWith("-") ? "less" : null }, line));
     const parts = [
