@@ -15,7 +15,7 @@ from smachac.commands.output import OK, usage
 
 TYPE_CHECKING = False  # annotations only: `--help` imports none of this
 if TYPE_CHECKING:
-    from collections.abc import Iterator, Mapping
+    from collections.abc import Callable, Iterator, Mapping
     from pathlib import Path
 
     from smachac.diagnostics.diagnostic import Report
@@ -104,8 +104,8 @@ def _serve(arguments: Namespace, trace: Path | None) -> int:
     from smachac.view.trace_file import TraceText
 
     feed = Feed()
-    edits = edits_of_script(arguments) if trace is None else None
-    picture = Picture(feed, arguments.script.stem, editable=edits is not None)
+    picture = Picture(feed, arguments.script.stem, editable=trace is None)
+    edits = edits_of_script(arguments, picture.edited) if trace is None else None
     try:
         server = _server(arguments.port, picture, feed, edits=edits)
     except PortError as error:
@@ -127,8 +127,9 @@ def _serve(arguments: Namespace, trace: Path | None) -> int:
             script.check()
 
 
-def edits_of_script(arguments: Namespace) -> Edits:
-    """The edits of a script, which write its files as the refactorings do."""
+def edits_of_script(arguments: Namespace, edited: Callable[[], None]) -> Edits:
+    """The edits of a script, which write its files as the refactorings do; `edited` is called
+    before each writing."""
     from smachac.commands.files import ChangedError, not_written, rewrite_files
     from smachac.commands.writing import PartlyWrittenError
     from smachac.view.edits import Edits
@@ -140,7 +141,7 @@ def edits_of_script(arguments: Namespace) -> Edits:
         except (OSError, ChangedError, PartlyWrittenError) as error:
             raise ActionError(not_written(error)) from None
 
-    return Edits(arguments.script, arguments.scripts, arguments.templates, write)
+    return Edits(arguments.script, arguments.scripts, arguments.templates, write, edited)
 
 
 class _Script:

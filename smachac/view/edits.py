@@ -41,13 +41,21 @@ PROOFS: Mapping[Operation, str] = {
 
 
 class Edits:
-    """The edits of one script: a preview, the writing, and what can be undone."""
+    """The edits of one script: a preview, the writing, and what can be undone.
+
+    `edited` is called before each writing.
+    """
 
     def __init__(
-        self, script: Path, scripts: Sequence[Path], templates: Sequence[Path], write: Write
+        self,
+        script: Path,
+        scripts: Sequence[Path],
+        templates: Sequence[Path],
+        write: Write,
+        edited: Callable[[], None] = lambda: None,
     ) -> None:
         self._script, self._scripts, self._templates = script, scripts, templates
-        self._write = write
+        self._write, self._edited = write, edited
         self._lock = threading.Lock()
         self._done: deque[tuple[Texts, Mapping[str, Source]]] = deque(maxlen=MOST_UNDONE)
 
@@ -73,6 +81,7 @@ class Edits:
             if body.get("diff", result.diff) != result.diff:
                 raise ActionError("the script has changed since the preview: look at it again")
             if result.texts:
+                self._edited()
                 self._write(result.texts, result.sources)
                 self._done.append((dict(result.texts), dict(result.sources)))
             return {**answer, "applied": True}
@@ -85,6 +94,7 @@ class Edits:
             written, sources = self._done[-1]
             before = {path: source.text for path, source in sources.items()}
             after = {path: Source(sources[path].name, text) for path, text in written.items()}
+            self._edited()
             self._write(before, after)
             self._done.pop()
             files = sorted(source.name for source in sources.values())

@@ -39,8 +39,20 @@ class Picture:
                 self._machine, self._is_good = machine, not broken
                 self._model = self._model_of(machine, report)
             self._feed.publish({"kind": "model", "model": self._model})
-        findings = [finding_data(item) for item in report]
-        self._feed.publish({"kind": "report", "broken": broken, "findings": findings})
+        self._feed.publish(
+            {
+                "kind": "report",
+                "broken": broken,
+                "outdated": machine is None or (broken and self._is_good),
+                "findings": [finding_data(item) for item in report],
+            }
+        )
+
+    def edited(self) -> None:
+        """The script is edited in the page: the next machine is drawn even if it has errors, so
+        that the next edit can repair it."""
+        with self._lock:
+            self._is_good = False
 
     def _model_of(self, machine: Machine, report: Report) -> Mapping[str, Any]:
         model = machine_model(machine, report, live=True)

@@ -46,7 +46,12 @@ MOVE: dict[str, Any] = {
 ADD: dict[str, Any] = {
     "operation": "add",
     "path": "sm",
-    "arguments": {"name": "MORE", "type": "SleepState", "after": "WAIT"},
+    "arguments": {
+        "name": "MORE",
+        "type": "SleepState",
+        "after": "WAIT",
+        "transitions": {"succeeded": "LAST"},
+    },
 }
 REMOVE: dict[str, Any] = {"operation": "remove", "path": "sm/LAST", "arguments": {}}
 CONTAIN: dict[str, Any] = {
@@ -79,7 +84,7 @@ def view(script: Path, start: Callable[..., Viewed]) -> Viewed:
 
 
 def edits_of(script: Path) -> Edits:
-    return edits_of_script(Namespace(script=script, scripts=[], templates=[]))
+    return edits_of_script(Namespace(script=script, scripts=[], templates=[]), lambda: None)
 
 
 def applied(view: Viewed, edit: dict[str, Any], **more: object) -> Any:
@@ -291,3 +296,20 @@ def test_the_picture_follows_an_edit(view: Viewed) -> None:
     applied(view, RENAME)
     model = view.until(lambda each: each["kind"] == "model")["model"]
     assert [node["path"] for node in model["nodes"]] == ["sm", "sm/WAIT", "sm/FINAL"]
+
+
+def test_the_picture_follows_an_edit_that_leaves_an_error(script: Path, view: Viewed) -> None:
+    """A new state cannot be reached yet; the next edit lets a transition lead to it. Errors from
+    elsewhere leave the picture as it is."""
+    view.until(lambda each: each["kind"] == "report")
+    applied(view, ADD)
+    model = view.message()["model"]
+    assert "sm/MORE" in [node["path"] for node in model["nodes"]]
+    report = view.message()
+    assert (report["broken"], report["outdated"]) == (True, False)
+    applied(view, {**MOVE, "arguments": {"outcome": "succeeded", "target": "MORE"}})
+    assert view.message()["kind"] == "model"
+    assert not view.message()["broken"]
+    script.write_text(script.read_text().replace("succeeded: MORE", "succeeded: NOWHERE"))
+    report = view.message()
+    assert (report["broken"], report["outdated"]) == (True, True)

@@ -24,7 +24,7 @@ export interface ControlStatus {
 
 export type Message =
   | { kind: "model"; model: Model }
-  | { kind: "report"; broken: boolean; findings: Finding[] }
+  | { kind: "report"; broken: boolean; outdated: boolean; findings: Finding[] }
   | { kind: "trace"; events: TraceEvent[] }
   | { kind: "dropped"; count: number }
   | ({ kind: "control" } & ControlStatus);

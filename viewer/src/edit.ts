@@ -31,7 +31,7 @@ class Editor {
   private readonly said = html("p", { class: "said", role: "status" });
   private readonly shown = html("div", {});
   private readonly form = html("form", { class: "edit" },
-    labelled("Edit", this.kinds),
+    labelled("Operation", this.kinds),
     this.fields,
     html("div", { class: "acts" }, this.preview, this.apply, this.undo),
     this.said,

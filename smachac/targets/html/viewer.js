@@ -919,7 +919,7 @@ ${target2}`;
     form = html(
       "form",
       { class: "edit" },
-      labelled("Edit", this.kinds),
+      labelled("Operation", this.kinds),
       this.fields,
       html("div", { class: "acts" }, this.preview, this.apply, this.undo),
       this.said,
@@ -1604,7 +1604,7 @@ ${place.key}`;
           void this.remodel(message.model);
           break;
         case "report":
-          this.report(message.broken, message.findings);
+          this.report(message.broken, message.outdated, message.findings);
           break;
         case "trace":
           this.recording.add(message.events);
@@ -1625,11 +1625,12 @@ ${place.key}`;
       this.loggedTo = -1;
       this.draw();
     }
-    report(broken, findings2) {
+    report(broken, outdated, findings2) {
       this.errors = broken ? findings2.filter((each) => each.severity === "error") : [];
       const [first] = this.errors;
       const more = this.errors.length > 1 ? ` (and ${this.errors.length - 1} more)` : "";
-      this.viewer.notice(first ? `${first.file}:${first.line}: error ${first.code}: ${first.message}${more}. The picture is that of the last version without errors.` : "");
+      const picture = outdated ? ". The picture is that of the last version without errors." : "";
+      this.viewer.notice(first ? `${first.file}:${first.line}: error ${first.code}: ${first.message}${more}${picture}` : "");
       this.viewer.refresh();
     }
     errorList() {
