@@ -109,9 +109,9 @@ class Edits:
 
     def _performed(self, body: Mapping[str, Any]) -> tuple[Edit, EditResult]:
         """The edit of a request and its result. Raises ActionError."""
+        script = EditedScript(self._script, self._scripts, self._templates)
         try:
             edit = edit_of(body)
-            script = EditedScript(self._script, self._scripts, self._templates)
             return edit, perform(script, edit)
         except HasErrorsError:
             raise ActionError(_first_error(script)) from None
