@@ -15,17 +15,19 @@ from smachac.commands.output import OK, usage
 
 TYPE_CHECKING = False  # annotations only: `--help` imports none of this
 if TYPE_CHECKING:
-    from collections.abc import Iterator, Mapping
+    from collections.abc import Callable, Iterator, Mapping
     from pathlib import Path
 
     from smachac.diagnostics.diagnostic import Report
+    from smachac.diagnostics.source import Source
     from smachac.frontend.files import Disk, Stamp
     from smachac.ir.nodes import Machine
     from smachac.view.control import Control
+    from smachac.view.edits import Edits
     from smachac.view.feed import Feed
     from smachac.view.live import LiveTrace
     from smachac.view.picture import Picture
-    from smachac.view.server import ViewServer
+    from smachac.view.server import Do, ViewServer
     from smachac.view.trace_file import TraceText
 
 EXAMPLES = """\
@@ -96,14 +98,16 @@ def view_command(arguments: Namespace) -> int:
 def _serve(arguments: Namespace, trace: Path | None) -> int:
     """Serve the picture of a script, and a trace, until Ctrl-C."""
     from smachac.frontend.files import Disk
+    from smachac.ir.recursion import deep_recursion
     from smachac.view.feed import Feed
     from smachac.view.picture import Picture
     from smachac.view.trace_file import TraceText
 
     feed = Feed()
-    picture = Picture(feed, arguments.script.stem)
+    picture = Picture(feed, arguments.script.stem, editable=trace is None)
+    edits = edits_of_script(arguments, picture.edited) if trace is None else None
     try:
-        server = _server(arguments.port, picture, feed)
+        server = _server(arguments.port, picture, feed, edits=edits)
     except PortError as error:
         return usage(str(error))
     script = _Script(arguments, Disk(), picture)
@@ -113,13 +117,31 @@ def _serve(arguments: Namespace, trace: Path | None) -> int:
         text.read()
     server.start()
     announce(server.url, open_page=not arguments.no_browser)
-    while True:
-        gc.collect()  # automatic collection is off
-        while not script.has_changed():
-            time.sleep(PAUSE)
-            if text is not None:
-                text.read()
-        script.check()
+    with deep_recursion():  # for all threads, so that none of them ends it for another one
+        while True:
+            gc.collect()  # automatic collection is off
+            while not script.has_changed():
+                time.sleep(PAUSE)
+                if text is not None:
+                    text.read()
+            script.check()
+
+
+def edits_of_script(arguments: Namespace, edited: Callable[[], None]) -> Edits:
+    """The edits of a script, which write its files as the refactorings do; `edited` is called
+    before each writing."""
+    from smachac.commands.files import ChangedError, not_written, rewrite_files
+    from smachac.commands.writing import PartlyWrittenError
+    from smachac.view.edits import Edits
+    from smachac.view.server import ActionError
+
+    def write(texts: Mapping[str, str], before: Mapping[str, Source]) -> None:
+        try:
+            rewrite_files(texts, before)
+        except (OSError, ChangedError, PartlyWrittenError) as error:
+            raise ActionError(not_written(error)) from None
+
+    return Edits(arguments.script, arguments.scripts, arguments.templates, write, edited)
 
 
 class _Script:
@@ -209,9 +231,14 @@ def _open_run(number: int, arguments: Namespace) -> int:
 
 
 def _server(
-    number: int, picture: Picture, feed: Feed, control: Control | None = None
+    number: int,
+    picture: Picture,
+    feed: Feed,
+    control: Control | None = None,
+    edits: Edits | None = None,
 ) -> ViewServer:
-    """A server for a picture and, with a control, for a run. Raises PortError."""
+    """A server for a picture and, with a control, for a run; with edits, for those. Raises
+    PortError."""
     from smachac.view.control import ControlError
     from smachac.view.server import ActionError, ViewServer
 
@@ -226,8 +253,11 @@ def _server(
             raise ActionError(str(error)) from None
         return control.status()
 
+    actions: dict[str, Do] = {"/control": act}
+    if edits is not None:
+        actions |= {"/edit": edits.edit, "/undo": edits.undo, "/types": edits.types}
     try:
-        return ViewServer(number, picture.page, feed, {"/control": act}, name=picture.name)
+        return ViewServer(number, picture.page, feed, actions, name=picture.name)
     except OSError as error:
         reason = (error.strerror or str(error)).lower()
         raise PortError(f"port {number} cannot be used: {reason}") from None

@@ -18,17 +18,18 @@ class Picture:
     """The last machine of a script that has no error, and what is found in the script now.
 
     As long as there was no such machine, the picture is that of the machine as far as it can be
-    read, or an empty one with the name `name`.
+    read, or an empty one with the name `name`. `editable`: the page can edit the script.
     """
 
-    def __init__(self, feed: Feed, name: str) -> None:
+    def __init__(self, feed: Feed, name: str, *, editable: bool = False) -> None:
         self.name = name
+        self._editable = editable
         self._feed = feed
         self._lock = threading.Lock()
         self._is_good = False
         nothing = StateMachine(type="", name=name, span=Span(Source(name, ""), 0, 0))
         self._machine = Machine(root=nothing)
-        self._model: Mapping[str, Any] = machine_model(self._machine, live=True)
+        self._model: Mapping[str, Any] = self._model_of(self._machine, [])
 
     def update(self, machine: Machine | None, report: Report) -> None:
         """Publish the result of a check."""
@@ -36,10 +37,26 @@ class Picture:
         if machine is not None and not (broken and self._is_good):
             with self._lock:
                 self._machine, self._is_good = machine, not broken
-                self._model = machine_model(machine, report, live=True)
+                self._model = self._model_of(machine, report)
             self._feed.publish({"kind": "model", "model": self._model})
-        findings = [finding_data(item) for item in report]
-        self._feed.publish({"kind": "report", "broken": broken, "findings": findings})
+        self._feed.publish(
+            {
+                "kind": "report",
+                "broken": broken,
+                "outdated": machine is None or (broken and self._is_good),
+                "findings": [finding_data(item) for item in report],
+            }
+        )
+
+    def edited(self) -> None:
+        """The script is edited in the page: the next machine is drawn even if it has errors, so
+        that the next edit can repair it."""
+        with self._lock:
+            self._is_good = False
+
+    def _model_of(self, machine: Machine, report: Report) -> Mapping[str, Any]:
+        model = machine_model(machine, report, live=True)
+        return {**model, "editable": True} if self._editable else model
 
     def page(self) -> str:
         """The page as it is now."""

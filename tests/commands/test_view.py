@@ -117,7 +117,7 @@ def test_view_draws_again_when_the_script_changes(
 ) -> None:
     view = start("view", script, "--no-browser")
     assert drawn(view.message()) == ["sm", "sm/WAIT", "sm/LAST"]
-    assert view.message() == {"kind": "report", "broken": False, "findings": []}
+    assert view.message() == {"kind": "report", "broken": False, "outdated": False, "findings": []}
     script.write_text(GOOD.replace("succeeded: LAST", "succeeded: NOWHERE"))
     report = view.message()
     assert report["broken"]

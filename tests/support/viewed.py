@@ -56,11 +56,16 @@ class Viewed:
         raise AssertionError("the stream has ended")
 
     def act(self, **body: str) -> int:
+        return self.post("/control", body)[0]
+
+    def post(self, path: str, body: object) -> tuple[int, Any]:
+        """Do an action: the status and the content of the answer."""
         connection = HTTPConnection(HOST, self.port, timeout=60)
-        connection.request("POST", "/control", json.dumps(body), {TOKEN: self.token})
-        status = connection.getresponse().status
+        connection.request("POST", path, json.dumps(body), {TOKEN: self.token})
+        answer = connection.getresponse()
+        content = json.loads(answer.read())
         connection.close()
-        return status
+        return answer.status, content
 
     def page(self) -> str:
         connection = HTTPConnection(HOST, self.port, timeout=60)

@@ -24,7 +24,7 @@ export interface ControlStatus {
 
 export type Message =
   | { kind: "model"; model: Model }
-  | { kind: "report"; broken: boolean; findings: Finding[] }
+  | { kind: "report"; broken: boolean; outdated: boolean; findings: Finding[] }
   | { kind: "trace"; events: TraceEvent[] }
   | { kind: "dropped"; count: number }
   | ({ kind: "control" } & ControlStatus);
@@ -64,18 +64,25 @@ export function takeToken(): string | null {
   return given;
 }
 
-/** Do an action; the reason if it was refused, else null. */
-export async function act(token: string, path: string, body: object): Promise<string | null> {
+/** What the server answers to an action, or the reason why it was refused. */
+export type Answer<T> = { ok: true; content: T } | { ok: false; reason: string };
+
+export async function post<T>(token: string, path: string, body: object): Promise<Answer<T>> {
   try {
     const answer = await fetch(path, {
       method: "POST",
       headers: { "Content-Type": "application/json", "X-Smachac-Token": token },
       body: JSON.stringify(body),
     });
-    if (answer.ok) return null;
-    const { error } = (await answer.json()) as { error?: string };
-    return error ?? answer.statusText;
+    const content = (await answer.json()) as T & { error?: string };
+    return answer.ok ? { ok: true, content } : { ok: false, reason: content.error ?? answer.statusText };
   } catch {
-    return "the server does not answer";
+    return { ok: false, reason: "the server does not answer" };
   }
+}
+
+/** Do an action; the reason if it was refused, else null. */
+export async function act(token: string, path: string, body: object): Promise<string | null> {
+  const answer = await post(token, path, body);
+  return answer.ok ? null : answer.reason;
 }

@@ -1,5 +1,6 @@
 // The start of the page: the model in it, the layout program, the viewer.
 
+import { showEdits } from "./edit";
 import type { Model } from "./model";
 import { showRuns } from "./run_view";
 import { createViewer } from "./viewer";
@@ -12,6 +13,7 @@ async function main(): Promise<void> {
   if (model.version !== VERSION) throw new Error(`the model has version ${model.version}, not ${VERSION}`);
   const viewer = await createViewer(document.body, model, startLayout(textOf("smachac-layout")));
   showRuns(viewer, textOf("smachac-trace"));
+  showEdits(viewer);
   document.documentElement.dataset["ready"] = "true";
 }
 

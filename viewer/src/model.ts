@@ -89,6 +89,7 @@ export interface Model {
   digest: string;
   root: Path;
   live: boolean;
+  editable?: boolean;
   nodes: StateNode[];
   edges: ModelEdge[];
   findings: Finding[];

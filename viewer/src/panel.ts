@@ -27,6 +27,7 @@ export function fillPanel(
   sections: readonly Section[],
   actions: PanelActions,
 ): void {
+  const focused = panel.contains(document.activeElement) ? (document.activeElement as HTMLElement) : null;
   const own = node ? stateSections(graph, node, actions) : machineSections(graph, actions);
   const added = (first: boolean): (HTMLElement | null)[] =>
     sections.filter((each) => (each.first ?? false) === first).map((each) => {
@@ -36,6 +37,7 @@ export function fillPanel(
   const parts = [own[0]!, ...added(true), ...own.slice(1), ...added(false)];
   panel.replaceChildren(...parts.filter((each) => each !== null));
   panel.scrollTop = 0;
+  if (focused?.isConnected) focused.focus();
 }
 
 function section(title: string, content: Node, id?: string): HTMLElement {
@@ -80,7 +82,7 @@ function heading(graph: Graph, node: StateNode, actions: PanelActions): HTMLElem
   return made;
 }
 
-function findings(found: Finding[]): HTMLElement {
+export function findings(found: Finding[]): HTMLElement {
   return html("ul", { class: "findings" }, ...found.map((item) =>
     html("li", { class: item.severity },
       html("p", {}, html("strong", {}, `${item.severity} ${item.code}`), " ", item.message),

@@ -96,7 +96,7 @@ class RunView {
         void this.remodel(message.model);
         break;
       case "report":
-        this.report(message.broken, message.findings);
+        this.report(message.broken, message.outdated, message.findings);
         break;
       case "trace":
         this.recording.add(message.events);
@@ -119,12 +119,13 @@ class RunView {
     this.draw();
   }
 
-  private report(broken: boolean, findings: Finding[]): void {
+  private report(broken: boolean, outdated: boolean, findings: Finding[]): void {
     this.errors = broken ? findings.filter((each) => each.severity === "error") : [];
     const [first] = this.errors;
     const more = this.errors.length > 1 ? ` (and ${this.errors.length - 1} more)` : "";
+    const picture = outdated ? ". The picture is that of the last version without errors." : "";
     this.viewer.notice(first
-      ? `${first.file}:${first.line}: error ${first.code}: ${first.message}${more}. The picture is that of the last version without errors.`
+      ? `${first.file}:${first.line}: error ${first.code}: ${first.message}${more}${picture}`
       : "");
     this.viewer.refresh();
   }

@@ -33,6 +33,8 @@ export interface Viewer {
   refresh(): void;
   /** Show another version of the machine: selection, zoom and open containers stay. */
   setModel(model: Model): Promise<void>;
+  /** Select a state as soon as the machine has it. `old` is the path that it has before. */
+  expect(path: Path, old?: Path): Promise<void>;
   /** Zoom so that the whole machine is seen. */
   fit(): void;
   /** A message in the line below the picture; empty removes it. */
@@ -64,6 +66,7 @@ export async function createViewer(page: HTMLElement, model: Model, compute: Com
   let picture: Picture | null = null;
   let run: Highlight | null = null;
   let latest = 0;
+  let expected: { path: Path; old: Path | undefined } | null = null;
   const sections: Section[] = [];
   const listeners: ((path: Path | null) => void)[] = [];
 
@@ -192,6 +195,7 @@ export async function createViewer(page: HTMLElement, model: Model, compute: Com
 
   async function select(path: Path | null): Promise<void> {
     selected = path !== null && graph.nodes.has(path) ? path : null;
+    expected = null;
     const closed = selected === null ? [] : ancestors(graph, selected).filter((each) => !open.has(each));
     closed.forEach((each) => open.add(each));
     writeFragment(selected);
@@ -226,15 +230,29 @@ export async function createViewer(page: HTMLElement, model: Model, compute: Com
   }
 
   async function setModel(next: Model): Promise<void> {
-    const opened = open;
+    const opened = [...open].map(newPath);
     graph = indexed(next);
     layouts = new Layouts(graph, compute, direction);
-    open = new Set([next.root, ...[...opened].filter((path) => graph.nodes.has(path))]);
+    open = new Set([next.root, ...opened.filter((path) => graph.nodes.has(path))]);
+    if (selected !== null) selected = newPath(selected);
     if (selected !== null && !graph.nodes.has(selected)) selected = nearest(graph, selected)?.path ?? null;
     document.title = next.name;
     title.textContent = next.name;
     refresh();
     await redraw(selected ?? next.root);
+    if (expected) await expect(expected.path, expected.old);
+  }
+
+  /** The path of a state in the next version, which may rename the expected one. */
+  function newPath(path: Path): Path {
+    const { path: next, old } = expected ?? {};
+    if (next === undefined || old === undefined || !`${path}/`.startsWith(`${old}/`)) return path;
+    return next + path.slice(old.length);
+  }
+
+  async function expect(path: Path, old?: Path): Promise<void> {
+    expected = graph.nodes.has(path) ? null : { path, old };
+    if (!expected) await select(path);
   }
 
   const title = html("h1", {}, model.name);
@@ -348,6 +366,7 @@ export async function createViewer(page: HTMLElement, model: Model, compute: Com
     },
     refresh,
     setModel,
+    expect,
     fit: whole,
     notice(text) {
       notice.textContent = text;

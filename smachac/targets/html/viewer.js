@@ -23,19 +23,22 @@
     history.replaceState(null, "", rest ? `#${rest}` : location.pathname + location.search);
     return given;
   }
-  async function act(token, path, body) {
+  async function post(token, path, body) {
     try {
       const answer = await fetch(path, {
         method: "POST",
         headers: { "Content-Type": "application/json", "X-Smachac-Token": token },
         body: JSON.stringify(body)
       });
-      if (answer.ok) return null;
-      const { error } = await answer.json();
-      return error ?? answer.statusText;
+      const content = await answer.json();
+      return answer.ok ? { ok: true, content } : { ok: false, reason: content.error ?? answer.statusText };
     } catch {
-      return "the server does not answer";
+      return { ok: false, reason: "the server does not answer" };
     }
+  }
+  async function act(token, path, body) {
+    const answer = await post(token, path, body);
+    return answer.ok ? null : answer.reason;
   }
 
   // src/dom.ts
@@ -58,6 +61,971 @@
     const made = html("button", { type: "button", "aria-label": label, title }, text);
     made.addEventListener("click", action);
     return made;
+  }
+
+  // src/model.ts
+  function indexed(model) {
+    const graph = {
+      model,
+      nodes: new Map(model.nodes.map((node) => [node.path, node])),
+      byShown: new Map(model.nodes.map((node) => [node.shown ?? node.path, node])),
+      inside: /* @__PURE__ */ new Map(),
+      leaving: /* @__PURE__ */ new Map()
+    };
+    for (const edge of model.edges) {
+      append(graph.inside, edge.container, edge);
+      if (edge.source !== null) append(graph.leaving, edge.source, edge);
+    }
+    return graph;
+  }
+  function append(map, key, value) {
+    const known2 = map.get(key);
+    if (known2) known2.push(value);
+    else map.set(key, [value]);
+  }
+  function edgeId(edge) {
+    const target2 = typeof edge.target === "string" ? edge.target : `${edge.container}:${edge.target.outcome}`;
+    return `${edge.source ?? edge.container}
+${edge.outcome}
+${target2}`;
+  }
+  function isContainer(node) {
+    return node.kind !== "leaf";
+  }
+  function ancestors(graph, path) {
+    const found = [];
+    let node = graph.nodes.get(path);
+    while (node && node.parent !== null) {
+      found.unshift(node.parent);
+      node = graph.nodes.get(node.parent);
+    }
+    return found;
+  }
+  function nearest(graph, path) {
+    let here = path;
+    while (here) {
+      const node = graph.nodes.get(here);
+      if (node) return node;
+      here = here.slice(0, Math.max(0, here.lastIndexOf("/")));
+    }
+    return void 0;
+  }
+  function kindInWords(node) {
+    if (node.role) return node.role;
+    if (node.kind === "concurrence") return node.join === "any" ? "in parallel, first to end" : "in parallel";
+    if (node.kind === "iterator" && node.items) return `for each ${node.items}`;
+    if (node.kind === "sequence") return "sequence";
+    if (node.kind === "machine") return "state machine";
+    return node.type ?? "state";
+  }
+  function firstOpen(graph, depth, limit) {
+    const open = /* @__PURE__ */ new Set();
+    let count2 = 1;
+    let level = [graph.model.root];
+    for (let at = 0; at < depth && level.length; at += 1) {
+      const next = [];
+      for (const path of level) {
+        const node = graph.nodes.get(path);
+        if (!node || !isContainer(node) || isWrapped(graph, node)) continue;
+        if (count2 + node.children.length > limit && at > 0) continue;
+        open.add(path);
+        count2 += node.children.length;
+        next.push(...node.children);
+      }
+      level = next;
+    }
+    return open;
+  }
+  function isWrapped(graph, node) {
+    if (!node.role) return false;
+    return node.children.every((path) => {
+      const child = graph.nodes.get(path);
+      return child !== void 0 && (!isContainer(child) || isWrapped(graph, child));
+    });
+  }
+
+  // src/edit_fields.ts
+  var NOWHERE = "";
+  function labelled(text, control) {
+    control.id = `edit-${text.toLowerCase().replaceAll(" ", "-")}`;
+    return html("p", { class: "field" }, html("label", { for: control.id }, text), control);
+  }
+  function textField(label, value = "") {
+    const input = html("input", { type: "text", required: true, autocomplete: "off", spellcheck: "false" });
+    input.value = value;
+    return [labelled(label, input), input];
+  }
+  function choice(label, options) {
+    const select = html("select", {}, ...options.map(([value, text]) => html("option", { value }, text)));
+    return [labelled(label, select), select];
+  }
+  function formsOf(graph, node, types) {
+    const root = graph.nodes.get(graph.model.root);
+    const state = node ?? root;
+    if (!state) return [];
+    const parent = state.parent === null ? void 0 : graph.nodes.get(state.parent);
+    const forms = [];
+    if (parent) {
+      if (state.outcomes.length && parent.kind !== "concurrence") forms.push(transition(graph, state, parent));
+      forms.push(rename(state));
+    }
+    if (parent) forms.push(add("Add a state behind it", parent, types, state));
+    if (isContainer(state) && state.children.length) forms.push(add("Add a state inside", state, types));
+    if (parent) {
+      forms.push(remove(graph, state, parent), contain(graph, state, parent));
+    }
+    return forms;
+  }
+  function beside(graph, parent) {
+    return parent.children.map((path) => graph.nodes.get(path)).filter((each) => each !== void 0);
+  }
+  function targets(graph, parent) {
+    const states = beside(graph, parent).map((each) => [lastName(each.path), each.name]);
+    const ends = parent.outcomes.map(({ name }) => [name, `${name} (outcome of ${parent.name})`]);
+    return [...states, ...ends];
+  }
+  function lastName(path) {
+    return path.slice(path.lastIndexOf("/") + 1);
+  }
+  function rename(state) {
+    const [label, input] = textField("New name", state.name);
+    return {
+      title: "Rename",
+      fields: [label],
+      planned() {
+        const name = input.value.trim();
+        const path = `${state.parent}/${name}`;
+        return { edit: { operation: "rename", path: state.path, arguments: { new: name } }, then: path, old: state.path };
+      }
+    };
+  }
+  function transition(graph, state, parent) {
+    const [outcomeLabel, outcome] = choice("Outcome", state.outcomes.map(({ name }) => [name, name]));
+    const [targetLabel, target2] = choice("Leads to", [...targets(graph, parent), [NOWHERE, "(no transition)"]]);
+    const showTarget = () => {
+      const edge = (graph.leaving.get(state.path) ?? []).find((each) => each.outcome === outcome.value);
+      if (!edge) target2.value = NOWHERE;
+      else target2.value = typeof edge.target === "string" ? lastName(edge.target) : edge.target.outcome;
+    };
+    outcome.addEventListener("change", showTarget);
+    showTarget();
+    return {
+      title: "Change a transition",
+      fields: [outcomeLabel, targetLabel],
+      planned() {
+        const led = target2.value === NOWHERE ? {} : { target: target2.value };
+        return { edit: { operation: "transition", path: state.path, arguments: { outcome: outcome.value, ...led } }, then: state.path };
+      }
+    };
+  }
+  function add(title, parent, types, after) {
+    const [nameLabel, name] = textField("Name of the new state");
+    const [typeLabel, type] = choice("State type", []);
+    const doc = html("p", { class: "help" });
+    void types.then((known2) => {
+      const describe = () => {
+        doc.textContent = known2.find((each) => each.name === type.value)?.doc ?? "";
+      };
+      type.replaceChildren(...known2.map((each) => html("option", { value: each.name }, each.name)));
+      type.addEventListener("change", describe);
+      describe();
+    });
+    return {
+      title,
+      fields: [nameLabel, typeLabel, doc],
+      planned() {
+        const given = { name: name.value.trim(), type: type.value };
+        if (after) given["after"] = lastName(after.path);
+        return { edit: { operation: "add", path: parent.path, arguments: given }, then: `${parent.path}/${name.value.trim()}` };
+      }
+    };
+  }
+  function remove(graph, state, parent) {
+    const others = targets(graph, parent).filter(([value]) => value !== lastName(state.path));
+    const [label, to] = choice("What led to it leads to", [[NOWHERE, "(where its best outcome leads)"], ...others]);
+    return {
+      title: "Remove",
+      fields: parent.kind === "concurrence" ? [] : [label],
+      planned() {
+        const given = to.value === NOWHERE ? {} : { to: to.value };
+        return { edit: { operation: "remove", path: state.path, arguments: given }, then: null };
+      }
+    };
+  }
+  function contain(graph, state, parent) {
+    const [nameLabel, name] = textField("Name of the container");
+    const [typeLabel, type] = choice("Type", [["StateMachine", "StateMachine"], ["Concurrence", "Concurrence: at the same time"]]);
+    const boxes = beside(graph, parent).map((each) => {
+      const box = html("input", { type: "checkbox" });
+      box.checked = each.path === state.path;
+      return [box, each];
+    });
+    const group = html("fieldset", {}, html("legend", {}, "States"), ...boxes.map(([box, each]) => html("label", {}, box, each.name)));
+    return {
+      title: "Move into a new container",
+      fields: [group, nameLabel, typeLabel],
+      planned() {
+        const states = boxes.filter(([box]) => box.checked).map(([, each]) => each.path);
+        const given = { name: name.value.trim(), type: type.value, states };
+        return { edit: { operation: "contain", path: state.path, arguments: given }, then: `${parent.path}/${name.value.trim()}` };
+      }
+    };
+  }
+
+  // src/text.ts
+  var FAMILY = 'system-ui, -apple-system, "Segoe UI", Roboto, "Helvetica Neue", "Noto Sans", "Liberation Sans", Arial, sans-serif';
+  var FONTS = {
+    title: `600 14px ${FAMILY}`,
+    name: `600 13px ${FAMILY}`,
+    detail: `11px ${FAMILY}`,
+    label: `11px ${FAMILY}`,
+    exit: `600 11px ${FAMILY}`
+  };
+  var LONGEST = 300;
+  var context = document.createElement("canvas").getContext("2d");
+  var widths = /* @__PURE__ */ new Map();
+  function width(text, font) {
+    const key = `${font} ${text}`;
+    let known2 = widths.get(key);
+    if (known2 === void 0) {
+      context.font = FONTS[font];
+      known2 = Math.ceil(context.measureText(text).width);
+      widths.set(key, known2);
+    }
+    return known2;
+  }
+  function fitting(text, font, most = LONGEST) {
+    if (width(text, font) <= most) return text;
+    let low = 0;
+    let high = text.length;
+    while (low < high) {
+      const middle = low + high + 1 >> 1;
+      if (width(`${text.slice(0, middle)}\u2026`, font) <= most) low = middle;
+      else high = middle - 1;
+    }
+    return `${text.slice(0, low)}\u2026`;
+  }
+
+  // src/pieces.ts
+  var EXIT_HEIGHT = 22;
+  var TITLE_HEIGHT = 34;
+  var LINE_HEIGHT = 14;
+  var exitId = (outcome) => `exit ${outcome}`;
+  var START = "start";
+  var MANY_LEAVE = 30;
+  function writtenExits(graph, path) {
+    const bySource = /* @__PURE__ */ new Map();
+    const counts = /* @__PURE__ */ new Map();
+    const leaving = (graph.inside.get(path) ?? []).flatMap(
+      (edge) => edge.source !== null && typeof edge.target !== "string" && edge.kind !== "exhausted" ? [{ edge, source: edge.source, exit: edge.target.outcome }] : []
+    );
+    if (leaving.length <= MANY_LEAVE) return bySource;
+    for (const { exit } of leaving) counts.set(exit, (counts.get(exit) ?? 0) + 1);
+    for (const { edge, source, exit } of leaving) {
+      if (counts.get(exit) <= MANY_LEAVE) continue;
+      const known2 = bySource.get(source) ?? [];
+      bySource.set(source, [...known2, edge]);
+    }
+    return bySource;
+  }
+  function exitsInWords(edges) {
+    const byExit = /* @__PURE__ */ new Map();
+    for (const { outcome, target: target2 } of edges) {
+      if (typeof target2 === "string") continue;
+      byExit.set(target2.outcome, [...byExit.get(target2.outcome) ?? [], outcome]);
+    }
+    const texts = [...byExit].map(([exit, outcomes2]) => {
+      const others = [...new Set(outcomes2)].filter((each) => each !== exit);
+      return others.length ? `${others.join(", ")} \u2192 ${exit}` : `\u2192 ${exit}`;
+    });
+    return texts.join("; ");
+  }
+  var WRITTEN_HEIGHT = 16;
+  function boxSize(node, count2, written = []) {
+    const name = width(fitting(node.name, "name"), "name") + (node.findings.length ? 20 : 0);
+    const detail = boxDetail(node, count2);
+    const chevron2 = isContainer(node) ? 22 : 0;
+    const exits = written.length ? width(fitting(exitsInWords(written), "detail"), "detail") : 0;
+    return {
+      width: Math.max(96, name + chevron2 + 32, width(fitting(detail, "detail"), "detail") + 32, exits + 24),
+      height: (detail ? 48 : 36) + (written.length ? WRITTEN_HEIGHT : 0)
+    };
+  }
+  function boxDetail(node, count2) {
+    if (!isContainer(node)) return node.type ?? "";
+    const words = kindInWords(node);
+    return node.role ? words : `${words}, ${count2} ${count2 === 1 ? "state" : "states"}`;
+  }
+  function contentOf(graph, path, open, sizes) {
+    const container = graph.nodes.get(path);
+    const pieces = [startPiece(container)];
+    for (const child of container.children) {
+      const node = graph.nodes.get(child);
+      if (node) pieces.push({ id: child, what: "state", label: node.name, path: child, ...sizes.get(child) });
+    }
+    for (const outcome of container.outcomes) {
+      const label = fitting(outcome.name, "exit");
+      pieces.push({
+        id: exitId(outcome.name),
+        what: "exit",
+        label,
+        width: width(label, "exit") + 22,
+        height: EXIT_HEIGHT,
+        failure: outcome.failure,
+        success: outcome.success
+      });
+    }
+    const lines = /* @__PURE__ */ new Map();
+    const add2 = (line, edge, label) => {
+      const own = open.has(line.from) ? line.outcome : "";
+      const key = JSON.stringify([line.from, line.to, line.failure, line.implicit, own]);
+      const known2 = lines.get(key) ?? { ...line, stop: true, labels: [], edges: [] };
+      lines.set(key, known2);
+      known2.stop &&= line.outcome === "preempted";
+      if (edge && !known2.edges.includes(edge)) known2.edges.push(edge);
+      if (label && !open.has(line.from) && !known2.labels.includes(label)) known2.labels.push(label);
+    };
+    const joined = joins(container, pieces, add2);
+    const written = new Set([...writtenExits(graph, path)].flatMap(([source, edges]) => open.has(source) ? [] : edges));
+    for (const edge of graph.inside.get(path) ?? []) {
+      if (written.has(edge)) continue;
+      for (const line of linesOf(container, edge, joined)) {
+        add2(line, edgeId(edge), labelOf(container, edge, line));
+      }
+    }
+    return { path, pieces, lines: [...lines.values()] };
+  }
+  function startPiece(container) {
+    if (container.kind === "concurrence") {
+      const size = Math.min(260, 40 * Math.max(1, container.children.length));
+      return { id: START, what: "fork", label: "all start together", width: size, height: 5 };
+    }
+    if (container.kind === "iterator") {
+      const label = container.role ? "next try" : "next item";
+      return { id: START, what: "loop", label, width: width(label, "label") + 24, height: 24 };
+    }
+    return { id: START, what: "start", label: "start", width: 12, height: 12 };
+  }
+  function joins(container, pieces, add2) {
+    const joined = /* @__PURE__ */ new Map();
+    (container.rules ?? []).forEach((rule, index) => {
+      const exit = pieces.find((each) => each.id === exitId(rule.outcome));
+      if (rule.when.length < 2 || !exit) return;
+      const id = `join ${index}`;
+      const { failure = false, success } = exit;
+      pieces.push({ id, what: "join", label: `all: ${rule.outcome}`, width: 64, height: 5, failure, success });
+      for (const [child, outcome] of rule.when) {
+        const key = JSON.stringify([child, outcome, rule.outcome]);
+        joined.set(key, [...joined.get(key) ?? [], id]);
+      }
+      add2({ from: id, to: exit.id, outcome: rule.outcome, failure, implicit: false }, "", "");
+    });
+    return joined;
+  }
+  function linesOf(container, edge, joined) {
+    const { outcome, failure, implicit } = edge;
+    const look3 = { outcome, failure, implicit };
+    const from = edge.source ?? START;
+    const to = typeof edge.target === "string" ? edge.target : exitId(edge.target.outcome);
+    if (edge.kind === "loop") return [{ ...look3, from, to: START }];
+    if (edge.kind === "exhausted") return [{ ...look3, outcome: "", failure: false, from: START, to }];
+    if (edge.kind === "rule" && typeof edge.target !== "string") {
+      const key = JSON.stringify([edge.source, edge.outcome, edge.target.outcome]);
+      const bars = joined.get(key) ?? [];
+      const alone = (container.rules ?? []).some(
+        (rule) => rule.outcome === edge.target.outcome && rule.when.length < 2 && rule.when.every(([child, name]) => child === edge.source && name === edge.outcome)
+      );
+      return [
+        ...bars.map((bar) => ({ ...look3, from, to: bar })),
+        ...alone ? [{ ...look3, from, to }] : []
+      ];
+    }
+    if (edge.kind === "default") return [{ ...look3, failure: false, from, to }];
+    return [{ ...look3, from, to }];
+  }
+  function labelOf(container, edge, line) {
+    if (edge.kind === "default") return "otherwise";
+    if (edge.kind === "caught") return "exception";
+    if (edge.kind === "exhausted") return edge.source === null ? "" : container.role ? "no tries left" : "no more items";
+    return line.to === exitId(edge.outcome) ? "" : edge.outcome;
+  }
+
+  // src/draw.ts
+  function draw(graph, scene) {
+    const states = /* @__PURE__ */ new Map();
+    const tree = svg("g", { role: "tree", "aria-label": `States of ${graph.model.name}` });
+    for (const box of scene.boxes) {
+      const node = graph.nodes.get(box.path);
+      if (!node) continue;
+      const element = drawState(graph, node, box);
+      states.set(box.path, element);
+      tree.append(element);
+    }
+    const lines = scene.lines.map((line) => ({ line, element: drawLine(line) }));
+    const edges = svg("g", { "aria-hidden": "true" }, ...lines.map((each) => each.element));
+    const grounds = new Map(scene.boxes.map((box) => [box.path, ground(graph.nodes.get(box.path), box)]));
+    const labels = svg("g", { "aria-hidden": "true" }, ...scene.lines.map(({ line, label, container }) => drawLabel(line, label, grounds.get(container) ?? "")));
+    const marks = svg("g", { "aria-hidden": "true" }, ...scene.pieces.map((piece) => drawPiece(graph, piece)));
+    return { root: svg("g", {}, tree, edges, marks, labels), states, lines };
+  }
+  function drawState(graph, node, box) {
+    const siblings = node.parent === null ? [node.path] : graph.nodes.get(node.parent)?.children ?? [];
+    const group = svg("g", {
+      class: classes(node, box),
+      transform: `translate(${box.x} ${box.y})`,
+      role: "treeitem",
+      tabindex: "-1",
+      "data-path": node.path,
+      "aria-label": spoken(node, box),
+      "aria-level": box.level + 1,
+      "aria-setsize": siblings.length,
+      "aria-posinset": siblings.indexOf(node.path) + 1,
+      "aria-expanded": isContainer(node) ? String(box.open) : null,
+      "aria-selected": "false"
+    });
+    if (isContainer(node) && !box.open) {
+      group.append(svg("rect", { class: "below", x: 4, y: 4, width: box.width, height: box.height, rx: 8 }));
+    }
+    const radius = box.open ? 12 : 8;
+    group.append(svg("rect", { class: "body", width: box.width, height: box.height, rx: radius }));
+    if (box.open) drawTitle(graph, group, node, box);
+    else drawText(graph, group, node, box);
+    return group;
+  }
+  function classes(node, box) {
+    const kind = box.open ? `open ${ground(node, box)}` : `closed ${isContainer(node) ? ground(node, box) : ""}`;
+    return `state ${node.kind} ${kind.trim()}`;
+  }
+  function ground(node, box) {
+    if (node?.role || node?.kind === "iterator") return "looping";
+    if (node?.kind === "concurrence") return "parallel";
+    return box.level % 2 ? "odd" : "even";
+  }
+  function addTooltip(element, node) {
+    if (element.querySelector(":scope > title")) return;
+    const text = [node.shown ?? node.path, node.doc].filter(Boolean).join("\n");
+    element.prepend(svg("title", {}, text));
+  }
+  function spoken(node, box) {
+    const words = box.open ? kindInWords(node) : boxDetail(node, node.children.length);
+    const parts = [[node.name, words, exitsInWords(box.written)].filter(Boolean).join(" ")];
+    if (node.outcomes.length) parts.push(`outcomes: ${node.outcomes.map((each) => each.name).join(", ")}`);
+    if (node.findings.length) parts.push(`findings: ${node.findings.length}`);
+    return parts.join("; ");
+  }
+  function drawTitle(graph, group, node, box) {
+    const name = fitting(node.name, "title");
+    const detail = fitting(kindInWords(node), "detail");
+    group.append(
+      chevron(16, TITLE_HEIGHT / 2 + 1, true),
+      svg("text", { class: "title", x: 32, y: 22 }, name),
+      " ",
+      svg("text", { class: "detail", x: 32 + width(name, "title") + 10, y: 22 }, detail)
+    );
+    if (node.findings.length) group.append(badge(graph, node, box.width - 18, 17));
+  }
+  function drawText(graph, group, node, box) {
+    const middle = box.width / 2;
+    const detail = fitting(boxDetail(node, node.children.length), "detail");
+    const name = fitting(node.name, "name");
+    const y = detail ? 21 : 23;
+    group.append(svg("text", { class: "name", x: middle, y, "text-anchor": "middle" }, name));
+    if (detail) {
+      group.append(" ", svg("text", { class: "detail", x: middle, y: 37, "text-anchor": "middle" }, detail));
+    }
+    if (box.written.length) {
+      const exits = fitting(exitsInWords(box.written), "detail");
+      const failure = box.written.every((edge) => edge.failure);
+      const look3 = failure ? "detail written failure" : "detail written";
+      group.append(" ", svg("text", { class: look3, x: middle, y: y + (detail ? 32 : 16), "text-anchor": "middle" }, exits));
+    }
+    if (isContainer(node)) group.append(chevron(14, y - 4, false));
+    if (node.findings.length) group.append(badge(graph, node, box.width - 13, 13));
+  }
+  function chevron(x, y, open) {
+    const points = open ? "-4,-2 0,3 4,-2" : "-2,-4 3,0 -2,4";
+    return svg(
+      "g",
+      { class: "toggle", transform: `translate(${x} ${y})` },
+      svg("rect", { class: "hit", x: -11, y: -11, width: 22, height: 22, rx: 5 }),
+      svg("polyline", { points })
+    );
+  }
+  function badge(graph, node, x, y) {
+    const found = new Set(node.findings.map((index) => graph.model.findings[index]?.severity));
+    const severity = found.has("error") ? "error" : found.has("warning") ? "warning" : "info";
+    const shape = severity === "warning" ? "M0-7 7.5 6H-7.5Z" : "M0-7A7 7 0 1 1 0 7 7 7 0 1 1 0-7Z";
+    const sign = { error: "M-2.5-2.5 2.5 2.5M2.5-2.5-2.5 2.5", warning: "M0-2.5V1.5M0 3.6V3.8", info: "M0-3.4V-3.2M0-.6V3.6" };
+    return svg(
+      "g",
+      { class: `badge ${severity}`, transform: `translate(${x} ${y})` },
+      svg("path", { d: shape }),
+      svg("path", { class: "stroke", d: sign[severity] })
+    );
+  }
+  function drawPiece(graph, { piece, container, x, y, width: width2, height }) {
+    const group = svg("g", { class: `piece ${piece.what}`, transform: `translate(${x} ${y})` });
+    group.append(svg("title", {}, piece.label));
+    switch (piece.what) {
+      case "start":
+        group.append(svg("circle", { cx: width2 / 2, cy: height / 2, r: width2 / 2 }));
+        break;
+      case "fork":
+      case "join":
+        group.append(svg("rect", { width: width2, height, rx: 2.5 }));
+        break;
+      default: {
+        group.append(svg("rect", { width: width2, height, rx: height / 2 }));
+        if (piece.what === "exit" && container === graph.model.root) {
+          group.append(svg("rect", { class: "ring", x: -3, y: -3, width: width2 + 6, height: height + 6, rx: height / 2 + 3 }));
+        }
+        const text = { x: width2 / 2, y: height / 2 + 4, "text-anchor": "middle" };
+        group.append(svg("text", text, piece.label));
+      }
+    }
+    if (piece.failure) group.classList.add("failure");
+    if (piece.success) group.classList.add("success");
+    return group;
+  }
+  var CORNER = 7;
+  function roundedPath(points) {
+    const first = points[0];
+    if (!first) return "";
+    let path = `M${first.x} ${first.y}`;
+    for (let index = 1; index < points.length; index += 1) {
+      const before = points[index - 1];
+      const here = points[index];
+      const next = points[index + 1];
+      if (!next) {
+        path += `L${here.x} ${here.y}`;
+        continue;
+      }
+      const radius = Math.min(CORNER, distance(before, here) / 2, distance(here, next) / 2);
+      const start = towards(here, before, radius);
+      const end2 = towards(here, next, radius);
+      path += `L${start.x} ${start.y}Q${here.x} ${here.y} ${end2.x} ${end2.y}`;
+    }
+    return path;
+  }
+  function distance(a, b) {
+    return Math.hypot(a.x - b.x, a.y - b.y);
+  }
+  function towards(from, to, by) {
+    const length = distance(from, to) || 1;
+    return { x: from.x + (to.x - from.x) * by / length, y: from.y + (to.y - from.y) * by / length };
+  }
+  function look(line) {
+    return [line.failure && "failure", line.implicit && "implicit", line.stop && "stop"].filter(Boolean).join(" ");
+  }
+  function drawLine({ line, points }) {
+    const d = roundedPath(points);
+    const group = svg("g", { class: `line ${look(line)}` });
+    const end2 = points[points.length - 1];
+    const before = points[points.length - 2];
+    group.append(svg("path", { class: "stroke", d }));
+    if (end2 && before) {
+      const turn = Math.atan2(end2.y - before.y, end2.x - before.x) * 180 / Math.PI;
+      const transform = `translate(${end2.x} ${end2.y}) rotate(${turn})`;
+      group.append(svg("path", { class: "head", d: "M0 0L-7.5-4Q-5.9 0-7.5 4Z", transform }));
+    }
+    return group;
+  }
+  function drawLabel(line, label, ground2) {
+    if (!label) return null;
+    const group = svg("g", { class: `label ${ground2} ${look(line)}` });
+    group.append(background(label));
+    line.labels.forEach((text, index) => {
+      const y = label.y + 2 + LINE_HEIGHT * index + 10.5;
+      const x = label.x + label.width / 2;
+      group.append(svg("text", { x, y, "text-anchor": "middle" }, fitting(text, "label")));
+    });
+    return group;
+  }
+  function background({ x, y, width: width2, height }) {
+    return svg("rect", { x, y, width: width2, height, rx: 4 });
+  }
+  function markSelection(picture, path) {
+    for (const [each, element] of picture.states) {
+      const chosen = each === path;
+      element.classList.toggle("selected", chosen);
+      element.setAttribute("aria-selected", String(chosen));
+      element.setAttribute("tabindex", chosen ? "0" : "-1");
+    }
+    for (const { line, element } of picture.lines) {
+      element.classList.toggle("near", path !== null && (line.line.from === path || line.line.to === path));
+    }
+  }
+  function markRun(graph, picture, run) {
+    const active = drawnStates(graph, picture, run?.active);
+    const waiting = drawnStates(graph, picture, run?.waiting);
+    const breakpoints = drawnStates(graph, picture, run?.breakpoints);
+    const taken = new Set(run?.taken ?? []);
+    for (const [path, element] of picture.states) {
+      element.classList.toggle("active", active.has(path));
+      element.classList.toggle("waiting", waiting.has(path));
+      setBreakpoint(element, breakpoints.has(path));
+      setVisits(element, run?.visits?.get(path) ?? 0);
+    }
+    for (const { line, element } of picture.lines) {
+      element.classList.toggle("taken", line.line.edges.some((edge) => taken.has(edge)));
+    }
+  }
+  function drawnStates(graph, picture, paths = []) {
+    const found = /* @__PURE__ */ new Set();
+    for (const path of paths) {
+      let node = nearest(graph, path);
+      while (node && !picture.states.has(node.path) && node.parent !== null) node = graph.nodes.get(node.parent);
+      if (node) found.add(node.path);
+    }
+    return found;
+  }
+  function setBreakpoint(element, is) {
+    element.classList.toggle("breakpoint", is);
+    const mark = element.querySelector(":scope > .stop");
+    if (!is) mark?.remove();
+    else if (!mark) element.append(svg("circle", { class: "stop", cx: 0, cy: 0, r: 6.5 }));
+  }
+  function setVisits(element, count2) {
+    element.classList.toggle("visited", count2 > 0);
+    let mark = element.querySelector(":scope > .visits");
+    if (count2 < 2) {
+      mark?.remove();
+      return;
+    }
+    if (!mark) {
+      mark = svg("text", { class: "visits", "text-anchor": "end" });
+      const body = element.querySelector(":scope > .body");
+      mark.setAttribute("x", String(Number(body.getAttribute("width")) - 8));
+      mark.setAttribute("y", "-4");
+      element.append(mark);
+    }
+    mark.textContent = `\xD7${count2}`;
+  }
+  function legend() {
+    const sign = (name) => svg(
+      "svg",
+      { viewBox: "0 0 40 14", width: 40, height: 14, "aria-hidden": "true" },
+      svg(
+        "g",
+        { class: name },
+        svg("path", { class: "stroke", d: "M2 7H32" }),
+        svg("path", { class: "head", d: "M38 7l-7.5-4q1.6 4 0 8z" })
+      )
+    );
+    const row = (name, text) => html("li", {}, sign(name), html("span", {}, text));
+    return html(
+      "ul",
+      { class: "legend" },
+      row("line", "outcome"),
+      row("line failure", "outcome of failure"),
+      row("line implicit", "implied, not written in the script")
+    );
+  }
+
+  // src/panel.ts
+  function fillPanel(panel, graph, node, sections, actions) {
+    const focused = panel.contains(document.activeElement) ? document.activeElement : null;
+    const own = node ? stateSections(graph, node, actions) : machineSections(graph, actions);
+    const added = (first) => sections.filter((each) => (each.first ?? false) === first).map((each) => {
+      const content = each.fill(node);
+      return content && section(each.title, content, each.id);
+    });
+    const parts = [own[0], ...added(true), ...own.slice(1), ...added(false)];
+    panel.replaceChildren(...parts.filter((each) => each !== null));
+    panel.scrollTop = 0;
+    if (focused?.isConnected) focused.focus();
+  }
+  function section(title, content, id) {
+    return html("section", { "data-section": id ?? title.toLowerCase() }, html("h3", {}, title), content);
+  }
+  function link(text, path, actions) {
+    const made = html("button", { type: "button", class: "link" }, text);
+    made.addEventListener("click", () => actions.select(path));
+    return made;
+  }
+  function stateSections(graph, node, actions) {
+    const properties = graph.model.properties.filter((each) => each.states.includes(node.path));
+    return [
+      heading(graph, node, actions),
+      node.findings.length ? section("Findings", findings(node.findings.map((index) => graph.model.findings[index]))) : null,
+      node.outcomes.length ? section("Outcomes", outcomes(graph, node, actions)) : null,
+      node.inputs.length ? section("Inputs", keys(node.inputs, "reads")) : null,
+      node.outputs.length ? section("Outputs", keys(node.outputs, "writes")) : null,
+      node.userdata?.length ? section("Userdata", userdata(node)) : null,
+      node.rules ? section("Rules", rules(graph, node)) : null,
+      properties.length ? section("Properties", propertyList(graph, properties, actions)) : null,
+      node.children.length ? section("States", children(graph, node, actions)) : null,
+      node.snippet ? section("Script", snippet(node)) : null
+    ];
+  }
+  function heading(graph, node, actions) {
+    const around = node.parent === null ? null : graph.nodes.get(node.parent);
+    const made = html(
+      "section",
+      { "data-section": "state" },
+      html("p", { class: "path" }, around ? link(around.shown ?? around.path, around.path, actions) : "machine"),
+      html("h2", {}, node.name),
+      html("p", { class: "kind" }, kindInWords(node), node.type && isContainer(node) && !node.role ? ` (${node.type})` : "")
+    );
+    if (node.doc) made.append(html("p", { class: "doc" }, node.doc));
+    if (node.tags.length) {
+      made.append(html("p", { class: "tags" }, ...node.tags.map((tag) => html("span", { class: "tag" }, tag))));
+    }
+    return made;
+  }
+  function findings(found) {
+    return html("ul", { class: "findings" }, ...found.map((item) => html(
+      "li",
+      { class: item.severity },
+      html("p", {}, html("strong", {}, `${item.severity} ${item.code}`), " ", item.message),
+      item.help ? html("p", { class: "help" }, `help: ${item.help}`) : null,
+      item.file ? html("p", { class: "place" }, `${item.file}:${item.line}`) : null
+    )));
+  }
+  function outcomes(graph, node, actions) {
+    const leaving = graph.leaving.get(node.path) ?? [];
+    const rows = node.outcomes.map((outcome) => {
+      const edges = leaving.filter((edge) => edge.outcome === outcome.name);
+      const name = html("span", { class: `outcome${outcome.failure ? " failure" : outcome.success ? " success" : ""}` }, outcome.name);
+      const targets2 = html("span", { class: "targets" }, ...edges.map((edge) => target(graph, edge, actions)));
+      return html("li", {}, name, targets2);
+    });
+    return html("ul", { class: "rows" }, ...rows);
+  }
+  function target(graph, edge, actions) {
+    const words = { default: "otherwise ", implicit: "implied: ", loop: "next item: ", exhausted: "no more items: ", rule: "by rule: " };
+    const how = words[edge.kind] ?? "";
+    if (typeof edge.target === "string") {
+      const node = graph.nodes.get(edge.target);
+      return html("span", { class: "target" }, how, link(node?.name ?? edge.target, edge.target, actions));
+    }
+    const around = graph.nodes.get(edge.container);
+    return html("span", { class: "target" }, `${how}ends ${around?.name ?? edge.container} with ${edge.target.outcome}`);
+  }
+  function keys(list, verb) {
+    return html("ul", { class: "rows" }, ...list.map((key) => html(
+      "li",
+      {},
+      html("span", { class: "key", title: key.doc }, key.name),
+      html("code", {}, key.type),
+      key.key === key.name ? null : html("span", { class: "target" }, `${verb} ${key.key}`)
+    )));
+  }
+  function userdata(node) {
+    return html("ul", { class: "rows" }, ...(node.userdata ?? []).map((each) => html("li", {}, html("span", { class: "key" }, each.key), html("code", {}, each.type), html("code", { class: "value" }, each.value))));
+  }
+  function rules(graph, node) {
+    const named = (path) => graph.nodes.get(path)?.name ?? path;
+    const rows = (node.rules ?? []).map((rule) => html(
+      "li",
+      {},
+      html("span", { class: "outcome" }, rule.outcome),
+      html("span", { class: "target" }, rule.when.map(([path, outcome]) => `${named(path)}: ${outcome}`).join(" and ") || "always")
+    ));
+    if (node.default) {
+      rows.push(html("li", {}, html("span", { class: "outcome" }, node.default), html("span", { class: "target" }, "otherwise")));
+    }
+    return html("ul", { class: "rows" }, ...rows);
+  }
+  function children(graph, node, actions) {
+    return html("p", { class: "chips" }, ...node.children.map((path) => link(graph.nodes.get(path)?.name ?? path, path, actions)));
+  }
+  function snippet(node) {
+    return html(
+      "div",
+      {},
+      html("p", { class: "place" }, `${node.file}:${node.line}`),
+      html("pre", { tabindex: "0", "aria-label": `script of ${node.name}` }, html("code", {}, node.snippet))
+    );
+  }
+  function propertyList(graph, list, actions) {
+    return html("ul", { class: "properties" }, ...list.map((each) => html(
+      "li",
+      { class: each.verdict },
+      html("span", { class: "verdict" }, each.verdict),
+      " ",
+      each.name,
+      each.name === each.text ? null : html("p", { class: "help" }, each.text),
+      html("p", { class: "chips" }, ...each.states.map((path) => link(graph.nodes.get(path)?.name ?? path, path, actions)))
+    )));
+  }
+  var KEYS = [
+    ["/", "search"],
+    ["arrows", "next state in that direction"],
+    ["Enter", "open or close a container"],
+    ["Escape", "container around the state"],
+    ["f", "whole machine"],
+    ["+ and -", "zoom"],
+    ["e and c", "open and close all containers"],
+    ["d", "down or to the right"]
+  ];
+  function machineSections(graph, actions) {
+    const { model } = graph;
+    const root = graph.nodes.get(model.root);
+    const heading2 = html(
+      "section",
+      { "data-section": "machine" },
+      html("p", { class: "path" }, model.source),
+      html("h2", {}, model.name),
+      html("p", { class: "kind" }, `${model.nodes.length} states, ${model.edges.length} transitions`),
+      root?.doc ? html("p", { class: "doc" }, root.doc) : null
+    );
+    return [
+      heading2,
+      model.findings.length ? section("Findings", machineFindings(graph, actions)) : null,
+      model.properties.length ? section("Properties", propertyList(graph, model.properties, actions)) : null,
+      section("Legend", legend()),
+      section("Keys", html("dl", { class: "keys" }, ...KEYS.flatMap(([key, text]) => [html("dt", {}, html("kbd", {}, key)), html("dd", {}, text)])))
+    ];
+  }
+  function machineFindings(graph, actions) {
+    const list = findings(graph.model.findings);
+    graph.model.findings.forEach((item, index) => {
+      const node = item.node === null ? void 0 : graph.nodes.get(item.node);
+      if (node) list.children[index].append(html("p", { class: "chips" }, link(node.name, node.path, actions)));
+    });
+    return list;
+  }
+
+  // src/edit.ts
+  function showEdits(viewer) {
+    const token = viewer.graph.model.editable ? takeToken() : null;
+    if (token !== null) new Editor(viewer, token);
+  }
+  var Editor = class {
+    constructor(viewer, token) {
+      this.viewer = viewer;
+      this.token = token;
+      this.types = stateTypes(token);
+      this.form.addEventListener("submit", (event) => {
+        event.preventDefault();
+        void this.look();
+      });
+      this.kinds.addEventListener("change", () => this.showFields());
+      this.fields.addEventListener("input", () => this.forget());
+      this.forget();
+      viewer.addSection({ id: "edit", title: "Edit", first: true, fill: (node) => this.fill(node) });
+      document.addEventListener("keydown", (event) => this.key(event));
+    }
+    viewer;
+    token;
+    kinds = html("select", {});
+    fields = html("div", {});
+    preview = html("button", { type: "submit" }, "Preview");
+    apply = button("Apply", "Apply", () => void this.write(), "Write the change into the script");
+    undo = button("Undo", "Undo", () => void this.takeBack(), "Undo the last edit (u)");
+    said = html("p", { class: "said", role: "status" });
+    shown = html("div", {});
+    form = html(
+      "form",
+      { class: "edit" },
+      labelled("Operation", this.kinds),
+      this.fields,
+      html("div", { class: "acts" }, this.preview, this.apply, this.undo),
+      this.said,
+      this.shown
+    );
+    forms = [];
+    types;
+    filledFor = null;
+    previewed = null;
+    /** The state that each edit changed the path of: selected again when it is undone. */
+    done = [];
+    /** The form of the selected state; what is typed in stays while the state and the machine stay. */
+    fill(node) {
+      const { graph } = this.viewer;
+      const path = node?.path ?? null;
+      if (this.filledFor?.graph === graph && this.filledFor.path === path) return this.form;
+      if (this.filledFor?.path !== path && !this.said.classList.contains("done")) this.say("");
+      this.filledFor = { graph, path };
+      this.forms = formsOf(graph, node, this.types);
+      const before = this.kinds.value;
+      this.kinds.replaceChildren(...this.forms.map(({ title }) => html("option", { value: title }, title)));
+      if (this.forms.some(({ title }) => title === before)) this.kinds.value = before;
+      this.showFields();
+      return this.form;
+    }
+    showFields() {
+      this.fields.replaceChildren(...this.chosen()?.fields ?? []);
+      this.preview.disabled = !this.forms.length;
+      this.forget();
+    }
+    chosen() {
+      return this.forms.find(({ title }) => title === this.kinds.value);
+    }
+    /** Show what the edit changes. */
+    async look() {
+      const planned = this.chosen()?.planned();
+      if (!planned) return;
+      this.forget();
+      const answer = await post(this.token, "edit", planned.edit);
+      if (!answer.ok) {
+        this.say(answer.reason, "refused");
+        return;
+      }
+      const { content } = answer;
+      this.say(content.diff ? content.proof : "The script is like this already.");
+      if (!content.diff) return;
+      this.shown.replaceChildren(...described(content));
+      this.previewed = { planned, diff: content.diff };
+      this.apply.disabled = false;
+    }
+    /** Write the edit that is shown. */
+    async write() {
+      if (!this.previewed) return;
+      const { planned, diff } = this.previewed;
+      this.undo.focus();
+      this.forget();
+      const answer = await post(this.token, "edit", { ...planned.edit, apply: true, diff });
+      if (!answer.ok) {
+        this.say(answer.reason, "refused");
+        return;
+      }
+      this.done.push(planned);
+      if (planned.then !== null) await this.viewer.expect(planned.then, planned.old);
+      this.say(`Written: ${answer.content.files.join(", ")}`, "done");
+    }
+    async takeBack() {
+      const answer = await post(this.token, "undo", {});
+      if (!answer.ok) {
+        this.say(answer.reason, "refused");
+        return;
+      }
+      const undone = this.done.pop();
+      this.forget();
+      if (undone?.old !== void 0 && undone.then !== null) await this.viewer.expect(undone.old, undone.then);
+      this.say(`Undone: ${answer.content.files.join(", ")}`, "done");
+    }
+    /** `done`: the message stays when another state is selected. */
+    say(text, tone = "") {
+      this.said.textContent = text;
+      this.said.className = `said ${tone}`.trim();
+    }
+    /** Remove the preview: it is that of another edit. */
+    forget() {
+      this.previewed = null;
+      this.apply.disabled = true;
+      this.shown.replaceChildren();
+    }
+    key(event) {
+      if (event.key !== "u" || event.ctrlKey || event.metaKey || event.altKey) return;
+      if (event.target.closest("input, select, textarea")) return;
+      event.preventDefault();
+      void this.takeBack();
+    }
+  };
+  async function stateTypes(token) {
+    const answer = await post(token, "types", {});
+    return answer.ok ? answer.content.types : [];
+  }
+  function described(preview) {
+    const lines = preview.diff.replace(/\n$/, "").split("\n").map((line) => html("span", { class: line.startsWith("+") ? "more" : line.startsWith("-") ? "less" : null }, line));
+    const parts = [
+      html("pre", { class: "diff", tabindex: "0", role: "region", "aria-label": "Change of the script" }, html("code", {}, ...lines))
+    ];
+    if (preview.added.length) parts.push(html("h4", {}, "New findings"), findings(preview.added));
+    if (preview.removed.length) parts.push(html("h4", {}, "Findings that disappear"), findings(preview.removed));
+    return parts;
   }
 
   // src/control.ts
@@ -312,87 +1280,6 @@ ${key}`, { path, key, value: event.value, t: state.t, order: state.writes });
       this.cursor = { position: 0, state: copyState(this.first) };
     }
   };
-
-  // src/model.ts
-  function indexed(model) {
-    const graph = {
-      model,
-      nodes: new Map(model.nodes.map((node) => [node.path, node])),
-      byShown: new Map(model.nodes.map((node) => [node.shown ?? node.path, node])),
-      inside: /* @__PURE__ */ new Map(),
-      leaving: /* @__PURE__ */ new Map()
-    };
-    for (const edge of model.edges) {
-      append(graph.inside, edge.container, edge);
-      if (edge.source !== null) append(graph.leaving, edge.source, edge);
-    }
-    return graph;
-  }
-  function append(map, key, value) {
-    const known2 = map.get(key);
-    if (known2) known2.push(value);
-    else map.set(key, [value]);
-  }
-  function edgeId(edge) {
-    const target2 = typeof edge.target === "string" ? edge.target : `${edge.container}:${edge.target.outcome}`;
-    return `${edge.source ?? edge.container}
-${edge.outcome}
-${target2}`;
-  }
-  function isContainer(node) {
-    return node.kind !== "leaf";
-  }
-  function ancestors(graph, path) {
-    const found = [];
-    let node = graph.nodes.get(path);
-    while (node && node.parent !== null) {
-      found.unshift(node.parent);
-      node = graph.nodes.get(node.parent);
-    }
-    return found;
-  }
-  function nearest(graph, path) {
-    let here = path;
-    while (here) {
-      const node = graph.nodes.get(here);
-      if (node) return node;
-      here = here.slice(0, Math.max(0, here.lastIndexOf("/")));
-    }
-    return void 0;
-  }
-  function kindInWords(node) {
-    if (node.role) return node.role;
-    if (node.kind === "concurrence") return node.join === "any" ? "in parallel, first to end" : "in parallel";
-    if (node.kind === "iterator" && node.items) return `for each ${node.items}`;
-    if (node.kind === "sequence") return "sequence";
-    if (node.kind === "machine") return "state machine";
-    return node.type ?? "state";
-  }
-  function firstOpen(graph, depth, limit) {
-    const open = /* @__PURE__ */ new Set();
-    let count2 = 1;
-    let level = [graph.model.root];
-    for (let at = 0; at < depth && level.length; at += 1) {
-      const next = [];
-      for (const path of level) {
-        const node = graph.nodes.get(path);
-        if (!node || !isContainer(node) || isWrapped(graph, node)) continue;
-        if (count2 + node.children.length > limit && at > 0) continue;
-        open.add(path);
-        count2 += node.children.length;
-        next.push(...node.children);
-      }
-      level = next;
-    }
-    return open;
-  }
-  function isWrapped(graph, node) {
-    if (!node.role) return false;
-    return node.children.every((path) => {
-      const child = graph.nodes.get(path);
-      return child !== void 0 && (!isContainer(child) || isWrapped(graph, child));
-    });
-  }
 
   // src/run_marks.ts
   function nodeAt(graph, shown) {
@@ -717,7 +1604,7 @@ ${place.key}`;
           void this.remodel(message.model);
           break;
         case "report":
-          this.report(message.broken, message.findings);
+          this.report(message.broken, message.outdated, message.findings);
           break;
         case "trace":
           this.recording.add(message.events);
@@ -738,11 +1625,12 @@ ${place.key}`;
       this.loggedTo = -1;
       this.draw();
     }
-    report(broken, findings2) {
+    report(broken, outdated, findings2) {
       this.errors = broken ? findings2.filter((each) => each.severity === "error") : [];
       const [first] = this.errors;
       const more = this.errors.length > 1 ? ` (and ${this.errors.length - 1} more)` : "";
-      this.viewer.notice(first ? `${first.file}:${first.line}: error ${first.code}: ${first.message}${more}. The picture is that of the last version without errors.` : "");
+      const picture = outdated ? ". The picture is that of the last version without errors." : "";
+      this.viewer.notice(first ? `${first.file}:${first.line}: error ${first.code}: ${first.message}${more}${picture}` : "");
       this.viewer.refresh();
     }
     errorList() {
@@ -1032,456 +1920,6 @@ ${place.key}`);
       this.frame.classList.toggle("far", this.scale < 0.4);
     }
   };
-
-  // src/text.ts
-  var FAMILY = 'system-ui, -apple-system, "Segoe UI", Roboto, "Helvetica Neue", "Noto Sans", "Liberation Sans", Arial, sans-serif';
-  var FONTS = {
-    title: `600 14px ${FAMILY}`,
-    name: `600 13px ${FAMILY}`,
-    detail: `11px ${FAMILY}`,
-    label: `11px ${FAMILY}`,
-    exit: `600 11px ${FAMILY}`
-  };
-  var LONGEST = 300;
-  var context = document.createElement("canvas").getContext("2d");
-  var widths = /* @__PURE__ */ new Map();
-  function width(text, font) {
-    const key = `${font} ${text}`;
-    let known2 = widths.get(key);
-    if (known2 === void 0) {
-      context.font = FONTS[font];
-      known2 = Math.ceil(context.measureText(text).width);
-      widths.set(key, known2);
-    }
-    return known2;
-  }
-  function fitting(text, font, most = LONGEST) {
-    if (width(text, font) <= most) return text;
-    let low = 0;
-    let high = text.length;
-    while (low < high) {
-      const middle = low + high + 1 >> 1;
-      if (width(`${text.slice(0, middle)}\u2026`, font) <= most) low = middle;
-      else high = middle - 1;
-    }
-    return `${text.slice(0, low)}\u2026`;
-  }
-
-  // src/pieces.ts
-  var EXIT_HEIGHT = 22;
-  var TITLE_HEIGHT = 34;
-  var LINE_HEIGHT = 14;
-  var exitId = (outcome) => `exit ${outcome}`;
-  var START = "start";
-  var MANY_LEAVE = 30;
-  function writtenExits(graph, path) {
-    const bySource = /* @__PURE__ */ new Map();
-    const counts = /* @__PURE__ */ new Map();
-    const leaving = (graph.inside.get(path) ?? []).flatMap(
-      (edge) => edge.source !== null && typeof edge.target !== "string" && edge.kind !== "exhausted" ? [{ edge, source: edge.source, exit: edge.target.outcome }] : []
-    );
-    if (leaving.length <= MANY_LEAVE) return bySource;
-    for (const { exit } of leaving) counts.set(exit, (counts.get(exit) ?? 0) + 1);
-    for (const { edge, source, exit } of leaving) {
-      if (counts.get(exit) <= MANY_LEAVE) continue;
-      const known2 = bySource.get(source) ?? [];
-      bySource.set(source, [...known2, edge]);
-    }
-    return bySource;
-  }
-  function exitsInWords(edges) {
-    const byExit = /* @__PURE__ */ new Map();
-    for (const { outcome, target: target2 } of edges) {
-      if (typeof target2 === "string") continue;
-      byExit.set(target2.outcome, [...byExit.get(target2.outcome) ?? [], outcome]);
-    }
-    const texts = [...byExit].map(([exit, outcomes2]) => {
-      const others = [...new Set(outcomes2)].filter((each) => each !== exit);
-      return others.length ? `${others.join(", ")} \u2192 ${exit}` : `\u2192 ${exit}`;
-    });
-    return texts.join("; ");
-  }
-  var WRITTEN_HEIGHT = 16;
-  function boxSize(node, count2, written = []) {
-    const name = width(fitting(node.name, "name"), "name") + (node.findings.length ? 20 : 0);
-    const detail = boxDetail(node, count2);
-    const chevron2 = isContainer(node) ? 22 : 0;
-    const exits = written.length ? width(fitting(exitsInWords(written), "detail"), "detail") : 0;
-    return {
-      width: Math.max(96, name + chevron2 + 32, width(fitting(detail, "detail"), "detail") + 32, exits + 24),
-      height: (detail ? 48 : 36) + (written.length ? WRITTEN_HEIGHT : 0)
-    };
-  }
-  function boxDetail(node, count2) {
-    if (!isContainer(node)) return node.type ?? "";
-    const words = kindInWords(node);
-    return node.role ? words : `${words}, ${count2} ${count2 === 1 ? "state" : "states"}`;
-  }
-  function contentOf(graph, path, open, sizes) {
-    const container = graph.nodes.get(path);
-    const pieces = [startPiece(container)];
-    for (const child of container.children) {
-      const node = graph.nodes.get(child);
-      if (node) pieces.push({ id: child, what: "state", label: node.name, path: child, ...sizes.get(child) });
-    }
-    for (const outcome of container.outcomes) {
-      const label = fitting(outcome.name, "exit");
-      pieces.push({
-        id: exitId(outcome.name),
-        what: "exit",
-        label,
-        width: width(label, "exit") + 22,
-        height: EXIT_HEIGHT,
-        failure: outcome.failure,
-        success: outcome.success
-      });
-    }
-    const lines = /* @__PURE__ */ new Map();
-    const add = (line, edge, label) => {
-      const own = open.has(line.from) ? line.outcome : "";
-      const key = JSON.stringify([line.from, line.to, line.failure, line.implicit, own]);
-      const known2 = lines.get(key) ?? { ...line, stop: true, labels: [], edges: [] };
-      lines.set(key, known2);
-      known2.stop &&= line.outcome === "preempted";
-      if (edge && !known2.edges.includes(edge)) known2.edges.push(edge);
-      if (label && !open.has(line.from) && !known2.labels.includes(label)) known2.labels.push(label);
-    };
-    const joined = joins(container, pieces, add);
-    const written = new Set([...writtenExits(graph, path)].flatMap(([source, edges]) => open.has(source) ? [] : edges));
-    for (const edge of graph.inside.get(path) ?? []) {
-      if (written.has(edge)) continue;
-      for (const line of linesOf(container, edge, joined)) {
-        add(line, edgeId(edge), labelOf(container, edge, line));
-      }
-    }
-    return { path, pieces, lines: [...lines.values()] };
-  }
-  function startPiece(container) {
-    if (container.kind === "concurrence") {
-      const size = Math.min(260, 40 * Math.max(1, container.children.length));
-      return { id: START, what: "fork", label: "all start together", width: size, height: 5 };
-    }
-    if (container.kind === "iterator") {
-      const label = container.role ? "next try" : "next item";
-      return { id: START, what: "loop", label, width: width(label, "label") + 24, height: 24 };
-    }
-    return { id: START, what: "start", label: "start", width: 12, height: 12 };
-  }
-  function joins(container, pieces, add) {
-    const joined = /* @__PURE__ */ new Map();
-    (container.rules ?? []).forEach((rule, index) => {
-      const exit = pieces.find((each) => each.id === exitId(rule.outcome));
-      if (rule.when.length < 2 || !exit) return;
-      const id = `join ${index}`;
-      const { failure = false, success } = exit;
-      pieces.push({ id, what: "join", label: `all: ${rule.outcome}`, width: 64, height: 5, failure, success });
-      for (const [child, outcome] of rule.when) {
-        const key = JSON.stringify([child, outcome, rule.outcome]);
-        joined.set(key, [...joined.get(key) ?? [], id]);
-      }
-      add({ from: id, to: exit.id, outcome: rule.outcome, failure, implicit: false }, "", "");
-    });
-    return joined;
-  }
-  function linesOf(container, edge, joined) {
-    const { outcome, failure, implicit } = edge;
-    const look3 = { outcome, failure, implicit };
-    const from = edge.source ?? START;
-    const to = typeof edge.target === "string" ? edge.target : exitId(edge.target.outcome);
-    if (edge.kind === "loop") return [{ ...look3, from, to: START }];
-    if (edge.kind === "exhausted") return [{ ...look3, outcome: "", failure: false, from: START, to }];
-    if (edge.kind === "rule" && typeof edge.target !== "string") {
-      const key = JSON.stringify([edge.source, edge.outcome, edge.target.outcome]);
-      const bars = joined.get(key) ?? [];
-      const alone = (container.rules ?? []).some(
-        (rule) => rule.outcome === edge.target.outcome && rule.when.length < 2 && rule.when.every(([child, name]) => child === edge.source && name === edge.outcome)
-      );
-      return [
-        ...bars.map((bar) => ({ ...look3, from, to: bar })),
-        ...alone ? [{ ...look3, from, to }] : []
-      ];
-    }
-    if (edge.kind === "default") return [{ ...look3, failure: false, from, to }];
-    return [{ ...look3, from, to }];
-  }
-  function labelOf(container, edge, line) {
-    if (edge.kind === "default") return "otherwise";
-    if (edge.kind === "caught") return "exception";
-    if (edge.kind === "exhausted") return edge.source === null ? "" : container.role ? "no tries left" : "no more items";
-    return line.to === exitId(edge.outcome) ? "" : edge.outcome;
-  }
-
-  // src/draw.ts
-  function draw(graph, scene) {
-    const states = /* @__PURE__ */ new Map();
-    const tree = svg("g", { role: "tree", "aria-label": `States of ${graph.model.name}` });
-    for (const box of scene.boxes) {
-      const node = graph.nodes.get(box.path);
-      if (!node) continue;
-      const element = drawState(graph, node, box);
-      states.set(box.path, element);
-      tree.append(element);
-    }
-    const lines = scene.lines.map((line) => ({ line, element: drawLine(line) }));
-    const edges = svg("g", { "aria-hidden": "true" }, ...lines.map((each) => each.element));
-    const grounds = new Map(scene.boxes.map((box) => [box.path, ground(graph.nodes.get(box.path), box)]));
-    const labels = svg("g", { "aria-hidden": "true" }, ...scene.lines.map(({ line, label, container }) => drawLabel(line, label, grounds.get(container) ?? "")));
-    const marks = svg("g", { "aria-hidden": "true" }, ...scene.pieces.map((piece) => drawPiece(graph, piece)));
-    return { root: svg("g", {}, tree, edges, marks, labels), states, lines };
-  }
-  function drawState(graph, node, box) {
-    const siblings = node.parent === null ? [node.path] : graph.nodes.get(node.parent)?.children ?? [];
-    const group = svg("g", {
-      class: classes(node, box),
-      transform: `translate(${box.x} ${box.y})`,
-      role: "treeitem",
-      tabindex: "-1",
-      "data-path": node.path,
-      "aria-label": spoken(node, box),
-      "aria-level": box.level + 1,
-      "aria-setsize": siblings.length,
-      "aria-posinset": siblings.indexOf(node.path) + 1,
-      "aria-expanded": isContainer(node) ? String(box.open) : null,
-      "aria-selected": "false"
-    });
-    if (isContainer(node) && !box.open) {
-      group.append(svg("rect", { class: "below", x: 4, y: 4, width: box.width, height: box.height, rx: 8 }));
-    }
-    const radius = box.open ? 12 : 8;
-    group.append(svg("rect", { class: "body", width: box.width, height: box.height, rx: radius }));
-    if (box.open) drawTitle(graph, group, node, box);
-    else drawText(graph, group, node, box);
-    return group;
-  }
-  function classes(node, box) {
-    const kind = box.open ? `open ${ground(node, box)}` : `closed ${isContainer(node) ? ground(node, box) : ""}`;
-    return `state ${node.kind} ${kind.trim()}`;
-  }
-  function ground(node, box) {
-    if (node?.role || node?.kind === "iterator") return "looping";
-    if (node?.kind === "concurrence") return "parallel";
-    return box.level % 2 ? "odd" : "even";
-  }
-  function addTooltip(element, node) {
-    if (element.querySelector(":scope > title")) return;
-    const text = [node.shown ?? node.path, node.doc].filter(Boolean).join("\n");
-    element.prepend(svg("title", {}, text));
-  }
-  function spoken(node, box) {
-    const words = box.open ? kindInWords(node) : boxDetail(node, node.children.length);
-    const parts = [[node.name, words, exitsInWords(box.written)].filter(Boolean).join(" ")];
-    if (node.outcomes.length) parts.push(`outcomes: ${node.outcomes.map((each) => each.name).join(", ")}`);
-    if (node.findings.length) parts.push(`findings: ${node.findings.length}`);
-    return parts.join("; ");
-  }
-  function drawTitle(graph, group, node, box) {
-    const name = fitting(node.name, "title");
-    const detail = fitting(kindInWords(node), "detail");
-    group.append(
-      chevron(16, TITLE_HEIGHT / 2 + 1, true),
-      svg("text", { class: "title", x: 32, y: 22 }, name),
-      " ",
-      svg("text", { class: "detail", x: 32 + width(name, "title") + 10, y: 22 }, detail)
-    );
-    if (node.findings.length) group.append(badge(graph, node, box.width - 18, 17));
-  }
-  function drawText(graph, group, node, box) {
-    const middle = box.width / 2;
-    const detail = fitting(boxDetail(node, node.children.length), "detail");
-    const name = fitting(node.name, "name");
-    const y = detail ? 21 : 23;
-    group.append(svg("text", { class: "name", x: middle, y, "text-anchor": "middle" }, name));
-    if (detail) {
-      group.append(" ", svg("text", { class: "detail", x: middle, y: 37, "text-anchor": "middle" }, detail));
-    }
-    if (box.written.length) {
-      const exits = fitting(exitsInWords(box.written), "detail");
-      const failure = box.written.every((edge) => edge.failure);
-      const look3 = failure ? "detail written failure" : "detail written";
-      group.append(" ", svg("text", { class: look3, x: middle, y: y + (detail ? 32 : 16), "text-anchor": "middle" }, exits));
-    }
-    if (isContainer(node)) group.append(chevron(14, y - 4, false));
-    if (node.findings.length) group.append(badge(graph, node, box.width - 13, 13));
-  }
-  function chevron(x, y, open) {
-    const points = open ? "-4,-2 0,3 4,-2" : "-2,-4 3,0 -2,4";
-    return svg(
-      "g",
-      { class: "toggle", transform: `translate(${x} ${y})` },
-      svg("rect", { class: "hit", x: -11, y: -11, width: 22, height: 22, rx: 5 }),
-      svg("polyline", { points })
-    );
-  }
-  function badge(graph, node, x, y) {
-    const found = new Set(node.findings.map((index) => graph.model.findings[index]?.severity));
-    const severity = found.has("error") ? "error" : found.has("warning") ? "warning" : "info";
-    const shape = severity === "warning" ? "M0-7 7.5 6H-7.5Z" : "M0-7A7 7 0 1 1 0 7 7 7 0 1 1 0-7Z";
-    const sign = { error: "M-2.5-2.5 2.5 2.5M2.5-2.5-2.5 2.5", warning: "M0-2.5V1.5M0 3.6V3.8", info: "M0-3.4V-3.2M0-.6V3.6" };
-    return svg(
-      "g",
-      { class: `badge ${severity}`, transform: `translate(${x} ${y})` },
-      svg("path", { d: shape }),
-      svg("path", { class: "stroke", d: sign[severity] })
-    );
-  }
-  function drawPiece(graph, { piece, container, x, y, width: width2, height }) {
-    const group = svg("g", { class: `piece ${piece.what}`, transform: `translate(${x} ${y})` });
-    group.append(svg("title", {}, piece.label));
-    switch (piece.what) {
-      case "start":
-        group.append(svg("circle", { cx: width2 / 2, cy: height / 2, r: width2 / 2 }));
-        break;
-      case "fork":
-      case "join":
-        group.append(svg("rect", { width: width2, height, rx: 2.5 }));
-        break;
-      default: {
-        group.append(svg("rect", { width: width2, height, rx: height / 2 }));
-        if (piece.what === "exit" && container === graph.model.root) {
-          group.append(svg("rect", { class: "ring", x: -3, y: -3, width: width2 + 6, height: height + 6, rx: height / 2 + 3 }));
-        }
-        const text = { x: width2 / 2, y: height / 2 + 4, "text-anchor": "middle" };
-        group.append(svg("text", text, piece.label));
-      }
-    }
-    if (piece.failure) group.classList.add("failure");
-    if (piece.success) group.classList.add("success");
-    return group;
-  }
-  var CORNER = 7;
-  function roundedPath(points) {
-    const first = points[0];
-    if (!first) return "";
-    let path = `M${first.x} ${first.y}`;
-    for (let index = 1; index < points.length; index += 1) {
-      const before = points[index - 1];
-      const here = points[index];
-      const next = points[index + 1];
-      if (!next) {
-        path += `L${here.x} ${here.y}`;
-        continue;
-      }
-      const radius = Math.min(CORNER, distance(before, here) / 2, distance(here, next) / 2);
-      const start = towards(here, before, radius);
-      const end2 = towards(here, next, radius);
-      path += `L${start.x} ${start.y}Q${here.x} ${here.y} ${end2.x} ${end2.y}`;
-    }
-    return path;
-  }
-  function distance(a, b) {
-    return Math.hypot(a.x - b.x, a.y - b.y);
-  }
-  function towards(from, to, by) {
-    const length = distance(from, to) || 1;
-    return { x: from.x + (to.x - from.x) * by / length, y: from.y + (to.y - from.y) * by / length };
-  }
-  function look(line) {
-    return [line.failure && "failure", line.implicit && "implicit", line.stop && "stop"].filter(Boolean).join(" ");
-  }
-  function drawLine({ line, points }) {
-    const d = roundedPath(points);
-    const group = svg("g", { class: `line ${look(line)}` });
-    const end2 = points[points.length - 1];
-    const before = points[points.length - 2];
-    group.append(svg("path", { class: "stroke", d }));
-    if (end2 && before) {
-      const turn = Math.atan2(end2.y - before.y, end2.x - before.x) * 180 / Math.PI;
-      const transform = `translate(${end2.x} ${end2.y}) rotate(${turn})`;
-      group.append(svg("path", { class: "head", d: "M0 0L-7.5-4Q-5.9 0-7.5 4Z", transform }));
-    }
-    return group;
-  }
-  function drawLabel(line, label, ground2) {
-    if (!label) return null;
-    const group = svg("g", { class: `label ${ground2} ${look(line)}` });
-    group.append(background(label));
-    line.labels.forEach((text, index) => {
-      const y = label.y + 2 + LINE_HEIGHT * index + 10.5;
-      const x = label.x + label.width / 2;
-      group.append(svg("text", { x, y, "text-anchor": "middle" }, fitting(text, "label")));
-    });
-    return group;
-  }
-  function background({ x, y, width: width2, height }) {
-    return svg("rect", { x, y, width: width2, height, rx: 4 });
-  }
-  function markSelection(picture, path) {
-    for (const [each, element] of picture.states) {
-      const chosen = each === path;
-      element.classList.toggle("selected", chosen);
-      element.setAttribute("aria-selected", String(chosen));
-      element.setAttribute("tabindex", chosen ? "0" : "-1");
-    }
-    for (const { line, element } of picture.lines) {
-      element.classList.toggle("near", path !== null && (line.line.from === path || line.line.to === path));
-    }
-  }
-  function markRun(graph, picture, run) {
-    const active = drawnStates(graph, picture, run?.active);
-    const waiting = drawnStates(graph, picture, run?.waiting);
-    const breakpoints = drawnStates(graph, picture, run?.breakpoints);
-    const taken = new Set(run?.taken ?? []);
-    for (const [path, element] of picture.states) {
-      element.classList.toggle("active", active.has(path));
-      element.classList.toggle("waiting", waiting.has(path));
-      setBreakpoint(element, breakpoints.has(path));
-      setVisits(element, run?.visits?.get(path) ?? 0);
-    }
-    for (const { line, element } of picture.lines) {
-      element.classList.toggle("taken", line.line.edges.some((edge) => taken.has(edge)));
-    }
-  }
-  function drawnStates(graph, picture, paths = []) {
-    const found = /* @__PURE__ */ new Set();
-    for (const path of paths) {
-      let node = nearest(graph, path);
-      while (node && !picture.states.has(node.path) && node.parent !== null) node = graph.nodes.get(node.parent);
-      if (node) found.add(node.path);
-    }
-    return found;
-  }
-  function setBreakpoint(element, is) {
-    element.classList.toggle("breakpoint", is);
-    const mark = element.querySelector(":scope > .stop");
-    if (!is) mark?.remove();
-    else if (!mark) element.append(svg("circle", { class: "stop", cx: 0, cy: 0, r: 6.5 }));
-  }
-  function setVisits(element, count2) {
-    element.classList.toggle("visited", count2 > 0);
-    let mark = element.querySelector(":scope > .visits");
-    if (count2 < 2) {
-      mark?.remove();
-      return;
-    }
-    if (!mark) {
-      mark = svg("text", { class: "visits", "text-anchor": "end" });
-      const body = element.querySelector(":scope > .body");
-      mark.setAttribute("x", String(Number(body.getAttribute("width")) - 8));
-      mark.setAttribute("y", "-4");
-      element.append(mark);
-    }
-    mark.textContent = `\xD7${count2}`;
-  }
-  function legend() {
-    const sign = (name) => svg(
-      "svg",
-      { viewBox: "0 0 40 14", width: 40, height: 14, "aria-hidden": "true" },
-      svg(
-        "g",
-        { class: name },
-        svg("path", { class: "stroke", d: "M2 7H32" }),
-        svg("path", { class: "head", d: "M38 7l-7.5-4q1.6 4 0 8z" })
-      )
-    );
-    const row = (name, text) => html("li", {}, sign(name), html("span", {}, text));
-    return html(
-      "ul",
-      { class: "legend" },
-      row("line", "outcome"),
-      row("line failure", "outcome of failure"),
-      row("line implicit", "implied, not written in the script")
-    );
-  }
 
   // src/rows.ts
   var MARGIN2 = 12;
@@ -1968,169 +2406,6 @@ ${name}`;
     return best;
   }
 
-  // src/panel.ts
-  function fillPanel(panel, graph, node, sections, actions) {
-    const own = node ? stateSections(graph, node, actions) : machineSections(graph, actions);
-    const added = (first) => sections.filter((each) => (each.first ?? false) === first).map((each) => {
-      const content = each.fill(node);
-      return content && section(each.title, content, each.id);
-    });
-    const parts = [own[0], ...added(true), ...own.slice(1), ...added(false)];
-    panel.replaceChildren(...parts.filter((each) => each !== null));
-    panel.scrollTop = 0;
-  }
-  function section(title, content, id) {
-    return html("section", { "data-section": id ?? title.toLowerCase() }, html("h3", {}, title), content);
-  }
-  function link(text, path, actions) {
-    const made = html("button", { type: "button", class: "link" }, text);
-    made.addEventListener("click", () => actions.select(path));
-    return made;
-  }
-  function stateSections(graph, node, actions) {
-    const properties = graph.model.properties.filter((each) => each.states.includes(node.path));
-    return [
-      heading(graph, node, actions),
-      node.findings.length ? section("Findings", findings(node.findings.map((index) => graph.model.findings[index]))) : null,
-      node.outcomes.length ? section("Outcomes", outcomes(graph, node, actions)) : null,
-      node.inputs.length ? section("Inputs", keys(node.inputs, "reads")) : null,
-      node.outputs.length ? section("Outputs", keys(node.outputs, "writes")) : null,
-      node.userdata?.length ? section("Userdata", userdata(node)) : null,
-      node.rules ? section("Rules", rules(graph, node)) : null,
-      properties.length ? section("Properties", propertyList(graph, properties, actions)) : null,
-      node.children.length ? section("States", children(graph, node, actions)) : null,
-      node.snippet ? section("Script", snippet(node)) : null
-    ];
-  }
-  function heading(graph, node, actions) {
-    const around = node.parent === null ? null : graph.nodes.get(node.parent);
-    const made = html(
-      "section",
-      { "data-section": "state" },
-      html("p", { class: "path" }, around ? link(around.shown ?? around.path, around.path, actions) : "machine"),
-      html("h2", {}, node.name),
-      html("p", { class: "kind" }, kindInWords(node), node.type && isContainer(node) && !node.role ? ` (${node.type})` : "")
-    );
-    if (node.doc) made.append(html("p", { class: "doc" }, node.doc));
-    if (node.tags.length) {
-      made.append(html("p", { class: "tags" }, ...node.tags.map((tag) => html("span", { class: "tag" }, tag))));
-    }
-    return made;
-  }
-  function findings(found) {
-    return html("ul", { class: "findings" }, ...found.map((item) => html(
-      "li",
-      { class: item.severity },
-      html("p", {}, html("strong", {}, `${item.severity} ${item.code}`), " ", item.message),
-      item.help ? html("p", { class: "help" }, `help: ${item.help}`) : null,
-      item.file ? html("p", { class: "place" }, `${item.file}:${item.line}`) : null
-    )));
-  }
-  function outcomes(graph, node, actions) {
-    const leaving = graph.leaving.get(node.path) ?? [];
-    const rows = node.outcomes.map((outcome) => {
-      const edges = leaving.filter((edge) => edge.outcome === outcome.name);
-      const name = html("span", { class: `outcome${outcome.failure ? " failure" : outcome.success ? " success" : ""}` }, outcome.name);
-      const targets = html("span", { class: "targets" }, ...edges.map((edge) => target(graph, edge, actions)));
-      return html("li", {}, name, targets);
-    });
-    return html("ul", { class: "rows" }, ...rows);
-  }
-  function target(graph, edge, actions) {
-    const words = { default: "otherwise ", implicit: "implied: ", loop: "next item: ", exhausted: "no more items: ", rule: "by rule: " };
-    const how = words[edge.kind] ?? "";
-    if (typeof edge.target === "string") {
-      const node = graph.nodes.get(edge.target);
-      return html("span", { class: "target" }, how, link(node?.name ?? edge.target, edge.target, actions));
-    }
-    const around = graph.nodes.get(edge.container);
-    return html("span", { class: "target" }, `${how}ends ${around?.name ?? edge.container} with ${edge.target.outcome}`);
-  }
-  function keys(list, verb) {
-    return html("ul", { class: "rows" }, ...list.map((key) => html(
-      "li",
-      {},
-      html("span", { class: "key", title: key.doc }, key.name),
-      html("code", {}, key.type),
-      key.key === key.name ? null : html("span", { class: "target" }, `${verb} ${key.key}`)
-    )));
-  }
-  function userdata(node) {
-    return html("ul", { class: "rows" }, ...(node.userdata ?? []).map((each) => html("li", {}, html("span", { class: "key" }, each.key), html("code", {}, each.type), html("code", { class: "value" }, each.value))));
-  }
-  function rules(graph, node) {
-    const named = (path) => graph.nodes.get(path)?.name ?? path;
-    const rows = (node.rules ?? []).map((rule) => html(
-      "li",
-      {},
-      html("span", { class: "outcome" }, rule.outcome),
-      html("span", { class: "target" }, rule.when.map(([path, outcome]) => `${named(path)}: ${outcome}`).join(" and ") || "always")
-    ));
-    if (node.default) {
-      rows.push(html("li", {}, html("span", { class: "outcome" }, node.default), html("span", { class: "target" }, "otherwise")));
-    }
-    return html("ul", { class: "rows" }, ...rows);
-  }
-  function children(graph, node, actions) {
-    return html("p", { class: "chips" }, ...node.children.map((path) => link(graph.nodes.get(path)?.name ?? path, path, actions)));
-  }
-  function snippet(node) {
-    return html(
-      "div",
-      {},
-      html("p", { class: "place" }, `${node.file}:${node.line}`),
-      html("pre", { tabindex: "0", "aria-label": `script of ${node.name}` }, html("code", {}, node.snippet))
-    );
-  }
-  function propertyList(graph, list, actions) {
-    return html("ul", { class: "properties" }, ...list.map((each) => html(
-      "li",
-      { class: each.verdict },
-      html("span", { class: "verdict" }, each.verdict),
-      " ",
-      each.name,
-      each.name === each.text ? null : html("p", { class: "help" }, each.text),
-      html("p", { class: "chips" }, ...each.states.map((path) => link(graph.nodes.get(path)?.name ?? path, path, actions)))
-    )));
-  }
-  var KEYS = [
-    ["/", "search"],
-    ["arrows", "next state in that direction"],
-    ["Enter", "open or close a container"],
-    ["Escape", "container around the state"],
-    ["f", "whole machine"],
-    ["+ and -", "zoom"],
-    ["e and c", "open and close all containers"],
-    ["d", "down or to the right"]
-  ];
-  function machineSections(graph, actions) {
-    const { model } = graph;
-    const root = graph.nodes.get(model.root);
-    const heading2 = html(
-      "section",
-      { "data-section": "machine" },
-      html("p", { class: "path" }, model.source),
-      html("h2", {}, model.name),
-      html("p", { class: "kind" }, `${model.nodes.length} states, ${model.edges.length} transitions`),
-      root?.doc ? html("p", { class: "doc" }, root.doc) : null
-    );
-    return [
-      heading2,
-      model.findings.length ? section("Findings", machineFindings(graph, actions)) : null,
-      model.properties.length ? section("Properties", propertyList(graph, model.properties, actions)) : null,
-      section("Legend", legend()),
-      section("Keys", html("dl", { class: "keys" }, ...KEYS.flatMap(([key, text]) => [html("dt", {}, html("kbd", {}, key)), html("dd", {}, text)])))
-    ];
-  }
-  function machineFindings(graph, actions) {
-    const list = findings(graph.model.findings);
-    graph.model.findings.forEach((item, index) => {
-      const node = item.node === null ? void 0 : graph.nodes.get(item.node);
-      if (node) list.children[index].append(html("p", { class: "chips" }, link(node.name, node.path, actions)));
-    });
-    return list;
-  }
-
   // src/search.ts
   var MOST3 = 50;
   function search(graph, text) {
@@ -2288,6 +2563,7 @@ ${name}`;
     let picture = null;
     let run = null;
     let latest = 0;
+    let expected = null;
     const sections = [];
     const listeners = [];
     const world = svg("g", {});
@@ -2402,6 +2678,7 @@ ${name}`;
     }
     async function select(path) {
       selected = path !== null && graph.nodes.has(path) ? path : null;
+      expected = null;
       const closed = selected === null ? [] : ancestors(graph, selected).filter((each) => !open.has(each));
       closed.forEach((each) => open.add(each));
       writeFragment(selected);
@@ -2432,15 +2709,26 @@ ${name}`;
       if (await redraw(null)) showStart(TINY);
     }
     async function setModel(next) {
-      const opened = open;
+      const opened = [...open].map(newPath);
       graph = indexed(next);
       layouts = new Layouts(graph, compute, direction);
-      open = /* @__PURE__ */ new Set([next.root, ...[...opened].filter((path) => graph.nodes.has(path))]);
+      open = /* @__PURE__ */ new Set([next.root, ...opened.filter((path) => graph.nodes.has(path))]);
+      if (selected !== null) selected = newPath(selected);
       if (selected !== null && !graph.nodes.has(selected)) selected = nearest(graph, selected)?.path ?? null;
       document.title = next.name;
       title.textContent = next.name;
       refresh();
       await redraw(selected ?? next.root);
+      if (expected) await expect(expected.path, expected.old);
+    }
+    function newPath(path) {
+      const { path: next, old } = expected ?? {};
+      if (next === void 0 || old === void 0 || !`${path}/`.startsWith(`${old}/`)) return path;
+      return next + path.slice(old.length);
+    }
+    async function expect(path, old) {
+      expected = graph.nodes.has(path) ? null : { path, old };
+      if (!expected) await select(path);
     }
     const title = html("h1", {}, model.name);
     const field = searchField(() => graph, (path) => void select(path).then(focusSelected), focusSelected);
@@ -2550,6 +2838,7 @@ ${name}`;
       },
       refresh,
       setModel,
+      expect,
       fit: whole,
       notice(text) {
         notice.textContent = text;
@@ -2602,6 +2891,7 @@ ${name}`;
     if (model.version !== VERSION) throw new Error(`the model has version ${model.version}, not ${VERSION}`);
     const viewer = await createViewer(document.body, model, startLayout(textOf("smachac-layout")));
     showRuns(viewer, textOf("smachac-trace"));
+    showEdits(viewer);
     document.documentElement.dataset["ready"] = "true";
   }
   function textOf(id) {
