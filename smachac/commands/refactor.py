@@ -63,7 +63,7 @@ examples:
   smachac edit main.yml transition PICK aborted RECOVER   let an outcome lead to a state or outcome
   smachac edit main.yml transition PICK aborted           remove the transition from the script
   smachac edit main.yml add sm RECOVER GripperState       a new state of a type, behind the others
-  smachac edit main.yml add sm RECOVER GripperState --after PICK
+  smachac edit main.yml add sm RECOVER GripperState --after PICK --on aborted
   smachac edit main.yml remove WAIT                       what led to it leads to its successor
   smachac edit main.yml remove WAIT --to PARK --diff      show a patch
 
@@ -125,6 +125,8 @@ def edit_arguments(parser: argparse.ArgumentParser) -> None:
     parser.add_argument("words", nargs="+", metavar="WORD", help="; ".join(
         f"{name} {words}" for name, (words, _, _) in EDITS.items()))  # fmt: skip
     parser.add_argument("--after", metavar="STATE", help="with add: the state before the new one")
+    parser.add_argument("--on", metavar="OUTCOME", help="with add: the outcome of the state before"
+                        " that leads to the new one")  # fmt: skip
     parser.add_argument("--to", metavar="TARGET", help="with remove: where transitions to the state"
                         " lead afterwards")  # fmt: skip
     _common_arguments(parser)
@@ -228,7 +230,7 @@ def edit_command(arguments: Namespace) -> int:
     if not least <= len(words) <= 1 + len(names):
         return usage(f"write: smachac edit SCRIPT {arguments.operation} {form}")
     given = dict(zip(names, words[1:], strict=False))
-    for option, operation in (("after", "add"), ("to", "remove")):
+    for option, operation in (("after", "add"), ("on", "add"), ("to", "remove")):
         if (value := getattr(arguments, option)) is not None:
             if arguments.operation != operation:
                 return usage(f"--{option} needs the operation `{operation}`")

@@ -10,6 +10,7 @@ from __future__ import annotations
 import json
 from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import replace
+from functools import partial
 
 from smachac.diagnostics.diagnostic import did_you_mean
 from smachac.diagnostics.source import NOWHERE, Span
@@ -236,10 +237,12 @@ def add_state(
     type_name: str,
     *,
     after: str | None = None,
+    on: str | None = None,
     transitions: Mapping[str, str] | None = None,
     variables: Mapping[str, object] | None = None,
 ) -> Analysis:
-    """Add a state of a state type to a container, behind the state `after` or as the last one.
+    """Add a state of a state type to a container, behind the state `after` or as the last one. With
+    `on`, this outcome of `after` leads to the new state, whose best outcome leads on from there.
 
     Required variables without a value get a placeholder, and outcomes without a transition one that
     suits their names. The analysis afterwards.
@@ -264,22 +267,39 @@ def add_state(
     before = taken[after] if after is not None else parent.children[-1]
     editor = script.editor(before.span.source)
     place = editor.state(before.span)
-    led = _transitions(parent, name, type_, transitions or {})
+    given = dict(transitions or {})
+    if on is not None:
+        if not isinstance(parent, StateMachine) or on not in outcome_names(before):
+            message = f"`{before.name}` has no outcome `{on}` that leads on"
+            raise _unknown(message, on, outcome_names(before))
+        goal = next((step.target for step in before.transitions if step.outcome == on), None)
+        if goal is not None:
+            given.setdefault(good_first(_outcomes(type_))[0], goal)
+        set_entry(editor, before.span, "transitions", on, name)
+    led = _transitions(parent, name, type_, given)
     item = _state_item(name, type_, variables or {}, led)
     if any(each.leading[:1] == [""] for each in place.states.items):
         item.leading = [""]
     lines = item_lines(item, place.states.column, first=False)
     editor.insert_lines(editor.end_of(place), lines)
     places = _same_places(machine, path)
+    befores = _same_places(machine, f"{path}/{before.name}")
 
     def same(whole: Machine) -> bool:
         nodes = dict(walk(whole.root))
         made = [nodes.get(f"{each}/{name}") for each in places]
+        wanted = machine if on is None else _at(machine, befores, partial(_led, on, name))
         return all(_is_made(each, type_name, led) for each in made) and same_machine(
-            machine, _at(whole, places, lambda node: _without_child(node, name))
+            wanted, _at(whole, places, lambda node: _without_child(node, name))
         )
 
     return script.changed(parent.span, same)
+
+
+def _led(outcome: str, target: str, node: Node) -> Node:
+    """A state with another target for an outcome."""
+    rest = [step for step in node.transitions if step.outcome != outcome]
+    return replace(node, transitions=(*rest, _step(outcome, target, inside=True)))
 
 
 def _is_made(node: Node | None, type_name: str, led: Mapping[str, str]) -> bool:

@@ -30,6 +30,7 @@ FIELDS: Mapping[Operation, Mapping[str, tuple[type, ...]]] = {
         "name": (str,),
         "type": (str,),
         "after": (str, type(None)),
+        "on": (str, type(None)),
         "transitions": (dict, type(None)),
         "variables": (dict, type(None)),
     },
@@ -131,6 +132,7 @@ def _perform(script: EditedScript, edit: Edit) -> Analysis:
                 given["name"],
                 given["type"],
                 after=given.get("after"),
+                on=given.get("on"),
                 transitions=given.get("transitions"),
                 variables=given.get("variables"),
             )

@@ -291,6 +291,17 @@ def test_a_script_that_cannot_be_read() -> None:
         edit("transition", "PICK", outcome="ok", target="done")
 
 
+@pytest.mark.usefixtures("script")
+def test_a_new_state_between_two() -> None:
+    apply(edit("add", "sm", name="WAIT", type="SleepState", after="PICK", on="ok"))
+    whole = dict(walk(machine_of(analyse_script(MAIN)).root))
+    assert {step.outcome: step.target for step in whole["sm/PICK"].transitions}["ok"] == "WAIT"
+    led = {step.outcome: step.target for step in whole["sm/WAIT"].transitions}
+    assert led == {"succeeded": "PLACE"}
+    apply(edit("remove", "WAIT"))
+    assert MAIN.read_text() == SCRIPT
+
+
 ODD = {"on": "'on'", "a b": '"a b"', "größe": "größe"}
 
 
