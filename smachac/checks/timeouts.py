@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Iterator, Mapping
+from collections.abc import Collection, Iterator, Mapping
 from collections.abc import Set as AbstractSet
 
 from smachac.analysis.context import Context
@@ -17,7 +17,7 @@ from smachac.diagnostics.wording import listed
 from smachac.ir import nodes
 from smachac.ir.graph import stopped_endings
 from smachac.ir.leaf import variable_of
-from smachac.ir.nodes import Concurrence, Leaf, StateType, VariableType
+from smachac.ir.nodes import Concurrence, Data, Leaf, StateType, VariableType
 from smachac.ir.outcome_names import PREEMPTED
 from smachac.ir.script_paths import name_in_script
 from smachac.ir.traversal import outcome_names
@@ -37,7 +37,8 @@ def no_timeout(context: Context) -> Iterator[Finding]:
     `preempted` is a limit only where something in the script sends a preempt request: a `timeout:`
     around the state, or another branch of a concurrence with `join: any`. A state with several
     outcomes beside `preempted` may limit its wait itself, unless its type has a variable for a time
-    limit that is not set. A state with a `duration`, such as a SleepState, ends by itself.
+    limit that is not set. A state with a `duration`, such as a SleepState, ends by itself, and so
+    does one with a limit of its `tries`, such as a ConditionState without `max_checks: -1`.
 
     Wrong:
         name: sm
@@ -118,23 +119,33 @@ def _unlimited(leaf: Leaf, outer: Concurrence | None) -> str:
     return f"`{leaf.name}` can {waits} forever: it has no time limit and no outcome `preempted`"
 
 
-def _is_limited(leaf: Leaf, limits: Iterable[VariableType]) -> bool:
-    """Whether a wait ends by itself. `limits` are the variables of its type for a time limit."""
+def _is_limited(leaf: Leaf, limits: Collection[VariableType]) -> bool:
+    """Whether a wait ends by itself. `limits` are those of its type that limit it."""
     names = frozenset(outcome_names(leaf))
     if leaf.open or not TIMEOUTS.isdisjoint(names):
         return True
     values = {one.name: one.default.data if one.default else None for one in limits}
-    given = (one for one in leaf.variables if one.name.endswith("timeout"))
+    given = [one for one in leaf.variables if one.name in values or one.name.endswith("timeout")]
     values.update((one.name, one.value.data) for one in given)
-    if any(value is not None for value in values.values()):
+    tries = {one.name for one in limits if one.role == "tries"}
+    if any(_limits(value, name in tries) for name, value in values.items()):
         return True
     return PREEMPTED in names and not values and len(names) > 2
 
 
+def _limits(value: Data, tries: bool) -> bool:
+    """Whether a value is a limit: a negative number of tries is none."""
+    return value is not None and not (tries and isinstance(value, int) and value < 0)
+
+
 def _time_limits(types: Mapping[str, StateType]) -> dict[str, list[VariableType]]:
-    """By state type the variables for a time limit."""
+    """By state type the variables for a time limit or a limit of tries."""
     return {
-        name: [one for one in type_.variables.values() if one.name.endswith("timeout")]
+        name: [
+            one
+            for one in type_.variables.values()
+            if one.role == "tries" or one.name.endswith("timeout")
+        ]
         for name, type_ in types.items()
     }
 

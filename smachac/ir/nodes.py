@@ -69,7 +69,7 @@ class Value:
 VariableRole = Literal[
     "", "callbacks", "conditions", "function", "duration", "steps", "grasp", "output_function",
     "service_type", "action_type", "message_type", "request", "response", "goal", "result",
-    "joint_speed", "grip", "qos",
+    "joint_speed", "grip", "qos", "tries",
     "limb", "joint", "frame", "model", "body", "model_file",
 ]  # fmt: skip
 """The meaning of a variable's value for a state (docs/state_types.md, Facts)."""

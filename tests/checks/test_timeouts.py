@@ -136,6 +136,33 @@ def test_a_time_limit_of_a_state_type_counts_when_it_is_set() -> None:
     assert said(value(10.0)) == []
 
 
+@pytest.mark.parametrize(
+    ("default", "given", "limited"),
+    [
+        (1, {}, True),
+        (1, {"max_checks": 5}, True),
+        (1, {"max_checks": -1}, False),
+        (1, {"max_checks": None}, False),
+        (-1, {}, False),
+        (None, {}, False),
+        (-1, {"max_checks": 0}, True),
+        (-1, {"timeout": 3.0}, True),
+    ],
+)
+def test_a_limit_of_the_tries_is_a_limit(
+    default: int | None, given: dict[str, Any], limited: bool
+) -> None:
+    variables = {
+        "max_checks": VariableType(name="max_checks", default=value(default), role="tries"),
+        "timeout": VariableType(name="timeout"),
+    }
+    to = dict.fromkeys(["true", "false", "preempted"], "done")
+    root = machine("sm", "done", blocking(leaf("WAIT", to, type="Check", **given)))
+    types = {"Check": StateType(name="Check", variables=variables)}
+    items = check_machine(Machine(root=root, state_types=types))
+    assert [item.code for item in items if item.code == "SM207"] == ([] if limited else ["SM207"])
+
+
 def sleep(seconds: Any, to: dict[str, str] | None = None, name: str = "WAIT") -> Leaf:
     made = leaf(name, to or {}, outcomes="succeeded preempted", time=seconds)
     variables = tuple(replace(each, role="duration") for each in made.variables)
