@@ -37,8 +37,8 @@ def page_of(text: str, folder: Path) -> Path:
 
 
 def measure(browser: Browser, path: Path, *, open_all: bool = False) -> str:
-    """Seconds until the page is drawn, then until a key selects a state, then until the whole machine
-    is on a screenshot."""
+    """Seconds until the page is drawn, then until a key selects a state, then until the whole
+    machine is on a screenshot."""
     from playwright.sync_api import TimeoutError as Timeout
 
     page = browser.new_page(viewport={"width": 1440, "height": 900})
