@@ -1,6 +1,8 @@
-"""The page of a flat machine, and of 41 machines, in a headless Chromium: time until it is drawn.
+"""The page of the html target in a headless Chromium: large machines.
 
-python bench/html_page.py [states ...]: for each number of states one flat machine of each shape.
+    python bench/html_page.py [states ...]
+
+One flat machine of each shape for each number of states, and one of 40 machines of 50 states.
 """
 
 from __future__ import annotations
@@ -35,7 +37,8 @@ def page_of(text: str, folder: Path) -> Path:
 
 
 def measure(browser: Browser, path: Path, *, open_all: bool = False) -> str:
-    """Seconds until the page is drawn, and then seconds until a click on a state is answered."""
+    """Seconds until the page is drawn, then until a key selects a state, then until the whole
+    machine is on a screenshot."""
     from playwright.sync_api import TimeoutError as Timeout
 
     page = browser.new_page(viewport={"width": 1440, "height": 900})

@@ -44,7 +44,8 @@ CROSSED_STATES = """() => {
     ({ path: state.dataset.path, box: state.getBoundingClientRect() }));
   const covering = boxes.filter(({ path, box }) => boxes.some((other) => other.path !== path
     && inside(other.box, (box.left + box.right) / 2, (box.top + box.bottom) / 2)));
-  const points = [...document.querySelectorAll("g.line path.stroke")].flatMap((line) => {
+  const lines = [...document.querySelectorAll("svg.picture g.line path.stroke")];
+  const points = lines.flatMap((line) => {
     const matrix = line.getScreenCTM();
     const length = line.getTotalLength();
     return Array.from({ length: 60 }, (_, index) =>
