@@ -73,7 +73,7 @@ def _analyses(arguments: Namespace) -> list[tuple[Analysis | None, Analysis | No
     if revisions == (None, None) and len(paths) == 2 and not any(map(os.path.isdir, paths)):
         one, other = (_checked([path], arguments)[str(path)] for path in paths)
         return [(one, other)]
-    before = _at(arguments.old or "HEAD", paths, arguments)
+    before = _at("HEAD" if arguments.old is None else arguments.old, paths, arguments)
     after = _at(arguments.new, paths, arguments)
     if not before and not after:
         raise NothingFoundError(f"there is no script in `{paths[0]}`")

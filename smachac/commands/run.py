@@ -453,6 +453,7 @@ def _raise_first(failures: list[OSError]) -> None:
 
 def read_fault_file(path: Path, report: Report) -> tuple[Fault, ...] | None:
     """The faults of a file; None, with findings in the report, if it has mistakes."""
+    from smachac.diagnostics.source import Span
     from smachac.frontend.data_files import plain, span_at
     from smachac.frontend.errors.script import wrong_shape
     from smachac.frontend.files import read_source
@@ -463,6 +464,8 @@ def read_fault_file(path: Path, report: Report) -> tuple[Fault, ...] | None:
     source = read_source(path, report)
     tree = parse(source, report) if source is not None else None
     if tree is None:
+        if source is not None and not report:
+            report.append(wrong_shape(Span(source, 0, 0), "this file is empty"))
         return None
     try:
         return read_file(plain(tree))
@@ -473,6 +476,7 @@ def read_fault_file(path: Path, report: Report) -> tuple[Fault, ...] | None:
 
 def read_scenario_file(path: Path, machine: Machine, report: Report) -> Scenario | None:
     """The scenario of a file; None, with findings in the report, if it has faults."""
+    from smachac.diagnostics.source import Span
     from smachac.frontend.data_files import plain
     from smachac.frontend.errors.script import wrong_shape
     from smachac.frontend.files import read_source
@@ -482,6 +486,8 @@ def read_scenario_file(path: Path, machine: Machine, report: Report) -> Scenario
     source = read_source(path, report)
     tree = parse(source, report) if source is not None else None
     if tree is None:
+        if source is not None and not report:
+            report.append(wrong_shape(Span(source, 0, 0), "this file is empty"))
         return None
     scenario, found = read_scenario(plain(tree), machine)
     for problem in found:

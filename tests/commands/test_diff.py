@@ -204,3 +204,10 @@ def test_a_picture_shows_one_script(capsys: pytest.CaptureFixture[str]) -> None:
     capsys.readouterr()
     assert diff("--format", "dot") == 2
     assert "name it" in capsys.readouterr().err
+
+
+def test_an_empty_revision_is_not_the_last_commit(capsys: pytest.CaptureFixture[str]) -> None:
+    """As of an unset variable in CI: `--from "$BASE"`."""
+    commit()
+    assert diff("main.yml", "--from", "") == 2
+    assert "git has no revision ``" in capsys.readouterr().err

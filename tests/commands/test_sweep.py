@@ -294,3 +294,15 @@ def test_a_run_in_a_worker_equals_a_run_of_its_own(
     )
     here = Runner(task).run(5)
     assert (here.world, here.values) == (world, json.loads(values))
+
+
+@pytest.mark.parametrize("command", ["run", "sweep"])
+def test_an_empty_scenario_file(
+    folder: Path, command: str, capsys: pytest.CaptureFixture[str]
+) -> None:
+    """The program must not run in place of the scenario."""
+    (folder / "chances.yml").write_text("# nothing\n", "utf-8")
+    assert main([command, "main.yml", "--mock", "chances.yml"]) == 1
+    found = capsys.readouterr()
+    assert found.out == ""
+    assert "error[SM004]: this file is empty\n --> chances.yml:1:1\n" in found.err
