@@ -166,6 +166,8 @@ def test_state_types_are_looked_up_in_few_places() -> None:
         "smachac/lsp/complete_templates.py",
         "smachac/lsp/facts.py",
         "smachac/lsp/session.py",
+        "smachac/refactor/change_states.py",
+        "smachac/view/edits.py",
     ]
 
 

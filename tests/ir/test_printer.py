@@ -275,6 +275,7 @@ def test_the_grammar_has_every_kind_and_every_field_of_it() -> None:
     in_the_head = {"name", "type", "children", "root"}
     in_other_files = {
         "class_facts",
+        "fixed_params",
         "params",
         "properties",
         "robot",
