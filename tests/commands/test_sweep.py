@@ -75,6 +75,7 @@ def test_each_failure_is_replayed_by_its_command(
         assert capsys.readouterr().out == f"outcome: {group['outcome']}\n"
 
 
+@pytest.mark.slow
 def test_seeds_decide_and_not_the_number_of_processes(
     folder: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:
@@ -98,6 +99,7 @@ def test_the_prediction_is_within_the_interval_of_the_sweep(
     assert [each["path"] for each in found["failures"]] == ["sm/GRASP", "sm/FIND"]
 
 
+@pytest.mark.slow
 def test_a_sweep_goes_on_where_it_was(folder: Path, capsys: pytest.CaptureFixture[str]) -> None:
     few = swept(capsys, "--runs", "20", "--database", "sweep.db")
     more = swept(capsys, "--runs", "50", "--database", "sweep.db")
@@ -245,6 +247,7 @@ def test_two_sweeps_at_once_count_each_run_once(folder: Path) -> None:
     assert seeds(folder / "sweep.db") == list(range(60))
 
 
+@pytest.mark.slow
 def test_a_full_disk_is_a_message(folder: Path) -> None:
     limit = 40_000
 
@@ -258,6 +261,7 @@ def test_a_full_disk_is_a_message(folder: Path) -> None:
     assert "Traceback" not in found.stderr
 
 
+@pytest.mark.slow
 def test_a_run_in_a_worker_equals_a_run_of_its_own(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
 ) -> None:
