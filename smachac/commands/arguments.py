@@ -83,6 +83,15 @@ def seconds(text: str) -> int:
     return int(text)
 
 
+def seed(text: str) -> int:
+    """The seed of random numbers: a whole number."""
+    try:
+        return int(text)
+    except ValueError:
+        shown = text if len(text) <= 20 else f"{text[:20]}..."
+        raise argparse.ArgumentTypeError(f"must be a whole number, not `{shown}`") from None
+
+
 def count(text: str) -> int:
     """A number of things, at least one."""
     if not text.isdecimal() or int(text) < 1:

@@ -93,7 +93,7 @@ def _at(
 
     if revision is None:
         return _checked(_existing(paths), arguments)
-    with checked_out(revision):
+    with checked_out(revision, paths):
         return _checked(_existing(paths), arguments)
 
 

@@ -5,7 +5,7 @@ from __future__ import annotations
 import os
 import subprocess
 import tempfile
-from collections.abc import Iterator
+from collections.abc import Iterable, Iterator
 from contextlib import contextmanager
 from pathlib import Path
 
@@ -13,17 +13,25 @@ from smachac.frontend.discovery import GitError
 
 
 @contextmanager
-def checked_out(revision: str) -> Iterator[None]:
+def checked_out(revision: str, paths: Iterable[Path]) -> Iterator[None]:
     """While it is entered, the current folder is the same folder in a git revision.
 
     The files are written into a temporary folder; the working tree of the user, the index and the
-    repository stay as they are. Raises GitError.
+    repository stay as they are. Raises GitError, also if one of `paths` is not in the repository.
     """
+    try:
+        top = _git("rev-parse", "--show-toplevel")
+    except GitError as error:
+        raise GitError(f"git finds no repository in this folder: {error}") from error
+    for path in paths:
+        if not Path(os.path.realpath(path)).is_relative_to(os.path.realpath(top)):
+            raise GitError(f"`{path}` is not in the git repository {top}")
     commit = _git("rev-parse", "--verify", "--quiet", "--end-of-options", f"{revision}^{{commit}}")
+    if not commit and not _git("rev-list", "--all", "--max-count=1"):
+        raise GitError(f"the git repository {top} has no commits")
     if not commit:
         raise GitError(f"git has no revision `{revision}`")
     here = _git("rev-parse", "--show-prefix")
-    top = _git("rev-parse", "--show-toplevel")
     old = Path.cwd()
     with tempfile.TemporaryDirectory(prefix="smachac-") as temporary:
         folder = Path(temporary, "tree")
@@ -52,5 +60,5 @@ def _git(*arguments: str, **variables: str) -> str:
     except OSError as error:
         raise GitError(f"git does not run: {error.strerror or error}") from error
     if ended.returncode not in (0, 1):
-        raise GitError(ended.stderr.strip() or "git failed")
+        raise GitError(ended.stderr.strip().removeprefix("fatal: ") or "git failed")
     return ended.stdout.rstrip("\n")

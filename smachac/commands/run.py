@@ -10,7 +10,7 @@ from argparse import Namespace
 from contextlib import ExitStack, contextmanager, suppress
 from functools import partial
 
-from smachac.commands.arguments import SCRIPT, as_path, colour, count, names, search_folders
+from smachac.commands.arguments import SCRIPT, as_path, colour, count, names, search_folders, seed
 from smachac.commands.interrupts import end_at_once
 from smachac.commands.output import FINDINGS, OK, print_report, usage, without_notes
 from smachac.commands.terminal import wants_colour
@@ -68,7 +68,7 @@ def run_arguments(parser: argparse.ArgumentParser) -> None:
     parser.add_argument("--ros", action="store_true", help="run it as a ROS node")
     parser.add_argument("--ros-args", nargs=argparse.REMAINDER, metavar="...",
                         help="with --ros: the arguments of the node, at the end")  # fmt: skip
-    parser.add_argument("--seed", type=int, default=0,
+    parser.add_argument("--seed", type=seed, default=0,
                         help="seed of the simulation and random states (default: 0)")  # fmt: skip
     parser.add_argument("--faults", type=as_path, metavar="FILE",
                         help="inject the faults in FILE into the simulation")  # fmt: skip

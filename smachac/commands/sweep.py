@@ -8,7 +8,7 @@ import sys
 import time
 from argparse import Namespace
 
-from smachac.commands.arguments import FORMAT, SCRIPT, as_path, colour, count, search_folders
+from smachac.commands.arguments import FORMAT, SCRIPT, as_path, colour, count, search_folders, seed
 from smachac.commands.output import FINDINGS, OK, print_report, usage, without_notes
 
 TYPE_CHECKING = False  # annotations only: `--help` imports none of this
@@ -53,7 +53,7 @@ def sweep_arguments(parser: argparse.ArgumentParser) -> None:
     parser.add_argument("script", type=as_path, help=SCRIPT)
     parser.add_argument("--runs", type=count, default=100, metavar="N",
                         help="number of runs (default: 100)")  # fmt: skip
-    parser.add_argument("--seed", type=int, default=0, metavar="FIRST",
+    parser.add_argument("--seed", type=seed, default=0, metavar="FIRST",
                         help="seed of the first run; each run has the next one (default: 0)"
                         )  # fmt: skip
     parser.add_argument("--vary", action="append", default=[], metavar="NAME=LOW..HIGH",
@@ -121,6 +121,11 @@ def sweep_command(arguments: Namespace) -> int:
         return usage("--faults needs the simulation, --mock plays a scenario: choose one")
     if arguments.engine == "ray" and not _has_ray():
         return usage(NO_RAY)
+    for option in ("output", "junit"):
+        path: Path | None = getattr(arguments, option)
+        if path is not None and (path.is_dir() or not path.parent.is_dir()):
+            what = "is a folder" if path.is_dir() else "is in a folder that does not exist"
+            return usage(f"--{option} {path} {what}")
     prepared = _prepared(arguments)
     if isinstance(prepared, int):
         return prepared
@@ -320,7 +325,8 @@ def _report(arguments: Namespace, machine: Checked, task: Task, database: Databa
     try:
         _write(arguments, machine, summary, database, totals, command)
     except OSError as error:
-        print(f"cannot write the report: {error.strerror or error}", file=sys.stderr)
+        name = f" {error.filename}" if error.filename else ""
+        print(f"cannot write the report{name}: {error.strerror or error}", file=sys.stderr)
         return FINDINGS
     return _verdict(arguments, totals)
 

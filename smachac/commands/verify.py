@@ -7,7 +7,16 @@ import gc
 import sys
 from argparse import Namespace
 
-from smachac.commands.arguments import FORMAT, SCRIPT, as_path, colour, count, names, search_folders
+from smachac.commands.arguments import (
+    FORMAT,
+    SCRIPT,
+    as_path,
+    colour,
+    count,
+    names,
+    search_folders,
+    seed,
+)
 from smachac.commands.interrupts import interrupts_raise
 from smachac.commands.output import FINDINGS, OK, print_report, usage, without_notes
 from smachac.commands.terminal import ProgressLine
@@ -60,7 +69,9 @@ def verify_arguments(parser: argparse.ArgumentParser) -> None:
     parser.add_argument("--paths", type=count, metavar="N",
                         help="try at most N paths (default: 200, or more if needed to take every"
                         " transition)")  # fmt: skip
-    parser.add_argument("--seed", type=int, default=0, help="seed of the random paths (default: 0)")
+    parser.add_argument(
+        "--seed", type=seed, default=0, help="seed of the random paths (default: 0)"
+    )
     parser.add_argument("--format", choices=("text", "json"), default="text", help=FORMAT)
     search_folders(parser)
     colour(parser)

@@ -11,7 +11,7 @@ from argparse import Namespace
 from contextlib import contextmanager, suppress
 
 from smachac.commands.arguments import SCRIPT, as_path, colour, search_folders
-from smachac.commands.output import OK, usage
+from smachac.commands.output import OK, print_report, usage
 
 TYPE_CHECKING = False  # annotations only: `--help` imports none of this
 if TYPE_CHECKING:
@@ -89,6 +89,8 @@ def view_command(arguments: Namespace) -> int:
             " --attach TRACE" if attach is not None else ""))  # fmt: skip
     if not os.path.lexists(arguments.script):
         return usage(f"there is no file {arguments.script}")
+    if arguments.script.is_dir():
+        return usage(f"{arguments.script} is a folder: name a script")
     trace = as_path(attach) if attach is not None else None
     if trace is not None and not trace.is_file():
         return usage(f"there is no trace {trace}, and it is no port")
@@ -152,7 +154,8 @@ class _Script:
         self._known: dict[str, Stamp] = {}
 
     def check(self) -> None:
-        """Check it, and publish the result."""
+        """Check it, and publish the result. Errors are also printed."""
+        from smachac.diagnostics.diagnostic import Severity
         from smachac.driver import CODES, analyse
         from smachac.frontend.files import disk_library, stamps
 
@@ -175,6 +178,8 @@ class _Script:
             machine, report = analysis.machine, analysis.report
         self._known = stamps({str(path), *disk.asked})
         self._picture.update(machine, report)
+        errors = [item for item in report if item.severity is Severity.ERROR]
+        print_report(errors, arguments, sys.stderr)
 
     def has_changed(self) -> bool:
         """Whether a file has changed, or one that was searched has come into being."""

@@ -8,6 +8,7 @@ from typing import Any
 
 from smachac.report.terminal import visible
 from smachac.sweep.summary import Summary
+from smachac.sweep.text import how_often
 from smachac.verify.statistics_report import percent, seconds
 
 STYLE = """
@@ -200,7 +201,7 @@ def _failure(group: dict[str, Any]) -> str:
     more = len(group["seeds"]) - MOST_SEEDS
     seeds += f" and {more} more" if more > 0 else ""
     return (
-        f"<p><b>{group['count']} times {_text(what)}</b> after</p><ol>{end}</ol>"
+        f"<p><b>{how_often(group['count'])} {_text(what)}</b> after</p><ol>{end}</ol>"
         f'<p class="dim">seeds {seeds}<br><code>{_text(group["replay"])}</code></p>'
     )
 

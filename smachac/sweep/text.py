@@ -114,6 +114,11 @@ def _varied(summary: Summary) -> Iterator[str]:
         yield from table(rows)
 
 
+def how_often(count: int) -> str:
+    """A number of times in words."""
+    return "once" if count == 1 else f"{count} times"
+
+
 def _failures(summary: Summary) -> Iterator[str]:
     groups = summary["failures"]
     if groups:
@@ -121,10 +126,11 @@ def _failures(summary: Summary) -> Iterator[str]:
     for group in groups[:MOST_LINES]:
         what = group["error"] if group["outcome"] is None else group["outcome"]
         end = ", ".join(f"{each['path']}: {each['outcome']}" for each in group["end"])
-        yield f"  {group['count']} times {what}" + (f" after {end}" if end else "")
+        yield f"  {how_often(group['count'])} {what}" + (f" after {end}" if end else "")
         seeds = ", ".join(map(str, group["seeds"][:MOST_SEEDS]))
         more = len(group["seeds"]) - MOST_SEEDS
-        yield f"    seeds {seeds}" + (f" and {more} more" if more > 0 else "")
+        word = "seed" if len(group["seeds"]) == 1 else "seeds"
+        yield f"    {word} {seeds}" + (f" and {more} more" if more > 0 else "")
         yield f"    {group['replay']}"
     if (more := len(groups) - MOST_LINES) > 0:
         yield f"  ... and {more} more groups: --format json has all of them"

@@ -84,6 +84,9 @@ def _single(text: str) -> Single:
     return value if isinstance(value, bool | int | float | str) else text
 
 
+NOTHING_VARIES = "it has no values in `userdata` or `params` that can vary"
+
+
 def check_values(variations: Iterable[Variation], tree: Tree | None, bodies: Iterable[str]) -> None:
     """Raises VariationError for a name that the script or the scene does not have, for a name that
     is given twice, and for a value of another kind than the one in the script."""
@@ -94,9 +97,8 @@ def check_values(variations: Iterable[Variation], tree: Tree | None, bodies: Ite
             raise VariationError(f"`{each.name}` is varied twice")
         seen.add(each.name)
         if each.name not in names:
-            near = did_you_mean(each.name, names) or (
-                f"values that can vary: {', '.join(names)}" if names else "it has no such values"
-            )
+            known = f"values that can vary: {', '.join(names)}" if names else NOTHING_VARIES
+            near = did_you_mean(each.name, names) or known
             raise VariationError(f"the script has no value `{each.name}`\n{near}")
         given = each.choices or (each.low, each.high)
         place = _found(each.name, tree)

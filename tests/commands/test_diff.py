@@ -211,3 +211,25 @@ def test_an_empty_revision_is_not_the_last_commit(capsys: pytest.CaptureFixture[
     commit()
     assert diff("main.yml", "--from", "") == 2
     assert "git has no revision ``" in capsys.readouterr().err
+
+
+def test_a_path_outside_of_the_repository_is_refused(
+    tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    commit()
+    assert diff("..") == 2
+    assert "`..` is not in the git repository" in capsys.readouterr().err
+
+
+def test_no_repository_and_no_commits(
+    tmp_path_factory: pytest.TempPathFactory,
+    monkeypatch: pytest.MonkeyPatch,
+    capsys: pytest.CaptureFixture[str],
+) -> None:
+    monkeypatch.chdir(tmp_path_factory.mktemp("none"))
+    write("main.yml", SCRIPT)
+    assert diff("main.yml") == 2
+    assert "git finds no repository in this folder: not a git" in capsys.readouterr().err
+    subprocess.run(["git", "init", "-q"], check=True)
+    assert diff("main.yml") == 2
+    assert "has no commits" in capsys.readouterr().err

@@ -310,3 +310,22 @@ def test_an_empty_scenario_file(
     found = capsys.readouterr()
     assert found.out == ""
     assert "error[SM004]: this file is empty\n --> chances.yml:1:1\n" in found.err
+
+
+@pytest.mark.parametrize(
+    ("option", "path", "words"),
+    [
+        ("--output", ".", "--output . is a folder"),
+        ("--junit", "none/a.xml", "--junit none/a.xml is in a folder that does not exist"),
+        ("--seed", "1.5", "must be a whole number, not `1.5`"),
+    ],
+)
+def test_wrong_options_are_found_before_the_runs(
+    option: str, path: str, words: str, folder: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    try:
+        code = main([*MOCK, option, path])
+    except SystemExit as ended:
+        code = ended.code
+    assert code == 2
+    assert words in capsys.readouterr().err

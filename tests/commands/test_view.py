@@ -129,7 +129,10 @@ def test_view_draws_again_when_the_script_changes(
     assert "FINAL" in view.page()
     assert view.act(action="pause") == 409
     view.process.send_signal(signal.SIGINT)
-    assert view.end() == (130, "", "interrupted\n")
+    code, output, messages = view.end()
+    assert (code, output) == (130, "")
+    assert messages.startswith("error[SM")
+    assert messages.endswith("\ninterrupted\n")
 
 
 def test_view_shows_a_script_that_is_broken_from_the_start(
@@ -137,6 +140,7 @@ def test_view_shows_a_script_that_is_broken_from_the_start(
 ) -> None:
     script.write_text("name: [")
     view = start("view", script, "--no-browser")
+    assert view.lines[0].startswith("error[SM001]")
     report = view.until(lambda each: each["kind"] == "report")
     assert report["broken"]
     assert report["findings"]
@@ -193,6 +197,7 @@ def smachac(*words: object) -> subprocess.CompletedProcess[str]:
         (["view"], "a script is needed"),
         (["view", "--attach", "run.jsonl"], "a script is needed"),
         (["view", "none.yml"], "there is no file none.yml"),
+        (["view", "."], ". is a folder: name a script"),
         (["view", "SCRIPT", "--attach", "none.jsonl"], "there is no trace none.jsonl"),
         (["view", "--attach", "70000"], "70000 is no port"),
         (["view", "SCRIPT", "--port", "x"], "must be a port"),
