@@ -191,10 +191,10 @@ class _Handler(BaseHTTPRequestHandler):
         if feed.readers >= MOST_READERS:
             self._refuse(HTTPStatus.SERVICE_UNAVAILABLE, "there are too many readers")
             return
-        self._head(HTTPStatus.OK, "text/event-stream")
+        reader = feed.open()  # before the answer, so that `stop` waits for this reader
         self.close_connection = True
-        reader = feed.open()
         try:
+            self._head(HTTPStatus.OK, "text/event-stream")
             while (messages := reader.wait(IDLE)) is not None:
                 for message in messages:
                     self.wfile.write(b"data: " + message + b"\n\n")

@@ -86,9 +86,14 @@ def test_run_is_controlled_from_the_page(
 def test_a_page_opened_late_shows_the_whole_run(
     script: Path, scenario: Path, start: Callable[..., Viewed]
 ) -> None:
-    """The run has ended before the stream begins, or not: the events are the same."""
-    view = start("run", script, "--view", "-q", "--mock", scenario)
-    events: list[Any] = []
+    """A stream that begins in the middle of the run has all events, and those after it."""
+    view = start("run", script, "--view", "--view-paused", "-q", "--mock", scenario)
+    view.until(waits_at("sm/WAIT"))
+    assert view.act(action="step") == 200
+    view.until(waits_at("sm/LAST"))
+    view.reopen()
+    events: list[Any] = list(view.until(lambda each: each["kind"] == "trace")["events"])
+    assert view.act(action="resume") == 200
     while (message := view.message()) is not None:
         events += message["events"] if message["kind"] == "trace" else []
     assert [each["seq"] for each in events] == list(range(1, 9))

@@ -310,6 +310,7 @@ EDGES = [
     *("5 // -2", "-5 % 3", "2 ** -1", "0.0 ** -1", "(-8) ** 2", "round(0.5)", "round(2.675, 2)"),
     *("str([1, 2.5])", "str([None, True])", "sum([])", "sum([0.1] * 3)", "range(5, 0, -2)[1]"),
     "None in ud.gaps",
+    *("max([1], key=lambda v: ud.words[9])", "min([1], key=lambda v: ud.words[9])"),
 ]
 
 

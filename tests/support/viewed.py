@@ -35,6 +35,10 @@ class Viewed:
             found = re.fullmatch(rf"view: http://{HOST}:(\d+)/#token=(\S+)\n", line)
         self.port, self.token = int(found[1]), found[2]
         self.url = line.split()[1]
+        self.reopen()
+
+    def reopen(self) -> None:
+        """Read the stream from its beginning."""
         self._connection = HTTPConnection(HOST, self.port, timeout=60)
         self._connection.request("GET", "/events")
         self._stream = self._connection.getresponse()

@@ -738,6 +738,7 @@ typename T::value_type max_of(const T &items, F key = {}) {
   if (items.size() == 0) {
     fail("the greatest of nothing");
   }
+  static_cast<void>(key(items[0])); // the key of a single item may have an error
   for (std::size_t i = 1; i < items.size(); ++i) {
     best = less(key(items[best]), key(items[i])) ? i : best;
   }
@@ -751,6 +752,7 @@ typename T::value_type min_of(const T &items, F key = {}) {
   if (items.size() == 0) {
     fail("the least of nothing");
   }
+  static_cast<void>(key(items[0])); // the key of a single item may have an error
   for (std::size_t i = 1; i < items.size(); ++i) {
     best = less(key(items[i]), key(items[best])) ? i : best;
   }
