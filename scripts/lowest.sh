@@ -19,8 +19,8 @@ END
 echo "lowest versions: ${lowest[*]}"
 # Installed, because the targets are found through the metadata of the package.
 "$venv/bin/python" -m pip install -q --disable-pip-version-check -e . "${lowest[@]}" \
-  'pytest>=8' 'pytest-xdist>=3.6' 'hypothesis>=6.100' 'jsonschema>=4.20' 'ruff>=0.6' 'mypy>=1.11'
+  'pytest>=8' 'pytest-xdist>=3.6' 'hypothesis>=6.100' 'jsonschema>=4.20' 'ruff>=0.6' 'mypy>=1.11' 'ipython>=8.12'
 tests=("$@")
 ((${#tests[@]})) || tests=(tests/diagnostics tests/frontend tests/ir tests/analysis tests/checks tests/interpreter
   tests/targets tests/report tests/refactor tests/pipeline)
-PYTHONPATH=$PWD "$venv/bin/python" -m pytest -q -n 2 -m "not slow and not ros" "${tests[@]}"
+PYTHONPATH=$PWD "$venv/bin/python" -m pytest -q -n 2 -m "not slow and not ros and not ros2 and not browser" "${tests[@]}"
