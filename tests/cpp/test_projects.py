@@ -83,6 +83,7 @@ def test_a_cmake_project_builds_installs_and_is_found(tmp_path: Path) -> None:
     assert ran(uses(tmp_path / "user", "patrol", folder / "main.cpp", installed)) == SPOKEN
 
 
+@pytest.mark.slow
 @needs_cmake
 @needs_ament
 def test_a_package_for_colcon(tmp_path: Path) -> None:

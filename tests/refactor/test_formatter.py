@@ -86,7 +86,10 @@ def with_comments(text: str, seed: int) -> tuple[str, Counter[str]]:
     return "\n".join(lines), Counter(comments)
 
 
-@pytest.mark.parametrize("seed", range(40))
+FIRST_QUICK = [*range(8), *(pytest.param(seed, marks=pytest.mark.slow) for seed in range(8, 40))]
+
+
+@pytest.mark.parametrize("seed", FIRST_QUICK)
 def test_a_project_means_the_same_and_keeps_its_comments(seed: int) -> None:
     files = {name: written(data).text for name, data in correct_project(seed).items()}
     before = machine_text(files)

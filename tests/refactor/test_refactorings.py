@@ -38,7 +38,7 @@ from tests.trust.random_projects import correct_project
 CASES = sorted(
     path.parent for path in (Path(__file__).parents[1] / "refactorings").glob("*/command")
 )
-SEEDS = [*range(4), *(pytest.param(seed, marks=pytest.mark.slow) for seed in range(4, 16))]
+SEEDS = [0, *(pytest.param(seed, marks=pytest.mark.slow) for seed in range(1, 16))]
 
 
 @pytest.mark.parametrize("case", CASES, ids=lambda case: case.name)
