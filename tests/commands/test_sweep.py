@@ -324,8 +324,7 @@ def test_wrong_options_are_found_before_the_runs(
     option: str, path: str, words: str, folder: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:
     try:
-        code = main([*MOCK, option, path])
+        assert main([*MOCK, option, path]) == 2
     except SystemExit as ended:
-        code = ended.code
-    assert code == 2
+        assert ended.code == 2  # noqa: PT017
     assert words in capsys.readouterr().err
