@@ -61,6 +61,7 @@ def test_beyond_the_limit_the_script_is_refused(words: list[str], long_list: Pat
     assert [path.name for path in long_list.iterdir()] == ["main.yml"]
 
 
+@pytest.mark.slow
 def test_without_a_limit_the_same_script_is_checked(long_list: Path) -> None:
     assert run("check", "main.yml", "--memory-limit", "0", folder=long_list).returncode == 0
 

@@ -275,6 +275,7 @@ def test_an_error_covers_the_name_that_it_is_about_and_no_other(
     assert "no script gives `gone`" not in text
 
 
+@pytest.mark.slow
 def test_the_same_report_each_time(capsys: pytest.CaptureFixture[str]) -> None:
     assert migrated(capsys, str(SMACHA)) == migrated(capsys, str(SMACHA))
 

@@ -95,6 +95,7 @@ def test_machines_do_what_the_interpreter_does(compiler: Compiler, tmp_path: Pat
     agree([*of_scripts(), *drawn(1, RANDOM[compiler.name])], compiler, tmp_path)
 
 
+@pytest.mark.slow
 def test_large_machines_become_several_functions(
     monkeypatch: pytest.MonkeyPatch, tmp_path: Path
 ) -> None:

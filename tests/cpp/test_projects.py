@@ -99,6 +99,7 @@ def test_a_package_for_colcon(tmp_path: Path) -> None:
     assert ran(uses(tmp_path / "user", "night_watch", main, installed)) == SPOKEN
 
 
+@pytest.mark.slow
 @needs_cmake
 def test_classes_of_the_user_are_found(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]

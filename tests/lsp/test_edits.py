@@ -94,7 +94,7 @@ def test_random_edits_in_a_server(client: Client, path: Path, steps: list[Edit])
 @pytest.mark.parametrize(
     "path",
     [
-        pytest.param(path, id=path.parent.name, marks=[] if place < 6 else pytest.mark.slow)
+        pytest.param(path, id=path.parent.name, marks=[] if place < 3 else pytest.mark.slow)
         for place, path in enumerate(SCRIPTS)
     ],
 )

@@ -154,7 +154,7 @@ def test_items_from_functions(code: str) -> None:
     assert differ(ours, of_generated(machine)) is None
 
 
-CHUNKS = [0, *(pytest.param(chunk, marks=pytest.mark.slow) for chunk in range(1, 16))]
+CHUNKS = [0, *(pytest.param(chunk, marks=pytest.mark.slow) for chunk in range(1, 40))]
 
 
 @pytest.mark.parametrize("chunk", CHUNKS)
@@ -162,7 +162,7 @@ def test_random_machines(chunk: int) -> None:
     """2,000 machines, in parts so that workers share them."""
 
     @seed(chunk)
-    @settings(max_examples=125, derandomize=False, database=None, suppress_health_check=SLOW)
+    @settings(max_examples=50, derandomize=False, database=None, suppress_health_check=SLOW)
     @given(busy_machines())
     def agree(drawn: tuple[Machine, tuple[str, int]]) -> None:
         machine, asked = drawn
