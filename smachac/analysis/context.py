@@ -45,8 +45,8 @@ class Context:
     """
 
     def __init__(self, machine: Machine, previous: Context | None = None) -> None:
-        """`previous` is the context of the machine before a change. What it knows of a container
-        holds for this machine if the container is the same object."""
+        """`previous` is the context of the machine before a change. Its facts about a container
+        are used for this machine if the container is the same object."""
         self.machine = machine
         self._scopes = previous.mended_flow.scopes if previous is not None else {}
         self._known = previous._facts if previous is not None else {}

@@ -131,7 +131,7 @@ def _neighbours_and_type(side: _Side, path: str) -> Hashable:
 
 
 def _content(side: _Side, path: str) -> Hashable:
-    """The facts of a state that has values of its own; states without any are all alike."""
+    """The facts of a state that has values of its own; None for a state without values."""
     return side.contents[path] if _has_values(side.states[path]) else None
 
 

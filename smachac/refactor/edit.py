@@ -1,4 +1,4 @@
-"""An edit of a script as data: what an editor of pictures asks for, and what comes of it.
+"""An edit of a script as data: the request of a graphical editor, and its result.
 
 An edit is JSON: `{"operation": "transition", "path": "sm/PICK", "arguments": {"outcome": "failed",
 "target": "RECOVER"}}`. It is performed in memory; the caller writes the texts, or shows the patch.

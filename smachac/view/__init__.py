@@ -1,1 +1,1 @@
-"""The live view: a page on loopback that shows a machine, the run that goes on, and its control."""
+"""The live view: a page on loopback that shows a machine and its run, and controls the run."""

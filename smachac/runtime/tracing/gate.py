@@ -20,10 +20,10 @@ class Gate(Protocol):
         """A machine is ready to start; `request_stop` sends it a request to stop."""
 
     def before(self, path: str, outcomes: Sequence[str]) -> str | None:
-        """A state is next. Not None: the outcome that it ends with at once, without running."""
+        """Called before a state starts. Returns None, or the outcome that replaces its execution."""
 
     def after(self, path: str, outcome: str, outcomes: Sequence[str]) -> str:
-        """A state has ended with `outcome`. The outcome that the machine goes on with."""
+        """Called after a state has ended with `outcome`. Returns the outcome that the machine uses."""
         ...
 
     def release(self) -> None:
