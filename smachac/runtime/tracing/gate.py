@@ -20,10 +20,10 @@ class Gate(Protocol):
         """A machine is ready to start; `request_stop` sends it a request to stop."""
 
     def before(self, path: str, outcomes: Sequence[str]) -> str | None:
-        """Called before a state starts. Returns None, or the outcome that replaces its execution."""
+        """Called before a state starts. Returns None, or the outcome in place of its execution."""
 
     def after(self, path: str, outcome: str, outcomes: Sequence[str]) -> str:
-        """Called after a state has ended with `outcome`. Returns the outcome that the machine uses."""
+        """Called when a state has ended with `outcome`. Returns the outcome to continue with."""
         ...
 
     def release(self) -> None:
