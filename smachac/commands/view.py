@@ -6,6 +6,7 @@ import argparse
 import gc
 import os
 import sys
+import threading
 import time
 from argparse import Namespace
 from contextlib import contextmanager, suppress
@@ -15,12 +16,12 @@ from smachac.commands.output import OK, print_report, usage
 
 TYPE_CHECKING = False  # annotations only: `--help` imports none of this
 if TYPE_CHECKING:
-    from collections.abc import Callable, Iterator, Mapping
+    from collections.abc import Iterator, Mapping
     from pathlib import Path
 
     from smachac.diagnostics.diagnostic import Report
     from smachac.diagnostics.source import Source
-    from smachac.frontend.files import Disk, Stamp
+    from smachac.frontend.files import Stamp
     from smachac.ir.nodes import Machine
     from smachac.view.control import Control
     from smachac.view.edits import Edits
@@ -99,7 +100,6 @@ def view_command(arguments: Namespace) -> int:
 
 def _serve(arguments: Namespace, trace: Path | None) -> int:
     """Serve the picture of a script, and a trace, until Ctrl-C."""
-    from smachac.frontend.files import Disk
     from smachac.ir.recursion import deep_recursion
     from smachac.view.feed import Feed
     from smachac.view.picture import Picture
@@ -107,19 +107,19 @@ def _serve(arguments: Namespace, trace: Path | None) -> int:
 
     feed = Feed()
     picture = Picture(feed, arguments.script.stem, editable=trace is None)
-    edits = edits_of_script(arguments, picture.edited) if trace is None else None
+    script = ViewedScript(arguments, picture)
+    edits = edits_of_script(script) if trace is None else None
     try:
         server = _server(arguments.port, picture, feed, edits=edits)
     except PortError as error:
         return usage(str(error))
-    script = _Script(arguments, Disk(), picture)
     script.check()
     text = None if trace is None else _TraceFile(trace, TraceText(feed))
     if text is not None:
         text.read()
-    server.start()
-    announce(server.url, open_page=not arguments.no_browser)
     with deep_recursion():  # for all threads, so that none of them ends it for another one
+        server.start()
+        announce(server.url, open_page=not arguments.no_browser)
         while True:
             gc.collect()  # automatic collection is off
             while not script.has_changed():
@@ -129,37 +129,59 @@ def _serve(arguments: Namespace, trace: Path | None) -> int:
             script.check()
 
 
-def edits_of_script(arguments: Namespace, edited: Callable[[], None]) -> Edits:
-    """The edits of a script, which write its files as the refactorings do; `edited` is called
-    before each writing."""
-    from smachac.commands.files import ChangedError, not_written, rewrite_files
-    from smachac.commands.writing import PartlyWrittenError
+def edits_of_script(script: ViewedScript) -> Edits:
+    """The edits of a script, which write its files as the refactorings do."""
     from smachac.view.edits import Edits
-    from smachac.view.server import ActionError
 
-    def write(texts: Mapping[str, str], before: Mapping[str, Source]) -> None:
-        try:
-            rewrite_files(texts, before)
-        except (OSError, ChangedError, PartlyWrittenError) as error:
-            raise ActionError(not_written(error)) from None
-
-    return Edits(arguments.script, arguments.scripts, arguments.templates, write, edited)
+    arguments = script.arguments
+    return Edits(arguments.script, arguments.scripts, arguments.templates, script.write)
 
 
-class _Script:
-    """A script on disk, checked again when one of its files changes."""
+class ViewedScript:
+    """A script on disk: checked again when one of its files changes, and after each edit."""
 
-    def __init__(self, arguments: Namespace, disk: Disk, picture: Picture) -> None:
-        self._arguments, self._disk, self._picture = arguments, disk, picture
+    def __init__(self, arguments: Namespace, picture: Picture) -> None:
+        from smachac.frontend.files import Disk
+
+        self.arguments = arguments
+        self._picture = picture
+        self._disk = Disk()
         self._known: dict[str, Stamp] = {}
+        self._lock = threading.Lock()
 
     def check(self) -> None:
         """Check it, and publish the result. Errors are also printed."""
+        with self._lock:
+            self._check()
+
+    def write(self, texts: Mapping[str, str], before: Mapping[str, Source]) -> Mapping[str, object]:
+        """Write an edit over the texts before it and check the script; the model of the machine
+        that is shown then. Raises ActionError."""
+        from smachac.commands.files import ChangedError, not_written, rewrite_files
+        from smachac.commands.writing import PartlyWrittenError
+        from smachac.view.server import ActionError
+
+        with self._lock:
+            try:
+                rewrite_files(texts, before)
+            except (OSError, ChangedError, PartlyWrittenError) as error:
+                raise ActionError(not_written(error)) from None
+            self._picture.edited()
+            self._check()
+            return self._picture.model
+
+    def has_changed(self) -> bool:
+        """Whether a file has changed, or one that was searched has come into being."""
+        from smachac.frontend.files import stamps
+
+        return stamps(self._known) != self._known
+
+    def _check(self) -> None:
         from smachac.diagnostics.diagnostic import Severity
         from smachac.driver import CODES, analyse
         from smachac.frontend.files import disk_library, stamps
 
-        arguments, disk, path = self._arguments, self._disk, self._arguments.script
+        arguments, disk, path = self.arguments, self._disk, self.arguments.script
         disk.refresh()
         disk.asked.clear()
         report: Report = []
@@ -180,12 +202,6 @@ class _Script:
         self._picture.update(machine, report)
         errors = [item for item in report if item.severity is Severity.ERROR]
         print_report(errors, arguments, sys.stderr)
-
-    def has_changed(self) -> bool:
-        """Whether a file has changed, or one that was searched has come into being."""
-        from smachac.frontend.files import stamps
-
-        return stamps(self._known) != self._known
 
 
 class _TraceFile:

@@ -23,9 +23,10 @@ from smachac.targets.html.model import finding_data
 from smachac.view.server import ActionError
 
 Texts = Mapping[str, str]
-Write = Callable[[Texts, Mapping[str, Source]], None]
+Write = Callable[[Texts, Mapping[str, Source]], Mapping[str, Any]]
 """Writes texts, named by real path, over the sources that were read: to all files or to none.
-Raises ActionError, also if a file no longer has the text of its source."""
+Returns the model of the machine that is shown afterwards. Raises ActionError, also if a file no
+longer has the text of its source."""
 
 MOST_UNDONE = 200
 """The most edits that can be undone."""
@@ -43,7 +44,8 @@ PROOFS: Mapping[Operation, str] = {
 class Edits:
     """The edits of one script: a preview, the writing, and what can be undone.
 
-    `edited` is called before each writing.
+    The answer to an edit that is written has the `model` of the machine: a page shows it at once,
+    and what is typed next belongs to it.
     """
 
     def __init__(
@@ -52,10 +54,9 @@ class Edits:
         scripts: Sequence[Path],
         templates: Sequence[Path],
         write: Write,
-        edited: Callable[[], None] = lambda: None,
     ) -> None:
         self._script, self._scripts, self._templates = script, scripts, templates
-        self._write, self._edited = write, edited
+        self._write = write
         self._lock = threading.Lock()
         self._done: deque[tuple[Texts, Mapping[str, Source]]] = deque(maxlen=MOST_UNDONE)
 
@@ -80,11 +81,11 @@ class Edits:
                 return answer
             if body.get("diff", result.diff) != result.diff:
                 raise ActionError("the script has changed since the preview: look at it again")
+            answer["applied"] = True
             if result.texts:
-                self._edited()
-                self._write(result.texts, result.sources)
+                answer["model"] = self._write(result.texts, result.sources)
                 self._done.append((dict(result.texts), dict(result.sources)))
-            return {**answer, "applied": True}
+            return answer
 
     def undo(self, body: Mapping[str, Any]) -> object:
         """Restore the texts before the last edit that is not undone."""
@@ -94,11 +95,10 @@ class Edits:
             written, sources = self._done[-1]
             before = {path: source.text for path, source in sources.items()}
             after = {path: Source(sources[path].name, text) for path, text in written.items()}
-            self._edited()
-            self._write(before, after)
+            model = self._write(before, after)
             self._done.pop()
             files = sorted(source.name for source in sources.values())
-            return {"diff": "".join(differences(before, after)), "files": files}
+            return {"diff": "".join(differences(before, after)), "files": files, "model": model}
 
     def types(self, body: Mapping[str, Any]) -> object:
         """The state types that a new state can have."""

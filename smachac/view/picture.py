@@ -58,6 +58,11 @@ class Picture:
         model = machine_model(machine, report, live=True)
         return {**model, "editable": True} if self._editable else model
 
+    @property
+    def model(self) -> Mapping[str, Any]:
+        """The model of the machine that is shown."""
+        return self._model
+
     def page(self) -> str:
         """The page as it is now."""
         with self._lock:

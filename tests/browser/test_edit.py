@@ -52,11 +52,16 @@ def script(tmp_path: Path) -> Path:
     return path
 
 
-@pytest.fixture
-def page(browser: Browser, script: Path, start: Callable[..., Viewed]) -> Iterator[Page]:
-    """The page of the script with the token, which must report nothing."""
+@pytest.fixture(params=["stream", "no stream"])
+def page(
+    request: pytest.FixtureRequest, browser: Browser, script: Path, start: Callable[..., Viewed]
+) -> Iterator[Page]:
+    """The page of the script with the token, which must report nothing. "no stream": no message of
+    the server ever arrives, so that the answers to the edits are all that the page has."""
     url = start("view", script, "--no-browser").url
     page = browser.new_page(viewport={"width": 1440, "height": 900})
+    if request.param == "no stream":
+        page.route("**/events", lambda route: None)
     messages = OwnMessages(url)
     messages.watch(page)
     page.goto(url)

@@ -13,8 +13,10 @@ from typing import Any
 
 import pytest
 
-from smachac.commands.view import edits_of_script
+from smachac.commands.view import ViewedScript, edits_of_script
 from smachac.view.edits import Edits
+from smachac.view.feed import Feed
+from smachac.view.picture import Picture
 from smachac.view.server import HOST, TOKEN, ActionError
 from tests.support.viewed import Viewed, starter
 
@@ -84,7 +86,10 @@ def view(script: Path, start: Callable[..., Viewed]) -> Viewed:
 
 
 def edits_of(script: Path) -> Edits:
-    return edits_of_script(Namespace(script=script, scripts=[], templates=[]), lambda: None)
+    picture = Picture(Feed(), script.stem, editable=True)
+    return edits_of_script(
+        ViewedScript(Namespace(script=script, scripts=[], templates=[]), picture)
+    )
 
 
 def applied(view: Viewed, edit: dict[str, Any], **more: object) -> Any:
@@ -117,6 +122,22 @@ def test_every_edit_is_previewed_written_as_shown_and_undone(script: Path, view:
         assert [comment for comment in kept if comment not in after] == []
         assert view.post("/undo", {})[0] == 200
         assert script.read_text() == SCRIPT
+
+
+def test_the_answer_has_the_machine_that_is_shown_from_then_on(view: Viewed) -> None:
+    for edit in EDITS.values():
+        written = applied(view, edit)["model"]
+        assert model_in(view.page()) == written
+        undone = view.post("/undo", {})[1]["model"]
+        assert model_in(view.page()) == undone
+        assert written["edges"] != undone["edges"]
+
+
+def model_in(page: str) -> Any:
+    """The model of a page."""
+    found = re.search(r'<script[^>]*id="smachac-model"[^>]*>(.*?)</script>', page, re.DOTALL)
+    assert found is not None
+    return json.loads(found[1])
 
 
 def test_edits_are_undone_in_reverse_order(script: Path, view: Viewed) -> None:

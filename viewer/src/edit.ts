@@ -4,7 +4,7 @@ import { post, takeToken } from "./connection";
 import { button, html } from "./dom";
 import type { EditForm, Planned, StateType } from "./edit_fields";
 import { formsOf, labelled } from "./edit_fields";
-import type { Finding, Graph, StateNode } from "./model";
+import type { Finding, Graph, Model, StateNode } from "./model";
 import { findings } from "./panel";
 import type { Viewer } from "./viewer";
 
@@ -14,6 +14,12 @@ interface Preview {
   added: Finding[];
   removed: Finding[];
   proof: string;
+}
+
+/** What is written, and the machine that it makes; no machine if nothing had to be written. */
+interface Written {
+  files: string[];
+  model?: Model;
 }
 
 /** Show edits if the server takes them and the page has the token. */
@@ -106,26 +112,32 @@ class Editor {
     const { planned, diff } = this.previewed;
     this.undo.focus();
     this.forget();
-    const answer = await post<Preview>(this.token, "edit", { ...planned.edit, apply: true, diff });
+    const answer = await post<Written>(this.token, "edit", { ...planned.edit, apply: true, diff });
     if (!answer.ok) {
       this.say(answer.reason, "refused");
       return;
     }
     this.done.push(planned);
-    if (planned.then !== null) await this.viewer.expect(planned.then, planned.old);
+    await this.show(answer.content, planned.then, planned.old);
     this.say(`Written: ${answer.content.files.join(", ")}`, "done");
   }
 
   private async takeBack(): Promise<void> {
-    const answer = await post<{ files: string[] }>(this.token, "undo", {});
+    const answer = await post<Written>(this.token, "undo", {});
     if (!answer.ok) {
       this.say(answer.reason, "refused");
       return;
     }
     const undone = this.done.pop();
     this.forget();
-    if (undone?.old !== undefined && undone.then !== null) await this.viewer.expect(undone.old, undone.then);
+    await this.show(answer.content, undone?.old ?? null, undone?.then ?? undefined);
     this.say(`Undone: ${answer.content.files.join(", ")}`, "done");
+  }
+
+  /** Show the machine after an edit, with the state at `path` selected. `old` is its path before. */
+  private async show({ model }: Written, path: string | null, old: string | undefined): Promise<void> {
+    if (path !== null) await this.viewer.expect(path, old);
+    if (model) await this.viewer.setModel(model);
   }
 
   /** `done`: the message stays when another state is selected. */

@@ -113,7 +113,6 @@ class RunView {
   }
 
   private async remodel(model: Viewer["graph"]["model"]): Promise<void> {
-    if (JSON.stringify(model) === JSON.stringify(this.viewer.graph.model)) return;
     await this.viewer.setModel(model);
     this.loggedTo = -1;
     this.draw();

@@ -982,7 +982,7 @@ ${target2}`;
         return;
       }
       this.done.push(planned);
-      if (planned.then !== null) await this.viewer.expect(planned.then, planned.old);
+      await this.show(answer.content, planned.then, planned.old);
       this.say(`Written: ${answer.content.files.join(", ")}`, "done");
     }
     async takeBack() {
@@ -993,8 +993,13 @@ ${target2}`;
       }
       const undone = this.done.pop();
       this.forget();
-      if (undone?.old !== void 0 && undone.then !== null) await this.viewer.expect(undone.old, undone.then);
+      await this.show(answer.content, undone?.old ?? null, undone?.then ?? void 0);
       this.say(`Undone: ${answer.content.files.join(", ")}`, "done");
+    }
+    /** Show the machine after an edit, with the state at `path` selected. `old` is its path before. */
+    async show({ model }, path, old) {
+      if (path !== null) await this.viewer.expect(path, old);
+      if (model) await this.viewer.setModel(model);
     }
     /** `done`: the message stays when another state is selected. */
     say(text, tone = "") {
@@ -1620,7 +1625,6 @@ ${place.key}`;
       }
     }
     async remodel(model) {
-      if (JSON.stringify(model) === JSON.stringify(this.viewer.graph.model)) return;
       await this.viewer.setModel(model);
       this.loggedTo = -1;
       this.draw();
@@ -2709,6 +2713,7 @@ ${name}`;
       if (await redraw(null)) showStart(TINY);
     }
     async function setModel(next) {
+      if (JSON.stringify(next) === JSON.stringify(graph.model)) return;
       const opened = [...open].map(newPath);
       graph = indexed(next);
       layouts = new Layouts(graph, compute, direction);
