@@ -176,9 +176,9 @@ class RunView {
     this.viewer.fit();
   }
 
-  /** Count the seconds of the active states on, also without events. */
+  /** Count the seconds of the active states on, also without events. What has changed is drawn as a whole. */
   private tick(): void {
-    if (this.live && this.timeline.follows && !this.bar.hidden) {
+    if (this.live && this.timeline.follows && !this.bar.hidden && !this.waiting) {
       this.status.textContent = this.inWords(this.recording.at(this.timeline.position));
     }
   }

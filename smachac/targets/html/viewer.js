@@ -1681,9 +1681,9 @@ ${place.key}`;
       this.bar.hidden = false;
       this.viewer.fit();
     }
-    /** Count the seconds of the active states on, also without events. */
+    /** Count the seconds of the active states on, also without events. What has changed is drawn as a whole. */
     tick() {
-      if (this.live && this.timeline.follows && !this.bar.hidden) {
+      if (this.live && this.timeline.follows && !this.bar.hidden && !this.waiting) {
         this.status.textContent = this.inWords(this.recording.at(this.timeline.position));
       }
     }
