@@ -35,13 +35,22 @@ class Viewed:
             found = re.fullmatch(rf"view: http://{HOST}:(\d+)/#token=(\S+)\n", line)
         self.port, self.token = int(found[1]), found[2]
         self.url = line.split()[1]
-        self.reopen()
+        self._open()
 
-    def reopen(self) -> None:
-        """Read the stream from its beginning."""
+    def _open(self) -> None:
         self._connection = HTTPConnection(HOST, self.port, timeout=60)
         self._connection.request("GET", "/events")
         self._stream = self._connection.getresponse()
+
+    def reopen(self) -> None:
+        """Read the stream from its beginning."""
+        self.close()
+        self._open()
+
+    def close(self) -> None:
+        """Read the stream no more."""
+        self._stream.close()
+        self._connection.close()
 
     def message(self) -> Any:
         """The next message of the stream; None at its end."""
@@ -95,5 +104,6 @@ def starter() -> Iterator[Callable[..., Viewed]]:
 
     yield started
     for each in begun:
+        each.close()
         each.process.kill()
         each.process.communicate()

@@ -293,7 +293,8 @@ def test_edits_need_the_token_and_the_own_origin(script: Path, view: Viewed) -> 
         ):
             connection = HTTPConnection(HOST, view.port, timeout=60)
             connection.request("POST", path, body, headers)
-            assert connection.getresponse().status == 403
+            with connection.getresponse() as answer:
+                assert answer.status == 403
             connection.close()
     assert script.read_text() == SCRIPT
 

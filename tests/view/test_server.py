@@ -177,6 +177,7 @@ class Stream:
         return json.loads(text)
 
     def close(self) -> None:
+        self.answer.close()
         self._connection.close()
 
 
