@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import threading
+import time
 from collections.abc import Mapping
 from typing import Any
 
@@ -19,6 +20,10 @@ class Picture:
 
     As long as there was no such machine, the picture is that of the machine as far as it can be
     read, or an empty one with the name `name`. `editable`: the page can edit the script.
+
+    Each model has a `revision`, greater than that of every model before it, also of one that
+    another process has made before: a page gets models from the stream and from answers to edits,
+    and shows none that is older than its own.
     """
 
     def __init__(self, feed: Feed, name: str, *, editable: bool = False) -> None:
@@ -29,16 +34,19 @@ class Picture:
         self._is_good = False
         nothing = StateMachine(type="", name=name, span=Span(Source(name, ""), 0, 0))
         self._machine = Machine(root=nothing)
-        self._model: Mapping[str, Any] = self._model_of(self._machine, [])
+        self._revision = 0
+        self._model: Mapping[str, Any] = {}
+        self._show(self._machine, [])
 
     def update(self, machine: Machine | None, report: Report) -> None:
         """Publish the result of a check."""
         broken = machine is None or any(item.severity is Severity.ERROR for item in report)
         if machine is not None and not (broken and self._is_good):
             with self._lock:
-                self._machine, self._is_good = machine, not broken
-                self._model = self._model_of(machine, report)
-            self._feed.publish({"kind": "model", "model": self._model})
+                self._is_good = not broken
+                is_new = self._show(machine, report)
+            if is_new:
+                self._feed.publish({"kind": "model", "model": self._model})
         self._feed.publish(
             {
                 "kind": "report",
@@ -54,9 +62,18 @@ class Picture:
         with self._lock:
             self._is_good = False
 
-    def _model_of(self, machine: Machine, report: Report) -> Mapping[str, Any]:
-        model = machine_model(machine, report, live=True)
-        return {**model, "editable": True} if self._editable else model
+    def _show(self, machine: Machine, report: Report) -> bool:
+        """Make the model of a machine; whether it differs from the last one."""
+        self._machine = machine
+        model = {**machine_model(machine, report, live=True), "revision": self._revision}
+        if self._editable:
+            model["editable"] = True
+        if model == self._model:
+            return False
+        milliseconds = int(time.time() * 1000)
+        self._revision = max(self._revision + 1, milliseconds)
+        self._model = {**model, "revision": self._revision}
+        return True
 
     @property
     def model(self) -> Mapping[str, Any]:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import json
 from collections.abc import Callable, Iterator
 from pathlib import Path
 from typing import TYPE_CHECKING
@@ -13,7 +14,7 @@ from tests.browser.test_live_view import OwnMessages
 from tests.support.viewed import Viewed, starter
 
 if TYPE_CHECKING:
-    from playwright.sync_api import Browser, Locator, Page
+    from playwright.sync_api import Browser, Locator, Page, Route
 
 pytestmark = pytest.mark.browser
 
@@ -205,6 +206,37 @@ def test_it_works_by_the_keyboard_alone(page: Page, script: Path) -> None:
     assert script.read_text() == SCRIPT.replace("- C:", "- LAST:").replace("ok: C,", "ok: LAST,")
     assert page.evaluate("document.activeElement.textContent") == "Undo"
     undo(page, script)
+
+
+def test_a_machine_that_arrives_late_is_not_shown(
+    browser: Browser, script: Path, start: Callable[..., Viewed]
+) -> None:
+    """The stream may bring the machine before an edit after the answer to the edit."""
+    view = start("view", script, "--no-browser")
+    old = view.until(lambda message: message["kind"] == "model")
+    finding = {
+        "severity": "error",
+        "code": "LATE",
+        "message": "",
+        "help": "",
+        "file": "",
+        "line": 0,
+    }
+    late = {"kind": "report", "broken": True, "outdated": False, "findings": [finding]}
+    held: list[Route] = []
+    page = browser.new_page()
+    page.route("**/events", lambda route: held.append(route))
+    page.goto(view.url)
+    page.locator("form.edit select").first.wait_for()
+    choose(page, "sm/B", "Rename").get_by_label("New name").fill("MIDDLE")
+    apply(page, script)
+    choose(page, "sm/A", "Rename").get_by_label("New name").fill("FIRST")
+    body = "".join(f"data: {json.dumps(each)}\n\n" for each in (old, late))
+    held[0].fulfill(content_type="text/event-stream", body=f"{body}event: end\ndata: {{}}\n\n")
+    page.wait_for_selector("text=LATE")
+    assert page.get_by_label("New name").input_value() == "FIRST"
+    page.locator('.state[data-path="sm/MIDDLE"]').wait_for()
+    assert page.locator('.state[data-path="sm/B"]').count() == 0
 
 
 def test_u_in_a_field_is_a_letter(page: Page, script: Path) -> None:

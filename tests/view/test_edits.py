@@ -131,6 +131,7 @@ def test_the_answer_has_the_machine_that_is_shown_from_then_on(view: Viewed) -> 
         undone = view.post("/undo", {})[1]["model"]
         assert model_in(view.page()) == undone
         assert written["edges"] != undone["edges"]
+        assert written["revision"] < undone["revision"]
 
 
 def model_in(page: str) -> Any:

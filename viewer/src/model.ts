@@ -90,6 +90,8 @@ export interface Model {
   root: Path;
   live: boolean;
   editable?: boolean;
+  /** Of a served model: greater than that of every earlier one. */
+  revision?: number;
   nodes: StateNode[];
   edges: ModelEdge[];
   findings: Finding[];

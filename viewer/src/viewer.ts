@@ -31,8 +31,8 @@ export interface Viewer {
   /** Add a section to the panel; `refresh` fills all sections again. */
   addSection(section: Section): void;
   refresh(): void;
-  /** Show another version of the machine: selection, zoom and open containers stay. Nothing changes if
-   * it is the version that is shown. */
+  /** Show a later version of the machine: selection, zoom and open containers stay. Nothing changes if
+   * that version or a later one is shown. */
   setModel(model: Model): Promise<void>;
   /** Select a state as soon as the machine has it. `old` is the path that it has before. */
   expect(path: Path, old?: Path): Promise<void>;
@@ -231,7 +231,7 @@ export async function createViewer(page: HTMLElement, model: Model, compute: Com
   }
 
   async function setModel(next: Model): Promise<void> {
-    if (JSON.stringify(next) === JSON.stringify(graph.model)) return;
+    if ((next.revision ?? 0) <= (graph.model.revision ?? 0)) return;
     const opened = [...open].map(newPath);
     graph = indexed(next);
     layouts = new Layouts(graph, compute, direction);

@@ -2713,7 +2713,7 @@ ${name}`;
       if (await redraw(null)) showStart(TINY);
     }
     async function setModel(next) {
-      if (JSON.stringify(next) === JSON.stringify(graph.model)) return;
+      if ((next.revision ?? 0) <= (graph.model.revision ?? 0)) return;
       const opened = [...open].map(newPath);
       graph = indexed(next);
       layouts = new Layouts(graph, compute, direction);
