@@ -7,6 +7,7 @@ from dataclasses import replace
 
 from smachac.analysis.context import Context
 from smachac.checks import (
+    bodies,
     class_code,
     code_slots,
     concurrence,
@@ -96,6 +97,7 @@ RULES: tuple[Rule, ...] = (
     motion.wrong_frame,
     message_fields.unknown_field,
     grip.closed_gripper,
+    bodies.body_loaded_twice,
     values.out_of_limits,
     values.unknown_name,
     values.doubtful_unit,

@@ -17,7 +17,7 @@ from smachac.diagnostics.diagnostic import Code, Diagnostic, Report, Severity, d
 from smachac.diagnostics.source import Source, Span, Word
 from smachac.frontend.config import FOLDERS, Project, folder_place, read_project
 from smachac.frontend.errors.script import too_big, unreadable_file
-from smachac.frontend.loader import Library, Ros
+from smachac.frontend.loader import SUFFIXES, Library, Ros
 from smachac.frontend.yaml_tree import Tree, parse
 
 PACKAGE = Path(__file__).parent.parent
@@ -27,7 +27,6 @@ BUILT_IN = (PACKAGE / "stdlib", PACKAGE / "targets" / "python" / "templates")
 ROBOTS = PACKAGE / "robots"
 """The folder of the descriptions of built-in robots."""
 
-SUFFIXES = ("", ".yml", ".yaml")
 MAX_BYTES = 50_000_000
 
 

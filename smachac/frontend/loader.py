@@ -19,6 +19,9 @@ Ros = Literal[1, 2]
 ROS_VERSIONS: tuple[Ros, ...] = (1, 2)
 DEFAULT_ROS: Ros = 2
 
+SUFFIXES = ("", ".yml", ".yaml")
+"""What a script may leave out at the end of the name of a sub-script, in the order of search."""
+
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Library:
@@ -56,12 +59,16 @@ class Library:
 
 
 def memory_library(files: Mapping[str, str], built_in: Library) -> Library:
-    """A library of texts in memory; other templates come from `built_in`."""
+    """A library of texts in memory; other templates come from `built_in`.
+
+    `files` are texts by path. Scripts are searched in the folder of the calling file, templates in
+    `templates/`.
+    """
     sources = {name: Source(name, text) for name, text in files.items()}
 
     def script(name: str, caller: str) -> Source | None:
-        names = (name, f"{name}.yml", f"{name}.yaml")
-        return next((sources[name] for name in names if name in sources), None)
+        paths = (_beside(caller, f"{name}{suffix}") for suffix in SUFFIXES)
+        return next((sources[path] for path in paths if path in sources), None)
 
     def own_template(name: str) -> Source | None:
         return sources.get(f"templates/{name}") or built_in.own_template(name)
@@ -77,16 +84,26 @@ def memory_library(files: Mapping[str, str], built_in: Library) -> Library:
             *_inside(folder, sources),
             *built_in.definition_names(folder),
         ],
-        script_folders=lambda caller: ["."],
+        script_folders=lambda caller: [caller.rpartition("/")[0] or "."],
         template_folders=lambda: ["templates", *built_in.template_folders()],
-        script_names=lambda caller: [name.removesuffix(".yml") for name in sources],
+        script_names=lambda caller: _stems(_inside(caller.rpartition("/")[0], sources)),
         template_names=lambda: [
-            *(name.removeprefix("templates/").split(".")[0] for name in sources),
+            *(name.partition(".")[0] for name in _inside("templates", sources)),
             *built_in.template_names(),
         ],
         robot=built_in.robot,
         ros=built_in.ros,
     )
+
+
+def _beside(caller: str, name: str) -> str:
+    """The path of a file in the folder of the file `caller`."""
+    return f"{caller.rpartition('/')[0]}/{name}".removeprefix("/")
+
+
+def _stems(names: Iterable[str]) -> list[str]:
+    """The names under which files can be called as sub-scripts."""
+    return [name.removesuffix(".yml").removesuffix(".yaml") for name in names if "." in name]
 
 
 def _inside(folder: str, files: Iterable[str]) -> Iterator[str]:

@@ -48,7 +48,13 @@ from smachac.frontend.properties import properties_of
 from smachac.frontend.robots import robot_of
 from smachac.frontend.schema import FieldOwner
 from smachac.frontend.script import TIMER, Pairs, Script, State, Sugar
-from smachac.frontend.state_fields import Entries, accepts, read_fields, with_meant_fields
+from smachac.frontend.state_fields import (
+    TEMPLATE_WORDS,
+    Entries,
+    accepts,
+    read_fields,
+    with_meant_fields,
+)
 from smachac.frontend.state_types import find_state_type
 from smachac.frontend.type_annotations import Aliases, read_aliases, typed
 from smachac.frontend.unused import Mark, Uses, look_ups
@@ -531,13 +537,18 @@ class _Resolver:
         return self.types[name]
 
     def meant_template(self, entries: Entries) -> Entry | None:
-        """The field with a misspelt name that is meant for `template`, if it names a type that does
+        """The field with another name that is meant for `template`, if it names a type that does
         not have the field: then the name is reported as unknown."""
+        sure = guesser_of(_FIELDS_OF_STATES).sure
         for key, entry in entries.items():
-            if key in schema.VARIABLES or guesser_of(_FIELDS_OF_STATES).sure(key) != "template":
+            if key in schema.VARIABLES or not (key in TEMPLATE_WORDS or sure(key) == "template"):
                 continue
             word = name_of(entry.value)
-            found = self.state_type(word.text) if word is not None and word.text else None
+            if word is None or not word.text:
+                continue
+            if word.text in schema.CONTAINERS:
+                return entry
+            found = self.state_type(word.text)
             if found is not None and not found.open and not accepts(found, key):
                 return entry
         return None
@@ -557,7 +568,10 @@ class _Resolver:
             calls = around.via if around.inner is not None else ()
             related = tuple(Related(span=each, message=CALLED_HERE) for each in calls)
             owner = Owner(shown.text, f"`{shown.text}`")
-            self.report.append(missing_variable(shown.span, "template", owner, related))
+            others = [entries[key] for key in entries if key in TEMPLATE_WORDS]
+            instead = Word(str(others[0].key.value), others[0].key.span) if others else None
+            missing = missing_variable(shown.span, "template", owner, related, instead=instead)
+            self.report.append(missing)
         nested: FieldOwner = "StateMachine" if "states" in entries else "state"
         if word is None or not word.text:
             return StateType(name="", open=True), role or nested

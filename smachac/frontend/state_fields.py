@@ -31,6 +31,11 @@ Entries = Mapping[str, Entry]
 _FIELDS = frozenset(State._fields) & frozenset(schema.VARIABLES)
 """The fields of the schema that a state keeps; tests compare their types with the readers'."""
 
+TEMPLATE_WORDS = frozenset(
+    ["action", "behavior", "behaviour", "class", "kind", "skill", "state", "state_type", "type"]
+)
+"""Words that other tools use for `template`."""
+
 _READ_ELSEWHERE = frozenset(["template", "states", "types", *NAMES])
 """The fields that need more than their value to be read: the library, or the state type."""
 
@@ -91,6 +96,9 @@ def with_meant_fields(
         return entries
     guess = guesser_of((*schema.names_for(owner), *type_.variables))
     meant = {guess.sure(str(entries[key].key.value)): entries[key] for key in reversed(unknown)}
+    other = next((entries[key] for key in unknown if key in TEMPLATE_WORDS), None)
+    if other is not None and owner != "base":
+        meant["template"] = other
     return {name: entry for name, entry in meant.items() if name is not None} | entries
 
 
@@ -110,7 +118,7 @@ def _known_fields(
         elif key in type_.variables:
             continue  # a rule checks it against its type
         elif type_.open or "variables" in type_.given:
-            if not type_.prints_itself:
+            if not type_.prints_itself and ("template" in entries or key not in TEMPLATE_WORDS):
                 check_name(key, entry.key.span, report)
             if type_.used is not None and key not in type_.used:
                 words = [*schema.names_for(owner), *type_.used]
@@ -122,7 +130,8 @@ def _known_fields(
             word = Word(str(entry.key.value), entry.key.span)
             whose = _owner_of(owner, type_, of_type=owner == "state")
             own = [name for name in type_.variables if name not in known]
-            report.append(unknown_variable(word, whose, known, own=own))
+            sure = "template" if entries.get("template") is entry else None
+            report.append(unknown_variable(word, whose, known, own=own, meant=sure))
             meant.add(guesser_of((*known, *own))(word.text))
     return read, meant
 

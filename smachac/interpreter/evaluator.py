@@ -9,7 +9,7 @@ from __future__ import annotations
 
 import operator
 import types
-from collections.abc import Callable, Iterable, Mapping
+from collections.abc import Callable, Collection, Iterable, Mapping
 from typing import Any
 
 from smachac.diagnostics.source import assert_never
@@ -30,6 +30,7 @@ from smachac.ir.expressions import (
     TupleDisplay,
     Unary,
     dotted,
+    parts,
     print_expression,
 )
 
@@ -74,6 +75,28 @@ def evaluate(expr: Expr, names: Mapping[str, object]) -> object:
     EvaluationError and no other exception.
     """
     return _run(_Evaluation(names, {}, _Budget()), expr)
+
+
+def can_evaluate(expr: Expr, names: Collection[str]) -> bool:
+    """Whether an expression has only names and functions of this module and the given `names`, so
+    that `evaluate` fails where Python fails, apart from its limits."""
+    known = {*names, *FUNCTIONS}
+    todo: list[tuple[Expr, frozenset[str]]] = [(expr, frozenset())]
+    while todo:
+        current, bound = todo.pop()
+        match current:
+            case Name(name) if name not in known and name not in bound:
+                return False
+            case Attribute(_, name) if name.startswith("_"):
+                return False
+            case Call(function) if dotted(function) not in FUNCTIONS or dotted(function) in bound:
+                return False
+            case Binary("%", Constant(str()), _):
+                return False
+            case Lambda(str() as parameter, _):
+                bound |= {parameter}
+        todo.extend((part, bound) for part in parts(current))
+    return True
 
 
 class _Budget:

@@ -18,6 +18,7 @@ from smachac.runtime.tracing.writer import with_shown_paths
 from smachac.verify.coverage import reasons
 from smachac.verify.generate import PathGenerator
 from smachac.verify.paths import Path
+from smachac.verify.python_values import with_samples
 from smachac.verify.result import Disagreement, Verdict
 from smachac.verify.test_case import Player, TestCase, compare_traces, expected_trace, test_cases
 
@@ -38,13 +39,14 @@ def verify(
     and `seed` are those of `PathGenerator`. `progress` is called often, with how far the work is.
     Exceptions of players are not caught.
     """
+    machine, samples = with_samples(machine)
     generator = PathGenerator(machine, most=most, seed=seed)
     runner = generator.runner
     paths = []
     for path in generator.paths():
         paths.append(path)
         progress(f"paths found: {len(paths)}")
-    cases = test_cases(machine, paths, runner.live)
+    cases = test_cases(machine, paths, runner.live, samples)
     found = [
         _first_difference(machine, target, player, paths, cases, progress)
         for target, player in players.items()

@@ -12,6 +12,7 @@ from dataclasses import dataclass, field
 from typing import Literal, NamedTuple
 
 from smachac.interpreter.behaviours import builtin_behaviour, is_made_of_functions
+from smachac.interpreter.evaluator import can_evaluate
 from smachac.interpreter.interpreter import run
 from smachac.interpreter.result import Event
 from smachac.interpreter.scenario import Scenario, Step, perform_step
@@ -19,7 +20,7 @@ from smachac.interpreter.userdata import Userdata
 from smachac.ir import nodes
 from smachac.ir.expressions import parse_expression
 from smachac.ir.leaf import default_outcome
-from smachac.ir.nodes import Concurrence, Leaf, Machine, Node, StateMachine
+from smachac.ir.nodes import Concurrence, Expression, Leaf, Machine, Node, StateMachine
 from smachac.ir.traversal import PREEMPTED, containers, expressions, outcome_names, walk
 from smachac.verify.coverage import Coverage
 from smachac.verify.guidance import Goals, Planner, possible_leaf_outcomes
@@ -128,8 +129,7 @@ class PathRunner:
     def _is_live(self, path: str) -> bool:
         node = self._tree[path]
         made = isinstance(node, Leaf) and is_made_of_functions(node)
-        portable = all(parse_expression(each.text) is not None for each in expressions(node))
-        return made and portable and not self._enclosing[path]
+        return made and all(map(_is_evaluated, expressions(node))) and not self._enclosing[path]
 
     def make(
         self, kind: Kind, strategy: Strategy, *, live: bool = False, stops: Collection[int] = ()
@@ -313,6 +313,12 @@ class PathRunner:
         names = (name for name in options if not name.startswith(FAILS_FIRST))
         first = (name for name in names if (ends or {}).get(name) != PREEMPTED)
         return next(first, options[0])
+
+
+def _is_evaluated(expression: Expression) -> bool:
+    """Whether the interpreter evaluates a function of the script."""
+    expr = parse_expression(expression.text)
+    return expr is not None and can_evaluate(expr, ("ud", "userdata"))
 
 
 def _starts_with_wait(node: Node) -> bool:

@@ -21,6 +21,7 @@ from smachac.ir.traversal import walk
 from smachac.runtime.tracing.compare import Difference, difference
 from smachac.runtime.tracing.writer import trace_value
 from smachac.verify.paths import Path
+from smachac.verify.python_values import Sample
 from smachac.verify.sample_values import sample_inputs
 from smachac.verify.shared_keys import deterministic_reads
 
@@ -36,7 +37,8 @@ class TestCase:
     """One test case: the steps of every leaf that follows the scenario, by path (`rows`); the
     leaves that run their own code (`live`); the inputs that the other leaves record (`reads`); the
     userdata of the machine; the limit on visits of leaves (`most`); whether a request to stop comes
-    before the start (`stopped`)."""
+    before the start (`stopped`); the values that replace those that only Python computes
+    (`samples`), which targets without Python code do not have."""
 
     __test__ = False  # pytest: not a test class
 
@@ -46,13 +48,16 @@ class TestCase:
     userdata: Mapping[str, object]
     most: int
     stopped: bool = False
+    samples: Sequence[Sample] = ()
 
 
 Player = Callable[[Sequence[TestCase]], Iterable[list[Event]]]
 """Runs test cases on a target; yields the trace of each. May raise UnplayableError."""
 
 
-def test_cases(machine: Machine, paths: Sequence[Path], live: frozenset[str]) -> list[TestCase]:
+def test_cases(
+    machine: Machine, paths: Sequence[Path], live: frozenset[str], samples: Sequence[Sample]
+) -> list[TestCase]:
     """The test cases of paths.
 
     Leaves that a path does not visit have no steps: a visit is an error. On a live path the `live`
@@ -74,6 +79,7 @@ def test_cases(machine: Machine, paths: Sequence[Path], live: frozenset[str]) ->
                 userdata=userdata,
                 most=path.visits,
                 stopped=path.stopped,
+                samples=samples,
             )
         )
     return cases

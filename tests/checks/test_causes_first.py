@@ -179,3 +179,25 @@ def test_an_undeclared_outcome_of_a_class_is_one_finding() -> None:
     unused = CLASS.replace('return "lost"', 'return "found"')
     report = analysed({"main.yml": text, **files, "cell/find.py": unused}).report
     assert [item.code for item in report if item.severity is not Severity.INFO] == ["SM603"]
+
+
+@pytest.mark.parametrize("word", ["class", "type", "state_type", "kind", "Template"])
+@pytest.mark.parametrize("type_", ["Find", "StateMachine"])
+def test_another_word_for_template_is_one_finding(word: str, type_: str) -> None:
+    field = "template: Find" if type_ == "Find" else "template: StateMachine"
+    files = {"templates/Find.yml": FIND + "input_keys: {where: str}\n"}
+    text = FIELDS.replace(field, f"{word}: {type_}", 1)
+    report = analysed({"main.yml": text, **files}).report
+    new = [item for item in report if item.span.text == word]
+    assert [(item.code, item.help) for item in new] == [("SM003", "did you mean `template`?")]
+    interface = files["templates/Find.yml"]
+    expected = [*found(FIELDS, Find=interface), f"SM003 {word}"]
+    assert sorted(found(text, Find=interface)) == sorted(expected)
+
+
+def test_another_word_for_template_with_an_unknown_type_is_one_finding() -> None:
+    text = FIELDS.replace("template: Find", "class: arm.find:Find", 1)
+    report = analysed({"main.yml": text}).report
+    new = [(item.code, item.span.text, item.help) for item in report if "Find" in str(item)]
+    assert ("SM005", "class", "write `template:` in place of `class:`") in new
+    assert all(item.code not in ("SM004", "SM013") for item in report)

@@ -123,6 +123,63 @@ states:
       transitions: {succeeded: succeeded}
 """
 
+PYTHON_CODE = """\
+name: sm
+template: Base
+outcomes: [succeeded]
+userdata:
+  stock: {a: 1, b: 2}
+  names: '`"x, y".split(", ")`'
+  many: [3, 4]
+states:
+  - EACH:
+      template: Iterator
+      outcomes: [done]
+      it: '`lambda ud: list(ud.stock.items())`'
+      it_label: pair
+      exhausted_outcome: done
+      input_keys: [stock]
+      userdata: {more: '`[n for n in (1, 2)]`'}
+      states:
+        - TAKE: {template: ScriptedState, outcomes: [ok], input_keys: [pair, more]}
+      loop_outcomes: [ok]
+      transitions: {done: TWICE}
+  - TWICE:
+      template: Iterator
+      outcomes: [done, lost]
+      it: '`lambda ud: [2 * n for n in ud.many]`'
+      exhausted_outcome: done
+      input_keys: [many]
+      states:
+        - LOOK: {template: ScriptedState, outcomes: [ok, lost], input_keys: [it_data]}
+      loop_outcomes: [ok]
+      transitions: {done: WHICH, lost: WHICH}
+  - WHICH:
+      template: ConditionalOutcomeState
+      outcomes: [found, nothing]
+      input_keys: [names]
+      default_outcome: nothing
+      callbacks: {found: "lambda ud: any(name == 'x' for name in ud.names)"}
+      transitions: {found: USE, nothing: JOIN}
+  - JOIN:
+      template: CallbacksState
+      input_keys: [names]
+      output_keys: [text]
+      callbacks: {text: 'lambda ud: ", ".join(ud.names)'}
+      transitions: {succeeded: SHOW}
+  - SHOW:
+      template: CallbacksState
+      input_keys: [text]
+      output_keys: [shown]
+      callbacks: {shown: 'lambda ud: "names: %s" % ud.text'}
+      transitions: {succeeded: USE}
+  - USE:
+      template: ScriptedState
+      outcomes: [succeeded]
+      input_keys: [names]
+      transitions: {succeeded: succeeded}
+"""
+
 
 def program(script: Path) -> tuple[str, str]:
     ((name, text),) = smachac.compile(script, "python").items()
@@ -312,6 +369,20 @@ def test_a_machine_finds_its_inputs(tmp_path: Path) -> None:
         return text.replace('["goal", "name"]', '["name"]')
 
     assert len(judged(path, without).disagreements) == 1
+
+
+def test_code_that_only_python_evaluates_makes_no_difference(tmp_path: Path) -> None:
+    """Items, initial values and functions outside the portable expressions: samples replace the
+    values on both sides, and such functions do not run."""
+    path = script_of(PYTHON_CODE, tmp_path)
+    verdict = judged(path)
+    assert verdict.disagreements == []
+    assert verdict.missing == []
+
+    def without_end(text: str) -> str:
+        return text.replace('"found": "USE"', '"found": "EACH"')
+
+    assert len(judged(path, without_end).disagreements) == 1
 
 
 def test_a_script_with_an_error_fails(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:

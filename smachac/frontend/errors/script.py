@@ -265,7 +265,12 @@ def wrong_shape(
 
 @problem("SM005", "missing-variable", Severity.ERROR)
 def missing_variable(
-    span: Span, name: str, owner: Owner, related: tuple[Related, ...] = ()
+    span: Span,
+    name: str,
+    owner: Owner,
+    related: tuple[Related, ...] = (),
+    *,
+    instead: Word | None = None,
 ) -> Finding:
     """A variable is missing that the language or the state type requires.
 
@@ -286,10 +291,10 @@ def missing_variable(
           - PICK: {template: ScriptedState, outcomes: [done], transitions: {done: done}}
     """
     return Finding(
-        span=span,
+        span=span if instead is None else instead.span,
         message=f"the variable `{name}` is missing: {owner.text} requires it",
         arguments=(name, owner.name),
-        help=f"add `{name}:` here",
+        help=f"write `{name}:` in place of `{instead.text}:`" if instead else f"add `{name}:` here",
         related=related,
     )
 

@@ -13,7 +13,7 @@ from typing import NamedTuple
 
 from smachac.ir.nodes import Iterator, Leaf, Machine, Node
 from smachac.ir.traversal import walk
-from smachac.targets import COMMENT_WIDTH, comment_lines, made_by
+from smachac.targets import COMMENT_WIDTH, comment_lines, made_by, stem
 from smachac.targets.cpp.builtin_states import LeafCode, built_in, enumeration
 from smachac.targets.cpp.containers import ContainerPlan, Lines, execute, parts, results
 from smachac.targets.cpp.identifiers import identifier
@@ -26,6 +26,7 @@ from smachac.targets.cpp.user_classes import (
     class_code,
     class_leaf,
     named_apart,
+    named_classes,
 )
 from smachac.targets.errors import no_code_for_target
 
@@ -57,6 +58,7 @@ def header_of(plan: Plan) -> Header:
         "\n".join(_container(printing, scope)) for scope in reversed(list(plan.scopes.values()))
     ]
     _refuse_missing(plan, printing.missing)
+    _refuse_names(plan, printing.classes)
     if plan.report:
         # A class whose types are refused has no assertions.
         return Header("", (), ())
@@ -130,6 +132,29 @@ def _refuse_missing(plan: Plan, types: AbstractSet[str]) -> None:
     for name, states in leaves.items():
         place = states[0].span
         plan.report.append(no_code_for_target(place, "C++", "cpp", name, len(states)))
+
+
+def _refuse_names(plan: Plan, classes: Mapping[str, ClassCode]) -> None:
+    """Refuses classes, their parameters and their headers that have a name of the header itself, at
+    the first state of each type."""
+    own = {scope_name(path): scope.node.name for path, scope in plan.scopes.items()}
+    header = f"{stem(plan.machine)}.hpp"
+    first: dict[str, Leaf] = {}
+    for _, node in walk(plan.machine.root):
+        if isinstance(node, Leaf) and node.type in classes:
+            first.setdefault(node.type, node)
+    for name, leaf in first.items():
+        code = classes[name]
+        if code.header == header:
+            text = f"the header of `{name}` and the generated header would both be `{header}`"
+            help_ = "rename the header of the class, or the machine"
+            plan.refuse(leaf.span, UnportableError(text, help=help_), leaf.name, header)
+        for used in named_classes(code):
+            if used in own:
+                text = f"the class `{used}` of `{name}` has the name of the namespace that is"
+                text += f" generated for `{own[used]}`"
+                help_ = f"move the class into a namespace of its own, or rename `{own[used]}`"
+                plan.refuse(leaf.span, UnportableError(text, help=help_), leaf.name, used)
 
 
 def _container(printing: _Printing, scope: ContainerScope) -> Lines:

@@ -54,6 +54,12 @@ def _parameter(text: str) -> str:
     return spaced.replace("& ", "&").replace("* ", "*")
 
 
+def named_classes(code: ClassCode) -> list[str]:
+    """The qualified names of a class and of the types of its parameters, `my_robot::Arm`."""
+    types = (_type_of(each).strip("&* ").removeprefix("const ") for each in code.parameters)
+    return [each.partition("<")[0].strip().removeprefix("::") for each in (code.name, *types)]
+
+
 def named_apart(taken: Sequence[str], others: Iterable[str]) -> tuple[str, ...]:
     """Parameters of which none has the name of another parameter of another type: a number is added
     to its name."""

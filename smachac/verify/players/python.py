@@ -3,6 +3,7 @@ case."""
 
 from __future__ import annotations
 
+import copy
 import sys
 from collections.abc import Iterator, Sequence
 from contextlib import contextmanager, redirect_stdout, suppress
@@ -14,6 +15,7 @@ from smachac.ir.nodes import Machine
 from smachac.runtime.tracing import trace
 from smachac.targets.python.runner import failure_text, hidden, loaded, places, quiet
 from smachac.verify.players.ros_stand_ins import built, ros_stand_ins
+from smachac.verify.python_values import ITEMS
 from smachac.verify.test_case import Event, Player, TestCase, UnplayableError, record_read
 
 
@@ -53,6 +55,12 @@ def _unplayable_errors() -> Iterator[None]:
 def trace_of(machine: Any, name: str, case: TestCase, sources: dict[str, str]) -> list[Event]:
     """The trace of one run; an error that ends the run is an event of it."""
     events: list[Event] = []
+    for path, key, value in case.samples:
+        container = _state_at(machine, path)
+        if key == ITEMS:
+            container._items = value
+        else:
+            container.userdata[key] = copy.deepcopy(value)
     for key, value in case.userdata.items():
         machine.userdata[key] = value
     strict = trace.StrictScript(case.reads, partial(record_read, events), case.most)
@@ -63,3 +71,10 @@ def trace_of(machine: Any, name: str, case: TestCase, sources: dict[str, str]) -
     with suppress(Exception):
         machine.execute()
     return events
+
+
+def _state_at(machine: Any, path: str) -> Any:
+    """The state at a path of a built machine."""
+    for name in path.split("/")[1:]:
+        machine = machine.get_children()[name]
+    return machine
