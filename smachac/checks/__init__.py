@@ -96,6 +96,7 @@ RULES: tuple[Rule, ...] = (
     motion.wrong_frame,
     message_fields.unknown_field,
     grip.closed_gripper,
+    message_fields.untyped_message,
     values.out_of_limits,
     values.unknown_name,
     values.doubtful_unit,
