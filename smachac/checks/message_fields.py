@@ -21,7 +21,7 @@ from smachac.diagnostics.source import Span, Word
 from smachac.diagnostics.spelling import guesser
 from smachac.diagnostics.wording import listed
 from smachac.ir.code_places import attribute_place, node_place
-from smachac.ir.leaf import key_names, type_text, variable_of
+from smachac.ir.leaf import key_names, type_text, variable, variable_of
 from smachac.ir.message_types import (
     PARTS,
     Definitions,
@@ -34,6 +34,9 @@ from smachac.ir.types import Type
 
 TYPE_KEY = "msg_type"
 """The input key that gives the type of a message."""
+
+NO_MESSAGE = frozenset(["stop", "stop_all", "remove", "remove_all"])
+"""The values of the variable `action` with which a state reads no message."""
 
 SCALARS = frozenset(["bool", "int", "float", "str", "literal", "one_of"])
 
@@ -182,6 +185,8 @@ def _untyped_mappings(context: Context, path: str, leaf: Leaf) -> Iterator[Findi
     """SM514 for the mappings that a state reads as messages."""
     names = key_names(leaf.inputs, "message")
     if not names or TYPE_KEY in [key.name for key in leaf.inputs]:
+        return
+    if variable(leaf, "action") in NO_MESSAGE:
         return
     for name in sorted(names):
         cell = context.types.cells.get((path, name))

@@ -185,6 +185,14 @@ def test_other_messages_need_no_type(message: str) -> None:
     assert untyped(script) == []
 
 
+@pytest.mark.parametrize("action", ["stop", "stop_all"])
+def test_a_state_that_reads_no_message_needs_no_type(action: str) -> None:
+    script = MESSAGE.format(
+        type="PublishMsgState", action=action, keys="msg", message="{data: true}"
+    )
+    assert untyped(script) == []
+
+
 def test_null_is_no_type() -> None:
     script = service("request: {soft: true}", type="null")
     assert untyped(script) == [("null", "`service` of `GRASP` is null: it names no type")]
