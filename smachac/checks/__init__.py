@@ -98,6 +98,7 @@ RULES: tuple[Rule, ...] = (
     message_fields.unknown_field,
     grip.closed_gripper,
     bodies.body_loaded_twice,
+    message_fields.untyped_message,
     values.out_of_limits,
     values.unknown_name,
     values.doubtful_unit,

@@ -14,13 +14,14 @@ from smachac.analysis.message_code import MOST_CODE, field_reads, leaf_definitio
 from smachac.analysis.type_lattice import fits, present
 from smachac.checks.message_values import value_faults
 from smachac.checks.messages import calls, did_you_mean
+from smachac.checks.robot import at
 from smachac.checks.rule import rule
 from smachac.diagnostics.diagnostic import Finding, Related, Severity
 from smachac.diagnostics.source import Span, Word
 from smachac.diagnostics.spelling import guesser
 from smachac.diagnostics.wording import listed
 from smachac.ir.code_places import attribute_place, node_place
-from smachac.ir.leaf import type_text, variable_of
+from smachac.ir.leaf import key_names, type_text, variable, variable_of
 from smachac.ir.message_types import (
     PARTS,
     Definitions,
@@ -28,8 +29,14 @@ from smachac.ir.message_types import (
     MissingDefinitions,
     userdata_type,
 )
-from smachac.ir.nodes import DEFINITION_KINDS, Expression, Leaf, Variable
+from smachac.ir.nodes import DEFINITION_KINDS, Expression, Leaf, Struct, Variable
 from smachac.ir.types import Type
+
+TYPE_KEY = "msg_type"
+"""The input key that gives the type of a message."""
+
+NO_MESSAGE = frozenset(["stop", "stop_all", "remove", "remove_all"])
+"""The values of the variable `action` with which a state reads no message."""
 
 SCALARS = frozenset(["bool", "int", "float", "str", "literal", "one_of"])
 
@@ -117,6 +124,82 @@ def unknown_field(context: Context) -> Iterator[Finding]:
                     yield from _wrong_values(path, node, held, messages, found)
         for slot in code_slots(node, context.machine.state_types):
             yield from _wrong_reads(path, node, slot, found)
+
+
+@rule("SM515", "untyped-message", Severity.ERROR)
+def untyped_message(context: Context) -> Iterator[Finding]:
+    """A state makes a message of a mapping, but its type is not given.
+
+    The state ends with `aborted`, or the program with an exception: no class is known to which the
+    fields belong.
+
+    Exactly: a mapping that a state reads as its message (`msg` of PublishMsgState) without the
+    input key `msg_type`, and `null` as the type of an action, a service or a message.
+
+    Wrong:
+        name: sm
+        template: ROSBase
+        outcomes: [done, failed]
+        userdata: {msg: {data: true}}
+        states:
+          - SAY:
+              template: PublishMsgState
+              action: start
+              input_keys: [msg]
+              transitions: {succeeded: done, aborted: failed}
+
+    Right:
+        name: sm
+        template: ROSBase
+        outcomes: [done, failed]
+        userdata: {msg: {data: true}, msg_type: std_msgs/Bool}
+        states:
+          - SAY:
+              template: PublishMsgState
+              action: start
+              input_keys: [msg, msg_type]
+              transitions: {succeeded: done, aborted: failed}
+    """
+    for path, node in context.states:
+        if isinstance(node, Leaf):
+            yield from _null_types(path, node)
+            yield from _untyped_mappings(context, path, node)
+
+
+def _null_types(path: str, leaf: Leaf) -> Iterator[Finding]:
+    """SM515 for variables that have to name a type."""
+    for role in DEFINITION_KINDS:
+        held = variable_of(leaf, role)
+        if held is not None and held.value.data is None:
+            yield Finding(
+                span=held.value.span,
+                message=f"`{held.name}` of `{leaf.name}` is null: it names no type",
+                arguments=(held.name,),
+                help="write the type with its package, as in `std_srvs/Trigger`",
+                related=calls(leaf, held.value.span),
+                node=path,
+            )
+
+
+def _untyped_mappings(context: Context, path: str, leaf: Leaf) -> Iterator[Finding]:
+    """SM515 for the mappings that a state reads as messages."""
+    names = key_names(leaf.inputs, "message")
+    if not names or TYPE_KEY in [key.name for key in leaf.inputs]:
+        return
+    if variable(leaf, "action") in NO_MESSAGE:
+        return
+    for name in sorted(names):
+        cell = context.types.cells.get((path, name))
+        flows = [each for alike in cell.flows.values() for each in alike] if cell else []
+        for flow in flows:
+            if flow.how == "value" and isinstance(flow.value, Struct):
+                yield at(
+                    flow,
+                    f"`{leaf.name}` makes a message of a mapping, but has no key `{TYPE_KEY}`",
+                    f"add `{TYPE_KEY}` to the `input_keys` of `{leaf.name}`, with the type as its"
+                    " value, as in `std_msgs/Bool`",
+                    (leaf.name,),
+                )
 
 
 def _missing_types(path: str, leaf: Leaf, missing: MissingDefinitions) -> Iterator[Finding]:

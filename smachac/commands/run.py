@@ -361,8 +361,10 @@ def perform(
     observe: Callable[[Event], None],
     gate: Gate | None = None,
 ) -> str:
-    """Run the generated module; the outcome. Raises FailedError."""
+    """Run the generated module; the outcome. Raises FailedError, and SystemExit after a line with
+    the reason if the arguments of a node are not valid."""
     from smachac.frontend.files import module_folders
+    from smachac.runtime.ros2_errors import ParameterError
     from smachac.sweep.play import FailedError
     from smachac.targets.python.runner import execute, failure_text
 
@@ -388,6 +390,9 @@ def perform(
             ),
             on_interrupt=end_at_once,  # a container would wait for branches that may never return
         ).outcome
+    except ParameterError as error:
+        print(error, file=sys.stderr)
+        raise SystemExit(FINDINGS) from None
     except Exception as error:
         raise FailedError(failure_text(error)) from error
     if outcome is None:

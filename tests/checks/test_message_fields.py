@@ -144,3 +144,57 @@ def test_of_several_definitions_one_may_have_the_field() -> None:
         script = service(slots.format(key=key), f"{key}: 0.1")
         report = analyse(Source("main.yml", script), library, []).report
         assert [each.code for each in report].count("SM512") == count
+
+
+MESSAGE = """
+name: sm
+template: ROSBase
+outcomes: [done, failed]
+userdata: {{command: {message}, kind: std_msgs/Bool}}
+states:
+  - SAY:
+      template: {type}
+      action: {action}
+      input_keys: [{keys}]
+      remapping: {{msg: command, msg_type: kind}}
+      transitions: {{succeeded: done, aborted: failed}}
+"""
+
+
+def untyped(script: str) -> list[tuple[str, str]]:
+    """The marked text and the message of each finding of SM515."""
+    report = analyse(Source("main.yml", script), memory_library({}, BUILT_IN), []).report
+    found = [each for each in report if each.code == "SM515"]
+    return [(each.span.text, each.finding.message) for each in found]
+
+
+@pytest.mark.parametrize(
+    ("type", "action"), [("PublishMsgState", "start"), ("PublishObserverMsgState", "add")]
+)
+def test_a_mapping_as_a_message_needs_its_type(type: str, action: str) -> None:
+    script = MESSAGE.format(type=type, action=action, keys="msg", message="{data: true}")
+    words = "`SAY` makes a message of a mapping, but has no key `msg_type`"
+    assert untyped(script) == [("{data: true}", words)]
+    script = script.replace("[msg]", "[msg, msg_type]")
+    assert untyped(script) == []
+
+
+@pytest.mark.parametrize("message", ["Bool(data=True)", "[1.0, 2.0, 3.0]", "null"])
+def test_other_messages_need_no_type(message: str) -> None:
+    script = MESSAGE.format(type="PublishMsgState", action="start", keys="msg", message=message)
+    assert untyped(script) == []
+
+
+@pytest.mark.parametrize("action", ["stop", "stop_all"])
+def test_a_state_that_reads_no_message_needs_no_type(action: str) -> None:
+    script = MESSAGE.format(
+        type="PublishMsgState", action=action, keys="msg", message="{data: true}"
+    )
+    assert untyped(script) == []
+
+
+def test_null_is_no_type() -> None:
+    script = service("request: {soft: true}", type="null")
+    assert untyped(script) == [("null", "`service` of `GRASP` is null: it names no type")]
+    script = ACTION.format(type="null", goal="{room: a}")
+    assert untyped(script) == [("null", "`action` of `TIDY` is null: it names no type")]

@@ -7,11 +7,8 @@ from collections.abc import Callable, Mapping, Sequence
 from contextlib import suppress
 from typing import Any
 
+from smachac.runtime.ros2_errors import ParameterError as ParameterError
 from smachac.runtime.smach_ros2 import ros
-
-
-class ParameterError(ValueError):
-    """The value of a parameter is not valid; the message names it."""
 
 
 def declared(

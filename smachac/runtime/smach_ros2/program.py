@@ -2,8 +2,10 @@
 
 from __future__ import annotations
 
+import sys
 import threading
-from collections.abc import Callable, Collection
+from collections.abc import Callable, Collection, Iterator
+from contextlib import contextmanager
 from typing import Any
 
 from smachac.runtime.smach_ros2 import ros
@@ -19,6 +21,9 @@ def start_node(
     From now on SIGINT and SIGTERM preempt the machine of `run`; rclpy gets no signal handlers,
     because they end the node before goals can be cancelled. `args` are the arguments of the program
     (default: sys.argv); other arguments are those of `node_class`.
+
+    If ROS refuses to start, as with arguments that are not valid, this ends the program as argparse
+    does: one line with the reason, SystemExit with exit code 2.
     """
     return start(lambda: node_class(name, **kwargs), args)
 
@@ -31,8 +36,10 @@ def start(make: Callable[[], Any], args: list[str] | None = None) -> Any:
         handler.install()
     try:
         options = ros.load("rclpy.signals").SignalHandlerOptions
-        ros.rclpy.init(args=args, signal_handler_options=options.NO)
-        node = make()
+        with _ended_by_errors():
+            with _silent_rcl():
+                ros.rclpy.init(args=args, signal_handler_options=options.NO)
+            node = make()
         node.signal_handler = handler
         node.start()
     except BaseException:
@@ -41,6 +48,37 @@ def start(make: Callable[[], Any], args: list[str] | None = None) -> Any:
             handler.remove()
         raise
     return node
+
+
+@contextmanager
+def _ended_by_errors() -> Iterator[None]:
+    """Print the error with which ROS refuses to start, and end the program with exit code 2."""
+    errors = ros.load("rclpy.impl.implementation_singleton").rclpy_implementation
+    refused = ros.load("rclpy.exceptions").ParameterException
+    try:
+        yield
+    except errors.UnknownROSArgsError as error:
+        reason = f"unknown arguments {error}"
+    except (errors.RCLError, refused) as error:
+        # After the reason come the places in the source of ROS: `, at src/rcl/arguments.c:380`.
+        reason = str(error).partition(", at ")[0].removeprefix("failed to initialize rcl: ")
+    else:
+        return
+    print(f"ROS 2 cannot start: {reason}", file=sys.stderr)
+    raise SystemExit(2)
+
+
+@contextmanager
+def _silent_rcl() -> Iterator[None]:
+    """The library rcl logs nothing: its errors are exceptions too."""
+    logging = ros.load("rclpy.logging")
+    level = logging.get_logger_level("rcl")
+    logging.set_logger_level("rcl", logging.LoggingSeverity.FATAL)
+    try:
+        yield
+    finally:
+        if logging.get_logger_level("rcl") == logging.LoggingSeverity.FATAL:
+            logging.set_logger_level("rcl", level)
 
 
 def run(node: Any, machine: Any, grace: float = GRACE) -> str | None:
