@@ -157,10 +157,10 @@ def _analysis(
         nodes = previous.nodes if previous is not None else None
         machine = lower(script, nodes) if script is not None else None
         context = _context(machine, previous)
-        if machine is not None:
+        if machine is not None and context is not None:
             report.extend(check_machine(machine, context=context))
             report.extend(code_faults(machine, library, load_target))
-            report.extend(undefined_names(machine, library))
+            report.extend(undefined_names(context, library))
             report.extend(extra(machine) if extra is not None else ())
             report.extend(version_faults(machine, library) if render else ())
             if render and not has_errors(report):
@@ -185,10 +185,11 @@ def _analysis(
 def _context(machine: Machine | None, previous: Previous | None) -> Context | None:
     """The context of a machine, with the facts of the previous one that still hold. It becomes the
     previous context."""
-    if previous is None:
-        return None
-    previous.context = Context(machine, previous.context) if machine is not None else None
-    return previous.context
+    known = previous.context if previous is not None else None
+    context = Context(machine, known) if machine is not None else None
+    if previous is not None:
+        previous.context = context
+    return context
 
 
 def _out_of_memory(source: Source) -> Diagnostic:

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Iterable
 from functools import cached_property, partial
 from typing import TYPE_CHECKING, TypeAlias, TypeVar, cast
 
@@ -24,15 +24,15 @@ from smachac.analysis.type_lattice import MisfitKind
 from smachac.analysis.unset_reads import Cause, Missing, missing_keys
 from smachac.diagnostics.source import Span
 from smachac.ir import nodes, script_paths, traversal
-from smachac.ir.nodes import Container, Machine, Node, StateMachine
+from smachac.ir.nodes import Container, Leaf, Machine, Node, StateMachine
 
 if TYPE_CHECKING:
     from smachac.analysis.properties import Judgement
 
-C = TypeVar("C", bound=Container)
+C = TypeVar("C")
 T = TypeVar("T")
 
-Facts: TypeAlias = "dict[tuple[Callable[..., object], str], tuple[Container, object]]"
+Facts: TypeAlias = "dict[tuple[Callable[..., object], str], tuple[object, object]]"
 """Facts about containers with the containers, by the function that computes them and the path."""
 
 
@@ -53,13 +53,52 @@ class Context:
         self._facts: Facts = {}
 
     def of_container(self, fact: Callable[[C], T], path: str, container: C) -> T:
-        """A fact about one container, which is a function of nothing else; computed once."""
+        """A fact about one container or its userdata scope, which is a function of nothing else;
+        computed once."""
         which = fact, path
         found = self._facts.get(which) or self._known.get(which)
         if found is None or found[0] is not container:
             found = container, fact(container)
         self._facts[which] = found
         return cast(T, found[1])
+
+    def at_states(self, fact: Callable[..., Iterable[T]], *given: object) -> tuple[T, ...]:
+        """What a function finds at each state, in the order of `states`.
+
+        It is a function of the path and the node. `given` are more arguments for it: of these it
+        uses only what belongs to the state types below the node. So the result for a container and
+        all below it holds for the next machine too, if the container is the same object.
+        """
+        return self._found_at(fact, given, leaves=True)
+
+    def at_containers(self, fact: Callable[..., Iterable[T]], *given: object) -> tuple[T, ...]:
+        """What a function finds at each container, in the order of `containers`: see `at_states`.
+        It may use the children as well."""
+        return self._found_at(fact, given, leaves=False)
+
+    def _found_at(
+        self, fact: Callable[..., Iterable[T]], given: tuple[object, ...], *, leaves: bool
+    ) -> tuple[T, ...]:
+        found: list[T] = []
+        stack: list[tuple[str, Node, int | None]] = [
+            (self.machine.root.name, self.machine.root, None)
+        ]
+        while stack:
+            path, node, begin = stack.pop()
+            if begin is not None:  # all below this container has been visited
+                self._facts[fact, path] = node, tuple(found[begin:])
+            elif isinstance(node, Leaf):
+                found.extend(fact(path, node, *given))
+            elif (known := self._known.get((fact, path))) is not None and known[0] is node:
+                self._facts[fact, path] = known
+                found.extend(cast("tuple[T, ...]", known[1]))
+            else:
+                stack.append((path, node, len(found)))
+                found.extend(fact(path, node, *given))
+                for child in reversed(node.children):
+                    if leaves or not isinstance(child, Leaf):
+                        stack.append((f"{path}/{child.name}", child, None))
+        return tuple(found)
 
     @cached_property
     def states(self) -> tuple[tuple[str, Node], ...]:
@@ -140,7 +179,7 @@ class Context:
     @cached_property
     def lost_outputs(self) -> tuple[Lost, ...]:
         """The keys that are written in a container, needed outside, and not handed out."""
-        return lost_outputs(self.mended_flow, self.missing_keys("lost"))
+        return lost_outputs(self.mended_flow, self.missing_keys("lost"), self.of_container)
 
     @cached_property
     def accesses(self) -> dict[str, Accesses]:

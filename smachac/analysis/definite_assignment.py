@@ -14,6 +14,7 @@ from collections import Counter
 from collections.abc import Callable, Iterable, Iterator, Mapping
 from collections.abc import Set as AbstractSet
 from dataclasses import dataclass
+from typing import Any, TypeAlias
 
 from smachac.analysis.accesses import (
     ANYTHING,
@@ -67,6 +68,10 @@ class UserdataScope:
     endings: Mapping[str, Writes]
     inner: frozenset[str]
     again: frozenset[Vertex]
+
+
+FactOf: TypeAlias = "Callable[[Callable[[UserdataScope], Any], str, UserdataScope], Any]"
+"""Computes a fact about the userdata of a container, by its path, or takes a known one."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False)

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterator, Mapping
 from typing import NamedTuple
 
-from smachac.analysis.definite_assignment import DataFlow, UserdataScope
+from smachac.analysis.definite_assignment import DataFlow, FactOf, UserdataScope
 from smachac.analysis.fixpoint import KeyStep
 from smachac.ir.graph import START, Vertex
 from smachac.ir.nodes import Key, Leaf, Sequence, StateMachine
@@ -32,7 +32,7 @@ class DeadStore(NamedTuple):
 _Back = Mapping[Vertex, list[tuple[Vertex, KeyStep]]]
 
 
-def dead_stores(flow: DataFlow) -> Iterator[DeadStore]:
+def dead_stores(flow: DataFlow, fact_of: FactOf) -> Iterator[DeadStore]:
     """The dead stores in state machines and sequences, in the order of the script.
 
     The end of a container counts as a read. Only outputs that the script lists at the state count,
@@ -44,7 +44,7 @@ def dead_stores(flow: DataFlow) -> Iterator[DeadStore]:
         container = scope.container
         if not isinstance(container, StateMachine | Sequence) or container.sugar:
             continue
-        candidates = _candidates(scope)
+        candidates = fact_of(_candidates, scope.path, scope)
         if not candidates:
             continue
         back = _steps_back(scope)

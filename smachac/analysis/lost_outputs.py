@@ -3,12 +3,11 @@
 from __future__ import annotations
 
 from collections.abc import Iterable, Iterator
-from functools import cache
 from itertools import chain
 from typing import NamedTuple
 
 from smachac.analysis.def_use import around, place_in
-from smachac.analysis.definite_assignment import DataFlow, UserdataScope
+from smachac.analysis.definite_assignment import DataFlow, FactOf, UserdataScope
 from smachac.analysis.unset_reads import MOST_STEPS, Missing, Reader, reader_at
 from smachac.ir.graph import Vertex
 from smachac.ir.nodes import Key, Leaf, Node
@@ -30,28 +29,28 @@ class Lost(NamedTuple):
     is_missing: bool
 
 
-def lost_outputs(flow: DataFlow, lost_keys: Iterable[Missing]) -> tuple[Lost, ...]:
+def lost_outputs(flow: DataFlow, lost_keys: Iterable[Missing], fact_of: FactOf) -> tuple[Lost, ...]:
     """The outputs that containers keep to themselves, in the order of the script. `lost_keys` are
     those of them without which a reader finds nothing."""
-    return tuple(_lost(flow, lost_keys))
+    return tuple(_lost(flow, lost_keys, fact_of))
 
 
-def _lost(flow: DataFlow, lost_keys: Iterable[Missing]) -> Iterator[Lost]:
+def _lost(flow: DataFlow, lost_keys: Iterable[Missing], fact_of: FactOf) -> Iterator[Lost]:
     reported: set[tuple[str, str]] = set()
     for missing in lost_keys:
         lost = _missed(flow, missing)
         reported.add((lost.keeper.path, lost.own))
         yield lost
     left = MOST_STEPS
-    read = cache(lambda path: frozenset(chain(*flow.scopes[path].reads.values())))
     for scope in flow.scopes.values():
         outer = around(flow, scope.path)
         if outer is None or scope.path not in flow.entered or scope.container.sugar:
             continue
-        for writer, written, own in _kept(scope):
+        for writer, written, own in fact_of(_kept, scope.path, scope):
             around_it = flow.scopes[outer]
             key = remapping(scope.container).get(own, own)
-            if key not in read(outer) or left <= 0 or (scope.path, own) in reported:
+            read = fact_of(_read, outer, around_it)
+            if key not in read or left <= 0 or (scope.path, own) in reported:
                 continue
             left -= len(around_it.steps) + len(around_it.reads)
             vertex = _read_after(around_it, place_in(outer, scope.path), key)
@@ -81,21 +80,29 @@ def _name_at(flow: DataFlow, scope: UserdataScope, own: str, missing: Missing) -
     return own
 
 
-def _kept(scope: UserdataScope) -> Iterator[tuple[Node, Key, str]]:
+def _read(scope: UserdataScope) -> frozenset[str]:
+    """The keys that something in a container reads."""
+    return frozenset(chain(*scope.reads.values()))
+
+
+def _kept(scope: UserdataScope) -> tuple[tuple[Node, Key, str], ...]:
     """The keys that leaves of a container write and that are no outputs of it. A key that is also
     read in the container counts only if it is an input, because then it has one name outside."""
     container = scope.container
     read = {
-        remapping(child).get(key.name, key.name)
+        names.get(key.name, key.name)
         for child in container.children
+        for names in [remapping(child)]
         for key in child.inputs
     }
+    found: list[tuple[Node, Key, str]] = []
     for child in container.children:
         for key in child.outputs if isinstance(child, Leaf) else ():
             own = remapping(child).get(key.name, key.name)
             is_local = own in read and own not in scope.inputs
             if key.span.source is child.span.source and own not in scope.outputs and not is_local:
-                yield child, key, own
+                found.append((child, key, own))
+    return tuple(found)
 
 
 def _read_after(scope: UserdataScope, start: str, key: str) -> Vertex | None:

@@ -16,7 +16,7 @@ a machine is parsed to the same machine.
 from __future__ import annotations
 
 from collections import deque
-from collections.abc import Collection, Mapping
+from collections.abc import Collection, Mapping, Sequence
 from dataclasses import dataclass, field
 from functools import reduce
 from typing import Literal, TypeAlias
@@ -91,10 +91,11 @@ class _ContainerCells:
         self.cells: dict[str, Cell] = {}
 
     def at(self, key: str, span: Span | None = None) -> Cell:
-        if key not in self.cells:
+        cell = self.cells.get(key)
+        if cell is None:
             cell = self.run.cell(self.path, key, "scope", self.node, span or self.node.span)
             self.cells[key] = cell
-        return self.cells[key]
+        return cell
 
 
 class _Inference:
@@ -105,6 +106,7 @@ class _Inference:
         self.rounds: dict[Computation, int] = {}
         self.todo: deque[TypeFlow] = deque()
         self.computations: list[Computation] = []
+        self.readers: dict[Cell, list[Computation]] = {}
         self.open: list[_ContainerCells] = []
         self.clashes: dict[tuple[object, ...], Clash] = {}
         self.constants: list[TypeFlow] = []
@@ -135,7 +137,11 @@ class _Inference:
             return
         if cell.declared == ANY:
             cell.declared, cell.span = type_, span
-        self.arrive(TypeFlow(type=type_, how="declared", span=span, cell=cell))
+        flow = TypeFlow(type=type_, how="declared", span=span, cell=cell)
+        if cell.flows:
+            self.arrive(flow)
+        else:
+            self.keep(flow)
 
     def literal(self, cell: Cell, data: Data, span: Span) -> None:
         type_ = type_of_data(data)
@@ -234,7 +240,7 @@ class _Inference:
     def computation(self, computation: Computation) -> None:
         self.computations.append(computation)
         for cell in computation.reads.values():
-            cell.readers.append(computation)
+            self.readers.setdefault(cell, []).append(computation)
         if not computation.reads:
             self.compute(computation)
 
@@ -262,14 +268,14 @@ class _Inference:
             for link in flow.cell.links:
                 self.arrive(flow.moved_to(link))
             if not flow.judged:
-                for computation in flow.cell.readers:
+                for computation in self.readers.get(flow.cell, ()):
                     self.compute(computation)
 
     def arrive(self, flow: TypeFlow) -> None:
         """A value arrives at a cell: it is checked, stored, and queued if it is new."""
         cell = flow.cell
         own = flow.how == "declared" and flow.before is None and flow.type == cell.declared
-        if cell.declared != ANY and not own:
+        if not own and cell.declared != ANY:
             found = misfit(flow.type, cell.declared)
             if found is not None and (found.kind == "length" or not flow.judged):
                 self.clash(Clash(flow=flow, cell=cell, misfit=found))
@@ -277,7 +283,11 @@ class _Inference:
                 return
             self.constants.append(flow)
             flow = flow.accepted()
-        mark = flow.mark
+        self.keep(flow)
+
+    def keep(self, flow: TypeFlow) -> None:
+        """A value that fits its cell is stored, and queued if it is new."""
+        cell, mark = flow.cell, flow.mark
         if mark in cell.flows:
             cell.flows[mark].append(flow)
             return
@@ -327,20 +337,20 @@ class _Inference:
         found: dict[Role, dict[tuple[str, str], Type]] = {
             role: {} for role in ("scope", "input", "output", "variable")
         }
-        types = key_types(self.cells)
+        types = key_types(self.cells, self.readers)
+        cells: dict[tuple[str, str], Cell] = {}
         for cell in self.cells:
-            found[cell.role].setdefault((cell.path, cell.key), types[cell])
+            which = cell.path, cell.key
+            found[cell.role].setdefault(which, types.get(cell) or cell.declared)
+            if cell.role == "scope" or cell.role == "input":
+                cells[which] = cell
         return Types(
             keys=found["scope"],
             inputs=found["input"],
             outputs=found["output"],
             clashes=tuple(self.clashes.values()),
             constants=tuple(self.constants),
-            cells={
-                (cell.path, cell.key): cell
-                for cell in self.cells
-                if cell.role in ("scope", "input")
-            },
+            cells=cells,
         )
 
 
@@ -378,44 +388,48 @@ def _written(leaf: Leaf) -> dict[str, list[tuple[Span, Data]]]:
     return found
 
 
-def key_types(cells: list[Cell]) -> dict[Cell, Type]:
-    """The type of each cell. Linked cells without a declaration have one type."""
+Readers: TypeAlias = "Mapping[Cell, Sequence[Computation]]"
+"""The computations that read a cell."""
+
+
+def key_types(cells: list[Cell], readers: Readers) -> dict[Cell, Type]:
+    """The types of the cells without a declaration. Linked ones have one type."""
     groups = Groups()
     free = [cell for cell in cells if cell.declared == ANY]
     for cell in free:
         for link in cell.links:
             if link.declared == ANY:
                 groups.unite(cell, link)
-    read = _read(free, groups)
-    written: dict[Cell, set[Type]] = {}
-    for cell in free:
-        fresh = [alike[0].type for alike in cell.flows.values() if not alike[0].judged]
-        written.setdefault(groups.of(cell), set()).update(fresh)
+    of = {cell: groups.of(cell) for cell in free}
+    read = _read(of, readers)
+    written: dict[Cell, set[Type]] = {group: set() for group in of.values()}
+    for cell, group in of.items():
+        written[group].update(
+            [alike[0].type for alike in cell.flows.values() if not alike[0].judged]
+        )
     types = {
         group: settled(joined(found), _common(read.get(group, ())))
         for group, found in written.items()
     }
-    return {
-        cell: types[groups.of(cell)] if cell.declared == ANY else cell.declared for cell in cells
-    }
+    return {cell: types[group] for cell, group in of.items()}
 
 
-def _read(free: list[Cell], groups: Groups) -> dict[Cell, set[Type]]:
+def _read(groups: Mapping[Cell, Cell], readers: Readers) -> dict[Cell, set[Type]]:
     """The types that the readers of each group require; the readers of an item require a list.
-    `free` are the cells without a declaration."""
+    `groups` are the groups of the cells without a declaration."""
     read: dict[Cell, set[Type]] = {}
-    for cell in free:
+    for cell, group in groups.items():
         wanted = [link.declared for link in cell.links if link.declared != ANY]
         if wanted:
-            read.setdefault(groups.of(cell), set()).update(wanted)
-    for cell in free:
-        for computation in cell.readers:
+            read.setdefault(group, set()).update(wanted)
+    for cell, group in groups.items() if readers else ():
+        for computation in readers.get(cell, ()):
             if computation.items and computation.expression is None:
                 item = computation.cell.declared
                 if item == ANY:
-                    item = _common(read.get(groups.of(computation.cell), ()))
+                    item = _common(read.get(groups[computation.cell], ()))
                 if item != ANY:
-                    read.setdefault(groups.of(cell), set()).add(Type("list", (item,)))
+                    read.setdefault(group, set()).add(Type("list", (item,)))
     return read
 
 
@@ -463,7 +477,6 @@ class Cell:
     links: list[Cell] = field(default_factory=list, repr=False)
     flows: dict[tuple[object, ...], list[TypeFlow]] = field(default_factory=dict, repr=False)
     kinds: set[Type] | None = field(default=None, repr=False)
-    readers: list[Computation] = field(default_factory=list, repr=False)
     holds: Type | None = None
 
 
@@ -489,7 +502,7 @@ class TypeFlow:
     @property
     def mark(self) -> tuple[object, ...]:
         """The identity of a flow within its cell; of flows with one mark, one is propagated."""
-        return self.type, self.judged, self.origin if self.how == "value" else None
+        return self.type, self.judged, (self.first or self) if self.how == "value" else None
 
     @property
     def origin(self) -> TypeFlow:
@@ -550,4 +563,7 @@ def place_of(node: Node, key: Key) -> Span:
     """The span of a key of a state: its declaration, else its remap, else the state."""
     if key.span.source is node.span.source and key.span.source is not NOWHERE.source:
         return key.span
-    return next((remap.span for remap in node.remaps if remap.key == key.name), node.span)
+    for remap in node.remaps:
+        if remap.key == key.name:
+            return remap.span
+    return node.span

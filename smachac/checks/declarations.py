@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Iterator
+from collections.abc import Iterable, Iterator, Mapping
 from typing import Literal
 
 from smachac.analysis.accesses import callback_names, scripted_steps, userdata_fields
@@ -27,7 +27,7 @@ from smachac.ir import nodes
 from smachac.ir.code_places import key_place
 from smachac.ir.graph import START
 from smachac.ir.leaf import functions, variable, variable_of
-from smachac.ir.nodes import Key, Leaf, Machine, Node, Struct
+from smachac.ir.nodes import Container, Key, Leaf, Machine, Node, StateType, Struct
 from smachac.ir.traversal import remapping
 
 
@@ -72,10 +72,10 @@ def dead_key(context: Context) -> Iterator[Finding]:
         unset.setdefault(each.scope.path, set()).add(each.key)
     for scope in flow.scopes.values():
         container = scope.container
-        if container.sugar or _sees_everything(scope):
+        if container.sugar or context.of_container(_sees_everything, scope.path, scope):
             continue
-        read = _read_in(scope) | scope.outputs.keys()
-        for key, node, span in _set_by_the_script(scope):
+        read = context.of_container(_used_in, scope.path, scope)
+        for key, node, span in context.of_container(_set_by_the_script, scope.path, scope):
             if key in read or (scope.path, key) in reported:
                 continue
             if any(guesser([key])(name) for name in unset.get(scope.path, ())):
@@ -102,10 +102,10 @@ def _sees_everything(scope: UserdataScope) -> bool:
     )
 
 
-def _read_in(scope: UserdataScope) -> set[str]:
+def _used_in(scope: UserdataScope) -> set[str]:
     """The keys that a state in a container declares as inputs, that its class reads, or over which
-    it iterates."""
-    found = set(scope.reads.get(START, ()))
+    it iterates, and the outputs of the container."""
+    found = {*scope.reads.get(START, ()), *scope.outputs}
     for child in scope.container.children:
         names = remapping(child)
         found.update(names.get(key.name, key.name) for key in child.inputs)
@@ -126,20 +126,21 @@ def _written_in(scope: UserdataScope) -> set[str]:
     return found
 
 
-def _set_by_the_script(scope: UserdataScope) -> Iterator[tuple[str, Node, Span]]:
+def _set_by_the_script(scope: UserdataScope) -> tuple[tuple[str, Node, Span], ...]:
     """The keys of a container that the script itself sets, each once: presets and outputs that it
     lists, not those of a state type or sub-script."""
-    seen: set[str] = set()
-    for preset in scope.container.userdata:
-        seen.add(preset.key)
-        yield preset.key, scope.container, preset.span
+    found: list[tuple[str, Node, Span]] = [
+        (preset.key, scope.container, preset.span) for preset in scope.container.userdata
+    ]
+    seen = {preset.key for preset in scope.container.userdata}
     for child in scope.container.children:
         names = remapping(child)
         for each in child.outputs:
             key = names.get(each.name, each.name)
             if key not in seen and each.span.source is child.span.source and _sets(child, each):
                 seen.add(key)
-                yield key, child, place_of(child, each)
+                found.append((key, child, place_of(child, each)))
+    return tuple(found)
 
 
 def _sets(node: Node, key: Key) -> bool:
@@ -195,17 +196,16 @@ def unused_declaration(context: Context) -> Iterator[Finding]:
     flow = context.mended_flow
     missing = {(each.scope.path, each.key) for each in context.missing_keys("unset", "nowhere")}
     kept = {(each.other, each.key) for each in context.missing_keys("outside")}
-    for path, leaf in _leaves_with_code(context):
-        yield from _unused_by_code(path, leaf)
+    yield from context.at_containers(_unused_in)
     for scope in flow.scopes.values():
         container = scope.container
-        if container.sugar or _sees_everything(scope):
+        if container.sugar or context.of_container(_sees_everything, scope.path, scope):
             continue
-        used = _read_in(scope) | scope.outputs.keys()
+        used = context.of_container(_used_in, scope.path, scope)
         for key in container.inputs:
             if key.name not in used and (scope.path, key.name) not in kept:
                 yield _unused(scope.path, container, key, "input")
-        set_ = _written_in(scope)
+        set_ = context.of_container(_written_in, scope.path, scope)
         outer = scope.path.rpartition("/")[0]
         for key in container.outputs:
             if key.name not in set_ and (outer, scope.outputs[key.name]) not in missing:
@@ -238,6 +238,11 @@ def _unused_by_the_script(machine: Machine) -> Iterator[Finding]:
             related=tuple(Related(span=call, message=CALLED_HERE) for call in outside),
             node=machine.root.name,
         )
+
+
+def _unused_in(path: str, container: Container) -> Iterator[Finding]:
+    for inner, leaf in _leaves_with_code(path, container):
+        yield from _unused_by_code(inner, leaf)
 
 
 def _unused_by_code(path: str, leaf: Leaf) -> Iterator[Finding]:
@@ -322,7 +327,12 @@ def lossy_write(context: Context) -> Iterator[Finding]:
               callbacks: {n: 'lambda ud: ud.n + 1'}
               transitions: {succeeded: counted}
     """
-    for path, leaf in _leaves_with_code(context):
+    yield from context.at_containers(_lossy_writes)
+    yield from dropped_writes(context)
+
+
+def _lossy_writes(path: str, container: Container) -> Iterator[Finding]:
+    for inner, leaf in _leaves_with_code(path, container):
         for key in undeclared_writes(leaf):
             only = any(each.name == key for each in leaf.inputs)
             what = "only an input key" if only else "not one of its output keys"
@@ -337,19 +347,18 @@ def lossy_write(context: Context) -> Iterator[Finding]:
                 arguments=(key,),
                 help=meant or help,
                 related=calls(leaf, span),
-                node=path,
+                node=inner,
                 # With an edit, a state that reads the key that is not set would fail in the run.
                 edits=with_output(leaf, key) if not meant and not unset else (),
             )
-    yield from dropped_writes(context)
 
 
-def _leaves_with_code(context: Context) -> Iterator[tuple[str, Leaf]]:
-    """The leaves that see only declared keys: all but children of iterators, and open ones."""
-    for path, container in context.containers:
-        for child in container.children if not isinstance(container, nodes.Iterator) else ():
-            if isinstance(child, Leaf) and not child.open:
-                yield f"{path}/{child.name}", child
+def _leaves_with_code(path: str, container: Container) -> Iterator[tuple[str, Leaf]]:
+    """The leaves in a container that see only declared keys: all but children of iterators, and
+    open ones."""
+    for child in container.children if not isinstance(container, nodes.Iterator) else ():
+        if isinstance(child, Leaf) and not child.open:
+            yield f"{path}/{child.name}", child
 
 
 def _meant_keys(wrong: Iterable[str], known: Iterable[Key]) -> set[str]:
@@ -424,9 +433,16 @@ def undeclared_access(context: Context) -> Iterator[Finding]:
               default_outcome: high
               transitions: {low: low, high: high}
     """
-    for path, leaf in _leaves_with_code(context):
-        guess = guesser(each.name for each in leaf.inputs)
-        read = [*undeclared_reads(leaf), *undeclared_slot_reads(leaf, context.machine.state_types)]
+    yield from context.at_containers(_undeclared_accesses, context.machine.state_types)
+    yield from unknown_reads(context)
+
+
+def _undeclared_accesses(
+    path: str, container: Container, types: Mapping[str, StateType]
+) -> Iterator[Finding]:
+    for inner, leaf in _leaves_with_code(path, container):
+        read = [*undeclared_reads(leaf), *undeclared_slot_reads(leaf, types)]
+        guess = guesser(each.name for each in leaf.inputs) if read else guesser(())
         for key, code in read:
             span = key_place(code, key)
             yield Finding(
@@ -437,7 +453,6 @@ def undeclared_access(context: Context) -> Iterator[Finding]:
                 help=did_you_mean(guess(key))
                 or f"add `{key}` to the `input_keys` of `{leaf.name}`",
                 related=calls(leaf, code.span),
-                node=path,
+                node=inner,
                 edits=respelt(Word(key, span), guess.sure(key)),
             )
-    yield from unknown_reads(context)

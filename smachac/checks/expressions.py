@@ -26,7 +26,7 @@ from smachac.ir.code_places import (
 from smachac.ir.code_slips import Slip, corrected, slips
 from smachac.ir.expressions import print_expression
 from smachac.ir.leaf import functions, variable_of
-from smachac.ir.nodes import Expression, Leaf, Struct
+from smachac.ir.nodes import Expression, Leaf, Node, Struct
 from smachac.ir.traversal import expressions, outcome_names
 
 MAX_LEVELS = 500
@@ -66,23 +66,26 @@ def bad_expression(context: Context) -> Iterator[Finding]:
               callbacks: {n: 'lambda ud: ud.n + 1'}
               transitions: {succeeded: succeeded}
     """
-    for path, node in context.states:
-        conditions = functions(node, "conditions") if isinstance(node, Leaf) else None
-        compared = {code.span for code in (conditions or {}).values()}
-        for expression in expressions(node):
-            found = _slips(expression.text, expression.span in compared)
-            for slip in found[:1]:
-                yield Finding(
-                    span=place_in(expression, slip.start, slip.end),
-                    message=f"`{expression.text}` is not a valid expression: {slip.what}",
-                    arguments=(expression.text,),
-                    help=slip.help,
-                    related=calls(node, expression.span),
-                    node=path,
-                    edits=_cures(expression, found),
-                )
-        if isinstance(node, Leaf):
-            yield from _missing_code(node, path)
+    yield from context.at_states(_bad_expressions)
+
+
+def _bad_expressions(path: str, node: Node) -> Iterator[Finding]:
+    conditions = functions(node, "conditions") if isinstance(node, Leaf) else None
+    compared = {code.span for code in (conditions or {}).values()}
+    for expression in expressions(node):
+        found = _slips(expression.text, expression.span in compared)
+        for slip in found[:1]:
+            yield Finding(
+                span=place_in(expression, slip.start, slip.end),
+                message=f"`{expression.text}` is not a valid expression: {slip.what}",
+                arguments=(expression.text,),
+                help=slip.help,
+                related=calls(node, expression.span),
+                node=path,
+                edits=_cures(expression, found),
+            )
+    if isinstance(node, Leaf):
+        yield from _missing_code(node, path)
 
 
 def _slips(text: str, compares: bool) -> list[Slip]:

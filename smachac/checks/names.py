@@ -22,7 +22,7 @@ from smachac.diagnostics.source import Word
 from smachac.diagnostics.spelling import guesser, respelt
 from smachac.diagnostics.wording import listed
 from smachac.ir import nodes
-from smachac.ir.nodes import Concurrence, Container, Leaf, Node, Transition
+from smachac.ir.nodes import Concurrence, Container, Leaf, Node, StateMachine, Transition
 from smachac.ir.traversal import outcome_names
 
 
@@ -76,7 +76,7 @@ def unknown_target(context: Context) -> Iterator[Finding]:
               outcomes: [done]
               transitions: {done: stacked}
     """
-    lost = [fault for path, container in context.linear for fault in _lost(path, container)]
+    lost = context.at_containers(_lost)
     paths: dict[str, str] = {}
     for path, node in context.states if lost else ():
         paths.setdefault(node.name, context.plain_paths.get(path, path))
@@ -87,7 +87,9 @@ def unknown_target(context: Context) -> Iterator[Finding]:
             yield from _idle_transitions(path, container)
 
 
-def _lost(path: str, container: Linear) -> Iterator[_Lost]:
+def _lost(path: str, container: Container) -> Iterator[_Lost]:
+    if not isinstance(container, StateMachine | nodes.Sequence):
+        return
     names = children_names(container)
     exits = frozenset(outcome_names(container))
     guess = places_of(container)
@@ -194,15 +196,18 @@ def unknown_outcome(context: Context) -> Iterator[Finding]:
               outcomes: [done, slipped]
               transitions: {done: picked, slipped: lost}
     """
-    for path, container in context.containers:
-        if isinstance(container, nodes.Iterator):
-            yield from _unknown_loops(path, container)
-        elif not isinstance(container, Concurrence):
-            for child in container.children:
-                yield from _unknown_steps(path, child)
+    yield from context.at_containers(_unknown_outcomes)
+
+
+def _unknown_outcomes(path: str, container: Container) -> Iterator[Finding]:
+    if isinstance(container, nodes.Iterator):
+        yield from _unknown_loops(path, container)
+    elif not isinstance(container, Concurrence):
         for child in container.children:
-            if isinstance(child, Leaf):
-                yield from unknown_endings(f"{path}/{child.name}", child)
+            yield from _unknown_steps(path, child)
+    for child in container.children:
+        if isinstance(child, Leaf):
+            yield from unknown_endings(f"{path}/{child.name}", child)
 
 
 def _unknown_steps(path: str, child: Node) -> Iterator[Finding]:

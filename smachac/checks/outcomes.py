@@ -10,7 +10,7 @@ from smachac.checks.messages import calls, did_you_mean, other_place, own_name
 from smachac.checks.rule import rule
 from smachac.diagnostics.diagnostic import Finding, Severity
 from smachac.ir import nodes
-from smachac.ir.nodes import Concurrence, Node, Outcome, Transition
+from smachac.ir.nodes import Concurrence, Container, Node, Outcome, StateMachine, Transition
 from smachac.ir.outcome_names import PREEMPTED, fails
 from smachac.ir.traversal import outcome_names
 
@@ -143,7 +143,11 @@ def unhandled_outcome(context: Context) -> Iterator[Finding]:
               outcomes: [done, slipped, blocked]
               transitions: {done: picked, slipped: lost, blocked: lost}
     """
-    for path, container in context.linear:
+    yield from context.at_containers(_unhandled_outcomes)
+
+
+def _unhandled_outcomes(path: str, container: Container) -> Iterator[Finding]:
+    if isinstance(container, StateMachine | nodes.Sequence):
         for child in container.children:
             for outcome in unhandled(child):
                 yield _unhandled(path, container, child, outcome)

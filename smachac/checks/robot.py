@@ -238,20 +238,28 @@ def not_a_rotation(context: Context) -> Iterator[Finding]:
               outcomes: [done]
               transitions: {done: done}
     """
+    known: dict[tuple[TypeFlow, Type], list[tuple[tuple[Data, ...], float]]] = {}
     for flow in context.types.constants:
-        for rotation in _rotations(flow.value, flow.cell.declared):
-            numbers = [as_float(each) for each in rotation if is_number(each)]
-            if len(numbers) != 4:
-                continue
-            length = math.hypot(*numbers)
-            if abs(length * length - 1.0) <= ROTATION_TOLERANCE:
-                continue
+        which = flow.origin, flow.cell.declared
+        if which not in known:
+            known[which] = [*_wrong_rotations(*which)]
+        for rotation, length in known[which]:
             help = "write `[0.0, 0.0, 0.0, 1.0]` for no rotation"
             if length > 0.0 and math.isfinite(length):
+                numbers = [as_float(each) for each in rotation]
                 nearest = ", ".join(f"{number / length:.4f}" for number in numbers)
                 help = f"write the nearest rotation, `[{nearest}]`"
             message = f"the quaternion {list(rotation)} has the length {length:.4g}, not 1"
             yield at(flow, message, help, tuple(map(str, rotation)))
+
+
+def _wrong_rotations(origin: TypeFlow, wanted: Type) -> Iterator[tuple[tuple[Data, ...], float]]:
+    """The quaternions in a literal that is read as a type, if their length is not 1, with it."""
+    for rotation in _rotations(origin.value, wanted):
+        numbers = [as_float(each) for each in rotation if is_number(each)]
+        length = math.hypot(*numbers)
+        if len(numbers) == 4 and not abs(length * length - 1.0) <= ROTATION_TOLERANCE:  # also NaN
+            yield rotation, length
 
 
 def _rotations(data: Data, wanted: Type) -> Iterator[tuple[Data, ...]]:

@@ -205,15 +205,15 @@ def unknown_remap(context: Context) -> Iterator[Finding]:
               remapping: {pose: block_pose}
               transitions: {succeeded: held}
     """
-    for path, node in context.states:
-        if path != context.machine.root.name:
-            yield from _unknown_remaps(path, node)
+    yield from context.at_states(_unknown_remaps)
     guesses = _Guesses()
     for missing in context.missing_keys("remapped"):
         yield from _remapped(missing, guesses)
 
 
 def _unknown_remaps(path: str, node: Node) -> Iterator[Finding]:
+    if not node.remaps or path == node.name:  # the machine has no userdata around it
+        return
     own = list(dict.fromkeys(key.name for key in (*node.inputs, *node.outputs)))
     for remap, meant, certain in unknown_remaps(node):
         known = f"use one of its keys: {listed(own)}" if own else "remove it: the state has no keys"

@@ -298,8 +298,14 @@ def doubtful_unit(context: Context) -> Iterator[Finding]:
     """
     types = context.machine.state_types
     simulated = frozenset(name for name, type_ in types.items() if type_.simulation)
-    constants = context.types.constants
-    wrong = [each for each in constants if _degrees(each) or _millimetres(each, simulated)]
+    large: dict[TypeFlow, bool] = {}
+    wrong = []
+    for each in context.types.constants:
+        origin = each.origin
+        if origin not in large:
+            large[origin] = any(min(FULL_TURN, FARTHEST) < abs(x) for x in numbers(origin.value))
+        if large[origin] and (_degrees(each) or _millimetres(each, simulated)):
+            wrong.append(each)
     flows: dict[TypeFlow, list[TypeFlow]] = {}
     for flow in reaching_flows(wrong):
         flows.setdefault(flow.origin, []).append(flow)

@@ -32,7 +32,8 @@ def fields(here: Request) -> Iterable[Completion]:
     needed += [name for name, each in variables.items() if each.required]
     if body.name is None:
         needed.insert(1, "template")
-    order = dict.fromkeys([*needed, *likely(here, type_), *variables, *usual_order(known)])
+    words = [*needed, *likely(here, type_), *variables, *usual_order(known)]
+    order = {name: None for name in words if name in variables or name in schema.VARIABLES}
     value = _value_behind(here)
     for name in sorted(order, key=lambda name: not _fits(here, name, variables.get(name), value)):
         other = {"template": "script", "script": "template"}.get(name, "")

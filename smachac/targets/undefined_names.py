@@ -15,6 +15,7 @@ from typing import NamedTuple
 
 from smachac.analysis.accesses import USERDATA
 from smachac.analysis.code_slots import code_slots, free_in, parameters
+from smachac.analysis.context import Context
 from smachac.diagnostics.diagnostic import Diagnostic, Edit
 from smachac.diagnostics.source import Span, Word
 from smachac.diagnostics.spelling import guesser
@@ -24,7 +25,7 @@ from smachac.ir.code_places import node_place, python_tree
 from smachac.ir.code_slips import CONSTANTS
 from smachac.ir.expressions import looks_like_expression
 from smachac.ir.nodes import Data, Expression, Leaf, Machine, Node, StateType, Struct
-from smachac.ir.traversal import expressions, walk
+from smachac.ir.traversal import expressions
 
 _MAKES_NAMES = re.compile(r"import \*|[\"']\*[\"']|\w\{\{|\}\}\w")
 _BLOCK = re.compile(r"\{%[-+]?\s*(?:end)?block\b[^%]*%\}")
@@ -45,17 +46,12 @@ class _Use(NamedTuple):
         return node_place(self.code, self.name)
 
 
-def undefined_names(machine: Machine, library: Library) -> Iterator[Diagnostic]:
+def undefined_names(context: Context, library: Library) -> Iterator[Diagnostic]:
     """The undefined names, each at the place that uses it."""
+    machine = context.machine
     types = machine.state_types
-    nodes = [node for _, node in walk(machine.root)]
-    used = [use for node in nodes for code in _codes(node, types) for use in _uses(node, code)]
-    classes = [
-        word
-        for node in nodes
-        for word in _message_types(node, types)
-        if word.text.isidentifier() and not hasattr(builtins, word.text)
-    ]
+    used = context.at_states(_names_used, types)
+    classes = context.at_states(_classes_used, types)
     known = _known(machine, library) if used or classes else None
     for use in used:
         if use.name.id in USERDATA or (known is not None and use.name.id not in known):
@@ -70,6 +66,17 @@ def undefined_names(machine: Machine, library: Library) -> Iterator[Diagnostic]:
             why = f"`{word.text}` is used here but nothing imports it"
             help = f"write its package as well, as in `{package}/{word.text}`"
             yield undefined_name(word.span, word.text, word.text, False, NameFix(help, why))
+
+
+def _names_used(_: str, node: Node, types: Mapping[str, StateType]) -> Iterator[_Use]:
+    for code in _codes(node, types):
+        yield from _uses(node, code)
+
+
+def _classes_used(_: str, node: Node, types: Mapping[str, StateType]) -> Iterator[Word]:
+    for word in _message_types(node, types):
+        if word.text.isidentifier() and not hasattr(builtins, word.text):
+            yield word
 
 
 _PACKAGES: Mapping[str, str] = {

@@ -177,6 +177,13 @@ def test_a_field_fits_the_value_behind_it(old: str, new: str, first: str, tmp_pa
     assert offered(ARM.replace(old, new, 1), tmp_path)[0] == first
 
 
+def test_a_misspelt_field_of_a_similar_state_is_not_offered(tmp_path: Path) -> None:
+    state = "- AGAIN:\n    template: LoadModelState\n    |: block\n"
+    found = offered(ARM.replace("model_name:", "model_nmae:", 1) + state, tmp_path)
+    assert found[0] == "model_name"
+    assert "model_nmae" not in found
+
+
 def test_the_word_that_was_deleted_is_first() -> None:
     chosen = random.Random(0).sample(places(), 100)
     first = 0

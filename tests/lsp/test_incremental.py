@@ -3,9 +3,11 @@
 from __future__ import annotations
 
 import os
+from collections.abc import Mapping
 from pathlib import Path
 from typing import Any
 
+import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
@@ -16,84 +18,7 @@ from smachac.frontend.files import Disk
 from smachac.ir.nodes import Container, Leaf
 from smachac.lsp.session import Session
 from tests.support.lsp_edits import Edit, edited, edits
-
-FILES = {
-    "main.yml": """\
-name: sm
-template: Base
-outcomes: [done, stuck]
-types: {Joints: "float[7]"}
-params: {seconds: 2}
-userdata: {target: [[0.5, 0.0, 0.1], [0.0, 0.0, 0.0, 1.0]], tries: 0}
-states:
-- FIRST: {script: part, remapping: {pose: target}, transitions: {ok: SECOND, bad: stuck}}
-- SECOND:
-    script: part
-    params: {seconds: 3}
-    remapping: {pose: target}
-    transitions: {ok: THIRD, bad: stuck}
-- THIRD: {script: wait, transitions: {succeeded: LAST, preempted: stuck}}
-- LAST: {script: grasp, transitions: {succeeded: done, lost: stuck}}
-""",
-    "part.yml": """\
-- PART:
-    template: StateMachine
-    outcomes: [ok, bad]
-    input_keys: [pose]
-    states:
-    - PLAN:
-        template: PoseToJointPositionsState
-        remapping: {joints: positions}
-        transitions: {succeeded: MOVE, aborted: bad}
-    - MOVE:
-        template: MoveToJointPositionsState
-        timeout: 5
-        transitions: {succeeded: WAIT, aborted: bad, preempted: bad, timeout: bad}
-    - WAIT: {script: wait, transitions: {succeeded: ok, preempted: bad}}
-""",
-    "wait.yml": """\
-- WAIT:
-    template: SleepState
-    time: [params, seconds]
-""",
-    "grasp.yml": """\
-- GRASP:
-    template: Grasp
-    outcomes: [succeeded, lost]
-    retry: {on: [lost], max: 2}
-    transitions: {exhausted: lost}
-""",
-    "templates/Grasp.yml": """\
-name: Grasp
-output_keys: {width: float}
-outcomes: {succeeded: {}, lost: {failure: true}}
-code: {python: "cell:Grasp"}
-""",
-    "cell.py": """\
-import smach
-
-
-class Grasp(smach.State):
-    def __init__(self):
-        super().__init__(outcomes=["succeeded", "lost"], output_keys=["width"])
-
-    def execute(self, userdata):
-        userdata.width = 0.1
-        return "succeeded" if userdata.width else "lost"
-""",
-}
-"""A project in which sub-scripts call others, with params, a state type and a class of its own."""
-
-
-def project(folder: Path) -> dict[str, str]:
-    """Write the project; its texts by real path."""
-    texts = {}
-    for name, text in FILES.items():
-        path = folder / name
-        path.parent.mkdir(exist_ok=True, parents=True)
-        path.write_text(text, "utf-8")
-        texts[os.path.realpath(path)] = text
-    return texts
+from tests.support.lsp_projects import FAULTY, FILES, project
 
 
 def identity_of(item: Diagnostic) -> tuple[Any, ...]:
@@ -117,22 +42,63 @@ def fresh(main: str, texts: dict[str, str]) -> list[str]:
     return sorted(repr(identity_of(item)) for item in report)
 
 
-@settings(max_examples=15, deadline=None, derandomize=True)
-@given(steps=st.lists(st.tuples(st.sampled_from(sorted(FILES)), edits()), max_size=8))
-def test_findings_after_edits_of_any_file_are_those_of_a_fresh_check(
-    steps: list[tuple[str, Edit]], tmp_path_factory: Any
-) -> None:
-    folder = Path(os.path.realpath(tmp_path_factory.mktemp("project")))
-    texts = project(folder)
+def compare_edits(files: Mapping[str, str], steps: list[tuple[int, Edit]], folder: Path) -> None:
+    """Edit files of a project, and compare the findings with those of fresh checks."""
+    texts = project(folder, files)
     main = str(folder / "main.yml")
     session = Session([folder])
     assert found(session, main) == fresh(main, texts)
-    histories = {name: [text] for name, text in FILES.items()}
-    for name, step in steps:
+    histories = {name: [text] for name, text in files.items()}
+    for which, step in steps:
+        name = sorted(files)[which % len(files)]
         path = str(folder / name)
         texts[path], _ = edited(histories[name], step)
         session.change(path, texts[path])
         assert found(session, main) == fresh(main, texts)
+
+
+STEPS = st.lists(st.tuples(st.integers(0, 5), edits()), max_size=8)
+
+
+@pytest.mark.parametrize("files", [FILES, FAULTY], ids=["sound", "faulty"])
+@settings(max_examples=10, deadline=None, derandomize=True)
+@given(steps=STEPS)
+def test_findings_after_edits_of_any_file_are_those_of_a_fresh_check(
+    files: Mapping[str, str], steps: list[tuple[int, Edit]], tmp_path_factory: Any
+) -> None:
+    compare_edits(files, steps, Path(os.path.realpath(tmp_path_factory.mktemp("project"))))
+
+
+KEPT = {"SM016", "SM019", "SM101", "SM102", "SM104", "SM302", "SM305", "SM306", "SM308", "SM310"}
+"""Codes whose findings in a container are kept while it is the same object."""
+
+
+def test_findings_in_a_sub_script_that_has_not_changed(tmp_path: Path) -> None:
+    folder = Path(os.path.realpath(tmp_path))
+    texts = project(folder, FAULTY)
+    main, wait = str(folder / "main.yml"), str(folder / "wait.yml")
+    session = Session([folder])
+    first = fresh(main, texts)
+    codes = {item.code for each in session.check(main).values() for item in each}
+    assert codes >= KEPT
+    faults = container(session, main, "FIRST")
+    for seconds in ("2", "3"):
+        texts[wait] = FAULTY["wait.yml"].replace("1", seconds)
+        session.change(wait, texts[wait])
+        assert found(session, main) == fresh(main, texts) == first
+        assert container(session, main, "FIRST") is faults
+
+
+def test_findings_that_depend_on_a_state_type_are_found_again(tmp_path: Path) -> None:
+    folder = Path(os.path.realpath(tmp_path))
+    texts = project(folder)
+    main, interface = str(folder / "main.yml"), str(folder / "templates" / "Grasp.yml")
+    session = Session([folder])
+    assert found(session, main) == fresh(main, texts)
+    for old, new in (("lost:", "dropped:"), ("width: float", "force: float"), ("cell:G", "cell:g")):
+        texts[interface] = FILES["templates/Grasp.yml"].replace(old, new)
+        session.change(interface, texts[interface])
+        assert found(session, main) == fresh(main, texts) != []
 
 
 def container(session: Session, main: str, name: str) -> Container:
