@@ -6,11 +6,15 @@ worker over many runs, and the success rate against its Markov prediction.
 
 from __future__ import annotations
 
+import os
 import statistics
 import sys
 import time
+from collections.abc import Iterator
+from contextlib import contextmanager
 from functools import partial
 from pathlib import Path
+from tempfile import TemporaryDirectory
 
 sys.path.insert(0, str(Path(__file__).parents[1]))
 
@@ -19,16 +23,17 @@ from smachac.diagnostics.source import Source
 from smachac.ir.outcome_names import successes
 from smachac.robots.faults import read_file as read_faults
 from smachac.robots.files import read_file
+from smachac.sweep.database import Database
 from smachac.sweep.engine import perform_runs
 from smachac.sweep.local import LocalWorker, wait
 from smachac.sweep.summary import Totals
-from smachac.sweep.task import Task
+from smachac.sweep.task import Runner, Task
 from smachac.verify.statistics_report import forecast
 from smachac.verify.trace_statistics import wilson_interval
 
 MACHINES = Path(__file__).parent / "machines"
 WARM_UP = 2
-"""The runs of each worker before the clock starts."""
+"""The runs before the clock starts."""
 
 
 def task() -> Task:
@@ -37,17 +42,55 @@ def task() -> Task:
     return Task(source=Source(str(script), script.read_text("utf-8")), faults=faults)
 
 
-def rate(jobs: int, runs: int) -> tuple[float, float]:
-    """Runs per second after each worker has started and warmed up, and the share of the workers'
-    time that they spent in runs, which other work on the computer does not change."""
-    warm = WARM_UP * jobs
-    found = perform_runs(range(warm + runs), partial(LocalWorker, task()), wait, jobs=jobs)
-    for _ in range(warm):
-        next(found)
-    began = time.perf_counter()
-    walls = [run.wall for run in found]
-    seconds = time.perf_counter() - began
-    return len(walls) / seconds, sum(walls) / (jobs * seconds)
+def cpu_time() -> float:
+    """The CPU time of this process and of its children that have ended (s)."""
+    times = os.times()
+    return times.user + times.system + times.children_user + times.children_system
+
+
+def cpu_of_one(runs: int) -> float:
+    """The CPU time of a run in a loop in this process (s), after it has warmed up."""
+    runner = Runner(task())
+    with quiet():
+        for seed in range(WARM_UP):
+            runner.run(seed)
+        began = time.process_time()
+        for seed in range(runs):
+            runner.run(seed)
+        return (time.process_time() - began) / runs
+
+
+@contextmanager
+def quiet() -> Iterator[None]:
+    """Drops the standard output of this process, also that of C++."""
+    sys.stdout.flush()
+    kept, nowhere = os.dup(1), os.open(os.devnull, os.O_WRONLY)
+    os.dup2(nowhere, 1)
+    try:
+        yield
+    finally:
+        sys.stdout.flush()
+        os.dup2(kept, 1)
+        os.close(kept)
+        os.close(nowhere)
+
+
+def sweep_of(jobs: int, runs: int) -> tuple[float, float]:
+    """The CPU time of a sweep with its database, of all processes from start to end (s), and the
+    share of the workers' time that they spent in runs after they had started."""
+    began, busy, started = cpu_time(), 0.0, 0.0
+    with TemporaryDirectory() as folder:
+        database = Database(Path(folder) / "runs.db", {})
+        workers = partial(LocalWorker, task())
+        for number, run in enumerate(perform_runs(range(runs), workers, wait, jobs=jobs)):
+            database.add(run)
+            if number == jobs - 1:
+                started = time.perf_counter()
+            elif number >= jobs:
+                busy += run.wall
+        database.close()
+    seconds = time.perf_counter() - started
+    return cpu_time() - began, busy / (jobs * seconds)
 
 
 def memory(worker: LocalWorker) -> float:
@@ -58,17 +101,26 @@ def memory(worker: LocalWorker) -> float:
 
 
 def rates(runs: int, rounds: int, jobs: int = 2) -> None:
-    ratios, shares = [], []
+    """The CPU time of runs in a sweep against that of the same runs in a loop in one process. Other
+    work on the computer changes the rates of both, and their ratio hardly."""
+    shares, starts = [], []
     for _ in range(rounds):
-        (one, _), (more, busy) = rate(1, runs), rate(jobs, runs)
-        ratios.append(more / (jobs * one))
-        shares.append(busy)
+        one = cpu_of_one(runs)
+        (few, _), (all_, busy) = sweep_of(jobs, jobs), sweep_of(jobs, runs)
+        each = (all_ - few) / (runs - jobs)
+        start = max(0.0, few - jobs * each)
+        shares.append(one / each * busy)
+        starts.append(start)
+        print(f"CPU time of a run: {one:.3f} s in a loop, {each:.3f} s in a sweep with {jobs} jobs")
         print(
-            f"{one:.2f} runs/s in 1 process, {more:.2f} in {jobs}: {ratios[-1]:.0%} of {jobs} x 1"
+            f"  start of {jobs} processes {start:.1f} s of CPU time, in runs {busy:.1%} of the time"
         )
-        print(f"  the {jobs} processes were in runs for {busy:.1%} of the time", flush=True)
-    middle = statistics.median(ratios)
-    print(f"the middle of {rounds}: {middle:.0%}, {statistics.median(shares):.1%}")
+    rate, start = statistics.median(shares), statistics.median(starts)
+    print(
+        f"the middle of {rounds}: {rate:.0%} of {jobs} x the rate of one process, after the start"
+    )
+    whole = 1000 * one / (1000 * one / rate + start)
+    print(f"1,000 runs with the start: {whole:.0%}")
 
 
 def many(runs: int) -> None:

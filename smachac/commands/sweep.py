@@ -126,6 +126,8 @@ def sweep_command(arguments: Namespace) -> int:
         if path is not None and (path.is_dir() or not path.parent.is_dir()):
             what = "is a folder" if path.is_dir() else "is in a folder that does not exist"
             return usage(f"--{option} {path} {what}")
+    if (twice := _file_with_two_uses(arguments)) is not None:
+        return usage(twice)
     prepared = _prepared(arguments)
     if isinstance(prepared, int):
         return prepared
@@ -143,6 +145,20 @@ def sweep_command(arguments: Namespace) -> int:
     finally:
         database.close()
     return 130 if interrupted else code
+
+
+def _file_with_two_uses(arguments: Namespace) -> str | None:
+    """A message if two of the arguments name one file, which the report would overwrite."""
+    uses: dict[Path, str] = {}
+    for name in ("script", "faults", "mock", "database", "output", "junit"):
+        path: Path | None = getattr(arguments, name)
+        if path is None or (path.exists() and not path.is_file()):
+            continue
+        other = uses.setdefault(path.resolve(), name)
+        if other != name:
+            what = "the script" if other == "script" else f"the file of --{other}"
+            return f"--{name} {path} is {what}"
+    return None
 
 
 def _has_ray() -> bool:

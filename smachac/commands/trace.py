@@ -106,6 +106,7 @@ def stats_command(arguments: Namespace) -> int:
     from smachac.ir.outcome_names import successes
     from smachac.ir.traversal import outcome_names
     from smachac.report.terminal import on_one_line
+    from smachac.sweep.database import DatabaseError
     from smachac.verify.statistics_report import (
         forecast,
         forecast_dot,
@@ -123,7 +124,7 @@ def stats_command(arguments: Namespace) -> int:
             return usage(f"the machine has no outcome `{name}`", name, own)
     try:
         judged, _, statistics = _judged(arguments.traces, machine)
-    except UnreadableTraceError as error:
+    except (UnreadableTraceError, DatabaseError) as error:
         return usage(str(error))
     bad = refusals(judged)
     if bad:
@@ -150,8 +151,8 @@ def _machine(arguments: Namespace) -> Machine | None:
 def _judged(
     paths: list[Path], machine: Machine, *, conformance: bool = False
 ) -> tuple[list[JudgedTrace], Coverage, TraceStatistics]:
-    """Every trace, with what all of them cover and count. Raises UnreadableTraceError. The runs of
-    a database have no events, and so no `conformance`."""
+    """Every trace, with what all of them cover and count. The runs of a database have no events,
+    and so no `conformance`. Raises UnreadableTraceError, and DatabaseError for a database."""
     from smachac.verify.coverage import Coverage
     from smachac.verify.trace_report import judge_trace
     from smachac.verify.trace_statistics import TraceStatistics
@@ -187,18 +188,15 @@ def _is_database(path: Path) -> bool:
 def _add_database(
     path: Path, machine: Machine, taken: Coverage, statistics: TraceStatistics
 ) -> None:
-    """Add the runs of a sweep. Raises UnreadableTraceError."""
+    """Add the runs of a sweep. Raises UnreadableTraceError and DatabaseError."""
     from contextlib import closing
 
-    from smachac.sweep.database import Database, DatabaseError
+    from smachac.sweep.database import Database
     from smachac.sweep.task import merge_states
 
-    try:
-        with closing(Database(path, None)) as database:
-            if database.inputs().get("script") != machine.digest:
-                raise UnreadableTraceError(path, "its runs are those of another script")
-            for run in database.runs():
-                taken.covered.update(run.covered)
-                merge_states(statistics, run.states)
-    except DatabaseError as error:
-        raise UnreadableTraceError(path, str(error)) from None
+    with closing(Database(path, None)) as database:
+        if database.inputs().get("script") != machine.digest:
+            raise UnreadableTraceError(path, "its runs are those of another script")
+        for run in database.runs():
+            taken.covered.update(run.covered)
+            merge_states(statistics, run.states)

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Callable
+from collections.abc import Callable, Iterator
 from dataclasses import replace
 from typing import TypeVar
 
@@ -16,9 +16,9 @@ from smachac.frontend.script import State
 from smachac.frontend.urdf import XACRO, UrdfError, read_joints, read_urdf
 from smachac.frontend.yaml_tree import Tree
 from smachac.ir.nodes import StateType
-from smachac.ir.robot import Joint, Robot
+from smachac.ir.robot import Arm, Joint, Robot
 from smachac.robots import description, scene
-from smachac.robots.description import Description, Station, limb_names
+from smachac.robots.description import Description, Part, Station, limb_names
 from smachac.robots.fields import DataError, guess
 from smachac.robots.files import BUILT_IN
 from smachac.robots.files import SUFFIXES as DESCRIPTIONS
@@ -130,7 +130,7 @@ class _Reader:
         for name in BUILT_IN:
             known = built_in_robot(name, self.library)
             if known and names.issuperset(joint.name for limb in known.limbs for joint in limb):
-                return replace(robot, description=name, limb_names=())
+                return replace(robot, description=name)
         return robot
 
     def data(
@@ -177,12 +177,21 @@ class _Reader:
         if facts is None:
             return None
         joints, frames = facts
-        limbs = tuple(tuple(joints[name] for name in limb.joints) for limb in data.limbs)
+        arms = tuple(
+            Arm(
+                name=limb.name,
+                limb=limb,
+                joints=tuple(joints[name] for name in limb.joints),
+                base=data.base,
+            )
+            for limb in data.limbs
+        )
         return Robot(
             name=data.name,
             joints=tuple(joints.values()),
-            limbs=limbs,
-            limb_names=tuple(limb.name for limb in data.limbs),
+            limbs=tuple(arm.joints for arm in arms),
+            arms=arms,
+            base=data.base,
             description=word.text,
             frames=frames,
         )
@@ -234,7 +243,7 @@ class _Reader:
 
     def station(self, word: Word, source: Source, data: Station, tree: Tree) -> Robot | None:
         """Several robots as one: the joints and limbs of all."""
-        found: list[tuple[str, Robot]] = []
+        found: list[tuple[Part, Robot]] = []
         for part in data.parts:
             text = (
                 self.library.script(part.robot, source.name)
@@ -250,15 +259,24 @@ class _Reader:
             robot = self.described(Word(part.robot, span), text)
             if robot is None:
                 return None
-            found.append((part.name, robot))
+            found.append((part, robot))
         joints = {joint.name: joint for _, each in found for joint in each.joints}
         return Robot(
             name=data.name,
             joints=tuple(joints.values()),
             limbs=tuple(limb for _, each in found for limb in each.limbs),
-            limb_names=tuple(
-                name for part, each in found for name in limb_names(part, each.limb_names)
-            ),
+            arms=tuple(arm for part, each in found for arm in _arms(part, each, data)),
+            base=data.base,
             description=word.text,
-            scene=frozenset(part for part, _ in found),
+            scene=frozenset(part.name for part, _ in found),
         )
+
+
+def _arms(part: Part, robot: Robot, station: Station) -> Iterator[Arm]:
+    """The arms of a part, with their names and their base in the station."""
+    from smachac.sim.transforms import compose
+
+    base = robot.base if part.base is None else compose(station.base, part.base)
+    names = limb_names(part.name, robot.limb_names)
+    for name, arm in zip(names, robot.arms, strict=True):
+        yield replace(arm, name=name, base=base)

@@ -6,6 +6,8 @@ import math
 from dataclasses import dataclass, field
 
 from smachac.diagnostics.source import NOWHERE, Span
+from smachac.robots.description import Limb
+from smachac.robots.fields import IDENTITY, Pose
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -24,11 +26,23 @@ class Joint:
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
+class Arm:
+    """An arm of a described robot: its name for states, its description, its joints with their
+    limits, and the pose of the base of its robot (world frame)."""
+
+    name: str
+    limb: Limb
+    joints: tuple[Joint, ...]
+    base: Pose
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
 class Robot:
     """A robot: its joints, its limbs, the names of its frames.
 
     A limb is a chain of joints from the base to the hand, to which lists of joint positions refer.
-    `limb_names` are the names of the limbs for states; empty where the robot has no description.
+    `arms` are the described limbs; empty where the robot has no description of its own. `base` is
+    the frame in which poses are given (world frame).
     `description` is what the simulation loads: the name of a built-in robot or the file of a
     description; empty for a robot that cannot be simulated. `scene` has the names of the bodies and
     of the single robots that are in the world from the start. `frames` are the names of its links,
@@ -39,12 +53,18 @@ class Robot:
     name: str
     joints: tuple[Joint, ...]
     limbs: tuple[tuple[Joint, ...], ...]
-    limb_names: tuple[str, ...] = ()
+    arms: tuple[Arm, ...] = ()
+    base: Pose = IDENTITY
     description: str = ""
     scene: frozenset[str] = frozenset()
     frames: frozenset[str] = frozenset()
     added: frozenset[str] = frozenset()
     span: Span = field(default=NOWHERE, compare=False, repr=False)
+
+    @property
+    def limb_names(self) -> tuple[str, ...]:
+        """The names of the arms for states."""
+        return tuple(arm.name for arm in self.arms)
 
 
 MODELS = ("block", "brick", "cafe_table", "corner_block", "goal", "table", "wall")

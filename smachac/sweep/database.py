@@ -124,12 +124,22 @@ class Database:
             return self._connection.execute(statement, _row(run)).rowcount > 0
 
     def runs(self, first: int | None = None, count: int = 0) -> Iterator[Run]:
-        """The runs in the order of their seeds: all, or those of `count` seeds from `first` on."""
+        """The runs in the order of their seeds: all, or those of `count` seeds from `first` on.
+
+        Raises DatabaseError, also for a row whose values are not those of a run.
+        """
         select = f"SELECT {', '.join(COLUMNS)} FROM runs"
         where = "" if first is None else f" WHERE seed >= {first:d} AND seed < {first + count:d}"
         with self._errors():
             for row in self._connection.execute(f"{select}{where} ORDER BY seed"):
-                yield _run(row)
+                try:
+                    run = _run(row)
+                except (ValueError, TypeError, AttributeError, KeyError):
+                    raise DatabaseError(
+                        f"the database {self._path} cannot be used:"
+                        f" the values of the run with seed {row[0]} are wrong"
+                    ) from None
+                yield run
 
 
 def _row(run: Run) -> tuple[Any, ...]:
@@ -156,17 +166,24 @@ def _run(row: tuple[Any, ...]) -> Run:
     seed, values, outcome, error, seconds, wall, steps, states, covered, faults, world = row
     return Run(
         seed=seed,
-        values=json.loads(values),
+        values=dict(json.loads(values)),
         outcome=outcome,
         error=error,
-        seconds=seconds,
-        wall=wall,
-        steps=[(path, end) for path, end in json.loads(steps)],
+        seconds=float(seconds),
+        wall=float(wall),
+        steps=[(path, end) for path, end in _listed(json.loads(steps))],
         states={
             path: StateStatistics(Counter(outcomes), total, longest, unfinished)
             for path, (outcomes, total, longest, unfinished) in json.loads(states).items()
         },
-        covered=[CoverageItem(*item) for item in json.loads(covered)],
-        faults=json.loads(faults),
+        covered=[CoverageItem(*item) for item in _listed(json.loads(covered))],
+        faults=[str(fault) for fault in _listed(json.loads(faults))],
         world=world,
     )
+
+
+def _listed(data: Any) -> list[Any]:
+    """A list. Raises TypeError for other data."""
+    if not isinstance(data, list):
+        raise TypeError
+    return data

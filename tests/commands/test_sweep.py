@@ -143,6 +143,65 @@ def test_a_database_of_another_program_is_refused(
     assert "is not a database of `smachac sweep`" in capsys.readouterr().err
 
 
+def broken(path: Path, change: str) -> None:
+    """Damages a database of a sweep: cuts it off, or changes one value of the run with seed 3."""
+    if change == "cut":
+        path.write_bytes(path.read_bytes()[:5000])
+        return
+    connection = sqlite3.connect(path)
+    with connection:
+        connection.execute(f"UPDATE runs SET {change} WHERE seed = 3")
+    connection.close()
+
+
+@pytest.mark.parametrize(
+    ("change", "reason"),
+    [
+        ("cut", "database disk image is malformed"),
+        ("steps = 'no JSON'", "the values of the run with seed 3 are wrong"),
+        ("states = '[1]'", "the values of the run with seed 3 are wrong"),
+        ("covered = NULL", "the values of the run with seed 3 are wrong"),
+        ("vary = '7'", "the values of the run with seed 3 are wrong"),
+        ("faults = '{}'", "the values of the run with seed 3 are wrong"),
+        ("wall = 'long'", "the values of the run with seed 3 are wrong"),
+    ],
+)
+def test_a_damaged_database_is_one_message(
+    folder: Path, capsys: pytest.CaptureFixture[str], change: str, reason: str
+) -> None:
+    swept(capsys, "--runs", "8", "--database", "sweep.db")
+    broken(folder / "sweep.db", change)
+    message = f"the database sweep.db cannot be used: {reason}\n"
+    assert main(["stats", "main.yml", "sweep.db"]) == 2
+    assert capsys.readouterr().err == f"smachac: error: {message}"
+    assert main([*MOCK, "--runs", "8", "--database", "sweep.db"]) in (1, 2)
+    assert capsys.readouterr().err.endswith(message)
+
+
+@pytest.mark.parametrize(
+    ("words", "names"),
+    [
+        (["-o", "main.yml"], "--output main.yml is the script"),
+        (["--junit", "./chances.yml"], "--junit chances.yml is the file of --mock"),
+        (["--database", "main.yml"], "--database main.yml is the script"),
+        (["--database", "a.db", "--junit", "a.db"], "--junit a.db is the file of --database"),
+        (["-o", "a.xml", "--junit", "a.xml"], "--junit a.xml is the file of --output"),
+        (["-o", "linked.yml"], "--output linked.yml is the script"),
+    ],
+)
+def test_a_file_has_one_use(
+    folder: Path, capsys: pytest.CaptureFixture[str], words: list[str], names: str
+) -> None:
+    (folder / "linked.yml").symlink_to("main.yml")
+    assert main([*MOCK, *words]) == 2
+    assert names in capsys.readouterr().err
+    assert (folder / "main.yml").read_text() == SCRIPT
+    assert (folder / "chances.yml").read_text() == CHANCES
+    assert sorted(path.name for path in folder.iterdir()) == [
+        *("chances.yml", "linked.yml", "main.yml"),
+    ]
+
+
 def test_statistics_are_those_of_the_same_script(
     folder: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:

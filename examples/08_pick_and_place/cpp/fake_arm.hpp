@@ -6,6 +6,7 @@
 #include <cmath>
 #include <random>
 
+#include "robots/panda.hpp"
 #include "smachac/arm.hpp"
 
 /// Tables, blocks and marks: poses by name.
@@ -140,7 +141,7 @@ public:
     }
     step();
     held_.clear();
-    width_ = open ? 0.08 : 0.0;
+    width_ = open ? description.gripper->open : description.gripper->closed;
     if (open) {
       return smachac::Motion::succeeded;
     }
@@ -172,6 +173,7 @@ public:
   }
 
 private:
+  static constexpr const smachac::ArmDescription &description = robots::panda::arm;
   static constexpr double pi = 3.14159265358979323846;
   static constexpr double shoulder = 0.33, upper = 0.42, lower = 0.42, hand = 0.2;
   static constexpr double time_step = 0.01;
@@ -185,7 +187,7 @@ private:
   }
 
   FakeWorld &world_;
-  std::vector<double> joints_ = std::vector<double>(7, 0.0);
+  std::vector<double> joints_ = std::vector<double>(description.joints.size(), 0.0);
   std::string held_;
-  double width_ = 0.08;
+  double width_ = description.gripper->open;
 };

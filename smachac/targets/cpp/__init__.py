@@ -3,8 +3,8 @@
 plan.py resolves the types of all keys and refuses what C++ cannot express, at its place in the
 script. header.py makes the header: each container is a namespace with its outcomes, its userdata,
 its states and the function that runs it (containers.py). Leaves are structs made from the script
-(builtin_states.py) or classes of the user (user_classes.py). project.py makes the files of the
-options.
+(builtin_states.py) or classes of the user (user_classes.py). robot_header.py makes the header of
+the robot. project.py makes the files of the options.
 """
 
 from __future__ import annotations
@@ -16,21 +16,36 @@ from smachac.targets import BuildContext, Files, Target, stem
 from smachac.targets.cpp.builtin_states import is_built_in
 from smachac.targets.cpp.class_reader import declared
 from smachac.targets.cpp.header import header_of
-from smachac.targets.cpp.plan import plan
-from smachac.targets.cpp.project import OPTIONS, project, project_files, runtime
+from smachac.targets.cpp.plan import Plan, plan
+from smachac.targets.cpp.project import OPTIONS, Project, project, project_files, runtime
+from smachac.targets.cpp.robot_header import robot_file, robot_header
+from smachac.targets.cpp.types import UnportableError
 from smachac.targets.cpp.user_classes import class_code, left_to_scripts
 
 
 def emit(machine: Checked, context: BuildContext, report: Report) -> Files:
-    """The header of a machine, `<name>.hpp`, and the files of the options."""
+    """The header of a machine, `<name>.hpp`, that of its robot, and the files of the options."""
     wanted = project(context.options)
     planned = plan(machine)
     header = header_of(planned)
+    robot = _robot_files(planned, wanted)
     report.extend(in_order(planned.report))
     if planned.report:
         return {}
     files = {wanted.path(f"{stem(machine)}.hpp"): header.text}
-    return files | project_files(machine, wanted, header)
+    return files | robot | project_files(machine, wanted, header)
+
+
+def _robot_files(plan: Plan, wanted: Project) -> Files:
+    """The header of the robot, if its arms are described."""
+    robot = plan.machine.robot
+    if robot is None or not robot.arms:
+        return {}
+    try:
+        return {wanted.path(robot_file(robot)): robot_header(robot)}
+    except UnportableError as error:
+        plan.refuse(robot.span, error)
+        return {}
 
 
 def has_code(type_: StateType, _: Library) -> bool:

@@ -21,11 +21,12 @@ OPTIONS = {
 }
 
 PROGRAM = "smachac/program.hpp"
+ARM = "smachac/arm.hpp"
 
 HEADERS = ("smachac/values.hpp", "smachac/smachac.hpp")
 """The headers of smachac that every machine includes."""
 
-OTHER_HEADERS = ("smachac/arm.hpp", PROGRAM)
+OTHER_HEADERS = (ARM, PROGRAM)
 """The headers of smachac that some machines include; each includes only HEADERS."""
 
 
@@ -63,6 +64,8 @@ def runtime(machine: Machine, context: BuildContext) -> dict[str, str]:
     wanted = project(context.options)
     types = {node.type: None for _, node in walk(machine.root) if isinstance(node, Leaf)}
     included = {PROGRAM} if wanted.main else set()
+    if machine.robot is not None and machine.robot.arms:
+        included.add(ARM)
     for name in types:
         type_ = machine.state_types.get(name)
         code = class_code(type_) if type_ is not None else None
@@ -126,6 +129,7 @@ def _cmake(machine: Machine, name: str, wanted: Project, header: Header) -> str:
         if wanted.main
         else ""
     )
+    robots = " robots" if machine.robot is not None and machine.robot.arms else ""
     return f"""\
 # {made_by(machine)}
 cmake_minimum_required(VERSION 3.14)
@@ -144,7 +148,7 @@ target_include_directories({name} INTERFACE
   $<INSTALL_INTERFACE:${{CMAKE_INSTALL_INCLUDEDIR}}/{name}>)
 {_classes(name, header.classes)}{program}
 install(FILES {name}.hpp DESTINATION ${{CMAKE_INSTALL_INCLUDEDIR}}/{name})
-install(DIRECTORY smachac DESTINATION ${{CMAKE_INSTALL_INCLUDEDIR}}/{name})
+install(DIRECTORY smachac{robots} DESTINATION ${{CMAKE_INSTALL_INCLUDEDIR}}/{name})
 install(TARGETS {name} EXPORT {name}Targets)
 install(EXPORT {name}Targets NAMESPACE {name}::
   DESTINATION ${{CMAKE_INSTALL_LIBDIR}}/cmake/{name})

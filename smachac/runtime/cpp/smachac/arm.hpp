@@ -9,6 +9,7 @@
 #define SMACHAC_ARM_HPP
 
 #include <array>
+#include <cstddef>
 #include <cstdint>
 #include <cstdio>
 #include <map>
@@ -24,6 +25,84 @@ inline namespace v0_1_0 {
 
 /// The name of an arm; empty if the robot has only one arm.
 using Limb = std::optional<std::string>;
+
+/// A constant list of values of the description of a robot.
+template <class T> struct List {
+  const T *first = nullptr;
+  std::size_t count = 0;
+
+  constexpr List() = default;
+  template <std::size_t N> constexpr List(const T (&items)[N]) : first(items), count(N) {}
+
+  constexpr const T *begin() const { return first; }
+  constexpr const T *end() const { return first + count; }
+  constexpr std::size_t size() const { return count; }
+  constexpr const T &operator[](std::size_t index) const { return first[index]; }
+};
+
+/// A joint of an arm in the description of a robot: its limits and its home in radians, its largest
+/// speed in rad/s; infinite where there is no limit.
+struct JointDescription {
+  const char *name;
+  double lower, upper;
+  double speed;
+  double home;
+};
+
+/// A joint of a gripper: its positions when the gripper is open and closed, in metres, or in
+/// radians if the joint turns.
+struct FingerDescription {
+  const char *name;
+  double open, closed;
+};
+
+/// A gripper: the distances between its fingers in metres, and its joints.
+struct GripperDescription {
+  double open, closed;
+  List<FingerDescription> fingers;
+};
+
+/// An arm in the description of a robot, as `robots/<name>.hpp` has it: the link that carries the
+/// tool, the tool in that link, the tool in the frame of a body that it grasps, and the base of the
+/// robot in the world.
+struct ArmDescription {
+  const char *name;
+  List<JointDescription> joints;
+  const char *link;
+  Pose tool;
+  Pose grasp;
+  Pose base;
+  std::optional<GripperDescription> gripper;
+};
+
+/// The arm of a name, or the only arm for an empty name; null if there is none.
+constexpr const ArmDescription *find_arm(List<ArmDescription> arms, const Limb &limb) {
+  if (!limb.has_value()) {
+    return arms.size() == 1 ? arms.begin() : nullptr;
+  }
+  for (const ArmDescription &arm : arms) {
+    if (*limb == arm.name) {
+      return &arm;
+    }
+  }
+  return nullptr;
+}
+
+/// Whether the number of positions is that of the joints, and each one is within its limits.
+template <class Positions>
+constexpr bool within_limits(const ArmDescription &arm, const Positions &positions) {
+  if (positions.size() != arm.joints.size()) {
+    return false;
+  }
+  const JointDescription *joint = arm.joints.begin();
+  for (const double position : positions) {
+    if (!(joint->lower <= position && position <= joint->upper)) {
+      return false;
+    }
+    ++joint;
+  }
+  return true;
+}
 
 /// The result of a motion: the goal was reached, it was not reached, or a preempt request ended the
 /// motion.
