@@ -2,9 +2,12 @@
 
 from __future__ import annotations
 
+import compileall
 import gc
 import os
+import re
 import signal
+import sys
 from collections.abc import Generator, Iterator
 from pathlib import Path
 from typing import TYPE_CHECKING
@@ -28,10 +31,31 @@ settings.register_profile("repeatable", derandomize=True, deadline=None, print_b
 settings.load_profile("repeatable")
 
 
-def pytest_collection_finish() -> None:
-    """Exempt the modules and the tests themselves from garbage collection, which they slow down."""
-    gc.collect()
-    gc.freeze()
+PACKAGE = Path(__file__).parents[1] / "smachac"
+TEMPLATES = re.compile(r"\.tpl\.py$")
+
+
+def pytest_configure(config: pytest.Config) -> None:
+    """Compile the package once: where PYTHONDONTWRITEBYTECODE is set, each command that a test
+    starts would do it again."""
+    if not hasattr(config, "workerinput"):
+        compileall.compile_dir(PACKAGE, rx=TEMPLATES, quiet=1)
+
+
+@pytest.hookimpl(wrapper=True)
+def pytest_collection() -> Generator[None, object, object]:
+    """Import the tests without garbage collection and keep them compiled; then exempt the modules
+    and the tests themselves from garbage collection, which they slow down."""
+    writes_no_bytecode = sys.dont_write_bytecode
+    sys.dont_write_bytecode = False
+    gc.disable()
+    try:
+        return (yield)
+    finally:
+        sys.dont_write_bytecode = writes_no_bytecode
+        gc.enable()
+        gc.collect()
+        gc.freeze()
 
 
 def _fail_if_skipped(

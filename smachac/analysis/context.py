@@ -7,9 +7,9 @@ from functools import cached_property, partial
 from typing import TYPE_CHECKING, TypeAlias, TypeVar, cast
 
 from smachac.analysis.accesses import Accesses, accesses
-from smachac.analysis.control_flow import Linear, endless_states, mended
+from smachac.analysis.control_flow import Linear, corrected, endless_states
 from smachac.analysis.definite_assignment import DataFlow, data_flow
-from smachac.analysis.error_recovery import mended_container, mended_machine
+from smachac.analysis.error_recovery import corrected_container, corrected_machine
 from smachac.analysis.expression_errors import Fault
 from smachac.analysis.expression_sites import ExpressionSite, expression_sites
 from smachac.analysis.failure_paths import Failure, failures
@@ -48,7 +48,7 @@ class Context:
         """`previous` is the context of the machine before a change. Its facts about a container
         are used for this machine if the container is the same object."""
         self.machine = machine
-        self._scopes = previous.mended_flow.scopes if previous is not None else {}
+        self._scopes = previous.corrected_flow.scopes if previous is not None else {}
         self._known = previous._facts if previous is not None else {}
         self._facts: Facts = {}
 
@@ -120,9 +120,11 @@ class Context:
         )
 
     @cached_property
-    def mended(self) -> tuple[Linear, ...]:
+    def corrected(self) -> tuple[Linear, ...]:
         """The containers of `linear`, with misspelt names corrected."""
-        return tuple(self.of_container(mended, path, container) for path, container in self.linear)
+        return tuple(
+            self.of_container(corrected, path, container) for path, container in self.linear
+        )
 
     @cached_property
     def spans(self) -> dict[str, Span]:
@@ -161,16 +163,16 @@ class Context:
         return data_flow(self.machine, self._scopes)
 
     @cached_property
-    def mended_flow(self) -> DataFlow:
+    def corrected_flow(self) -> DataFlow:
         """The data flow of the machine with misspelt names corrected."""
-        mended = mended_machine(
-            self.machine, self.containers, partial(self.of_container, mended_container)
+        corrected = corrected_machine(
+            self.machine, self.containers, partial(self.of_container, corrected_container)
         )
-        return self.flow if mended is self.machine else data_flow(mended, self._scopes)
+        return self.flow if corrected is self.machine else data_flow(corrected, self._scopes)
 
     @cached_property
     def _missing_keys(self) -> tuple[Missing, ...]:
-        return missing_keys(self.mended_flow)
+        return missing_keys(self.corrected_flow)
 
     def missing_keys(self, *causes: Cause) -> list[Missing]:
         """The keys that are missing for one of these causes, in the order of the script."""
@@ -179,7 +181,7 @@ class Context:
     @cached_property
     def lost_outputs(self) -> tuple[Lost, ...]:
         """The keys that are written in a container, needed outside, and not handed out."""
-        return lost_outputs(self.mended_flow, self.missing_keys("lost"), self.of_container)
+        return lost_outputs(self.corrected_flow, self.missing_keys("lost"), self.of_container)
 
     @cached_property
     def accesses(self) -> dict[str, Accesses]:

@@ -1,7 +1,7 @@
 """Control flow inside a container: strongly connected components and shortest witness paths.
 
-The analyses work on mended containers, so that one fault gives one finding: a misspelt name stands
-for the nearest known name, and an open leaf can have every outcome that avoids a finding.
+The analyses work on corrected containers, so that one fault gives one finding: a misspelt name
+stands for the nearest known name, and an open leaf can have every outcome that avoids a finding.
 """
 
 from __future__ import annotations
@@ -61,7 +61,7 @@ def unknown_outcomes(child: Node) -> list[tuple[Transition, str | None]]:
     return [(step, guess(step.outcome)) for step in unknown]
 
 
-def mended(container: Linear) -> Linear:
+def corrected(container: Linear) -> Linear:
     """A container with misspelt targets and outcomes corrected, where a near name exists.
 
     A state that declares no outcome gets those of its transitions.
@@ -97,10 +97,10 @@ def mended(container: Linear) -> Linear:
 def outline(
     path: str, container: Linear, endless: AbstractSet[str], known: Linear | None = None
 ) -> Linear:
-    """A mended container in which open leaves lead out of it and endless states lead nowhere.
+    """A corrected container in which open leaves lead out of it and endless states lead nowhere.
 
     An open leaf can have any outcome, also one that its container has and no transition handles.
-    `known` is the mended container, if it has been computed.
+    `known` is the corrected container, if it has been computed.
     """
     exits = outcome_names(container)
 
@@ -119,8 +119,8 @@ def outline(
 
     children = tuple(map(child, container.children))
     if all(new is old for new, old in zip(children, container.children, strict=True)):
-        return known if known is not None else mended(container)
-    return mended(replace(container, children=children))
+        return known if known is not None else corrected(container)
+    return corrected(replace(container, children=children))
 
 
 def endless_states(states: Sequence[tuple[str, Node]]) -> frozenset[str]:

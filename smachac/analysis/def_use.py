@@ -13,7 +13,7 @@ from smachac.diagnostics.source import Span
 from smachac.ir import nodes
 from smachac.ir.graph import START, Vertex
 from smachac.ir.nodes import Concurrence, Key, Leaf, Node
-from smachac.ir.script_paths import Step, steps_in_script
+from smachac.ir.script_paths import steps_in_script
 from smachac.ir.traversal import outcome_names, remapping
 
 KeyState = Literal["unset", "reported", "set"]
@@ -204,14 +204,13 @@ def path_without(
     `plain` are the plain paths.
     """
     searches = _searches(flow, path, key)
-    whole: list[Step] = []
+    whole: list[PathStep] = []
     targets = [*(where for where, _ in searches[1:]), path]
     for (where, found), target in zip(searches, targets, strict=True) if searches else ():
         end = Reached(place_in(where, target), "unset")
         if end not in found:
             return ()
-        way = way_to(where, found, end)
-        whole += [Step(step.node, step.label, step.is_outcome) for step in way]
+        whole += way_to(where, found, end)
     return tuple(label for _, label in steps_in_script(plain, whole))
 
 

@@ -8,7 +8,7 @@ from dataclasses import replace
 from typing import NamedTuple, cast
 
 from smachac.analysis.accesses import scripted_steps, userdata_fields
-from smachac.analysis.control_flow import is_open, mended
+from smachac.analysis.control_flow import corrected, is_open
 from smachac.diagnostics.spelling import guesser
 from smachac.ir import nodes
 from smachac.ir.leaf import functions
@@ -72,12 +72,12 @@ PERHAPS = Type("optional", (ANY,))
 """The type of a key that code reads without a declaration: used but not required (SM310)."""
 
 
-def mended_machine(
+def corrected_machine(
     machine: Machine,
     containers: PathSequence[tuple[str, Container]],
-    mend: Callable[[str, Container], Container],
+    correct: Callable[[str, Container], Container],
 ) -> Machine:
-    """The machine with each container as `mend` returns it by its path: `mended_container`.
+    """The machine with each container as `correct` returns it by its path: `corrected_container`.
     Iterative, so that nesting can be deep."""
     # In reversed preorder the containers inside one have just been built, its first child last.
     built: list[Container] = []
@@ -88,12 +88,12 @@ def mended_machine(
         whole = container
         if any(new is not old for new, old in zip(children, container.children, strict=True)):
             whole = replace(container, children=children)
-        built.append(mend(path, whole))
+        built.append(correct(path, whole))
     root = cast(StateMachine, built.pop())
     return machine if root is machine.root else replace(machine, root=root)
 
 
-def mended_container(container: Container) -> Container:
+def corrected_container(container: Container) -> Container:
     """A container with misspelt targets, outcomes and remaps corrected, and with the keys declared
     that code of the script reads and writes in its states."""
     raw = isinstance(container, nodes.Iterator)
@@ -103,7 +103,7 @@ def mended_container(container: Container) -> Container:
     whole = container
     if any(new is not old for new, old in zip(children, container.children, strict=True)):
         whole = replace(container, children=children)
-    return mended(whole) if isinstance(whole, StateMachine | Sequence) else whole
+    return corrected(whole) if isinstance(whole, StateMachine | Sequence) else whole
 
 
 def _meant(node: Node, *, raw: bool) -> Node:

@@ -66,7 +66,7 @@ class Config(NamedTuple):
         return self.control if isinstance(self.control, tuple) and len(self.control) == 1 else None
 
 
-class Step(NamedTuple):
+class ExecutionStep(NamedTuple):
     """A step to another configuration: a leaf and its outcome, None for an exception. `events` are
     the watched events, in their order."""
 
@@ -164,16 +164,16 @@ class Execution:
             for number, node in enumerate(self.nodes)
         )
 
-    def start(self, watched: Watched) -> list[Step]:
+    def start(self, watched: Watched) -> list[ExecutionStep]:
         """The configurations in which a run can begin."""
         return [
-            Step(START, None, tuple(turn.events), turn.config(control))
+            ExecutionStep(START, None, tuple(turn.events), turn.config(control))
             for turn, control in self._each(Config(()), watched, partial(_Turn.enter, node=0))
         ]
 
-    def steps(self, config: Config, watched: Watched) -> list[Step]:
+    def steps(self, config: Config, watched: Watched) -> list[ExecutionStep]:
         """The steps that can follow, the usual ones first."""
-        found: list[Step] = []
+        found: list[ExecutionStep] = []
         control = config.control
         if config.outcome is not None:
             return found
@@ -183,13 +183,15 @@ class Execution:
             for outcome in (PREEMPTED,) if stopped else self.outcomes[leaf]:
                 perform = partial(_Turn.advance, control=control, leaf=leaf, outcome=outcome)
                 for turn, after in self._each(before, watched, perform):
-                    found.append(Step(leaf, outcome, tuple(turn.events), turn.config(after)))
+                    found.append(
+                        ExecutionStep(leaf, outcome, tuple(turn.events), turn.config(after))
+                    )
         found.sort(key=lambda step: step.outcome is None)
         if self.stops:
             running = frozenset(self.active(control, 0))
             if not running <= config.asked:
                 new = config._replace(asked=config.asked | running)
-                found.append(Step(STOP, None, (), new))
+                found.append(ExecutionStep(STOP, None, (), new))
         return found
 
     def _each(

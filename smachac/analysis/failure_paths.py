@@ -7,12 +7,13 @@ from dataclasses import dataclass, field, replace
 from typing import Literal
 
 from smachac.analysis.successors import Arrival, Routes
+from smachac.diagnostics.diagnostic import PathStep, ended, entered
 from smachac.diagnostics.source import Span
 from smachac.ir import nodes
 from smachac.ir.graph import Event, is_unread
 from smachac.ir.nodes import Concurrence, Leaf, Node
 from smachac.ir.outcome_names import PREEMPTED, fails, successes
-from smachac.ir.script_paths import Step, steps_in_script
+from smachac.ir.script_paths import steps_in_script
 from smachac.ir.traversal import outcome_names
 
 Answer = Literal["caught", "repeated", "ignored", "not caught", "lost"]
@@ -135,11 +136,11 @@ def _way(path: str, outcome: str, arrival: Arrival, plain: Mapping[str, str]) ->
     """The states that a failure passes, in brackets how they end; last where it leads, which may
     be an outcome of the machine."""
     ends = [(path, outcome), *(arrival.through if arrival.target else arrival.through[:-1])]
-    way: list[Step] = []
+    way: list[PathStep] = []
     for inner, name in ends:
-        way += [Step(inner, inner.rpartition("/")[2]), Step(None, f"({name})", True)]
+        way += [entered(inner.rpartition("/")[2], inner), ended(name)]
     target = arrival.target
-    way.append(Step(target, target.rpartition("/")[2]) if target else Step(None, _final(arrival)))
+    way.append(entered(target.rpartition("/")[2] or _final(arrival), target or None))
     return tuple(label for _, label in steps_in_script(plain, way))
 
 

@@ -171,7 +171,7 @@ Space = dict[str, tuple[str, ...]]
 
 
 @dataclass(frozen=True, slots=True)
-class Study:
+class CorrectedConcurrence:
     """A concurrence, at its path, whose rules have no fault of their own: misspelt names are put
     right."""
 
@@ -204,7 +204,7 @@ class Study:
         return [number for number in found if len(self.rules.conditions[number]) == most]
 
 
-def study(path: str, node: Concurrence) -> Study | None:
+def corrected_concurrence(path: str, node: Concurrence) -> CorrectedConcurrence | None:
     """The rules of a concurrence with misspelt names corrected; None if it has no states, two
     states of one name, or a rule that cannot be corrected."""
     children = {child.name: child for child in node.children}
@@ -221,7 +221,7 @@ def study(path: str, node: Concurrence) -> Study | None:
             return None
         written.append(understood)
     conditions = ({one.child: one.outcome for one in rule.when} for rule in written)
-    return Study(path, node, children, tuple(written), Rules(conditions))
+    return CorrectedConcurrence(path, node, children, tuple(written), Rules(conditions))
 
 
 def _is_sound(rule: OutcomeRule, ends: Mapping[str, frozenset[str] | None]) -> bool:
@@ -253,45 +253,45 @@ def _understood(rule: OutcomeRule, children: Mapping[str, Node]) -> OutcomeRule 
     return understood if when and once else None
 
 
-def space(read: Study, known: OutcomesByPath) -> Space:
+def space(concurrence: CorrectedConcurrence, known: OutcomesByPath) -> Space:
     """The possible outcomes of each branch. Under `join: any` a branch that never ends has an
     unknown outcome here; SM407 reports that it never ends."""
     asked: dict[str, list[str]] = {}
-    for rule in read.written:
+    for rule in concurrence.written:
         for condition in rule.when:
             asked.setdefault(condition.child, []).append(condition.outcome)
     found: Space = {}
-    for child in read.node.children:
-        names = known[f"{read.path}/{child.name}"]
+    for child in concurrence.node.children:
+        names = known[f"{concurrence.path}/{child.name}"]
         if is_open(child):
             names = tuple(
                 dict.fromkeys(
                     [*good_first(names, partial(fails, child)), *asked.get(child.name, ()), OTHER]
                 )
             )
-        elif not names and read.node.join == "any":
+        elif not names and concurrence.node.join == "any":
             names = (OTHER,)
         found[child.name] = good_first(names, partial(fails, child))
     return found
 
 
-def calm_spaces(
-    read: Study, ever: OutcomesByPath, calm: OutcomesByPath
+def unstopped_spaces(
+    concurrence: CorrectedConcurrence, ever: OutcomesByPath, unstopped: OutcomesByPath
 ) -> Iterator[tuple[Space, str]]:
     """The possible outcomes of the branches without a request to stop from outside, and for
     `join: any` the branch that ends first. The other branches are preempted: one with the outcome
     `preempted` has no other outcome here, although two branches can end at the same moment."""
-    whole = space(read, ever)
-    own = space(read, calm)
-    if read.node.join == "all":
+    whole = space(concurrence, ever)
+    own = space(concurrence, unstopped)
+    if concurrence.node.join == "all":
         yield own, ""
         return
     others: Space = {
         name: (PREEMPTED,) if PREEMPTED in outcomes else outcomes
         for name, outcomes in whole.items()
     }
-    for child in read.node.children:
-        if calm[f"{read.path}/{child.name}"] or is_open(child):
+    for child in concurrence.node.children:
+        if unstopped[f"{concurrence.path}/{child.name}"] or is_open(child):
             yield {**others, child.name: own[child.name]}, child.name
 
 

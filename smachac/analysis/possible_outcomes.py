@@ -6,15 +6,21 @@ from collections.abc import Iterable, Sequence
 from dataclasses import replace
 from typing import NamedTuple
 
-from smachac.analysis.control_flow import Linear, children_names, is_open, leads_somewhere, mended
+from smachac.analysis.control_flow import (
+    Linear,
+    children_names,
+    corrected,
+    is_open,
+    leads_somewhere,
+)
 from smachac.analysis.outcome_rules import (
     OTHER,
+    CorrectedConcurrence,
     Space,
-    Study,
     UndecidedError,
-    calm_spaces,
+    corrected_concurrence,
     space,
-    study,
+    unstopped_spaces,
     without_other,
 )
 from smachac.ir import nodes
@@ -27,11 +33,11 @@ OutcomesByPath = dict[str, tuple[str, ...]]
 
 
 class Endings(NamedTuple):
-    """The outcomes of states by path. `ever`: those that are possible at all. `calm`: those that
-    are possible without a preempt request."""
+    """The outcomes of states by path. `ever`: those that are possible at all. `unstopped`: those
+    that are possible without a preempt request."""
 
     ever: OutcomesByPath
-    calm: OutcomesByPath
+    unstopped: OutcomesByPath
 
 
 def endings(states: Sequence[tuple[str, Node]]) -> Endings:
@@ -52,7 +58,7 @@ def endings(states: Sequence[tuple[str, Node]]) -> Endings:
             within.update(inner for inner, _ in children)
     for path, node in reversed(inside):
         found.ever[path] = _ever(path, node, found.ever)
-        found.calm[path] = _calm(path, node, found)
+        found.unstopped[path] = _unstopped(path, node, found)
     return found
 
 
@@ -61,21 +67,23 @@ def _ever(path: str, node: Node, known: OutcomesByPath) -> tuple[str, ...]:
         case Leaf():
             return (*outcome_names(node), *(OTHER,) * node.open)
         case Concurrence():
-            read = study(path, node)
-            spaces = [space(read, known)] if read else []
-            return _declared(node, [*results(node, read, spaces), PREEMPTED])
+            concurrence = corrected_concurrence(path, node)
+            spaces = [space(concurrence, known)] if concurrence else []
+            return _declared(node, [*results(node, concurrence, spaces), PREEMPTED])
     return _of_container(path, node, known, asked=True)
 
 
-def _calm(path: str, node: Node, found: Endings) -> tuple[str, ...]:
+def _unstopped(path: str, node: Node, found: Endings) -> tuple[str, ...]:
     match node:
         case Leaf():
             return tuple(name for name in found.ever[path] if name != PREEMPTED)
         case Concurrence():
-            read = study(path, node)
-            spaces = [each for each, _ in calm_spaces(read, *found)] if read else []
-            return _declared(node, results(node, read, spaces))
-    return _of_container(path, node, found.calm, asked=False)
+            concurrence = corrected_concurrence(path, node)
+            spaces = (
+                [each for each, _ in unstopped_spaces(concurrence, *found)] if concurrence else []
+            )
+            return _declared(node, results(node, concurrence, spaces))
+    return _of_container(path, node, found.unstopped, asked=False)
 
 
 def _of_container(
@@ -93,7 +101,7 @@ def _declared(node: Node, results: Iterable[str]) -> tuple[str, ...]:
 
 def _linear(path: str, container: Linear, known: OutcomesByPath) -> set[str]:
     """The exits that can be reached from the initial state."""
-    whole = mended(container)
+    whole = corrected(container)
     names = children_names(whole)
     exits = frozenset(outcome_names(whole))
     ends: dict[str, tuple[str, ...]] = {}
@@ -147,18 +155,20 @@ def _only(node: Node, names: Sequence[str]) -> tuple[nodes.Outcome, ...]:
     return tuple(outcome for outcome in node.outcomes if outcome.name in names)
 
 
-def results(node: Concurrence, read: Study | None, spaces: Sequence[Space]) -> set[str]:
+def results(
+    node: Concurrence, concurrence: CorrectedConcurrence | None, spaces: Sequence[Space]
+) -> set[str]:
     """The results of the rules that can win, and of the default if none has to hold."""
-    if read is None:
+    if concurrence is None:
         return set(outcome_names(node)) if node.children else set()
     found: set[str] = set()
     try:
         for each in spaces:
-            if read.rules.find(each, {}, read.rules.all) is not None:
+            if concurrence.rules.find(each, {}, concurrence.rules.all) is not None:
                 found.add(node.default_outcome)
-            for number, rule in enumerate(read.written):
-                given = read.rules.conditions[number]
-                if read.rules.find(each, given, read.larger(number)) is not None:
+            for number, rule in enumerate(concurrence.written):
+                given = concurrence.rules.conditions[number]
+                if concurrence.rules.find(each, given, concurrence.larger(number)) is not None:
                     found.add(rule.outcome)
     except UndecidedError:
         return set(outcome_names(node))
@@ -168,16 +178,16 @@ def results(node: Concurrence, read: Study | None, spaces: Sequence[Space]) -> s
 class Judged(NamedTuple):
     """A concurrence whose rules can be judged, at its path.
 
-    `whole`: the outcomes that its branches can have, also after a request to stop. `calm`: those
-    without a request to stop, as far as outcomes are known; with `join: any`, one space for each
-    branch that can end first, with its name.
+    `whole`: the outcomes that its branches can have, also after a request to stop. `unstopped`:
+    those without a request to stop, as far as outcomes are known; with `join: any`, one space for
+    each branch that can end first, with its name.
     """
 
     path: str
-    read: Study
+    concurrence: CorrectedConcurrence
     endings: Endings
     whole: Space
-    calm: list[tuple[Space, str]]
+    unstopped: list[tuple[Space, str]]
 
 
 def judged(containers: Iterable[tuple[str, Container]], known: Endings) -> list[Judged]:
@@ -190,9 +200,11 @@ def judged(containers: Iterable[tuple[str, Container]], known: Endings) -> list[
         seen.add(path)
         if not is_first or not isinstance(container, Concurrence) or container.sugar:
             continue
-        read = study(path, container)
-        if read is not None:
-            spaces = calm_spaces(read, *known)
-            calm = [(without_other(each), first) for each, first in spaces]
-            found.append(Judged(path, read, known, space(read, known.ever), calm))
+        concurrence = corrected_concurrence(path, container)
+        if concurrence is not None:
+            spaces = unstopped_spaces(concurrence, *known)
+            unstopped = [(without_other(each), first) for each, first in spaces]
+            found.append(
+                Judged(path, concurrence, known, space(concurrence, known.ever), unstopped)
+            )
     return found

@@ -10,9 +10,17 @@ from collections import deque
 from collections.abc import Iterable, Mapping, Sequence
 from typing import TYPE_CHECKING, Literal, NamedTuple, TypeAlias
 
-from smachac.analysis.execution import STOP, Config, Event, Execution, Step, TooLargeError, leaves
+from smachac.analysis.execution import (
+    STOP,
+    Config,
+    Event,
+    Execution,
+    ExecutionStep,
+    TooLargeError,
+    leaves,
+)
 from smachac.analysis.property_automaton import BAD, LEAF, PREMISE, Automaton, automaton, parts
-from smachac.analysis.property_events import NameFault, Names
+from smachac.analysis.property_events import NamedStates, NameFault
 from smachac.analysis.resource_claims import Held
 from smachac.diagnostics.diagnostic import PathStep, ended, entered
 from smachac.ir.nodes import Leaf, StateMachine
@@ -91,7 +99,7 @@ def judge(properties: Sequence[Property], root: StateMachine, claims: Held) -> l
     plain = Execution(root)
     if not plain.is_complete:
         return []
-    names = Names(plain.paths, plain.nodes, claims)
+    names = NamedStates(plain.paths, plain.nodes, claims)
     executions: dict[tuple[Exceptions, bool, bool], Execution] = {("caught", True, False): plain}
     found: list[Judgement] = []
     limit, left = MOST_PAIRS + PAIRS_BY_STATE * len(plain.nodes), MOST_IN_ALL
@@ -111,7 +119,7 @@ def judge(properties: Sequence[Property], root: StateMachine, claims: Held) -> l
 
 
 def _judged(
-    given: Property, execution: Execution, names: Names, limit: int
+    given: Property, execution: Execution, names: NamedStates, limit: int
 ) -> tuple[Judgement, int]:
     """The verdict on a property, and the number of pairs that were examined."""
     watched: dict[Event, int] = {}
@@ -171,12 +179,12 @@ class _Search:
         self.automaton = table
         self.watched = watched
         self.seen = 0
-        self.before: dict[Pair, tuple[Pair | None, Step]] = {}
+        self.before: dict[Pair, tuple[Pair | None, ExecutionStep]] = {}
 
     def run(self, limit: int) -> Counterexample | None:
         """A shortest violation; None if there is none. Raises TooLargeError."""
         todo: deque[Pair] = deque()
-        steps: dict[Config, list[Step]] = {}
+        steps: dict[Config, list[ExecutionStep]] = {}
         for step in self.execution.start(self.watched):
             if (bad := self._follow(None, 0, step, todo)) is not None:
                 return self._counterexample(None, step, bad)
@@ -193,7 +201,9 @@ class _Search:
                 raise TooLargeError
         return None
 
-    def _follow(self, pair: Pair | None, state: int, step: Step, todo: deque[Pair]) -> Event | None:
+    def _follow(
+        self, pair: Pair | None, state: int, step: ExecutionStep, todo: deque[Pair]
+    ) -> Event | None:
         """Take a step; the event that violates the property, None if none does."""
         for event in step.events:
             bits = self.watched[event]
@@ -209,7 +219,7 @@ class _Search:
             todo.append(after)
         return None
 
-    def _counterexample(self, pair: Pair | None, last: Step, bad: Event) -> Counterexample:
+    def _counterexample(self, pair: Pair | None, last: ExecutionStep, bad: Event) -> Counterexample:
         steps = [last]
         while pair is not None:
             pair, step = self.before[pair]
@@ -219,14 +229,14 @@ class _Search:
         then = node if bad[1] is None else self._last(last)
         return Counterexample(visits, node, bad[1], last=then)
 
-    def _last(self, step: Step) -> str:
+    def _last(self, step: ExecutionStep) -> str:
         """The state or the outcome that a step leads to."""
         if step.config.outcome is not None:
             return step.config.outcome[0] or "the run ends"
         return self.execution.paths[next(leaves(step.config.control))]
 
 
-def _visits(execution: Execution, steps: Iterable[Step]) -> tuple[Visit, ...]:
+def _visits(execution: Execution, steps: Iterable[ExecutionStep]) -> tuple[Visit, ...]:
     found: list[Visit] = []
     stop = False
     for step in steps:
@@ -242,7 +252,7 @@ def _endless(execution: Execution, limit: int) -> tuple[Counterexample | None, i
     import networkx as nx
 
     graph = nx.DiGraph()
-    before: dict[Config, tuple[Config | None, Step]] = {}
+    before: dict[Config, tuple[Config | None, ExecutionStep]] = {}
     todo: deque[Config] = deque()
     for step in execution.start(()):
         before.setdefault(step.config, (None, step))
@@ -274,8 +284,10 @@ def _endless(execution: Execution, limit: int) -> tuple[Counterexample | None, i
     return None, len(before)
 
 
-def _steps_to(config: Config, before: Mapping[Config, tuple[Config | None, Step]]) -> list[Step]:
-    steps: list[Step] = []
+def _steps_to(
+    config: Config, before: Mapping[Config, tuple[Config | None, ExecutionStep]]
+) -> list[ExecutionStep]:
+    steps: list[ExecutionStep] = []
     here: Config | None = config
     while here is not None:
         here, step = before[here]
@@ -283,7 +295,7 @@ def _steps_to(config: Config, before: Mapping[Config, tuple[Config | None, Step]
     return steps[::-1]
 
 
-def _circle(graph: nx.DiGraph, config: Config) -> list[Step]:
+def _circle(graph: nx.DiGraph, config: Config) -> list[ExecutionStep]:
     """The steps of a shortest circle from a configuration back to it."""
     before: dict[Config, Config] = {}
     todo = deque([config])
@@ -293,7 +305,7 @@ def _circle(graph: nx.DiGraph, config: Config) -> list[Step]:
             if following not in before:
                 before[following] = here
                 todo.append(following)
-    steps: list[Step] = []
+    steps: list[ExecutionStep] = []
     here = config
     while not steps or here != config:
         steps.append(graph.edges[before[here], here]["step"])

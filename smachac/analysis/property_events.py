@@ -24,7 +24,7 @@ class NameFault(NamedTuple):
     known: tuple[str, ...]
 
 
-class Names:
+class NamedStates:
     """The states of a machine by what atoms can name. `paths` and `nodes` are in the same order."""
 
     def __init__(self, paths: Sequence[str], states: Sequence[Node], claims: Held) -> None:

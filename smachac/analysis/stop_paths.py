@@ -96,7 +96,7 @@ class StopPaths:
             return self.answers.get(path, NO_ANSWERS)
         return {PREEMPTED: node} if PREEMPTED in outcome_names(node) else NO_ANSWERS
 
-    def calm_outcomes(self, path: str, node: Node) -> frozenset[str]:
+    def unstopped_outcomes(self, path: str, node: Node) -> frozenset[str]:
         """The outcomes with which the state at a path can end without a request to stop."""
         names = frozenset(outcome_names(node))
         if isinstance(node, Leaf):
@@ -140,7 +140,7 @@ def _linear(
     exits = frozenset(outcome_names(container))
     onward: list[StopStep] = []
     leaving: list[StopStep] = []
-    calm: set[str] = set()
+    unstopped: set[str] = set()
     for child in container.children:
         answers: Answers = {PREEMPTED: child}
         only: Collection[str] = answers
@@ -153,13 +153,13 @@ def _linear(
                 stop = StopStep(path, container, child, step, answers[step.outcome])
                 (onward if beside else leaving).append(stop)
             if not beside and step.outcome not in only:
-                calm.add(step.target)
+                unstopped.add(step.target)
     ends: dict[str, Node] = {}
     if onward:
-        flow = task_flow(container, partial(_calm_outcomes, found, path))
-        calm = {*flow.calm_exits}
+        flow = task_flow(container, partial(_unstopped_outcomes, found, path))
+        unstopped = {*flow.unstopped_exits}
         ends = _continued(onward, flow, found, endless, holds)
-    good = task_successes(container) & calm
+    good = task_successes(container) & unstopped
     for stop in leaving:
         if stop.step.outcome in task_successes(stop.child):
             continue
@@ -167,20 +167,24 @@ def _linear(
             found.praised.append(Resumed(stop, end=stop.step.target))
         elif stop.step.target in exits:
             ends.setdefault(stop.step.target, stop.origin)
-    _keep(found, path, container, ends, calm)
+    _keep(found, path, container, ends, unstopped)
 
 
-def _keep(found: StopPaths, path: str, node: Node, ends: Answers, calm: AbstractSet[str]) -> None:
+def _keep(
+    found: StopPaths, path: str, node: Node, ends: Answers, unstopped: AbstractSet[str]
+) -> None:
     """Keep the outcomes that a container can have after a stop. An outcome that it also has when
     nothing fails is left out: then the stop has been taken for a step of the task inside."""
-    kept = {name: origin for name, origin in ends.items() if name not in calm or fails(node, name)}
+    kept = {
+        name: origin for name, origin in ends.items() if name not in unstopped or fails(node, name)
+    }
     if kept:
         found.answers[path] = kept
-        found.only[path] = frozenset(kept) - calm
+        found.only[path] = frozenset(kept) - unstopped
 
 
-def _calm_outcomes(found: StopPaths, path: str, child: Node) -> frozenset[str]:
-    return found.calm_outcomes(f"{path}/{child.name}", child)
+def _unstopped_outcomes(found: StopPaths, path: str, child: Node) -> frozenset[str]:
+    return found.unstopped_outcomes(f"{path}/{child.name}", child)
 
 
 def task_successes(node: Node) -> frozenset[str]:
@@ -206,7 +210,7 @@ def _continued(
     again = _starting_again(onward, flow)
     trapped = _trapped(path, container, endless) if again else frozenset[str]()
     moving = nearest(flow, (name for name in flow.ordinary if holds(f"{path}/{name}")))
-    good = task_successes(container) & flow.calm_exits
+    good = task_successes(container) & flow.unstopped_exits
     to_good = nearest(flow, (name for name, ends in flow.exits.items() if ends & good))
     to_others = nearest(flow, (name for name, ends in flow.exits.items() if ends - good))
     children = {child.name: child for child in container.children}
@@ -293,29 +297,29 @@ def _iterator(path: str, container: nodes.Iterator, found: StopPaths) -> None:
     if not ends:
         looping = stopped_endings(container).items()
         ends = {end: container for name, end in looping if not fails(child, name)}
-    calm = found.calm_outcomes(here, child)
-    ways = [edge for edge in edges(container) if edge.source == START or edge.outcome in calm]
+    unstopped = found.unstopped_outcomes(here, child)
+    ways = [edge for edge in edges(container) if edge.source == START or edge.outcome in unstopped]
     also = {edge.target[1] for edge in ways if isinstance(edge.target, tuple)}
     _keep(found, path, container, {name: ends[name] for name in declared if name in ends}, also)
 
 
 def _concurrence(path: str, each: Judged, found: StopPaths) -> None:
-    node = each.read.node
+    node = each.concurrence.node
     space = stopped_space(each, found)
     if not space:
         return
-    ends = results(node, each.read, [space])
-    calm = results(node, each.read, [calm for calm, _ in each.calm])
+    ends = results(node, each.concurrence, [space])
+    unstopped = results(node, each.concurrence, [unstopped for unstopped, _ in each.unstopped])
     child = node.children[0]
     origin = next(iter(found.answers_of(f"{path}/{child.name}", child).values()))
     names = (name for name in outcome_names(node) if name in ends)
-    _keep(found, path, node, dict.fromkeys(names, origin), calm)
+    _keep(found, path, node, dict.fromkeys(names, origin), unstopped)
 
 
 def stopped_space(each: Judged, found: StopPaths) -> Space:
     """The outcomes of the branches after all of them have answered a stop; empty if one of them
     does not answer."""
-    path, children = each.path, each.read.node.children
+    path, children = each.path, each.concurrence.node.children
     space: Space = {
         child.name: tuple(found.answers_of(f"{path}/{child.name}", child)) for child in children
     }
@@ -330,7 +334,7 @@ def stoppable_branches(
     for path, container in containers:
         if isinstance(container, Concurrence) and container.join == "any":
             branches = [f"{path}/{child.name}" for child in container.children]
-            ending = [branch for branch in branches if known.calm[branch]]
+            ending = [branch for branch in branches if known.unstopped[branch]]
             found.update((each, container) for each in branches if ending and ending != [each])
     return found
 

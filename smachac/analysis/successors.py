@@ -6,11 +6,18 @@ from collections.abc import Iterable, Iterator, Mapping, Sequence
 from functools import cached_property, partial
 from typing import NamedTuple
 
-from smachac.analysis.outcome_rules import Study, UndecidedError, calm_spaces, space, study
+from smachac.analysis.outcome_rules import (
+    CorrectedConcurrence,
+    UndecidedError,
+    corrected_concurrence,
+    space,
+    unstopped_spaces,
+)
 from smachac.analysis.possible_outcomes import Endings
+from smachac.diagnostics.diagnostic import PathStep, ended, entered
 from smachac.ir.graph import START, Edge, Event, edges, exit_vertex, machine_graph
 from smachac.ir.nodes import Concurrence, Container, Node
-from smachac.ir.script_paths import Step, steps_in_script
+from smachac.ir.script_paths import steps_in_script
 from smachac.ir.traversal import outcome_names
 
 
@@ -59,11 +66,11 @@ class Routes:
         for last, event in generic_bfs_edges(self.graph, start, self._ends_after):
             through[event] = (*through[last], event)
         found: list[Arrival] = []
-        for here, ended in through.items():
-            if ended and here[0] == self.root.name:
-                found.append(Arrival(ended, ""))
-            entered = (event[0] for event in self.after(here) if not event[1])
-            found += (Arrival(ended, target) for target in entered)
+        for here, ends in through.items():
+            if ends and here[0] == self.root.name:
+                found.append(Arrival(ends, ""))
+            targets = (event[0] for event in self.after(here) if not event[1])
+            found += (Arrival(ends, target) for target in targets)
         return found
 
     def _ends_after(self, event: Event) -> Iterator[Event]:
@@ -73,38 +80,52 @@ class Routes:
 
 def _possible_edges(known: Endings, path: str, container: Container) -> Iterator[Edge]:
     """The edges of a container; those of a concurrence as far as they can be taken."""
-    read = study(path, container) if isinstance(container, Concurrence) else None
-    if read is None:
+    concurrence = (
+        corrected_concurrence(path, container) if isinstance(container, Concurrence) else None
+    )
+    if concurrence is None:
         yield from edges(container)
         return
     exits = outcome_names(container)
     for child in container.children:
         yield Edge(START, child.name, "", "enter")
         for outcome in outcome_names(child):
-            for result in _results(read, known, child.name, outcome):
+            for result in _results(concurrence, known, child.name, outcome):
                 if result in exits:
                     yield Edge(child.name, exit_vertex(result), outcome, "rule")
 
 
-def _results(read: Study, ends: Endings, child: str, outcome: str) -> Iterable[str]:
+def _results(
+    concurrence: CorrectedConcurrence, ends: Endings, child: str, outcome: str
+) -> Iterable[str]:
     """The results of a concurrence that are possible when a child ends with an outcome: without a
     preempt request, else with one; all results where that cannot be decided."""
-    calm = [each for each, first in calm_spaces(read, *ends) if first in ("", child)]
-    spaces = [each for each in calm if outcome in each[child]] or [space(read, ends.ever)]
+    unstopped = [
+        each for each, first in unstopped_spaces(concurrence, *ends) if first in ("", child)
+    ]
+    spaces = [each for each in unstopped if outcome in each[child]] or [
+        space(concurrence, ends.ever)
+    ]
     given = {child: outcome}
     found: dict[str, None] = {}
     try:
         for each in spaces:
-            for number, rule in enumerate(read.written):
-                both = {**given, **read.rules.conditions[number]}
+            for number, rule in enumerate(concurrence.written):
+                both = {**given, **concurrence.rules.conditions[number]}
                 wanted = both[child] == outcome
-                if wanted and read.rules.find(each, both, read.larger(number)) is not None:
+                if (
+                    wanted
+                    and concurrence.rules.find(each, both, concurrence.larger(number)) is not None
+                ):
                     found[rule.outcome] = None
-            if read.rules.find(each, given, read.rules.all) is not None:
-                found[read.node.default_outcome] = None
+            if concurrence.rules.find(each, given, concurrence.rules.all) is not None:
+                found[concurrence.node.default_outcome] = None
     except UndecidedError:
         found = {}
-    return found or [*(rule.outcome for rule in read.written), read.node.default_outcome]
+    return found or [
+        *(rule.outcome for rule in concurrence.written),
+        concurrence.node.default_outcome,
+    ]
 
 
 def path_to(
@@ -118,10 +139,10 @@ def path_to(
     while here is not None:
         events.append(here)
         here = before[here]
-    found: list[Step] = []
+    found: list[PathStep] = []
     for path, outcome in events[-2::-1]:
         if not outcome:
-            found.append(Step(path, path.rpartition("/")[2]))
+            found.append(entered(path.rpartition("/")[2], path))
         elif found and not found[-1].is_outcome:
-            found.append(Step(None, f"({outcome})", True))
+            found.append(ended(outcome))
     return tuple(label for _, label in steps_in_script(plain, found))

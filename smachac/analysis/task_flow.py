@@ -19,7 +19,7 @@ from smachac.ir.nodes import Node, Transition
 from smachac.ir.outcome_names import fails, successes
 from smachac.ir.traversal import leads_to_child
 
-CalmOutcomes = Callable[[Node], AbstractSet[str]]
+UnstoppedOutcomes = Callable[[Node], AbstractSet[str]]
 """The outcomes with which a child can end without a request to stop."""
 
 Way = tuple[tuple[str, str], ...]
@@ -31,16 +31,16 @@ _Leads: TypeAlias = "list[tuple[str, str]]"
 @dataclass(frozen=True, slots=True)
 class TaskFlow:
     """`steps` are the outcomes and siblings that can follow each state, `exits` the outcomes of the
-    container. `ordinary` are the states of the ordinary task. `calm_exits` are the outcomes of the
-    container without a stop, also after failures."""
+    container. `ordinary` are the states of the ordinary task. `unstopped_exits` are the outcomes of
+    the container without a stop, also after failures."""
 
     steps: Mapping[str, _Leads]
     exits: Mapping[str, frozenset[str]]
     ordinary: frozenset[str]
-    calm_exits: frozenset[str]
+    unstopped_exits: frozenset[str]
 
 
-def task_flow(container: Linear, calm_outcomes: CalmOutcomes) -> TaskFlow:
+def task_flow(container: Linear, unstopped_outcomes: UnstoppedOutcomes) -> TaskFlow:
     """The task flow of a container. Linear in its size."""
     names = children_names(container)
     every: dict[str, _Leads] = {}
@@ -48,19 +48,19 @@ def task_flow(container: Linear, calm_outcomes: CalmOutcomes) -> TaskFlow:
     exits: dict[str, frozenset[str]] = {}
     leaving: dict[str, frozenset[str]] = {}
     for child in container.children:
-        possible = calm_outcomes(child)
+        possible = unstopped_outcomes(child)
         taken = [step for step in child.transitions if step.outcome in possible]
         every[child.name], leaving[child.name] = _parted(taken, names)
         if not successes(child).isdisjoint(possible):
             taken = [step for step in taken if not fails(child, step.outcome)]
         steps[child.name], exits[child.name] = _parted(taken, names)
     ordinary = reached([container.initial], steps)
-    calm = reached([container.initial], every)
+    unstopped = reached([container.initial], every)
     for name, following in steps.items():
-        if name not in calm and len({target for _, target in following} | exits[name]) > 1:
+        if name not in unstopped and len({target for _, target in following} | exits[name]) > 1:
             steps[name], exits[name] = [], frozenset()
-    calm_exits = frozenset(end for name in calm for end in leaving.get(name, ()))
-    return TaskFlow(steps, exits, ordinary, calm_exits)
+    unstopped_exits = frozenset(end for name in unstopped for end in leaving.get(name, ()))
+    return TaskFlow(steps, exits, ordinary, unstopped_exits)
 
 
 def _parted(steps: Iterable[Transition], names: frozenset[str]) -> tuple[_Leads, frozenset[str]]:

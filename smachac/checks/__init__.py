@@ -36,7 +36,7 @@ from smachac.checks import (
 from smachac.checks.rule import Rule
 from smachac.diagnostics.diagnostic import Diagnostic, Finding, Report, diagnostic
 from smachac.ir.nodes import Machine
-from smachac.ir.script_paths import Step, steps_in_script
+from smachac.ir.script_paths import steps_in_script
 
 RULES: tuple[Rule, ...] = (
     expressions.bad_expression,
@@ -124,8 +124,7 @@ def _diagnostics(context: Context, rules: tuple[Rule, ...]) -> Iterator[Diagnost
     for rule in rules:
         for finding in rule.function(context):
             plain = context.plain_paths
-            steps = [Step(step.node, step.label, step.is_outcome) for step in finding.path]
-            shown = steps_in_script(plain, steps)
+            shown = steps_in_script(plain, finding.path)
             spans = context.spans if shown else {}
             places = tuple(spans.get(finding.path[at].node or "") for at, _ in shown)
             if plain:

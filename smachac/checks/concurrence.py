@@ -8,8 +8,8 @@ from smachac.analysis.context import Context
 from smachac.analysis.control_flow import is_open
 from smachac.analysis.outcome_rules import (
     Combination,
+    CorrectedConcurrence,
     Space,
-    Study,
     UndecidedError,
     bits,
     without_other,
@@ -83,7 +83,7 @@ def dead_rule(context: Context) -> Iterator[Finding]:
                 yield from _dead_renames(path, container)
     for each in context.judged:
         yield from _shadowed_rules(each)
-        if each.read.node.join == "any":
+        if each.concurrence.node.join == "any":
             yield from _rules_for_both(each)
 
 
@@ -141,9 +141,9 @@ def _other_outcome(child: Node, outcome: str) -> str:
 
 def _shadowed_rules(each: Judged) -> Iterator[Finding]:
     """The rules that lose to rules with more conditions in every combination."""
-    read, rules, whole = each.read, each.read.rules, each.whole
-    for number, entry in enumerate(read.written):
-        given, larger = rules.conditions[number], read.larger(number)
+    concurrence, rules, whole = each.concurrence, each.concurrence.rules, each.whole
+    for number, entry in enumerate(concurrence.written):
+        given, larger = rules.conditions[number], concurrence.larger(number)
         rivals = larger & rules.compatible(number)
         if not rivals or any(end not in whole[child] for child, end in given.items()):
             continue
@@ -152,7 +152,7 @@ def _shadowed_rules(each: Judged) -> Iterator[Finding]:
                 continue
         except UndecidedError:
             return
-        winners = [read.written[rival] for rival in bits(rivals)]
+        winners = [concurrence.written[rival] for rival in bits(rivals)]
         outcomes = sorted({winner.outcome for winner in winners})
         yield Finding(
             span=entry.span,
@@ -162,7 +162,7 @@ def _shadowed_rules(each: Judged) -> Iterator[Finding]:
             help="remove the rule, or add conditions to it",
             related=(
                 *(part for one in winners[:3] for part in other_place(one.span, "this rule wins")),
-                *calls(read.node, entry.span),
+                *calls(concurrence.node, entry.span),
             ),
             severity=Severity.WARNING,
             node=each.path,
@@ -172,12 +172,12 @@ def _shadowed_rules(each: Judged) -> Iterator[Finding]:
 def _rules_for_both(each: Judged) -> Iterator[Finding]:
     """The rules of a race that need two branches to end by themselves: the first to end preempts
     the other."""
-    node = each.read.node
-    for entry in each.read.written:
+    node = each.concurrence.node
+    for entry in each.concurrence.written:
         needed = {
             one.child: one.outcome
             for one in entry.when
-            if _ends_otherwise(each.read.children[one.child], one.outcome)
+            if _ends_otherwise(each.concurrence.children[one.child], one.outcome)
         }
         if len(needed) < 2:
             continue
@@ -330,7 +330,7 @@ def uncovered_combination(context: Context) -> Iterator[Finding]:
               transitions: {ready: ready, half: failed, failed: failed}
     """
     for each in context.judged:
-        node, rules = each.read.node, each.read.rules
+        node, rules = each.concurrence.node, each.concurrence.rules
         if node.default_outcome and not node.rules:
             continue
         missed = _missed(each)
@@ -365,9 +365,9 @@ def _names(combination: Mapping[str, str]) -> tuple[str, ...]:
 
 def _missed(each: Judged) -> Combination | None:
     """A combination that no rule matches, of those that count."""
-    rules = each.read.rules
-    spaces = [_unexceptional(each.read, space) for space, _ in each.calm]
-    if not each.read.node.default_outcome:
+    rules = each.concurrence.rules
+    spaces = [_unexceptional(each.concurrence, space) for space, _ in each.unstopped]
+    if not each.concurrence.node.default_outcome:
         spaces.append(without_other(each.whole))
     try:
         return next(filter(None, (rules.find(space, {}, rules.all) for space in spaces)), None)
@@ -375,8 +375,8 @@ def _missed(each: Judged) -> Combination | None:
         return None
 
 
-def _unexceptional(read: Study, space: Space) -> Space:
-    return {name: read.neutral(name, ends) for name, ends in space.items()}
+def _unexceptional(concurrence: CorrectedConcurrence, space: Space) -> Space:
+    return {name: concurrence.neutral(name, ends) for name, ends in space.items()}
 
 
 @rule("SM402", "overlapping-rules", Severity.WARNING)
@@ -426,10 +426,10 @@ def overlapping_rules(context: Context) -> Iterator[Finding]:
               transitions: {left: left, right: right, neither: neither}
     """
     for each in context.judged:
-        if len(each.read.written) > 1:
+        if len(each.concurrence.written) > 1:
             spaces = [without_other(each.whole)]
-            if each.read.node.join == "any":
-                spaces = [space for space, _ in each.calm]
+            if each.concurrence.node.join == "any":
+                spaces = [space for space, _ in each.unstopped]
             try:
                 yield from _overlaps(each, spaces)
             except UndecidedError:
@@ -438,43 +438,48 @@ def overlapping_rules(context: Context) -> Iterator[Finding]:
 
 def _overlaps(each: Judged, spaces: list[Space]) -> Iterator[Finding]:
     """For each rule that ties with rules above it, the tie with the first of them."""
-    read = each.read
+    concurrence = each.concurrence
     same: dict[int, int] = {}
-    for number, conditions in enumerate(read.rules.conditions):
-        above = same.get(len(conditions), 0) & read.rules.compatible(number)
+    for number, conditions in enumerate(concurrence.rules.conditions):
+        above = same.get(len(conditions), 0) & concurrence.rules.compatible(number)
         same[len(conditions)] = same.get(len(conditions), 0) | 1 << number
-        ties = (_tie(read, spaces, other, number) for other in bits(above))
+        ties = (_tie(concurrence, spaces, other, number) for other in bits(above))
         tie = next(filter(None, ties), None)
         if tie is not None:
             yield _overlapping(each, number, tie)
 
 
-def _tie(read: Study, spaces: list[Space], first: int, second: int) -> Combination | None:
+def _tie(
+    concurrence: CorrectedConcurrence, spaces: list[Space], first: int, second: int
+) -> Combination | None:
     """A combination in which the two rules tie and frameworks differ, if there is one.
 
     It is reduced to the conditions that decide, unless a third rule has to hold as well.
     """
-    rules = read.rules
+    rules = concurrence.rules
     given = {**rules.conditions[first], **rules.conditions[second]}
     others = rules.larger_than(len(rules.conditions[second]) - 1) & ~(1 << first | 1 << second)
-    for avoided in dict.fromkeys((others, read.larger(second))):
+    for avoided in dict.fromkeys((others, concurrence.larger(second))):
         for space in spaces:
             found = rules.find(space, given, avoided)
-            if found is not None and len({read.written[n].outcome for n in _ends(read, found)}) > 1:
+            if (
+                found is not None
+                and len({concurrence.written[n].outcome for n in _ends(concurrence, found)}) > 1
+            ):
                 return rules.shown(found, given, avoided) if avoided == others else found
     return None
 
 
-def _ends(read: Study, combination: Combination) -> tuple[int, int]:
+def _ends(concurrence: CorrectedConcurrence, combination: Combination) -> tuple[int, int]:
     """The first and the last of the rules that win."""
-    winners = read.winners(combination)
+    winners = concurrence.winners(combination)
     return winners[0], winners[-1]
 
 
 def _overlapping(each: Judged, number: int, tie: Combination) -> Finding:
-    first, last = _ends(each.read, tie)
-    above, below = each.read.written[first], each.read.written[last]
-    here = each.read.written[number]
+    first, last = _ends(each.concurrence, tie)
+    above, below = each.concurrence.written[first], each.concurrence.written[last]
+    here = each.concurrence.written[number]
     return Finding(
         span=here.span,
         message=f"the rules for `{above.outcome}` and `{below.outcome}` both hold for"
@@ -484,7 +489,7 @@ def _overlapping(each: Judged, number: int, tie: Combination) -> Finding:
         help="add conditions to one of the two rules: the rule with more conditions wins",
         related=(
             *other_place(above.span, "the other rule"),
-            *calls(each.read.node, here.span),
+            *calls(each.concurrence.node, here.span),
         ),
         node=each.path,
     )

@@ -64,7 +64,7 @@ def dead_key(context: Context) -> Iterator[Finding]:
               input_keys: [pose]
               transitions: {succeeded: held}
     """
-    flow = context.mended_flow
+    flow = context.corrected_flow
     reported = {(each.keeper.path, each.own) for each in context.lost_outputs}
     reported |= {(each.other, each.key) for each in context.missing_keys("outside")}
     unset: dict[str, set[str]] = {}
@@ -193,7 +193,7 @@ def unused_declaration(context: Context) -> Iterator[Finding]:
                     transitions: {succeeded: done}
               transitions: {done: held}
     """
-    flow = context.mended_flow
+    flow = context.corrected_flow
     missing = {(each.scope.path, each.key) for each in context.missing_keys("unset", "nowhere")}
     kept = {(each.other, each.key) for each in context.missing_keys("outside")}
     yield from context.at_containers(_unused_in)

@@ -8,7 +8,7 @@ from typing import NamedTuple, TypeAlias
 from smachac.analysis.context import Context
 from smachac.analysis.control_flow import MOST_STEPS
 from smachac.analysis.failure_paths import starts_failure
-from smachac.analysis.outcome_rules import Combination, Space, Study, UndecidedError
+from smachac.analysis.outcome_rules import Combination, CorrectedConcurrence, Space, UndecidedError
 from smachac.analysis.possible_outcomes import Judged
 from smachac.checks.concurrence import written
 from smachac.checks.messages import calls, other_place, own_name
@@ -93,7 +93,7 @@ def masked_failure(context: Context) -> Iterator[Finding]:
     """
     containers = dict(context.containers)
     for each in context.judged:
-        around = containers.get(each.path.rpartition("/")[0], each.read.node)
+        around = containers.get(each.path.rpartition("/")[0], each.concurrence.node)
         try:
             yield from _masked(context, each, around)
         except UndecidedError:
@@ -106,23 +106,23 @@ def masked_failure(context: Context) -> Iterator[Finding]:
 
 def _masked(context: Context, each: Judged, around: Container) -> Iterator[Finding]:
     """The failures that the default outcome hides, and those that each rule for a success hides."""
-    read, node = each.read, each.read.node
-    spaces = each.calm
-    if not any(read.failures(*ends) for space, _ in spaces for ends in space.items()):
+    concurrence, node = each.concurrence, each.concurrence.node
+    spaces = each.unstopped
+    if not any(concurrence.failures(*ends) for space, _ in spaces for ends in space.items()):
         return
-    good = _good_results(read, around, [space for space, _ in spaces])
+    good = _good_results(concurrence, around, [space for space, _ in spaces])
     if node.default_outcome in good:
-        hidden = _hidden_failures(read, spaces, {}, read.rules.all)
+        hidden = _hidden_failures(concurrence, spaces, {}, concurrence.rules.all)
         help = "use an outcome of failure as default outcome, and write a rule for each success"
         yield from _masked_finding(
             context, each, node.default_outcome, node.default_span, {}, hidden, help
         )
-    for number, entry in enumerate(read.written):
+    for number, entry in enumerate(concurrence.written):
         if entry.outcome in good:
-            given = read.rules.conditions[number]
-            rivals = read.rules.larger_than(len(given) - 1) & ~(1 << number)
-            named = {*given, *_ignored(entry, read.children)}
-            hidden = _hidden_failures(read, spaces, given, rivals, named)
+            given = concurrence.rules.conditions[number]
+            rivals = concurrence.rules.larger_than(len(given) - 1) & ~(1 << number)
+            named = {*given, *_ignored(entry, concurrence.children)}
+            hidden = _hidden_failures(concurrence, spaces, given, rivals, named)
             shown = next(iter(hidden), "")
             help = f"list every branch in the rule for `{entry.outcome}`; `{shown}: any`, if its"
             help += " failures do not matter"
@@ -137,17 +137,19 @@ def _ignored(entry: OutcomeRule, children: Collection[str]) -> Iterator[str]:
         yield word.text if word.text in children else guesser(children)(word.text) or word.text
 
 
-def _good_results(read: Study, around: Container, spaces: list[Space]) -> frozenset[str]:
+def _good_results(
+    concurrence: CorrectedConcurrence, around: Container, spaces: list[Space]
+) -> frozenset[str]:
     """The outcomes of a concurrence in a container that are successes, as SM404 defines them."""
-    node = read.node
+    node = concurrence.node
     found = set(successes(node))
     results: set[str] = set()
-    for space in (_unfailed_outcomes(read, each) for each in spaces):
-        if read.rules.find(space, {}, read.rules.all) is not None:
+    for space in (_unfailed_outcomes(concurrence, each) for each in spaces):
+        if concurrence.rules.find(space, {}, concurrence.rules.all) is not None:
             results.add(node.default_outcome)
-        for number, entry in enumerate(read.written):
-            given = read.rules.conditions[number]
-            if read.rules.find(space, given, read.larger(number)) is not None:
+        for number, entry in enumerate(concurrence.written):
+            given = concurrence.rules.conditions[number]
+            if concurrence.rules.find(space, given, concurrence.larger(number)) is not None:
                 results.add(entry.outcome)
     if len(results) == 1:
         found |= results
@@ -164,20 +166,22 @@ def _is_bad(node: Node, name: str) -> bool:
     return fails(node, name) or name == PREEMPTED
 
 
-def _unfailed_outcomes(read: Study, space: Space) -> Space:
+def _unfailed_outcomes(concurrence: CorrectedConcurrence, space: Space) -> Space:
     """The outcomes of each child when nothing fails: those of success; of a child without any, the
     neutral ones, and without these `preempted`."""
     found: Space = {}
     for name, ends in space.items():
         good = tuple(end for end in ends if end.lower() in SUCCESSES | GOOD)
         found[name] = (
-            good or read.neutral(name, ends) or tuple(end for end in ends if end == PREEMPTED)
+            good
+            or concurrence.neutral(name, ends)
+            or tuple(end for end in ends if end == PREEMPTED)
         )
     return found
 
 
 def _hidden_failures(
-    read: Study,
+    concurrence: CorrectedConcurrence,
     spaces: list[tuple[Space, str]],
     given: Combination,
     avoided: int,
@@ -194,11 +198,11 @@ def _hidden_failures(
         for child in [first] if first else space:
             if child in named or child in found:
                 continue
-            for end in read.failures(child, space[child]):
+            for end in concurrence.failures(child, space[child]):
                 fixed = {**given, child: end}
-                combination = read.rules.find(space, fixed, avoided)
+                combination = concurrence.rules.find(space, fixed, avoided)
                 if combination is not None:
-                    found[child] = read.rules.shown(combination, fixed, avoided)
+                    found[child] = concurrence.rules.shown(combination, fixed, avoided)
                     break
     return found
 
@@ -215,7 +219,7 @@ def _masked_finding(
     """SM404 for an outcome that hides failures of children; nothing if it hides none."""
     if not hidden:
         return
-    node = each.read.node
+    node = each.concurrence.node
     child, shown = next(iter(hidden.items()))
     others = [name for name in hidden if name != child]
     also = f"; failures of {listed(others)} are hidden too" if others else ""

@@ -68,10 +68,10 @@ def trap(context: Context) -> Iterator[Finding]:
           - APPROACH: {template: ScriptedState, outcomes: [near], transitions: {near: PICK}}
     """
     endless = context.endless
-    for (path, container), mended in zip(context.linear, context.mended, strict=True):
+    for (path, container), corrected in zip(context.linear, context.corrected, strict=True):
         if isinstance(container, StateMachine) and container.forever:
             continue
-        flow = outline(path, container, endless, mended)
+        flow = outline(path, container, endless, corrected)
         stuck = context.of_container(stuck_states, path, flow)
         if not stuck:
             continue

@@ -62,7 +62,7 @@ def unreachable_state(context: Context) -> Iterator[Finding]:
               outcomes: [done]
               transitions: {done: lost}
     """
-    for (path, container), whole in zip(context.linear, context.mended, strict=True):
+    for (path, container), whole in zip(context.linear, context.corrected, strict=True):
         seen = context.of_container(reachable, path, whole)
         hidden = [child for child in container.children if child.name not in seen]
         if hidden and isinstance(container, Sequence) and _never_continues(container):
@@ -155,7 +155,7 @@ def impossible_outcome(context: Context) -> Iterator[Finding]:
               outcomes: [done, slipped]
               transitions: {done: picked, slipped: lost}
     """
-    linear = iter(context.mended)
+    linear = iter(context.corrected)
     again = {found.stop.path for found in context.stop_paths.again}
     for path, container in context.containers:
         whole = next(linear) if isinstance(container, StateMachine | Sequence) else container
@@ -169,7 +169,7 @@ def impossible_outcome(context: Context) -> Iterator[Finding]:
 
 
 def _possible_outcomes(container: Container) -> frozenset[str] | None:
-    """The outcomes with which a mended container can end; None where another fault makes that
+    """The outcomes with which a corrected container can end; None where another fault makes that
     unknown."""
     if not container.children:
         return None

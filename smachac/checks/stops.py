@@ -153,12 +153,12 @@ def stop_as_success(context: Context) -> Iterator[Finding]:
 
 def _stopped_branches(context: Context, each: Judged) -> Iterator[Finding]:
     """A concurrence that ends with a success when all its branches are preempted."""
-    node, found = each.read.node, context.stop_paths
+    node, found = each.concurrence.node, context.stop_paths
     good = task_successes(node) - found.only.get(each.path, frozenset())
     space = stopped_space(each, found)
     if not good or not space:
         return
-    for name in sorted(good & results(node, each.read, [space])):
+    for name in sorted(good & results(node, each.concurrence, [space])):
         default = name == node.default_outcome
         span = node.default_span
         if not default:

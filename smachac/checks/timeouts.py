@@ -218,12 +218,12 @@ def never_ends(context: Context) -> Iterator[Finding]:
 def _lasting(
     path: str, container: Concurrence, found: Endings, endless: AbstractSet[str]
 ) -> Iterator[Finding]:
-    ever, calm = found
-    ends = any(calm[f"{path}/{child.name}"] for child in container.children)
+    ever, unstopped = found
+    ends = any(unstopped[f"{path}/{child.name}"] for child in container.children)
     for child in container.children if ends else ():
         here, name = f"{path}/{child.name}", name_in_script(child)
         around = name_in_script(container)
-        if container.join == "all" and ever[here] and not calm[here]:
+        if container.join == "all" and ever[here] and not unstopped[here]:
             why = f"ends only after a preempt request, and nothing in `{around}` sends one"
             help = (
                 "write `join: any`, so that the first branch to end stops the others, or make"

@@ -75,7 +75,7 @@ def read_before_write(context: Context) -> Iterator[Finding]:
               input_keys: [pose]
               transitions: {done: held}
     """
-    flow = context.mended_flow
+    flow = context.corrected_flow
     searches = Searches(flow)
     guesses = _Guesses()
     used = cache(lambda path: uses_by_key(flow, path))
@@ -293,7 +293,7 @@ def undeclared_container_key(context: Context) -> Iterator[Finding]:
                     transitions: {succeeded: done}
               transitions: {done: held}
     """
-    flow = context.mended_flow
+    flow = context.corrected_flow
     for missing in context.missing_keys("outside"):
         scope, key = missing.scope, missing.key
         reader = reader_at(scope, missing.vertices[0], key)

@@ -10,7 +10,7 @@ from smachac.interpreter.result import Event, SchedulingChoice
 from smachac.interpreter.scenario import (
     PlainStep,
     Scenario,
-    Step,
+    ScenarioStep,
     perform_step,
     scenario_line,
     scenario_text,
@@ -89,10 +89,10 @@ def replay(machine: Machine, visits: Sequence[Visited], again: int = -1) -> Repl
     rounds = list(visits)
     if again >= 0:
         rounds += list(visits[again:]) * (MOST_ROUNDS - 1)
-    steps: dict[str, list[Step]] = {}
+    steps: dict[str, list[ScenarioStep]] = {}
     for each in rounds:
         failed = each.outcome is None
-        step = Step(outcome=each.outcome, error=FAILURE if failed else "", stop=each.stop)
+        step = ScenarioStep(outcome=each.outcome, error=FAILURE if failed else "", stop=each.stop)
         steps.setdefault(each.path, []).append(step)
     done: list[int] = []
     made: dict[str, int] = {}
@@ -103,7 +103,7 @@ def replay(machine: Machine, visits: Sequence[Visited], again: int = -1) -> Repl
             right.append(rounds[len(done)].path == path)
             done.append(len(done))
         made[path] = made.get(path, 0) + 1
-        row = steps.get(path, [Step(outcome=default_outcome(leaf))])
+        row = steps.get(path, [ScenarioStep(outcome=default_outcome(leaf))])
         step = row[min(made[path], len(row)) - 1]
         if step.stop:
             userdata.stop_machine()

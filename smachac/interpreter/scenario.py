@@ -23,7 +23,7 @@ from smachac.ir.traversal import PREEMPTED, outcome_names, walk
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
-class Step:
+class ScenarioStep:
     """One visit of a leaf: the keys it writes, in order, and its outcome.
 
     Without an outcome the leaf ends with its default outcome. `stop`: the visit begins with a
@@ -63,7 +63,7 @@ class Scenario:
     its end (`GRASP`, `PICK/GRASP`) if only one leaf has that end.
     """
 
-    steps: Mapping[str, tuple[Step, ...]]
+    steps: Mapping[str, tuple[ScenarioStep, ...]]
 
 
 def scenario_behaviour(
@@ -95,7 +95,7 @@ def scenario_behaviour(
     return behave
 
 
-def perform_step(step: Step, leaf: Leaf, userdata: Userdata) -> str:
+def perform_step(step: ScenarioStep, leaf: Leaf, userdata: Userdata) -> str:
     """Perform one step of a leaf, without its `stop`; the outcome."""
     able = PREEMPTED in outcome_names(leaf)
     if userdata.preempted and able:
@@ -179,9 +179,9 @@ def quoted(value: object) -> str:
     return json.dumps(value, ensure_ascii=False)
 
 
-def _by_path(scenario: Scenario, machine: Machine) -> dict[str, tuple[Step, ...]]:
+def _by_path(scenario: Scenario, machine: Machine) -> dict[str, tuple[ScenarioStep, ...]]:
     leaves = _leaves(machine)
-    by_path: dict[str, tuple[Step, ...]] = {}
+    by_path: dict[str, tuple[ScenarioStep, ...]] = {}
     for name, steps in scenario.steps.items():
         path = _found(name, leaves)
         if path is None:
@@ -215,7 +215,7 @@ def read_scenario(data: object, machine: Machine) -> tuple[Scenario, list[Scenar
     ```
     """
     problems: list[ScenarioProblem] = []
-    steps: dict[str, tuple[Step, ...]] = {}
+    steps: dict[str, tuple[ScenarioStep, ...]] = {}
     if not isinstance(data, dict) or not isinstance(data.get("states"), dict):
         message = "a scenario is a mapping with `states`: a mapping of paths"
         return Scenario(steps={}), [ScenarioProblem(message)]
@@ -261,12 +261,12 @@ class _StepReader:
     name: str
     problems: list[ScenarioProblem]
 
-    def step(self, entry: object, number: int) -> Step:
+    def step(self, entry: object, number: int) -> ScenarioStep:
         if isinstance(entry, str | bool):
-            return Step(outcome=self.outcome(entry, number))
+            return ScenarioStep(outcome=self.outcome(entry, number))
         if not isinstance(entry, dict):
             self.problem(number, "a step is an outcome, or a mapping with `outcome` and `set`")
-            return Step()
+            return ScenarioStep()
         for key in entry:
             if key not in STEP_FIELDS:
                 help_ = did_you_mean(str(key), STEP_FIELDS)
@@ -286,7 +286,7 @@ class _StepReader:
         given = entry.get("outcome")
         chances = self.chances(given, number) if isinstance(given, dict) else ()
         single = "outcome" in entry and not isinstance(given, dict)
-        return Step(
+        return ScenarioStep(
             outcome=self.outcome(given, number) if single else None,
             chances=chances,
             writes=tuple((str(key), writes[key]) for key in writes),

@@ -11,6 +11,7 @@ from __future__ import annotations
 from collections.abc import Iterator, Mapping, Sequence
 from typing import NamedTuple
 
+from smachac.diagnostics.diagnostic import PathStep
 from smachac.ir import nodes
 from smachac.ir.nodes import Concurrence, Container, Leaf, Node, StateMachine
 from smachac.ir.traversal import containers
@@ -144,16 +145,7 @@ def name_in_script(node: Node) -> str:
     return node.name
 
 
-class Step(NamedTuple):
-    """A step of a path through a machine: the state at a full path is entered or runs, or the state
-    before ends with an outcome. `path` is None for an outcome and for the end of a machine."""
-
-    path: str | None
-    label: str
-    is_outcome: bool = False
-
-
-def steps_in_script(plain: Mapping[str, str], steps: Sequence[Step]) -> list[tuple[int, str]]:
+def steps_in_script(plain: Mapping[str, str], steps: Sequence[PathStep]) -> list[tuple[int, str]]:
     """The steps of a path as the script shows them: their numbers and labels. `plain` are the plain
     paths.
 
@@ -166,25 +158,25 @@ def steps_in_script(plain: Mapping[str, str], steps: Sequence[Step]) -> list[tup
     skipped = False
     last = ""  # the full path of the state of the last step
     for at, step in enumerate(steps):
-        if step.is_outcome or step.path is None:
+        if step.is_outcome or step.node is None:
             if not (skipped and step.is_outcome):
                 kept.append(at)
             skipped = False
             continue
-        same = plain.get(step.path, step.path) == plain.get(last, last)
+        same = plain.get(step.node, step.node) == plain.get(last, last)
         if same and not steps[kept[-1]].is_outcome:
             kept.pop()
         skipped = (
             same
-            and last.startswith(f"{step.path}/")
+            and last.startswith(f"{step.node}/")
             and steps[kept[-1] : kept[-1] + 1] == steps[at + 1 : at + 2]
         )
         if not skipped:
             kept.append(at)
-            last = step.path
+            last = step.node
     return [(at, _label(plain, steps[at])) for at in kept]
 
 
-def _label(plain: Mapping[str, str], step: Step) -> str:
-    path = plain.get(step.path) if step.path is not None else None
+def _label(plain: Mapping[str, str], step: PathStep) -> str:
+    path = plain.get(step.node) if step.node is not None else None
     return step.label if path is None else path.rpartition("/")[2]

@@ -11,7 +11,7 @@ import ast
 from collections.abc import Callable, Iterable, Iterator
 from dataclasses import replace
 
-from smachac.analysis.property_events import NameFault, Names
+from smachac.analysis.property_events import NamedStates, NameFault
 from smachac.diagnostics.source import Source, Span
 from smachac.ir import nodes
 from smachac.ir.leaf import variable_of
@@ -182,7 +182,7 @@ def _rename_in_properties(
     if not machine.properties:
         return
     known = dict(walk(machine.root))
-    names = Names([*known], [*known.values()], {})
+    names = NamedStates([*known], [*known.values()], {})
     for atom in (atom for given in machine.properties for atom in atoms(given.form)):
         events = names.resolve(atom)
         if isinstance(events, NameFault):

@@ -154,6 +154,6 @@ def _fix(item: Diagnostic) -> dict[str, Any]:
             {"deletedRegion": _region(edit.span), "insertedContent": {"text": edit.text}}
         )
     return {
-        "description": _message(item.finding.help or "mend it"),
+        "description": _message(item.finding.help or "correct it"),
         "artifactChanges": list(files.values()),
     }

@@ -15,7 +15,7 @@ from smachac.interpreter.behaviours import builtin_behaviour, is_made_of_functio
 from smachac.interpreter.evaluator import can_evaluate
 from smachac.interpreter.interpreter import run
 from smachac.interpreter.result import Event
-from smachac.interpreter.scenario import Scenario, Step, perform_step
+from smachac.interpreter.scenario import Scenario, ScenarioStep, perform_step
 from smachac.interpreter.userdata import Userdata
 from smachac.ir import nodes
 from smachac.ir.expressions import parse_expression
@@ -84,7 +84,7 @@ class PathRun:
     live: frozenset[str]
     stops: set[int]
     choices: list[Choice] = field(default_factory=list)
-    steps: dict[str, list[Step]] = field(default_factory=dict)
+    steps: dict[str, list[ScenarioStep]] = field(default_factory=dict)
     first: dict[str, str] = field(default_factory=dict)
     failing: dict[str, str] = field(default_factory=dict)
     visits: int = 0
@@ -190,9 +190,9 @@ class PathRunner:
         row = path_run.steps.setdefault(path, [])
         if PREEMPTED in outcome_names(leaf) and (wait or userdata.preempted):
             # A leaf that the request does not reach ends with its default outcome.
-            row.append(Step(outcome=default_outcome(leaf), wait=wait, stop=stop))
+            row.append(ScenarioStep(outcome=default_outcome(leaf), wait=wait, stop=stop))
         elif path in path_run.failing.values():
-            row.append(Step(error=FAILURE, wait=wait, stop=stop))
+            row.append(ScenarioStep(error=FAILURE, wait=wait, stop=stop))
         else:
             options = possible_leaf_outcomes(leaf) or (default_outcome(leaf),)
             options += (FAILS,) * (path in self._caught and not leaf.catches)
@@ -200,12 +200,12 @@ class PathRunner:
             if outcome is None and self._enclosing[path]:
                 outcome = self._outcome_to_end(path) or default_outcome(leaf)
             if outcome is None:
-                row.append(Step(error=CUT, stop=stop))
+                row.append(ScenarioStep(error=CUT, stop=stop))
             elif outcome in (FAILS, leaf.catches):
-                row.append(Step(error=FAILURE, wait=wait, stop=stop))
+                row.append(ScenarioStep(error=FAILURE, wait=wait, stop=stop))
             else:
                 writes = self._sample_values.outputs(path, leaf, outcome, len(row))
-                row.append(Step(outcome=outcome, writes=writes, wait=wait, stop=stop))
+                row.append(ScenarioStep(outcome=outcome, writes=writes, wait=wait, stop=stop))
         return perform_step(row[-1], leaf, userdata)
 
     def _choose(self, path_run: PathRun, place: str, options: tuple[str, ...]) -> str | None:

@@ -12,7 +12,7 @@ from hypothesis import assume, given, settings
 from hypothesis import strategies as st
 
 from smachac.analysis import outcome_rules
-from smachac.analysis.outcome_rules import Combination, Rules, UndecidedError, study
+from smachac.analysis.outcome_rules import Combination, Rules, UndecidedError, corrected_concurrence
 from smachac.checks.concurrence import written
 from smachac.diagnostics.diagnostic import Diagnostic, Severity
 from smachac.ir.nodes import Concurrence, Node, StateMachine
@@ -95,8 +95,8 @@ def test_a_combination_is_missed_if_and_only_if_one_is_uncovered(node: Concurren
     found = said(node, "SM401")
     open_ = [ended for ended in every(node) if not holding(node, ended)]
     if node.default_outcome:
-        calm = [each for each in open_ if not {"aborted", "preempted"} & set(each.values())]
-        assert bool(found) == (bool(calm) and bool(node.rules))
+        unstopped = [each for each in open_ if not {"aborted", "preempted"} & set(each.values())]
+        assert bool(found) == (bool(unstopped) and bool(node.rules))
     else:
         assert bool(found) == bool(open_)
     for item in found:
@@ -234,9 +234,9 @@ def test_with_join_any_the_first_to_end_decides(node: Concurrence) -> None:
 def test_shown_parts_decide_and_are_as_small_as_they_can_be(
     node: Concurrence, data: st.DataObject
 ) -> None:
-    read = study(node.name, node)
-    assert read is not None
-    rules = read.rules
+    concurrence = corrected_concurrence(node.name, node)
+    assert concurrence is not None
+    rules = concurrence.rules
     domains = {child.name: tuple(one.name for one in child.outcomes) for child in node.children}
     avoided = data.draw(st.integers(0, rules.all))
     found = rules.find(domains, {}, avoided)

@@ -88,9 +88,9 @@ def test_every_trap_is_found_and_nothing_else(flow: Steps) -> None:
 @given(flows())
 def test_a_loop_without_a_bound_is_one_that_failures_never_leave(flow: Steps) -> None:
     entered = closure("S0", flow) & flow.keys()
-    calm = without(flow, "preempted")
-    assume(endless(calm).isdisjoint(entered))
-    lasting = endless(failing(calm)) & entered
+    unstopped = without(flow, "preempted")
+    assume(endless(unstopped).isdisjoint(entered))
+    lasting = endless(failing(unstopped)) & entered
     tries = {line.rpartition("/")[2] for line in found(built(flow), "SM204")}
     assert tries <= lasting
     assert bool(tries) == bool(lasting)

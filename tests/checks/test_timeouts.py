@@ -263,8 +263,8 @@ def exits(flow: Flow, left_out: str = "") -> set[str]:
 def test_endings_are_the_exits_that_can_be_reached(flow: Flow) -> None:
     branch = machine("IN", "out lost", *(leaf(name, to) for name, to in flow.items()))
     root = both(WORK, branch)
-    ever, calm = Context(Machine(root=root)).endings
+    ever, unstopped = Context(Machine(root=root)).endings
     assert set(ever["sm/BOTH/IN"]) == exits(flow)
-    assert set(calm["sm/BOTH/IN"]) == exits(flow, left_out="preempted")
+    assert set(unstopped["sm/BOTH/IN"]) == exits(flow, left_out="preempted")
     lasting = bool(exits(flow)) and not exits(flow, left_out="preempted")
     assert bool(found(root, "SM407")) == lasting

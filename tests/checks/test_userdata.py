@@ -155,7 +155,7 @@ def test_keys_pass_through_remaps() -> None:
     assert found(lost) == ["SM302 sm/R"]
 
 
-def test_a_remap_of_a_key_that_is_not_there_is_mended_before_the_rest_is_judged() -> None:
+def test_a_remap_of_a_key_that_is_not_there_is_corrected_before_the_rest_is_judged() -> None:
     node = root(leaf("R", DONE, ins="pose", remaps={"psoe": "block"}), held={"block": 1})
     assert found(node) == ["SM302 sm/R"]
     assert one(node, "SM302").finding.help == "did you mean `pose`?"

@@ -12,7 +12,7 @@ from smachac.interpreter.scenario import (
     PlainStep,
     Scenario,
     ScenarioProblem,
-    Step,
+    ScenarioStep,
     plain_steps_by_path,
     read_scenario,
     scenario_behaviour,
@@ -56,12 +56,12 @@ def test_the_forms_of_a_scenario() -> None:
     assert problems == []
     assert scenario.steps == {
         "sm/PICK/GRASP": (
-            Step(outcome="aborted"),
-            Step(outcome="succeeded", writes=(("width", 1),)),
+            ScenarioStep(outcome="aborted"),
+            ScenarioStep(outcome="succeeded", writes=(("width", 1),)),
         ),
-        "sm/CHECK": (Step(outcome="false"),),
-        "sm/PLACE/GRASP": (Step(outcome="succeeded"),),
-        "sm/EACH/LOOK": (Step(writes=(("anything", [1]),)),),
+        "sm/CHECK": (ScenarioStep(outcome="false"),),
+        "sm/PLACE/GRASP": (ScenarioStep(outcome="succeeded"),),
+        "sm/EACH/LOOK": (ScenarioStep(writes=(("anything", [1]),)),),
     }
 
 
@@ -135,10 +135,10 @@ def test_a_scenario_is_acted_out_and_the_rest_acts_itself() -> None:
     scenario = Scenario(
         steps={
             "PICK/GRASP": (
-                Step(outcome="aborted"),
-                Step(outcome="succeeded", writes=(("width", [5]),)),
+                ScenarioStep(outcome="aborted"),
+                ScenarioStep(outcome="succeeded", writes=(("width", [5]),)),
             ),
-            "CHECK": (Step(outcome="false"), Step(outcome="true")),
+            "CHECK": (ScenarioStep(outcome="false"), ScenarioStep(outcome="true")),
         }
     )
     given = picking()
@@ -191,7 +191,7 @@ def test_steps_that_wait_stop_the_machine_or_fail(states: Any, outcome: str | No
 
 def test_a_step_without_outcome_ends_as_usual() -> None:
     given = picking()
-    scenario = Scenario(steps={"sm/PICK/GRASP": (Step(writes=(("width", 1),)),)})
+    scenario = Scenario(steps={"sm/PICK/GRASP": (ScenarioStep(writes=(("width", 1),)),)})
     result, _ = ran(
         given.root, scenario_behaviour(scenario, given, builtin_behaviour()), max_steps=4
     )
@@ -200,7 +200,10 @@ def test_a_step_without_outcome_ends_as_usual() -> None:
 
 def test_a_scenario_as_plain_rows() -> None:
     scenario = Scenario(
-        steps={"PICK/GRASP": (Step(writes=(("width", 5),)), Step(outcome="aborted")), "CHECK": ()}
+        steps={
+            "PICK/GRASP": (ScenarioStep(writes=(("width", 5),)), ScenarioStep(outcome="aborted")),
+            "CHECK": (),
+        }
     )
     assert plain_steps_by_path(scenario, picking()) == {
         "sm/PICK/GRASP": [
@@ -212,7 +215,7 @@ def test_a_scenario_as_plain_rows() -> None:
 
 
 def test_a_scenario_for_no_leaf_is_refused() -> None:
-    scenario = Scenario(steps={"GRASP": (Step(outcome="x"),)})
+    scenario = Scenario(steps={"GRASP": (ScenarioStep(outcome="x"),)})
     with pytest.raises(ValueError, match="may be any of"):
         scenario_behaviour(scenario, picking(), builtin_behaviour())
 
@@ -280,7 +283,7 @@ def test_an_outcome_is_drawn_from_its_probabilities() -> None:
     )
     assert problems == []
     assert scenario.steps["sm/PICK/GRASP"] == (
-        Step(chances=(("succeeded", 0.7), ("aborted", 0.3))),
+        ScenarioStep(chances=(("succeeded", 0.7), ("aborted", 0.3))),
     )
 
     def tries(seed: int) -> int:

@@ -1,4 +1,4 @@
-"""Names that are mended: when that is certain, what is kept, what is written."""
+"""Names that are corrected: when that is certain, what is kept, what is written."""
 
 from __future__ import annotations
 
@@ -108,7 +108,9 @@ def folder(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
     return tmp_path
 
 
-def test_names_are_mended_in_every_file(folder: Path, capsys: pytest.CaptureFixture[str]) -> None:
+def test_names_are_corrected_in_every_file(
+    folder: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
     (folder / "main.yml").chmod(0o640)
     assert main(["check", "main.yml"]) == 1
     assert "(3 fixable with --fix)" in capsys.readouterr().out
@@ -156,7 +158,7 @@ def test_a_fix_that_adds_an_error_is_not_written(
     )
     (folder / "main.yml").write_text(text)
     assert main(["check", "main.yml", "--fix", *options]) == 1  # firm codes count all the same
-    # Both keys would be `transitions`; the target is mended on its own.
+    # Both keys would be `transitions`; the target is corrected on its own.
     assert (folder / "main.yml").read_text() == text.replace("dnoe", "done")
     assert "(1 fixed)" in capsys.readouterr().out
 
@@ -422,8 +424,8 @@ def test_fixes_never_make_it_worse(damage: list[tuple[int, str, int]]) -> None:
     assert set(errors) <= {fingerprint(item) for item in before}
     if result.count:
         assert len(after) < len(before) or not has_errors(after)
-        (mended_text,) = result.texts.values()
-        assert look({"main.yml": mended_text}).report == after or mended_text != text
+        (corrected_text,) = result.texts.values()
+        assert look({"main.yml": corrected_text}).report == after or corrected_text != text
     else:
         assert result.texts == {}
 

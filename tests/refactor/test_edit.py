@@ -197,9 +197,9 @@ def test_the_patch_and_the_findings() -> None:
     assert result.undo == {str(MAIN.resolve()): SCRIPT}
     assert MAIN.read_text() == SCRIPT
     apply(result)
-    mended = edit("transition", "PICK", outcome="ok", target="PLACE")
-    assert "SM201" in {each.code for each in mended.findings_removed}
-    assert list(mended.texts.values()) == [SCRIPT]
+    corrected = edit("transition", "PICK", outcome="ok", target="PLACE")
+    assert "SM201" in {each.code for each in corrected.findings_removed}
+    assert list(corrected.texts.values()) == [SCRIPT]
 
 
 @pytest.mark.usefixtures("script")

@@ -63,11 +63,11 @@ TESTS = st.sampled_from(["ud.{0} > 1", "ud.{0} == ud.{1}", "ud.{0} % 2 == 0 and 
 class _Busy(Building):
     """What draws the parts of a machine.
 
-    Inside a concurrence (`calm`) nothing fails, all numbers are there, and no two branches write
+    Where `in_concurrence` is set, nothing fails, all numbers are there, and no two branches write
     the same key: so that a run does not hang on who is first.
     """
 
-    calm = False
+    in_concurrence = False
 
     def exits(self, first: str | None = None) -> list[str]:
         drawn = self.draw(OUTCOMES)
@@ -87,13 +87,13 @@ class _Busy(Building):
         return self.made_leaf("ScriptedState", exits, {"steps": steps}, [], [written])
 
     def writable(self) -> str:
-        return f"w{self.made + 1}" if self.calm else self.draw(NUMBER)
+        return f"w{self.made + 1}" if self.in_concurrence else self.draw(NUMBER)
 
     def made_leaf(
         self, kind: str, exits: list[str], variables: dict[str, Data], ins: Any, outs: Any
     ) -> Leaf:
         remaps = []
-        for key in sorted({*ins, *outs}) if not self.calm else ():
+        for key in sorted({*ins, *outs}) if not self.in_concurrence else ():
             if self.draw(BOOLEANS):
                 remaps.append(Remap(key=key, to=self.draw(NUMBER), span=NOWHERE))
         leaf = Leaf(
@@ -116,15 +116,15 @@ class _Busy(Building):
         return Expression(text=f"lambda ud: {text}", span=NOWHERE)
 
     def callbacks(self) -> tuple[dict[str, Data], list[str], list[str]]:
-        fails = not self.calm and self.draw(BOOLEANS)
+        fails = not self.in_concurrence and self.draw(BOOLEANS)
         entries = tuple(
             (key, self.expression(FAILING if fails else RESULTS))
-            for key in ([self.writable()] if self.calm else self.draw(SOME_NUMBERS))
+            for key in ([self.writable()] if self.in_concurrence else self.draw(SOME_NUMBERS))
         )
         return {"callbacks": Struct(entries=entries)}, self.readable(), [key for key, _ in entries]
 
     def readable(self) -> list[str]:
-        every = self.calm or self.draw(st.integers(0, 3))
+        every = self.in_concurrence or self.draw(st.integers(0, 3))
         return NUMBERS if every else self.draw(SOME_NUMBERS)
 
     def conditional(self, exits: list[str]) -> Leaf:
@@ -135,7 +135,7 @@ class _Busy(Building):
 
     def held(self) -> tuple[Preset, ...]:
         """Numbers that a container holds: all, or nearly all where something may fail."""
-        missing = "" if self.calm or self.draw(st.integers(0, 2)) else self.draw(NUMBER)
+        missing = "" if self.in_concurrence or self.draw(st.integers(0, 2)) else self.draw(NUMBER)
         return tuple(
             Preset(key=key, value=Value(data=self.draw(SMALL), span=NOWHERE), span=NOWHERE)
             for key in NUMBERS
@@ -152,8 +152,8 @@ class _Busy(Building):
     def common(self, exits: list[str]) -> dict[str, Any]:
         """The interface of a container: numbers handed in and out under other names."""
         inputs = self.draw(SOME_NUMBERS)
-        outputs = [] if self.calm else self.draw(SOME_NUMBERS)
-        remaps = () if self.calm else sorted({*inputs, *outputs})
+        outputs = [] if self.in_concurrence else self.draw(SOME_NUMBERS)
+        remaps = () if self.in_concurrence else sorted({*inputs, *outputs})
         return {
             "name": self.fresh(),
             "outcomes": outcomes_of(exits),
@@ -196,15 +196,15 @@ class _Busy(Building):
         )
 
     def concurrence(self, depth: int, exits: list[str]) -> Concurrence:
-        outer, self.calm = self.calm, True
+        outer, self.in_concurrence = self.in_concurrence, True
         hurried = self.draw(st.integers(0, 2)) == 0
         children = self.hurried() if hurried else self.children(depth, stored=False)
         rules = [self.rule(children, exits) for _ in range(self.draw(SMALL))]
-        self.calm = outer
+        self.in_concurrence = outer
         common = self.common(exits)
-        self.calm = True
+        self.in_concurrence = True
         common["userdata"] = self.held()
-        self.calm = outer
+        self.in_concurrence = outer
         return Concurrence(
             type="Concurrence",
             children=tuple(children),
@@ -242,7 +242,7 @@ class _Busy(Building):
         common = self.common(exits)
         keyed = self.draw(BOOLEANS)
         items = Preset(key="todo", value=Value(data=self.draw(ITEMS), span=NOWHERE), span=NOWHERE)
-        if keyed and (self.calm or self.draw(SMALL)):
+        if keyed and (self.in_concurrence or self.draw(SMALL)):
             common["userdata"] += (items,)
         loops = made.loop_outcomes
         child = self.caught(made.children[0], exits)

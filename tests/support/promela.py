@@ -186,17 +186,17 @@ class _Translation:
         if isinstance(around, Concurrence):
             yield from self.branch_end(number, parent, around)
             return
-        calm = f"asked[{number}] = false; " if isinstance(node, Leaf) else ""
-        failed = f"{calm}used[{parent}] = 0; o = ERR; cur = {parent}"
+        withdraw = f"asked[{number}] = false; " if isinstance(node, Leaf) else ""
+        failed = f"{withdraw}used[{parent}] = 0; o = ERR; cur = {parent}"
         yield f"  if :: o == ERR -> {failed}"
         if isinstance(around, IteratorNode):
-            yield from self.item_end(number, parent, around, calm)
+            yield from self.item_end(number, parent, around, withdraw)
         else:
-            yield from self.follow(number, parent, around, calm, failed)
+            yield from self.follow(number, parent, around, withdraw, failed)
         yield "  fi"
 
     def follow(
-        self, number: int, parent: int, around: Node, calm: str, failed: str
+        self, number: int, parent: int, around: Node, withdraw: str, failed: str
     ) -> Iterator[str]:
         assert isinstance(around, StateMachine | SequenceNode)
         names = {self.nodes[each].name: each for each in self.below[parent]}
@@ -211,16 +211,18 @@ class _Translation:
                 to = names[step.target]
                 passed = f":: asked[{parent}] && asked[{number}] -> asked[{number}] = false; "
                 yield f"  :: o == {code} -> if {served} {passed} asked[{to}] = true :: else fi;"
-                yield f"     {calm}act = ENTER; cur = {to}"
+                yield f"     {withdraw}act = ENTER; cur = {to}"
             elif step.target in outcome_names(around):
                 yield f"  :: o == {code} -> if {served} :: else fi;"
-                yield f"     {calm}o = {self.codes[step.target]}; cur = {parent}"
+                yield f"     {withdraw}o = {self.codes[step.target]}; cur = {parent}"
             else:
                 continue
             done.append(code)
         yield f"  :: else -> {failed}"
 
-    def item_end(self, number: int, parent: int, around: IteratorNode, calm: str) -> Iterator[str]:
+    def item_end(
+        self, number: int, parent: int, around: IteratorNode, withdraw: str
+    ) -> Iterator[str]:
         """The end of an item (Iterator)."""
         assert around.items is not None
         assert isinstance(around.items.data, tuple)
@@ -233,7 +235,7 @@ class _Translation:
             yield f"  :: o == {code} && asked[{parent}] -> {self.withdrawn(parent)};"
             stopped = preempted if around.sugar else final
             yield f"     used[{parent}] = 0; o = {stopped}; cur = {parent}"
-            yield f"  :: o == {code} && !asked[{parent}] -> {calm}"
+            yield f"  :: o == {code} && !asked[{parent}] -> {withdraw}"
             if loops:
                 last = self.codes[self.renamed(around, around.exhausted_outcome)]
                 yield f"     if :: used[{parent}] < {count} -> used[{parent}]++; act = ENTER"

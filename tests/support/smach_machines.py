@@ -6,7 +6,7 @@ from collections.abc import Mapping, Sequence
 from typing import Any
 
 from smachac.interpreter.behaviours import builtin_behaviour
-from smachac.interpreter.scenario import Scenario, Step, scenario_behaviour
+from smachac.interpreter.scenario import Scenario, ScenarioStep, scenario_behaviour
 from smachac.interpreter.userdata import python_data
 from smachac.ir import nodes
 from smachac.ir.nodes import Concurrence, Iterator, Leaf, Machine, Node, StateMachine
@@ -122,7 +122,9 @@ def traced(root: StateMachine, steps: Steps, **options: Any) -> tuple[Any, list[
 
 def interpreted(root: StateMachine, steps: Steps) -> list[Event]:
     rows = {
-        path: tuple(Step(outcome=outcome, writes=tuple(writes.items())) for outcome, writes in row)
+        path: tuple(
+            ScenarioStep(outcome=outcome, writes=tuple(writes.items())) for outcome, writes in row
+        )
         for path, row in steps.items()
     }
     given_machine = Machine(root=root)

@@ -96,7 +96,7 @@ HARMLESS = ("SM201", "SM202", "SM405")
 """Errors that do not make a run fail, or, with a race, only perhaps."""
 
 
-def mended(machine: Machine) -> tuple[Machine, Report] | None:
+def corrected(machine: Machine) -> tuple[Machine, Report] | None:
     """A machine whose states that are at fault read and hand on nothing; None where that is not
     enough. What nobody found fault with stays."""
     machine = replace(machine, root=cast(StateMachine, _quiet(machine.root, "sm", set())))
@@ -130,7 +130,7 @@ def _quiet(node: Node, path: str, wrong: set[str | None]) -> Node:
 @given(data_machines())
 def test_graphs_without_an_error_run_without_a_fault(machine: Machine) -> None:
     assert told_wrong(machine, check_machine(machine)) == []
-    found = mended(machine)
+    found = corrected(machine)
     event("error" if found is None else "clean")
     if found is not None:
         assert failures(*found, RUNS) == []

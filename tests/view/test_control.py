@@ -11,7 +11,7 @@ import pytest
 
 from smachac.interpreter.behaviours import builtin_behaviour
 from smachac.interpreter.interpreter import run as interpret
-from smachac.interpreter.scenario import Scenario, Step, scenario_behaviour
+from smachac.interpreter.scenario import Scenario, ScenarioStep, scenario_behaviour
 from smachac.ir.nodes import Machine, StateMachine
 from smachac.runtime.tracing.trace import attach, script
 from smachac.view.control import Control, ControlError
@@ -90,7 +90,7 @@ class Run:
             self.outcome = self.machine.execute()
         else:
             whole = Machine(root=root)
-            rows = {path: (Step(outcome="ok", writes=()),) for path in leaves}
+            rows = {path: (ScenarioStep(outcome="ok", writes=()),) for path in leaves}
             behaviour = scenario_behaviour(Scenario(steps=rows), whole, builtin_behaviour())
             result = interpret(whole, behaviour, self.events.append, gate=self.control)
             self.outcome = result.outcome

@@ -45,7 +45,7 @@ _BASES = ("Base", "ROSBase", "Program", "ROSProgram")
 
 
 @dataclass(slots=True)
-class Names:
+class TemplateNames:
     """The use of names in a template and the templates it extends.
 
     `sets` are set or imported at the top level, `exports` are those that SMACHA handed to other
@@ -89,9 +89,9 @@ def top_level_sets(source: Source) -> tuple[str, ...]:
     return tuple(names.exports) if names is not None else ()
 
 
-def _chain(source: Source, find: Find) -> list[tuple[Source, Names]]:
+def _chain(source: Source, find: Find) -> list[tuple[Source, TemplateNames]]:
     """A template, and all readable templates that it extends or includes; itself first."""
-    found: dict[str, tuple[Source, Names]] = {}
+    found: dict[str, tuple[Source, TemplateNames]] = {}
     todo: list[Source | None] = [source]
     while todo:
         each = todo.pop()
@@ -106,7 +106,7 @@ def _chain(source: Source, find: Find) -> list[tuple[Source, Names]]:
 _OTHERS = re.compile(r"\{%[-+]?\s*(?:extends|include)\s+[\"']([^\"']+)[\"']")
 
 
-def _names(source: Source) -> Names | None:
+def _names(source: Source) -> TemplateNames | None:
     """The use of names in a template; None if it cannot be parsed."""
     from jinja2 import Environment, TemplateError, nodes
     from jinja2.meta import find_undeclared_variables
@@ -116,7 +116,7 @@ def _names(source: Source) -> Names | None:
         unmade = find_undeclared_variables(tree)
     except (TemplateError, RecursionError, ValueError):
         return None
-    names = Names()
+    names = TemplateNames()
     for node in _outside(tree):
         if isinstance(node, nodes.Assign | nodes.Macro | nodes.Import | nodes.FromImport):
             found = dict.fromkeys(_assigned_names(node), node.lineno)
@@ -191,7 +191,7 @@ def _truths(test: nodes.Node) -> set[str]:
 
 def _of_names(
     source: Source,
-    chain: list[tuple[Source, Names]],
+    chain: list[tuple[Source, TemplateNames]],
     given: frozenset[str],
     sets: Mapping[str, str],
 ) -> Iterator[SmachaDifference]:
@@ -225,7 +225,9 @@ def _of_names(
         yield SmachaDifference(span=span, name="own-params", message=message)
 
 
-def _of_text(source: Source, chain: list[tuple[Source, Names]]) -> Iterator[SmachaDifference]:
+def _of_text(
+    source: Source, chain: list[tuple[Source, TemplateNames]]
+) -> Iterator[SmachaDifference]:
     """Differences in the text: Python 2 code, old style, uuids."""
     text = source.text
     if meta := meta_block(text):
@@ -279,7 +281,7 @@ def _without_tags(text: str) -> str:
     return "".join([*parts, text[at:]])
 
 
-def _of_blocks(chain: list[tuple[Source, Names]]) -> Iterator[SmachaDifference]:
+def _of_blocks(chain: list[tuple[Source, TemplateNames]]) -> Iterator[SmachaDifference]:
     """Blocks that are not printed."""
     source, own = chain[0]
     if _is_base(chain):
@@ -294,7 +296,7 @@ def _of_blocks(chain: list[tuple[Source, Names]]) -> Iterator[SmachaDifference]:
             )
 
 
-def _is_base(chain: list[tuple[Source, Names]]) -> bool:
+def _is_base(chain: list[tuple[Source, TemplateNames]]) -> bool:
     """Whether a template is a base template, or extends one: it is printed as a whole."""
     for source, names in chain:
         meta = smacha_meta.read_meta(source)

@@ -95,7 +95,7 @@ def cpp_expression(
     A name may be dotted: `{"ud.n": Spelling(text="in.n", type=INT)}`. The text belongs into a
     function: lambdas in it capture by reference. Raises UnportableError.
     """
-    inner = _Names(spellings=names)
+    inner = _KnownNames(spellings=names)
     term = _term(expr, inner)
     try:
         type_ = ground(term.type) if wanted is None else plain(wanted)
@@ -107,7 +107,7 @@ def cpp_expression(
 
 def cpp_condition(expr: Expr, names: Mapping[str, Spelling]) -> Printed:
     """The truth of an expression over names. Raises UnportableError."""
-    inner = _Names(spellings=names)
+    inner = _KnownNames(spellings=names)
     term = _term(expr, inner)
     try:
         text = condition(term).text
@@ -118,7 +118,7 @@ def cpp_condition(expr: Expr, names: Mapping[str, Spelling]) -> Printed:
 
 def lowered(expr: Expr, names: Mapping[str, Spelling]) -> Term:
     """An expression over names as a term (see terms.py). Raises UnportableError."""
-    return _term(expr, _Names(spellings=names))
+    return _term(expr, _KnownNames(spellings=names))
 
 
 PORTABLE = "use an expression that docs/cpp.md lists, or write a class for the state"
@@ -175,7 +175,7 @@ def _located(expr: Expr, error: UnportableError) -> UnportableError:
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
-class _Names:
+class _KnownNames:
     """The names known in a part of an expression, and the state of one translation.
 
     `numbers` are for the variables that only C++ needs. `read` holds the spellings of the names
@@ -186,7 +186,7 @@ class _Names:
     numbers: Iterator[int] = field(default_factory=lambda: itertools.count(1))
     read: set[str] = field(default_factory=set)
 
-    def with_parameter(self, name: str, spelling: Spelling) -> _Names:
+    def with_parameter(self, name: str, spelling: Spelling) -> _KnownNames:
         """The names inside a lambda: its parameter hides names of the same root."""
         others = {
             key: each for key, each in self.spellings.items() if key.partition(".")[0] != name
@@ -208,7 +208,7 @@ class _Names:
         return Term(type=type_, spell=spell, simple=True)
 
 
-def _term(expr: Expr, names: _Names) -> Term:
+def _term(expr: Expr, names: _KnownNames) -> Term:
     """An expression as a term; a reason that C++ cannot express it names the innermost part."""
     before = set(names.read)
     try:
@@ -224,7 +224,7 @@ def _term(expr: Expr, names: _Names) -> Term:
     return found
 
 
-def _form(expr: Expr, names: _Names) -> Term:
+def _form(expr: Expr, names: _KnownNames) -> Term:
     match expr:
         case Constant(value):
             return literal(value)
@@ -261,7 +261,7 @@ def _form(expr: Expr, names: _Names) -> Term:
     return assert_never(expr)
 
 
-def _name(expr: Name | Attribute, names: _Names) -> Term:
+def _name(expr: Name | Attribute, names: _KnownNames) -> Term:
     text = dotted(expr)
     if text is not None and text in names.spellings:
         return names.term(text)
@@ -288,7 +288,7 @@ def _member(owner: Term, name: str) -> Term:
     return fixed(fields[name], CppText(f"{value}.{name}"), simple=owner.simple)
 
 
-def _index(value: Expr, index: Expr, names: _Names) -> Term:
+def _index(value: Expr, index: Expr, names: _KnownNames) -> Term:
     if (
         isinstance(value, Name)
         and value.name not in names.spellings
@@ -314,7 +314,7 @@ def _call(
     function: Expr,
     arguments: tuple[Expr, ...],
     keywords: tuple[tuple[str, Expr], ...],
-    names: _Names,
+    names: _KnownNames,
 ) -> Term:
     name = dotted(function)
     if name is None or name not in builtin_functions.FUNCTIONS or name in names.spellings:
@@ -331,7 +331,7 @@ def _call(
     return builtin_functions.FUNCTIONS[name](given, named)
 
 
-def _function(function: Lambda, item: Type, names: _Names) -> Term:
+def _function(function: Lambda, item: Type, names: _KnownNames) -> Term:
     """A function of one item of a list."""
     if function.parameter is None:
         raise UnportableError("`key` must be a function of one item")
@@ -383,7 +383,7 @@ def _both(one: CppText, other: CppText) -> CppText:
     return CppText(f"{one.at(AND)} && {other.at(AND)}", AND)
 
 
-def _boolean(word: str, operands: list[Term], names: _Names) -> Term:
+def _boolean(word: str, operands: list[Term], names: _KnownNames) -> Term:
     """`and`, `or`: of truth values a truth value, else the operand that decides the result."""
     sign, own = ("||", OR) if word == "or" else ("&&", AND)
     # g++ warns of `&&` in `||` without brackets.
@@ -425,7 +425,7 @@ def bind(term: Term, name: str, text: CppText) -> CppText:
     return call("with", term.text(), f"[&](const auto &{name}) {{ return {text.text}; }}")
 
 
-def _chain(left: Term, rest: list[tuple[str, Term]], names: _Names) -> CppText:
+def _chain(left: Term, rest: list[tuple[str, Term]], names: _KnownNames) -> CppText:
     """`a < b < c`: `b` is evaluated once, `c` only if `a < b`."""
     (word, right), *others = rest
     if not others:

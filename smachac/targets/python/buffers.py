@@ -15,7 +15,7 @@ from smachac.targets import BuildContext
 from smachac.targets.errors import defined_twice, python_2_code
 from smachac.targets.python import structure
 from smachac.targets.python.functions import Plan
-from smachac.targets.python.imports import Names
+from smachac.targets.python.imports import ProgramNames
 from smachac.targets.python.python2 import modern, parsed
 from smachac.targets.python.ros import RosType, other_modules, other_version
 from smachac.targets.python.smacha_context import Headers
@@ -90,7 +90,7 @@ class ModuleParts:
     defined_headers: Headers = field(default_factory=Headers)
     functions: dict[str, PrintedFunction] = field(default_factory=dict)
     own_templates: dict[str, str | None] = field(default_factory=dict)
-    names: Names = field(default_factory=Names)
+    names: ProgramNames = field(default_factory=ProgramNames)
     faults: Report = field(default_factory=list)
     defined: dict[str, tuple[str, Node]] = field(default_factory=dict)
 

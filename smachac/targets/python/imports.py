@@ -166,7 +166,7 @@ def _from_import(module: str, imported: list[str]) -> str:
 
 
 @dataclass(frozen=True, slots=True)
-class Names:
+class ProgramNames:
     """The names in the code of a program: those with an attribute (`rospy` in `rospy.loginfo`), all
     that are read, those that the code binds, the modules of which it imports all names, and the
     modules of messages that it names (`std_msgs.msg`)."""
@@ -210,7 +210,7 @@ def message_module(code: ast.Attribute) -> str | None:
 
 
 def unbound_names(
-    names: Names, ros: Ros, also: Iterable[str] = (), *, node: bool = False
+    names: ProgramNames, ros: Ros, also: Iterable[str] = (), *, node: bool = False
 ) -> list[str]:
     """Imports for names that code uses and does not bind: modules by their attributes
     (`rospy.loginfo`), messages by their names (`Point()`, `std_msgs.msg.Bool()`); `also` are

@@ -20,7 +20,7 @@ from smachac.targets.python.buffers import PREPENDED, ModuleParts
 from smachac.targets.python.formatter import WIDTH, docstring_lines
 from smachac.targets.python.functions import functions, one_function, stand_alone
 from smachac.targets.python.imports import (
-    Names,
+    ProgramNames,
     class_imports,
     expression_texts,
     import_lines,
@@ -288,7 +288,7 @@ def _rendered(
     can_be = can_be and "init_node" not in text
     node = can_be and _needs_node(text)
     more = NODE_IMPORTS[module.ros] if node else []
-    names = Names()
+    names = ProgramNames()
     for tree in (modern(text).tree, *map(parsed, more)):
         if isinstance(tree, ast.Module):
             names.add(tree)

@@ -92,7 +92,7 @@ def _does_not_compile(source: Source, error: CompilationError) -> FileFault:
     return FileFault(
         message=f"the header does not compile: {message}",
         line=int(number) if number.isdecimal() else 0,
-        help=f"it is compiled with the headers of this version of smachac; mend it, or {AGAIN}",
+        help=f"it is compiled with the headers of this version of smachac; correct it, or {AGAIN}",
     )
 
 

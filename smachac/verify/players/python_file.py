@@ -93,7 +93,7 @@ def _file_faults(source: Source, folders: Sequence[Path]) -> Iterator[None]:
     except (Exception, SystemExit) as error:
         message = f"the program cannot be loaded: {described(error)}"
         lines = _lines_of(error, source.name)
-        line, help_ = lines[-1], f"mend it, or {AGAIN}"
+        line, help_ = lines[-1], f"correct it, or {AGAIN}"
         if isinstance(error, SyntaxError) and error.filename == source.name:
             message = f"this is not Python {sys.version_info[0]}: {error.msg}"
             line = error.lineno or 0
