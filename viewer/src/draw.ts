@@ -4,7 +4,7 @@ import { html, svg } from "./dom";
 import type { Area, Box, PlacedLine, PlacedPiece, Point, Scene } from "./layout";
 import type { Graph, Path, StateNode } from "./model";
 import { isContainer, kindInWords, nearest } from "./model";
-import { LINE_HEIGHT, TITLE_HEIGHT, boxDetail, exitsInWords } from "./pieces";
+import { LINE_HEIGHT, TITLE_HEIGHT, boxDetail, exitId, exitsInWords } from "./pieces";
 import { fitting, width } from "./text";
 
 /** What a run of the machine marks in the picture. `taken` are ids of edges (see `edgeId`). */
@@ -148,7 +148,13 @@ function badge(graph: Graph, node: StateNode, x: number, y: number): SVGElement 
 }
 
 function drawPiece(graph: Graph, { piece, container, x, y, width, height }: PlacedPiece): SVGElement {
-  const group = svg("g", { class: `piece ${piece.what}`, transform: `translate(${x} ${y})` });
+  const exit = piece.what === "exit" ? piece.id.slice(exitId("").length) : null;
+  const group = svg("g", {
+    class: `piece ${piece.what}`,
+    transform: `translate(${x} ${y})`,
+    "data-exit": exit,
+    "data-of": exit === null ? null : container,
+  });
   group.append(svg("title", {}, piece.label));
   switch (piece.what) {
     case "start":
@@ -218,8 +224,16 @@ function drawLine({ line, points }: PlacedLine): SVGGElement {
     const turn = (Math.atan2(end.y - before.y, end.x - before.x) * 180) / Math.PI;
     const transform = `translate(${end.x} ${end.y}) rotate(${turn})`;
     group.append(svg("path", { class: "head", d: "M0 0L-7.5-4Q-5.9 0-7.5 4Z", transform }));
+    const [only, ...others] = line.edges;
+    if (only !== undefined && !others.length) group.append(svg("circle", { class: "grip", cx: end.x, cy: end.y, r: 7, ...origin(only) }));
   }
   return group;
+}
+
+/** The state and the outcome at which an edge starts, as attributes. */
+function origin(edge: string): Record<string, string> {
+  const [path = "", outcome = ""] = edge.split("\n");
+  return { "data-from": path, "data-outcome": outcome };
 }
 
 function drawLabel(line: PlacedLine["line"], label: Area | null, ground: string): SVGElement | null {
@@ -229,7 +243,9 @@ function drawLabel(line: PlacedLine["line"], label: Area | null, ground: string)
   line.labels.forEach((text, index) => {
     const y = label.y + 2 + LINE_HEIGHT * index + 10.5;
     const x = label.x + label.width / 2;
-    group.append(svg("text", { x, y, "text-anchor": "middle" }, fitting(text, "label")));
+    const edge = line.edges.find((each) => each.split("\n")[1] === text);
+    const from = edge === undefined ? {} : origin(edge);
+    group.append(svg("text", { x, y, "text-anchor": "middle", ...from }, fitting(text, "label")));
   });
   return group;
 }

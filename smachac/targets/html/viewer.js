@@ -144,8 +144,123 @@ ${target2}`;
     });
   }
 
+  // src/transition_drag.ts
+  var FAR_ENOUGH = 4;
+  var HANDLE_RADIUS = 6;
+  function drawTransitions(viewer, drawn) {
+    const { frame, world } = viewer;
+    frame.classList.add("editable");
+    viewer.onMark((picture) => addHandles(viewer.graph, picture, viewer.selected));
+    frame.addEventListener("pointerdown", (event) => {
+      const origin2 = originAt(viewer.graph, event.target);
+      if (!origin2 || event.button !== 0) return;
+      event.stopPropagation();
+      event.preventDefault();
+      drag(viewer.graph, frame, world, event, origin2, {
+        dropped: (target2) => drawn(origin2.path, origin2.outcome, target2),
+        clicked: () => void viewer.select(origin2.path)
+      });
+    }, { capture: true });
+  }
+  function hasTransitions(graph, node) {
+    const parent = node.parent === null ? void 0 : graph.nodes.get(node.parent);
+    return parent !== void 0 && parent.kind !== "concurrence" && node.outcomes.length > 0;
+  }
+  function originAt(graph, element) {
+    const found = element.closest("[data-from]");
+    const path = found?.getAttribute("data-from") ?? "";
+    const outcome = found?.getAttribute("data-outcome") ?? "";
+    const node = graph.nodes.get(path);
+    if (!node || !hasTransitions(graph, node)) return null;
+    return node.outcomes.some(({ name }) => name === outcome) ? { path, outcome } : null;
+  }
+  function addHandles(graph, { root, states }, selected) {
+    root.querySelector(":scope > .handles")?.remove();
+    const element = selected === null ? void 0 : states.get(selected);
+    const node = selected === null ? void 0 : graph.nodes.get(selected);
+    const body = element?.querySelector(":scope > .body");
+    if (!element || !node || !body || !hasTransitions(graph, node)) return;
+    const apart = Number(body.getAttribute("width")) / (node.outcomes.length + 1);
+    const handles = node.outcomes.map(({ name, failure }, index) => svg("circle", {
+      class: failure ? "failure" : null,
+      "data-from": node.path,
+      "data-outcome": name,
+      cx: apart * (index + 1),
+      cy: body.getAttribute("height"),
+      r: Math.min(HANDLE_RADIUS, apart / 2)
+    }, svg("title", {}, `${name}: draw it to a state or an outcome`)));
+    root.append(svg("g", {
+      class: "handles",
+      "aria-hidden": "true",
+      transform: element.getAttribute("transform")
+    }, ...handles));
+  }
+  function drag(graph, frame, world, start, origin2, ends) {
+    const from = place(world, start);
+    const path = svg("path", { class: "stroke" });
+    const text = svg("text", { class: "words", x: 0, y: 0 });
+    const line = svg("g", { class: "drawn", "aria-hidden": "true" }, path, text);
+    let target2 = null;
+    let moving = false;
+    const move = (event) => {
+      if (!moving && Math.hypot(event.clientX - start.clientX, event.clientY - start.clientY) < FAR_ENOUGH) return;
+      if (!moving) world.append(line);
+      moving = true;
+      const to = place(world, event);
+      target2?.element.classList.remove("drop");
+      target2 = targetAt(graph, origin2, event);
+      target2?.element.classList.add("drop");
+      path.setAttribute("d", `M${from.x} ${from.y}L${to.x} ${to.y}`);
+      text.setAttribute("x", String(to.x + 14));
+      text.setAttribute("y", String(to.y - 8));
+      text.textContent = target2 ? `${origin2.outcome} \u2192 ${target2.name}` : origin2.outcome;
+    };
+    const end2 = (event) => {
+      line.remove();
+      target2?.element.classList.remove("drop");
+      const listeners = { pointermove: move, pointerup: end2, pointercancel: end2 };
+      for (const [name, listener] of Object.entries(listeners)) window.removeEventListener(name, listener);
+      document.removeEventListener("keydown", escape, { capture: true });
+      if (event.type === "pointerup") {
+        frame.addEventListener("click", stop, { capture: true, once: true });
+        window.setTimeout(() => frame.removeEventListener("click", stop, { capture: true }));
+      }
+      if (event.type !== "pointerup") return;
+      if (!moving) ends.clicked();
+      else if (target2) ends.dropped(target2.name);
+    };
+    const stop = (event) => event.stopPropagation();
+    const escape = (event) => {
+      if (event.key !== "Escape") return;
+      event.stopPropagation();
+      end2(event);
+    };
+    window.addEventListener("pointermove", move);
+    window.addEventListener("pointerup", end2);
+    window.addEventListener("pointercancel", end2);
+    document.addEventListener("keydown", escape, { capture: true });
+  }
+  function place(world, event) {
+    const matrix = world.getScreenCTM();
+    return matrix ? new DOMPoint(event.clientX, event.clientY).matrixTransform(matrix.inverse()) : { x: 0, y: 0 };
+  }
+  function targetAt(graph, origin2, event) {
+    const container = graph.nodes.get(origin2.path)?.parent;
+    const shown = document.elementsFromPoint(event.clientX, event.clientY).find((each) => !each.closest(".drawn, .handles, .line, .label") && each.closest("[data-path], [data-exit]"));
+    const element = shown?.closest("[data-path], [data-exit]");
+    if (!element || !container) return null;
+    const exit = element.getAttribute("data-exit");
+    if (exit !== null) return element.getAttribute("data-of") === container ? { name: exit, element } : null;
+    const path = element.getAttribute("data-path") ?? "";
+    if (!path.startsWith(`${container}/`)) return null;
+    const name = path.slice(container.length + 1).split("/")[0];
+    const state = document.querySelector(`.state[data-path="${CSS.escape(`${container}/${name}`)}"]`);
+    return state && { name, element: state };
+  }
+
   // src/edit_fields.ts
   var NOWHERE = "";
+  var TRANSITION = "Change a transition";
   function labelled(text, control) {
     control.id = `edit-${text.toLowerCase().replaceAll(" ", "-")}`;
     return html("p", { class: "field" }, html("label", { for: control.id }, text), control);
@@ -166,7 +281,7 @@ ${target2}`;
     const parent = state.parent === null ? void 0 : graph.nodes.get(state.parent);
     const forms = [];
     if (parent) {
-      if (state.outcomes.length && parent.kind !== "concurrence") forms.push(transition(graph, state, parent));
+      if (hasTransitions(graph, state)) forms.push(transition(graph, state, parent));
       forms.push(rename(state));
     }
     if (parent) forms.push(add("Add a state behind it", parent, types, state));
@@ -210,8 +325,12 @@ ${target2}`;
     outcome.addEventListener("change", showTarget);
     showTarget();
     return {
-      title: "Change a transition",
+      title: TRANSITION,
       fields: [outcomeLabel, targetLabel],
+      fill(name, to) {
+        outcome.value = name;
+        target2.value = to;
+      },
       planned() {
         const led = target2.value === NOWHERE ? {} : { target: target2.value };
         return { edit: { operation: "transition", path: state.path, arguments: { outcome: outcome.value, ...led } }, then: state.path };
@@ -222,6 +341,8 @@ ${target2}`;
     const [nameLabel, name] = textField("Name of the new state");
     const [typeLabel, type] = choice("State type", []);
     const doc = html("p", { class: "help" });
+    const outcomes2 = after && parent.kind === "machine" ? after.outcomes.map(({ name: name2 }) => [name2, name2]) : [];
+    const [onLabel, on] = choice("Outcome that leads to it", [[NOWHERE, "(none yet)"], ...outcomes2]);
     void types.then((known2) => {
       const describe = () => {
         doc.textContent = known2.find((each) => each.name === type.value)?.doc ?? "";
@@ -232,10 +353,11 @@ ${target2}`;
     });
     return {
       title,
-      fields: [nameLabel, typeLabel, doc],
+      fields: [nameLabel, typeLabel, doc, ...outcomes2.length ? [onLabel] : []],
       planned() {
         const given = { name: name.value.trim(), type: type.value };
         if (after) given["after"] = lastName(after.path);
+        if (on.value !== NOWHERE) given["on"] = on.value;
         return { edit: { operation: "add", path: parent.path, arguments: given }, then: `${parent.path}/${name.value.trim()}` };
       }
     };
@@ -564,7 +686,13 @@ ${target2}`;
     );
   }
   function drawPiece(graph, { piece, container, x, y, width: width2, height }) {
-    const group = svg("g", { class: `piece ${piece.what}`, transform: `translate(${x} ${y})` });
+    const exit = piece.what === "exit" ? piece.id.slice(exitId("").length) : null;
+    const group = svg("g", {
+      class: `piece ${piece.what}`,
+      transform: `translate(${x} ${y})`,
+      "data-exit": exit,
+      "data-of": exit === null ? null : container
+    });
     group.append(svg("title", {}, piece.label));
     switch (piece.what) {
       case "start":
@@ -627,8 +755,14 @@ ${target2}`;
       const turn = Math.atan2(end2.y - before.y, end2.x - before.x) * 180 / Math.PI;
       const transform = `translate(${end2.x} ${end2.y}) rotate(${turn})`;
       group.append(svg("path", { class: "head", d: "M0 0L-7.5-4Q-5.9 0-7.5 4Z", transform }));
+      const [only, ...others] = line.edges;
+      if (only !== void 0 && !others.length) group.append(svg("circle", { class: "grip", cx: end2.x, cy: end2.y, r: 7, ...origin(only) }));
     }
     return group;
+  }
+  function origin(edge) {
+    const [path = "", outcome = ""] = edge.split("\n");
+    return { "data-from": path, "data-outcome": outcome };
   }
   function drawLabel(line, label, ground2) {
     if (!label) return null;
@@ -637,7 +771,9 @@ ${target2}`;
     line.labels.forEach((text, index) => {
       const y = label.y + 2 + LINE_HEIGHT * index + 10.5;
       const x = label.x + label.width / 2;
-      group.append(svg("text", { x, y, "text-anchor": "middle" }, fitting(text, "label")));
+      const edge = line.edges.find((each) => each.split("\n")[1] === text);
+      const from = edge === void 0 ? {} : origin(edge);
+      group.append(svg("text", { x, y, "text-anchor": "middle", ...from }, fitting(text, "label")));
     });
     return group;
   }
@@ -906,6 +1042,7 @@ ${target2}`;
       this.forget();
       viewer.addSection({ id: "edit", title: "Edit", first: true, fill: (node) => this.fill(node) });
       document.addEventListener("keydown", (event) => this.key(event));
+      drawTransitions(viewer, (path, outcome, target2) => void this.propose(path, outcome, target2));
     }
     viewer;
     token;
@@ -931,6 +1068,14 @@ ${target2}`;
     previewed = null;
     /** The state that each edit changed the path of: selected again when it is undone. */
     done = [];
+    /** Show what a transition that was drawn changes. */
+    async propose(path, outcome, target2) {
+      await this.viewer.select(path);
+      this.kinds.value = TRANSITION;
+      this.showFields();
+      this.chosen()?.fill?.(outcome, target2);
+      await this.look();
+    }
     /** The form of the selected state; what is typed in stays while the state and the machine stay. */
     fill(node) {
       const { graph } = this.viewer;
@@ -1347,11 +1492,11 @@ ${target2}`);
     for (const written of state.written.values()) {
       const node = nodeAt(graph, written.path);
       if (!node) continue;
-      const place = placeOf(graph, node, written.key);
-      const id = `${place.scope}
-${place.key}`;
+      const place2 = placeOf(graph, node, written.key);
+      const id = `${place2.scope}
+${place2.key}`;
       const before = found.get(id);
-      if (!before || before.written.order < written.order) found.set(id, { ...place, written });
+      if (!before || before.written.order < written.order) found.set(id, { ...place2, written });
     }
     return [...found.values()].sort((a, b) => b.written.order - a.written.order);
   }
@@ -1794,10 +1939,10 @@ ${place.key}`;
       const values = new Map(keyValues(graph, state).map((each) => [`${each.scope}
 ${each.key}`, each]));
       for (const key of new Set([...node.inputs, ...node.outputs].map((each) => each.name))) {
-        const place = placeOf(graph, node, key);
-        const found = values.get(`${place.scope}
-${place.key}`);
-        if (found) row(key, place.secret || found.secret ? "(secret)" : inline(found.written.value, 500));
+        const place2 = placeOf(graph, node, key);
+        const found = values.get(`${place2.scope}
+${place2.key}`);
+        if (found) row(key, place2.secret || found.secret ? "(secret)" : inline(found.written.value, 500));
       }
       return html("ul", { class: "rows facts" }, ...rows);
     }
@@ -1851,10 +1996,10 @@ ${place.key}`);
       this.apply();
     }
     /** Show the upper part of a picture around a place, at a scale: no space is left of a wide picture. */
-    start(place, width2, scale) {
+    start(place2, width2, scale) {
       const half = this.frame.clientWidth / 2;
       this.scale = scale;
-      this.x = half - Math.max(place.x, Math.min(width2 / 2, half / scale)) * scale;
+      this.x = half - Math.max(place2.x, Math.min(width2 / 2, half / scale)) * scale;
       this.y = MARGIN;
       this.apply();
     }
@@ -1933,26 +2078,26 @@ ${place.key}`);
   var RATIO = 1.5;
   var lengthOf = (each, down) => (down ? each.width : each.height) ?? 0;
   var depthOf = (each, down) => (down ? each.height : each.width) ?? 0;
-  function inRows(graph, down, origin) {
+  function inRows(graph, down, origin2) {
     const cells = cellsOf(graph.children ?? [], down);
     const edges = graph.edges ?? [];
-    const grid = placeCells(cells, edges, down, down ? [origin.x, origin.y] : [origin.y, origin.x]);
+    const grid = placeCells(cells, edges, down, down ? [origin2.x, origin2.y] : [origin2.y, origin2.x]);
     const ports = portsOf(cells, down);
     const stacked = /* @__PURE__ */ new Map();
-    const place = (along, across) => down ? { x: along, y: across } : { x: across, y: along };
+    const place2 = (along, across) => down ? { x: along, y: across } : { x: across, y: along };
     return {
       id: graph.id,
       ...down ? { width: grid.size.along, height: grid.size.across } : { width: grid.size.across, height: grid.size.along },
-      children: [...cells.values()].map(({ node, along, across }) => ({ ...node, ...place(along, across) })),
+      children: [...cells.values()].map(({ node, along, across }) => ({ ...node, ...place2(along, across) })),
       edges: edges.map((edge) => {
         const route = routeOf(edge, grid, ports);
-        const points = route.map(([along, across]) => place(along, across));
+        const points = route.map(([along, across]) => place2(along, across));
         return {
           ...edge,
           sections: [{ id: edge.id, startPoint: points[0], bendPoints: points.slice(1, -1), endPoint: points.at(-1) }],
           labels: (edge.labels ?? []).map((label) => {
             const [along, across] = labelPlace(edge, label, route, grid, stacked);
-            return { ...label, ...place(along - lengthOf(label, down) / 2, across) };
+            return { ...label, ...place2(along - lengthOf(label, down) / 2, across) };
           })
         };
       })
@@ -2570,6 +2715,7 @@ ${name}`;
     let expected = null;
     const sections = [];
     const listeners = [];
+    const markers = [];
     const world = svg("g", {});
     const frame = svg("svg", { class: "picture", role: "group", "aria-label": "State graph" }, world);
     const panel = html("aside", { "aria-label": "Details" });
@@ -2672,6 +2818,7 @@ ${name}`;
       markSelection(picture, selected);
       if (selected === null) picture.states.get(graph.model.root)?.setAttribute("tabindex", "0");
       markRun(graph, picture, run);
+      for (const each of markers) each(picture);
     }
     function focusSelected() {
       picture?.states.get(selected ?? graph.model.root)?.focus({ preventScroll: true });
@@ -2832,6 +2979,8 @@ ${name}`;
       },
       toolbar,
       footer,
+      frame,
+      world,
       select,
       highlight(next) {
         run = next;
@@ -2850,6 +2999,10 @@ ${name}`;
       },
       onSelect(listener) {
         listeners.push(listener);
+      },
+      onMark(listener) {
+        markers.push(listener);
+        mark();
       }
     };
   }
