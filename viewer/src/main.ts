@@ -12,7 +12,7 @@ async function main(): Promise<void> {
   const model = JSON.parse(textOf("smachac-model")) as Model;
   if (model.version !== VERSION) throw new Error(`the model has version ${model.version}, not ${VERSION}`);
   const viewer = await createViewer(document.body, model, startLayout(textOf("smachac-layout")));
-  showRuns(viewer, textOf("smachac-trace"));
+  showRuns(viewer, textOf("smachac-trace"), textOf("smachac-film"));
   showEdits(viewer);
   document.documentElement.dataset["ready"] = "true";
 }

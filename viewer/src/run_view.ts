@@ -5,6 +5,8 @@ import { connect, takeToken } from "./connection";
 import { Control } from "./control";
 import { button, html } from "./dom";
 import type { Finding, StateNode } from "./model";
+import type { FilmData } from "./film";
+import { Film } from "./film";
 import { Recording } from "./recording";
 import { highlightOf, inWords, inline, keyValues, nodeAt, placeOf, seconds } from "./run_marks";
 import type { RunState, TraceEvent } from "./run_state";
@@ -19,13 +21,15 @@ const FOLLOW_APART = 400;
 const LOG_LINES = 200;
 const KEY_ROWS = 60;
 
-/** Show runs: those of a server if the model is live, and the recorded one of `trace` (JSON lines). */
-export function showRuns(viewer: Viewer, trace: string): void {
+/** Show runs: those of a server if the model is live, and the recorded one of `trace` (JSON). `film` is
+ * the data of a film of it (JSON), or empty. */
+export function showRuns(viewer: Viewer, trace: string, film: string): void {
   const { live } = viewer.graph.model;
   const token = live ? takeToken() : null;
   if (!live && !trace) return;
   const view = new RunView(viewer, token, live);
   if (trace) view.replay(JSON.parse(trace) as TraceEvent[]);
+  if (film) view.addFilm(new Film(JSON.parse(film) as FilmData));
   if (live) view.connect();
 }
 
@@ -67,6 +71,13 @@ class RunView {
     this.recording.add(events);
     this.timeline.update();
     this.draw();
+  }
+
+  /** Show a film in step with the time line. */
+  addFilm(film: Film): void {
+    this.details.classList.add("filmed");
+    this.details.append(film.element);
+    this.timeline.timeShown = (t) => film.show(t);
   }
 
   connect(): void {

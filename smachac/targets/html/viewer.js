@@ -1256,6 +1256,108 @@ ${target2}`;
     }
   };
 
+  // src/film.ts
+  var Film = class {
+    constructor(data) {
+      this.data = data;
+      this.film = this.load();
+      void this.update();
+    }
+    data;
+    caption = html("figcaption", {}, "The film is loaded");
+    frame = html("div", { class: "frame" });
+    element = html("figure", { class: "film", "aria-label": "Film of the run" }, this.frame, this.caption);
+    film;
+    wanted = 0;
+    shown = -1;
+    busy = false;
+    /** Show the frame of a time of the run, in seconds. */
+    show(t) {
+      this.wanted = Math.max(0, Math.floor(t * this.data.rate + 1e-6));
+      void this.update();
+    }
+    async load() {
+      try {
+        const answer = await fetch("film");
+        if (!answer.ok) throw new Error("the server has no film");
+        const content = await answer.blob();
+        return this.data.type === "image/gif" ? await this.gif(content) : await this.video(content);
+      } catch (error) {
+        this.caption.textContent = `The film cannot be shown: ${error instanceof Error ? error.message : String(error)}`;
+        return null;
+      }
+    }
+    /** Show the latest frame that is wanted; those that were wanted in the meantime are left out. */
+    async update() {
+      if (this.busy) return;
+      this.busy = true;
+      const film = await this.film;
+      while (film && this.shown !== this.wanted) {
+        const index = this.wanted;
+        const frame = await film(index);
+        this.shown = index;
+        this.element.dataset["frame"] = String(frame);
+        this.caption.textContent = `Film at ${(frame / this.data.rate).toFixed(1)} s`;
+      }
+      this.busy = false;
+    }
+    async gif(content) {
+      if (typeof ImageDecoder === "undefined") {
+        throw new Error("this browser shows single frames of .mp4 only, not of .gif");
+      }
+      const decoder = new ImageDecoder({ data: await content.arrayBuffer(), type: this.data.type });
+      await decoder.tracks.ready;
+      await decoder.completed;
+      const starts = await this.starts(decoder);
+      if (starts.length < 2) throw new Error("it has no image");
+      const last = starts.pop() - 1;
+      const canvas = html("canvas", {});
+      this.frame.replaceChildren(canvas);
+      return async (wanted) => {
+        const index = Math.min(wanted, last);
+        const { image } = await decoder.decode({ frameIndex: starts.filter((each) => each <= index).length - 1 });
+        if (canvas.width !== image.displayWidth) canvas.width = image.displayWidth;
+        if (canvas.height !== image.displayHeight) canvas.height = image.displayHeight;
+        canvas.getContext("2d")?.drawImage(image, 0, 0);
+        image.close();
+        return index;
+      };
+    }
+    /** The number of the first frame that each image of a GIF stands for, and their count: equal frames are
+     * one image, which is shown longer. The last frame is shown for two seconds (`Gif` in sim/video.py). */
+    async starts(decoder) {
+      const count2 = decoder.tracks.selectedTrack?.frameCount ?? 0;
+      const frame = Math.floor(1e3 / this.data.speed);
+      const starts = [0];
+      for (let index = 0; index < count2; index += 1) {
+        const { image } = await decoder.decode({ frameIndex: index });
+        const shown = (image.duration ?? 0) / 1e3 - (index === count2 - 1 ? 2e3 - frame : 0);
+        image.close();
+        starts.push(starts[index] + Math.max(1, Math.round(shown / frame)));
+      }
+      return starts;
+    }
+    async video(content) {
+      const video = html("video", { muted: true, playsinline: true, preload: "auto" });
+      this.frame.replaceChildren(video);
+      const failed = () => new Error("this browser cannot play it");
+      await new Promise((resolve, reject) => {
+        video.addEventListener("loadeddata", () => resolve(), { once: true });
+        video.addEventListener("error", () => reject(failed()), { once: true });
+        video.src = URL.createObjectURL(content);
+      });
+      return async (wanted) => {
+        const last = Math.max(0, Math.round(video.duration * this.data.speed) - 1);
+        const index = Math.min(wanted, last);
+        await new Promise((resolve) => {
+          video.addEventListener("seeked", () => resolve(), { once: true });
+          video.currentTime = (index + 0.5) / this.data.speed;
+        });
+        return index;
+      };
+    }
+  };
+
   // src/run_state.ts
   function emptyState() {
     return {
@@ -1590,6 +1692,9 @@ ${place2.key}`;
     element;
     /** The number of events before the position. */
     position = 0;
+    /** Called with the time of the run that is shown, in seconds; in a replay also between events. */
+    timeShown = () => {
+    };
     /** Whether the position moves with the run. */
     follows = true;
     playing = false;
@@ -1672,6 +1777,7 @@ ${place2.key}`;
       this.play.textContent = this.playing ? "Stop" : "Play";
       this.play.setAttribute("aria-label", this.playing ? "Stop the replay" : "Play");
       this.latest.setAttribute("aria-pressed", String(this.follows));
+      if (end2) this.timeShown(this.playing && this.timed ? this.clock : this.timeAt(this.position));
     }
   };
 
@@ -1680,12 +1786,13 @@ ${place2.key}`;
   var FOLLOW_APART = 400;
   var LOG_LINES = 200;
   var KEY_ROWS = 60;
-  function showRuns(viewer, trace) {
+  function showRuns(viewer, trace, film) {
     const { live } = viewer.graph.model;
     const token = live ? takeToken() : null;
     if (!live && !trace) return;
     const view = new RunView(viewer, token, live);
     if (trace) view.replay(JSON.parse(trace));
+    if (film) view.addFilm(new Film(JSON.parse(film)));
     if (live) view.connect();
   }
   var RunView = class {
@@ -1728,6 +1835,12 @@ ${place2.key}`;
       this.recording.add(events);
       this.timeline.update();
       this.draw();
+    }
+    /** Show a film in step with the time line. */
+    addFilm(film) {
+      this.details.classList.add("filmed");
+      this.details.append(film.element);
+      this.timeline.timeShown = (t) => film.show(t);
     }
     connect() {
       connect({
@@ -3048,7 +3161,7 @@ ${name}`;
     const model = JSON.parse(textOf("smachac-model"));
     if (model.version !== VERSION) throw new Error(`the model has version ${model.version}, not ${VERSION}`);
     const viewer = await createViewer(document.body, model, startLayout(textOf("smachac-layout")));
-    showRuns(viewer, textOf("smachac-trace"));
+    showRuns(viewer, textOf("smachac-trace"), textOf("smachac-film"));
     showEdits(viewer);
     document.documentElement.dataset["ready"] = "true";
   }
