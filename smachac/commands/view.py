@@ -103,6 +103,8 @@ def view_command(arguments: Namespace) -> int:
     trace = as_path(attach) if attach is not None else None
     if trace is not None and not trace.is_file():
         return usage(f"there is no trace {trace}, and it is no port")
+    if trace is not None and (reason := _no_trace(trace)):
+        return usage(reason)
     film = None
     if arguments.film is not None:
         if trace is None:
@@ -112,6 +114,18 @@ def view_command(arguments: Namespace) -> int:
         except FilmError as error:
             return usage(str(error))
     return _serve(arguments, trace, film)
+
+
+def _no_trace(path: Path) -> str:
+    """The reason why a file cannot be shown as a trace; empty if it can."""
+    try:
+        with path.open("rb") as stream:
+            head = stream.read(6)
+    except OSError as error:
+        return f"the trace {path} cannot be read: {error.strerror}"
+    if head == b"SQLite":
+        return f"{path} is the database of a sweep, which has no events: use `smachac stats`"
+    return ""
 
 
 def _film(path: Path) -> Film:
@@ -149,7 +163,7 @@ def _serve(arguments: Namespace, trace: Path | None, film: Film | None) -> int:
     except PortError as error:
         return usage(str(error))
     script.check()
-    text = None if trace is None else _TraceFile(trace, TraceText(feed))
+    text = None if trace is None else _TraceFile(trace, TraceText(feed), picture)
     if text is not None:
         text.read()
     with deep_recursion():  # for all threads, so that none of them ends it for another one
@@ -242,9 +256,10 @@ class ViewedScript:
 class _TraceFile:
     """A trace on disk that may grow, or begin anew."""
 
-    def __init__(self, path: Path, text: TraceText) -> None:
-        self._path, self._text = path, text
+    def __init__(self, path: Path, text: TraceText, picture: Picture) -> None:
+        self._path, self._text, self._picture = path, text, picture
         self._position = self._wrong = 0
+        self._unknown = ""
 
     def read(self) -> None:
         """Publish what is new."""
@@ -260,6 +275,25 @@ class _TraceFile:
             self._wrong = self._text.wrong
             words = "1 line is" if self._wrong == 1 else f"{self._wrong} lines are"
             print(f"{self._path}: {words} no event of a trace", file=sys.stderr)
+        unknown = self._unknown_place()
+        if unknown and not self._unknown:
+            print(f"{self._path}: {unknown}", file=sys.stderr)
+        self._unknown = unknown
+
+    def _unknown_place(self) -> str:
+        """What shows that the trace is of another machine, or of another version; else empty."""
+        model = self._picture.model
+        nodes = model["nodes"]
+        known = {each.get("shown", each["path"]) for each in nodes} | {
+            each["path"] for each in nodes
+        }
+        place = next((each for each in self._text.places if each not in known), "")
+        machine = place.partition("/")[0]
+        if not place:
+            return ""
+        if machine != model["root"]:
+            return f"this is the trace of the machine `{machine}`, not of `{model['root']}`"
+        return f"the script has no state {place}: it is not the version that ran"
 
 
 def _open_run(number: int, arguments: Namespace) -> int:

@@ -1551,6 +1551,14 @@ ${key}`, { path, key, value: event.value, t: state.t, order: state.writes });
       breakpoints: known(graph, control?.breakpoints.map((each) => each.path) ?? [])
     };
   }
+  function foreignPlace(graph, state) {
+    const place2 = [...state.visited.keys()].find((path) => !nodeAt(graph, path));
+    if (place2 === void 0) return "";
+    const [machine = ""] = place2.split("/");
+    const { root } = graph.model;
+    if (machine !== root) return `This is the trace of the machine ${machine}, not of ${root}.`;
+    return `The script has no state ${place2}: it is not the version that ran.`;
+  }
   function known(graph, paths) {
     return paths.map((path) => nodeAt(graph, path)?.path).filter((path) => path !== void 0);
   }
@@ -1801,7 +1809,15 @@ ${place2.key}`;
       this.live = live;
       this.timeline = new Timeline(this.recording, () => this.draw());
       this.control = new Control(token, () => this.controlled(), (reason) => viewer.notice(reason));
-      this.bar = html("div", { class: "run-bar" }, this.status, this.control.element, this.follow, this.timeline.element);
+      this.bar = html(
+        "div",
+        { class: "run-bar" },
+        this.foreign,
+        this.status,
+        this.control.element,
+        this.follow,
+        this.timeline.element
+      );
       this.details = html("div", { class: "run-details", hidden: true }, this.log, this.keys);
       viewer.footer.append(this.bar, this.details);
       viewer.addSection({ id: "run", title: "Run", first: true, fill: (node) => this.fill(node) });
@@ -1816,6 +1832,7 @@ ${place2.key}`;
     timeline;
     control;
     status = html("p", { class: "run-status", role: "status" });
+    foreign = html("p", { class: "run-foreign", role: "status" });
     log = html("ol", { class: "log", tabindex: "0", "aria-label": "Log" });
     keys = html("div", { class: "values", tabindex: "0", "aria-label": "Values of keys" });
     bar;
@@ -1928,6 +1945,8 @@ ${place2.key}`;
       const control = this.timeline.follows ? this.control.status : null;
       this.viewer.highlight(any ? highlightOf(this.viewer.graph, state, control) : null);
       this.status.textContent = this.inWords(state);
+      const foreign = foreignPlace(this.viewer.graph, this.recording.at(Infinity));
+      if (this.foreign.textContent !== foreign) this.foreign.textContent = foreign;
       this.drawLog();
       this.drawKeys(state);
       this.fillPart(this.shownNode);
