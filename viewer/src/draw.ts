@@ -50,7 +50,8 @@ function drawState(graph: Graph, node: StateNode, box: Box): SVGGElement {
     role: "treeitem",
     tabindex: "-1",
     "data-path": node.path,
-    "aria-label": spoken(node, box),
+    "aria-label": spoken(node, box).join("; "),
+    "data-words": spoken(node, box)[0],
     "aria-level": box.level + 1,
     "aria-setsize": siblings.length,
     "aria-posinset": siblings.indexOf(node.path) + 1,
@@ -86,13 +87,13 @@ export function addTooltip(element: Element, node: StateNode): void {
   element.prepend(svg("title", {}, text));
 }
 
-/** The name of a state for screen readers: the words of its box, then what only signs show. */
-function spoken(node: StateNode, box: Box): string {
+/** The name of a state for screen readers in parts: the words of its box, then what only signs show. */
+function spoken(node: StateNode, box: Box): string[] {
   const words = box.open ? kindInWords(node) : boxDetail(node, node.children.length);
   const parts = [[node.name, words, exitsInWords(box.written)].filter(Boolean).join(" ")];
   if (node.outcomes.length) parts.push(`outcomes: ${node.outcomes.map((each) => each.name).join(", ")}`);
   if (node.findings.length) parts.push(`findings: ${node.findings.length}`);
-  return parts.join("; ");
+  return parts;
 }
 
 function drawTitle(graph: Graph, group: SVGGElement, node: StateNode, box: Box): void {
@@ -305,6 +306,7 @@ function setBreakpoint(element: SVGGElement, is: boolean): void {
 function setVisits(element: SVGGElement, count: number): void {
   element.classList.toggle("visited", count > 0);
   let mark = element.querySelector<SVGTextElement>(":scope > .visits");
+  speakVisits(element, count < 2 ? "" : ` ×${count}`);
   if (count < 2) {
     mark?.remove();
     return;
@@ -314,9 +316,19 @@ function setVisits(element: SVGGElement, count: number): void {
     const body = element.querySelector(":scope > .body")!;
     mark.setAttribute("x", String(Number(body.getAttribute("width")) - 8));
     mark.setAttribute("y", "-4");
-    element.append(mark);
+    element.append(" ", mark);
   }
   mark.textContent = `×${count}`;
+}
+
+/** Put the visits of a state behind the words of its box in its name for screen readers. */
+function speakVisits(element: SVGGElement, visits: string): void {
+  const words = element.dataset["words"] ?? "";
+  const before = element.dataset["visits"] ?? "";
+  if (before === visits) return;
+  const rest = (element.getAttribute("aria-label") ?? "").slice(words.length + before.length);
+  element.dataset["visits"] = visits;
+  element.setAttribute("aria-label", words + visits + rest);
 }
 
 /** A legend of the signs of the picture. */

@@ -3,6 +3,7 @@
 import { showEdits } from "./edit";
 import type { Model } from "./model";
 import { showRuns } from "./run_view";
+import { showStatistics } from "./statistics";
 import { createViewer } from "./viewer";
 import { startLayout } from "./worker";
 
@@ -14,6 +15,7 @@ async function main(): Promise<void> {
   const viewer = await createViewer(document.body, model, startLayout(textOf("smachac-layout")));
   showRuns(viewer, textOf("smachac-trace"), textOf("smachac-film"));
   showEdits(viewer);
+  showStatistics(viewer);
   document.documentElement.dataset["ready"] = "true";
 }
 

@@ -64,6 +64,13 @@
   }
 
   // src/model.ts
+  function countOf(state, outcome) {
+    return state && Object.hasOwn(state.outcomes, outcome) ? state.outcomes[outcome] : 0;
+  }
+  function shareOf(state, outcome) {
+    const ended = Object.values(state.outcomes).reduce((sum, each) => sum + each, 0);
+    return `${ended ? Number((100 * countOf(state, outcome) / ended).toFixed(1)) : 0} %`;
+  }
   function indexed(model) {
     const graph = {
       model,
@@ -512,10 +519,15 @@ ${target2}`;
     for (const edge of graph.inside.get(path) ?? []) {
       if (written.has(edge)) continue;
       for (const line of linesOf(container, edge, joined)) {
-        add2(line, edgeId(edge), labelOf(container, edge, line));
+        add2(line, edgeId(edge), withShare(graph, edge, labelOf(container, edge, line)));
       }
     }
     return { path, pieces, lines: [...lines.values()] };
+  }
+  function withShare(graph, edge, label) {
+    const state = edge.source === null ? void 0 : graph.model.statistics?.states[edge.source];
+    if (!state || !edge.outcome) return label;
+    return `${label} ${shareOf(state, edge.outcome)}`.trim();
   }
   function startPiece(container) {
     if (container.kind === "concurrence") {
@@ -598,7 +610,8 @@ ${target2}`;
       role: "treeitem",
       tabindex: "-1",
       "data-path": node.path,
-      "aria-label": spoken(node, box),
+      "aria-label": spoken(node, box).join("; "),
+      "data-words": spoken(node, box)[0],
       "aria-level": box.level + 1,
       "aria-setsize": siblings.length,
       "aria-posinset": siblings.indexOf(node.path) + 1,
@@ -633,7 +646,7 @@ ${target2}`;
     const parts = [[node.name, words, exitsInWords(box.written)].filter(Boolean).join(" ")];
     if (node.outcomes.length) parts.push(`outcomes: ${node.outcomes.map((each) => each.name).join(", ")}`);
     if (node.findings.length) parts.push(`findings: ${node.findings.length}`);
-    return parts.join("; ");
+    return parts;
   }
   function drawTitle(graph, group, node, box) {
     const name = fitting(node.name, "title");
@@ -824,6 +837,7 @@ ${target2}`;
   function setVisits(element, count2) {
     element.classList.toggle("visited", count2 > 0);
     let mark = element.querySelector(":scope > .visits");
+    speakVisits(element, count2 < 2 ? "" : ` \xD7${count2}`);
     if (count2 < 2) {
       mark?.remove();
       return;
@@ -833,9 +847,17 @@ ${target2}`;
       const body = element.querySelector(":scope > .body");
       mark.setAttribute("x", String(Number(body.getAttribute("width")) - 8));
       mark.setAttribute("y", "-4");
-      element.append(mark);
+      element.append(" ", mark);
     }
     mark.textContent = `\xD7${count2}`;
+  }
+  function speakVisits(element, visits) {
+    const words = element.dataset["words"] ?? "";
+    const before = element.dataset["visits"] ?? "";
+    if (before === visits) return;
+    const rest = (element.getAttribute("aria-label") ?? "").slice(words.length + before.length);
+    element.dataset["visits"] = visits;
+    element.setAttribute("aria-label", words + visits + rest);
   }
   function legend() {
     const sign = (name) => svg(
@@ -2096,6 +2118,78 @@ ${place2.key}`);
     }
   };
 
+  // src/statistics.ts
+  function showStatistics(viewer) {
+    const { statistics } = viewer.graph.model;
+    if (!statistics) return;
+    const { graph } = viewer;
+    const visits = new Map(Object.entries(statistics.states).map(([path, each]) => [path, each.visits]));
+    visits.delete(graph.model.root);
+    const taken = graph.model.edges.filter((edge) => isTaken(graph, statistics, edge)).map(edgeId);
+    viewer.highlight({ active: [], taken, visits });
+    viewer.onMark((picture) => markNever(graph, statistics, picture));
+    viewer.addSection({
+      id: "statistics",
+      title: "Statistics",
+      first: true,
+      fill: (node) => html(
+        "div",
+        {},
+        figures(statistics, node?.path ?? graph.model.root),
+        node ? null : neverTaken(viewer, statistics)
+      )
+    });
+  }
+  function isTaken(graph, statistics, edge) {
+    if (edge.source === null) return typeof edge.target === "string" && edge.target in statistics.states;
+    const kind = graph.nodes.get(edge.container)?.kind;
+    const known2 = kind === "machine" || kind === "sequence";
+    return known2 && countOf(statistics.states[edge.source], edge.outcome) > 0;
+  }
+  function markNever(graph, statistics, picture) {
+    for (const [path, element] of picture.states) {
+      element.classList.toggle("never", path !== graph.model.root && !(path in statistics.states));
+    }
+    for (const { line, element } of picture.lines) {
+      const never = line.line.edges.length > 0 && line.line.edges.every((id) => {
+        const [source = "", outcome = ""] = id.split("\n");
+        const start = outcome === "" && source === line.container;
+        return !start && !countOf(statistics.states[source], outcome);
+      });
+      element.classList.toggle("never", never);
+    }
+  }
+  function figures(statistics, path) {
+    const found = statistics.states[path];
+    const row = (name, value) => html("li", {}, html("span", { class: "key" }, name), html("code", {}, value));
+    if (!found) return html("ul", { class: "rows" }, row("visits", "0: no run entered it"));
+    const outcomes2 = Object.entries(found.outcomes).map(([name, count2]) => row(name, `${count2} (${shareOf(found, name)})`));
+    const unfinished = found.unfinished ? [row("not ended", String(found.unfinished))] : [];
+    return html(
+      "ul",
+      { class: "rows" },
+      row("visits", String(found.visits)),
+      row("mean time", seconds(found.mean)),
+      row("longest", seconds(found.longest)),
+      ...outcomes2,
+      ...unfinished
+    );
+  }
+  function neverTaken(viewer, { never, transitions }) {
+    const taken = transitions - never.length;
+    const rows = never.map(({ path, text }) => {
+      const link2 = html("button", { type: "button", class: "link" }, text);
+      link2.addEventListener("click", () => void viewer.select(path));
+      return html("li", {}, link2);
+    });
+    return html(
+      "div",
+      {},
+      html("p", {}, `${taken} of ${transitions} transitions taken; grey and dotted: never`),
+      rows.length ? html("ul", { class: "rows never-taken", "aria-label": "Transitions never taken" }, ...rows) : null
+    );
+  }
+
   // src/camera.ts
   var LEAST = 0.02;
   var MOST2 = 3;
@@ -3182,6 +3276,7 @@ ${name}`;
     const viewer = await createViewer(document.body, model, startLayout(textOf("smachac-layout")));
     showRuns(viewer, textOf("smachac-trace"), textOf("smachac-film"));
     showEdits(viewer);
+    showStatistics(viewer);
     document.documentElement.dataset["ready"] = "true";
   }
   function textOf(id) {
