@@ -35,6 +35,7 @@ examples:
   smachac stats main.yml runs/*.jsonl --success done,skipped
   smachac stats main.yml sweep.db                  the same from the database of a sweep
   smachac stats main.yml runs/*.jsonl --format dot | dot -Tsvg > main.svg   the graph with figures
+  smachac stats main.yml runs/*.jsonl --format html > main.html   the same to explore in a browser
   smachac stats main.yml runs/*.jsonl --format json
 
 exit codes: 0 success, 1 a trace is not a run that the script allows, or the script has errors,
@@ -62,7 +63,7 @@ def stats_arguments(parser: argparse.ArgumentParser) -> None:
     parser.add_argument("--success", type=names, metavar="A,B,...",
                         help="outcomes of the machine that count as success (default: those with"
                         " names of success)")  # fmt: skip
-    _files(parser, "text", "json", "dot")
+    _files(parser, "text", "json", "dot", "html")
 
 
 def _files(parser: argparse.ArgumentParser, *formats: str) -> None:
@@ -107,6 +108,7 @@ def stats_command(arguments: Namespace) -> int:
     from smachac.ir.traversal import outcome_names
     from smachac.report.terminal import on_one_line
     from smachac.sweep.database import DatabaseError
+    from smachac.verify.statistics_page import statistics_html
     from smachac.verify.statistics_report import (
         forecast,
         forecast_dot,
@@ -118,12 +120,14 @@ def stats_command(arguments: Namespace) -> int:
     machine = _machine(arguments)
     if machine is None:
         return FINDINGS
+    if arguments.success and arguments.format == "html":
+        return usage("--success has no effect on --format html, which predicts nothing")
     own = outcome_names(machine.root)
     for name in arguments.success or ():
         if name not in own:
             return usage(f"the machine has no outcome `{name}`", name, own)
     try:
-        judged, _, statistics = _judged(arguments.traces, machine)
+        judged, taken, statistics = _judged(arguments.traces, machine)
     except (UnreadableTraceError, DatabaseError) as error:
         return usage(str(error))
     bad = refusals(judged)
@@ -132,6 +136,9 @@ def stats_command(arguments: Namespace) -> int:
         return FINDINGS
     if machine.root.name not in statistics.states:
         return usage("the traces have no run")
+    if arguments.format == "html":
+        sys.stdout.write(statistics_html(machine, statistics, taken))
+        return OK
     good = arguments.success or successes(machine.root)
     renders = {"text": forecast_text, "json": forecast_json, "dot": forecast_dot}
     found = forecast(machine, statistics, good)

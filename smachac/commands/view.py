@@ -28,13 +28,14 @@ if TYPE_CHECKING:
     from smachac.view.feed import Feed
     from smachac.view.live import LiveTrace
     from smachac.view.picture import Picture
-    from smachac.view.server import Do, ViewServer
+    from smachac.view.server import Do, Film, ViewServer
     from smachac.view.trace_file import TraceText
 
 EXAMPLES = """\
 examples:
   smachac view main.yml                        the picture, drawn again when a file changes
   smachac view main.yml --attach run.jsonl     replay a trace; follow it while it is written
+  smachac view main.yml --attach run.jsonl --film film.mp4   with the film of `run --record`
   smachac run main.yml --view                  watch a run, and control it
   smachac run main.yml --view=8123 --view-paused   wait before the first state
   smachac view --attach 8123                   open the page of a run at this port
@@ -50,6 +51,10 @@ CHUNK = 1_000_000
 """The most bytes of a trace that are read at a time."""
 
 
+class FilmError(Exception):
+    """A file that is no film, or cannot be read; the message gives the reason."""
+
+
 class PortError(Exception):
     """A port that cannot be used; the message gives the reason."""
 
@@ -60,6 +65,9 @@ def view_arguments(parser: argparse.ArgumentParser) -> None:
     parser.add_argument("--attach", metavar="TRACE|PORT",
                         help="show the events of this trace, or open the page of the run with"
                         " --view=PORT")  # fmt: skip
+    parser.add_argument("--film", type=as_path, metavar="FILE",
+                        help="the film of the run with this trace (.gif or .mp4 of `run --record`)"
+                        )  # fmt: skip
     parser.add_argument("--port", type=port, default=0, metavar="PORT",
                         help="the port of the page (default: one that is free)")  # fmt: skip
     browser(parser)
@@ -95,26 +103,67 @@ def view_command(arguments: Namespace) -> int:
     trace = as_path(attach) if attach is not None else None
     if trace is not None and not trace.is_file():
         return usage(f"there is no trace {trace}, and it is no port")
-    return _serve(arguments, trace)
+    if trace is not None and (reason := _no_trace(trace)):
+        return usage(reason)
+    film = None
+    if arguments.film is not None:
+        if trace is None:
+            return usage("--film needs the trace of the run: --attach TRACE")
+        try:
+            film = _film(arguments.film)
+        except FilmError as error:
+            return usage(str(error))
+    return _serve(arguments, trace, film)
 
 
-def _serve(arguments: Namespace, trace: Path | None) -> int:
-    """Serve the picture of a script, and a trace, until Ctrl-C."""
+def _no_trace(path: Path) -> str:
+    """The reason why a file cannot be shown as a trace; empty if it can."""
+    try:
+        with path.open("rb") as stream:
+            head = stream.read(6)
+    except OSError as error:
+        return f"the trace {path} cannot be read: {error.strerror}"
+    if head == b"SQLite":
+        return f"{path} is the database of a sweep, which has no events: use `smachac stats`"
+    return ""
+
+
+def _film(path: Path) -> Film:
+    """The film in a file. Raises FilmError."""
+    from smachac.view.server import Film
+
+    try:
+        with path.open("rb") as stream:
+            head = stream.read(12)
+    except OSError as error:
+        raise FilmError(f"the film {path} cannot be read: {error.strerror}") from None
+    if head[:6] in (b"GIF87a", b"GIF89a"):
+        return Film("image/gif", path.read_bytes)
+    if head[4:8] == b"ftyp":
+        return Film("video/mp4", path.read_bytes)
+    raise FilmError(f"{path} is no film: --film takes a .gif or .mp4 that `run --record` has made")
+
+
+def _serve(arguments: Namespace, trace: Path | None, film: Film | None) -> int:
+    """Serve the picture of a script, and a trace with its film, until Ctrl-C."""
     from smachac.ir.recursion import deep_recursion
+    from smachac.sim.video import RATE, SPEED
+    from smachac.targets.html.page import FILM_ID
     from smachac.view.feed import Feed
     from smachac.view.picture import Picture
     from smachac.view.trace_file import TraceText
 
     feed = Feed()
-    picture = Picture(feed, arguments.script.stem, editable=trace is None)
+    data = None if film is None else {FILM_ID: {"type": film.type, "rate": RATE, "speed": SPEED}}
+    picture = Picture(feed, arguments.script.stem, editable=trace is None, data=data)
     script = ViewedScript(arguments, picture)
     edits = edits_of_script(script) if trace is None else None
     try:
-        server = _server(arguments.port, picture, feed, edits=edits)
+        server = _server(arguments.port, picture, feed, edits=edits, film=film)
     except PortError as error:
         return usage(str(error))
     script.check()
-    text = None if trace is None else _TraceFile(trace, TraceText(feed))
+    text = None if trace is None else _TraceFile(trace, TraceText(feed), picture)
     if text is not None:
         text.read()
     with deep_recursion():  # for all threads, so that none of them ends it for another one
@@ -207,9 +256,10 @@ class ViewedScript:
 class _TraceFile:
     """A trace on disk that may grow, or begin anew."""
 
-    def __init__(self, path: Path, text: TraceText) -> None:
-        self._path, self._text = path, text
+    def __init__(self, path: Path, text: TraceText, picture: Picture) -> None:
+        self._path, self._text, self._picture = path, text, picture
         self._position = self._wrong = 0
+        self._unknown = ""
 
     def read(self) -> None:
         """Publish what is new."""
@@ -225,6 +275,25 @@ class _TraceFile:
             self._wrong = self._text.wrong
             words = "1 line is" if self._wrong == 1 else f"{self._wrong} lines are"
             print(f"{self._path}: {words} no event of a trace", file=sys.stderr)
+        unknown = self._unknown_place()
+        if unknown and not self._unknown:
+            print(f"{self._path}: {unknown}", file=sys.stderr)
+        self._unknown = unknown
+
+    def _unknown_place(self) -> str:
+        """What shows that the trace is of another machine, or of another version; else empty."""
+        model = self._picture.model
+        nodes = model["nodes"]
+        known = {each.get("shown", each["path"]) for each in nodes} | {
+            each["path"] for each in nodes
+        }
+        place = next((each for each in self._text.places if each not in known), "")
+        machine = place.partition("/")[0]
+        if not place:
+            return ""
+        if machine != model["root"]:
+            return f"this is the trace of the machine `{machine}`, not of `{model['root']}`"
+        return f"the script has no state {place}: it is not the version that ran"
 
 
 def _open_run(number: int, arguments: Namespace) -> int:
@@ -257,9 +326,10 @@ def _server(
     feed: Feed,
     control: Control | None = None,
     edits: Edits | None = None,
+    film: Film | None = None,
 ) -> ViewServer:
-    """A server for a picture and, with a control, for a run; with edits, for those. Raises
-    PortError."""
+    """A server for a picture and, with a control, for a run; with edits, for those; with a film.
+    Raises PortError."""
     from smachac.view.control import ControlError
     from smachac.view.server import ActionError, ViewServer
 
@@ -278,7 +348,7 @@ def _server(
     if edits is not None:
         actions |= {"/edit": edits.edit, "/undo": edits.undo, "/types": edits.types}
     try:
-        return ViewServer(number, picture.page, feed, actions, name=picture.name)
+        return ViewServer(number, picture.page, feed, actions, name=picture.name, film=film)
     except OSError as error:
         reason = (error.strerror or str(error)).lower()
         raise PortError(f"port {number} cannot be used: {reason}") from None

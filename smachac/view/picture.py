@@ -19,15 +19,24 @@ class Picture:
     """The last machine of a script that has no error, and what is found in the script now.
 
     As long as there was no such machine, the picture is that of the machine as far as it can be
-    read, or an empty one with the name `name`. `editable`: the page can edit the script.
+    read, or an empty one with the name `name`. `editable`: the page can edit the script. `data` is
+    more data for the page, by element id.
 
     Each model has a `revision`, greater than that of every model before it, also of one that
     another process has made before: a page gets models from the stream and from answers to edits,
     and shows none that is older than its own.
     """
 
-    def __init__(self, feed: Feed, name: str, *, editable: bool = False) -> None:
+    def __init__(
+        self,
+        feed: Feed,
+        name: str,
+        *,
+        editable: bool = False,
+        data: Mapping[str, object] | None = None,
+    ) -> None:
         self.name = name
+        self._data = data
         self._editable = editable
         self._feed = feed
         self._lock = threading.Lock()
@@ -83,4 +92,4 @@ class Picture:
     def page(self) -> str:
         """The page as it is now."""
         with self._lock:
-            return render_page(self._machine, self._model, connect=True)
+            return render_page(self._machine, self._model, self._data, connect=True)

@@ -1,8 +1,8 @@
-"""The server of a view: one page, one stream of messages, and actions that need a token.
+"""The server of a view: one page, one stream of messages, a film, and actions that need a token.
 
-It serves nothing else: no file, no folder. It listens on loopback and accepts only requests whose
-Host names loopback, so that a page of another site cannot reach it by a name that it controls (DNS
-rebinding), and whose Origin, if there is one, is the server's own.
+It serves nothing else: no other file, no folder. It listens on loopback and accepts only requests
+whose Host names loopback, so that a page of another site cannot reach it by a name that it controls
+(DNS rebinding), and whose Origin, if there is one, is the server's own.
 """
 
 from __future__ import annotations
@@ -14,7 +14,7 @@ import threading
 from collections.abc import Callable, Mapping
 from http import HTTPStatus
 from http.server import BaseHTTPRequestHandler, ThreadingHTTPServer
-from typing import Any
+from typing import Any, NamedTuple
 from urllib.parse import urlsplit
 
 from smachac.version import __version__
@@ -53,6 +53,13 @@ Do = Callable[[Mapping[str, Any]], object]
 """An action: from the JSON of the request to that of the answer. Raises ActionError."""
 
 
+class Film(NamedTuple):
+    """A film of a run: its media type, and a function that reads it. `read` may raise OSError."""
+
+    type: str
+    read: Callable[[], bytes]
+
+
 class ActionError(Exception):
     """An action that cannot be done; the message is for the user."""
 
@@ -75,7 +82,9 @@ class ViewServer(ThreadingHTTPServer):
         actions: Mapping[str, Do] = {},
         *,
         name: str = "",
+        film: Film | None = None,
     ) -> None:
+        self.film = film
         self.page, self.feed, self.actions = page, feed, actions
         self.name = name
         self.token = secrets.token_urlsafe(24)
@@ -125,6 +134,8 @@ class _Handler(BaseHTTPRequestHandler):
                 self._answer_json(HTTPStatus.OK, status)
             case "/events":
                 self._stream()
+            case "/film" if self.server.film is not None:
+                self._answer_film(self.server.film)
             case _:
                 self._refuse(HTTPStatus.NOT_FOUND, "there is no such page")
 
@@ -206,6 +217,14 @@ class _Handler(BaseHTTPRequestHandler):
         finally:
             reader.close()
 
+    def _answer_film(self, film: Film) -> None:
+        try:
+            content = film.read()
+        except OSError as error:
+            self._refuse(HTTPStatus.NOT_FOUND, f"the film cannot be read: {error.strerror}")
+            return
+        self._answer(HTTPStatus.OK, content, film.type)
+
     def _refuse(self, status: HTTPStatus, message: str) -> None:
         self.close_connection = True  # a body that was not read must not become the next request
         self._answer_json(status, {"error": message})
@@ -219,7 +238,8 @@ class _Handler(BaseHTTPRequestHandler):
 
     def _head(self, status: HTTPStatus, kind: str, length: int | None = None) -> None:
         self.send_response(status)
-        self.send_header("Content-Type", f"{kind}; charset=utf-8")
+        is_text = not kind.startswith(("image/", "video/"))
+        self.send_header("Content-Type", f"{kind}; charset=utf-8" if is_text else kind)
         for name, content in HEADERS.items():
             self.send_header(name, content)
         if length is not None:

@@ -13,13 +13,15 @@ from smachac.view.live import BATCH
 class TraceText:
     """Publishes the events in the bytes of a trace, which come in pieces of any size.
 
-    A line that is no event is counted in `wrong` and left out.
+    A line that is no event is counted in `wrong` and left out. `places` are the states that ran, as
+    the keys of a dict.
     """
 
     def __init__(self, feed: Feed) -> None:
         self._feed = feed
         self._rest = b""
         self.wrong = 0
+        self.places: dict[str, None] = {}
 
     def add(self, data: bytes) -> None:
         """Publish the events of the lines that are complete."""
@@ -33,6 +35,8 @@ class TraceText:
                 self.wrong += 1
                 continue
             events.append(event)
+            if event["event"] in ("start", "enter"):
+                self.places[event["path"]] = None
             if len(events) >= BATCH:
                 self._publish(events)
         self._publish(events)
@@ -40,6 +44,7 @@ class TraceText:
     def restart(self) -> None:
         """The file begins anew."""
         self._rest = b""
+        self.places.clear()
 
     def _publish(self, events: list[Any]) -> None:
         if events:

@@ -158,6 +158,85 @@ def test_a_state_is_added_from_the_library(page: Page, script: Path) -> None:
     page.locator('.state[data-path="sm/PAUSE"]').wait_for(state="detached")
 
 
+def test_an_outcome_leads_to_the_added_state(page: Page, script: Path) -> None:
+    form = choose(page, "sm/A", "Add a state behind it")
+    form.get_by_label("Name of the new state").fill("PAUSE")
+    form.get_by_label("State type").select_option("SleepState")
+    form.get_by_label("Outcome that leads to it").select_option("ok")
+    after = apply(page, script)
+    assert "transitions: {ok: PAUSE, bad: failed}  # and then" in after
+    assert "time: 0.0\n      transitions: {succeeded: B}" in after
+    undo(page, script)
+
+
+def handle(page: Page, path: str, outcome: str) -> Locator:
+    """The handle of an outcome of the selected state."""
+    return page.locator(f'.handles [data-from="{path}"][data-outcome="{outcome}"]')
+
+
+def draw_to(page: Page, start: Locator, end: Locator) -> None:
+    """Draw a line from one element to another; the button stays pressed."""
+    start.hover()
+    page.mouse.down()
+    box = end.bounding_box()
+    assert box is not None
+    x, y = box["x"] + box["width"] / 2, box["y"] + box["height"] / 2
+    page.mouse.move(x + 3, y + 3)
+    page.mouse.move(x, y)
+
+
+def test_a_transition_is_drawn_from_the_handle_of_an_outcome(page: Page, script: Path) -> None:
+    choose(page, "sm/A", "Rename")
+    draw_to(page, handle(page, "sm/A", "ok"), page.locator('.state[data-path="sm/C"]'))
+    page.locator('.state.drop[data-path="sm/C"]').wait_for()
+    assert page.locator(".drawn .words").text_content() == "ok → C"
+    shoot(page, "edit_drawn")
+    page.mouse.up()
+    page.get_by_label("Change of the script").wait_for()
+    assert page.locator(".drawn, .drop").count() == 0
+    form = page.locator("form.edit")
+    assert form.get_by_label("Leads to").input_value() == "C"
+    assert script.read_text() == SCRIPT
+    press(page, "Apply")
+    page.wait_for_selector("text=Written: ")
+    assert script.read_text() == SCRIPT.replace("{ok: B,", "{ok: C,")
+    undo(page, script)
+
+
+def test_a_transition_is_drawn_from_the_label_of_a_line_to_an_outcome(
+    page: Page, script: Path
+) -> None:
+    label = page.locator('.label [data-from="sm/B"][data-outcome="ok"]')
+    draw_to(page, label, page.locator('[data-of="sm"][data-exit="done"]'))
+    page.locator('.piece.drop[data-exit="done"]').wait_for()
+    page.mouse.up()
+    page.get_by_label("Change of the script").wait_for()
+    page.locator('.state.selected[data-path="sm/B"]').wait_for()
+    press(page, "Apply")
+    page.wait_for_selector("text=Written: ")
+    assert script.read_text() == SCRIPT.replace("{ok: C,", "{ok: done,")
+    undo(page, script)
+
+
+def test_a_line_that_ends_nowhere_changes_nothing(page: Page, script: Path) -> None:
+    """Escape and an empty place end the drawing; a click on a label selects the state."""
+    choose(page, "sm/A", "Change a transition")
+    draw_to(page, handle(page, "sm/A", "ok"), page.locator('.state[data-path="sm/C"]'))
+    page.locator(".state.drop").wait_for()
+    page.keyboard.press("Escape")
+    page.locator(".drawn").wait_for(state="detached")
+    page.mouse.up()
+    page.locator('.label [data-from="sm/B"][data-outcome="ok"]').click()
+    page.locator('.state.selected[data-path="sm/B"]').wait_for()
+    draw_to(page, handle(page, "sm/B", "bad"), page.locator("h1"))
+    page.locator(".drawn").wait_for()
+    page.mouse.up()
+    page.locator(".drawn").wait_for(state="detached")
+    assert page.locator('.state.selected[data-path="sm/B"]').count() == 1
+    assert page.get_by_label("Change of the script").count() == 0
+    assert script.read_text() == SCRIPT
+
+
 def test_a_state_is_removed(page: Page, script: Path) -> None:
     form = choose(page, "sm/B", "Remove")
     form.get_by_label("What led to it leads to").select_option("C")

@@ -263,3 +263,14 @@ def test_without_the_token_a_page_only_shows(
     page.wait_for_selector(state("sm/A", "waiting"))
     assert page.get_by_role("button", name="Step", exact=True).count() == 0
     assert view.act(action="stop") == 200
+
+
+def test_a_trace_of_another_machine_is_named(
+    start: Callable[..., Viewed], opened: Callable[[str], Page], tmp_path: Path
+) -> None:
+    trace = tmp_path / "run.jsonl"
+    events = [{"event": "start", "path": "other", "t": 0.0}]
+    trace.write_text("".join(f"{json.dumps(event)}\n" for event in events))
+    page = opened(start("view", PICK_AND_PLACE, "--attach", trace, "--no-browser").url)
+    expected = f"This is the trace of the machine other, not of {ROOT_STATE}."
+    page.locator(".run-foreign", has_text=expected).wait_for()

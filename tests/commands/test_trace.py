@@ -116,6 +116,21 @@ def test_statistics_of_states(recorded: Path, capsys: pytest.CaptureFixture[str]
     assert shown[5] == "never taken: sm/A: bad -> sm:lost"
 
 
+def test_the_page_of_statistics(recorded: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    assert main(["stats", "main.yml", "run.jsonl", "run.jsonl", "--format", "html"]) == 0
+    page = capsys.readouterr().out
+    start = page.index('<script type="application/json" id="smachac-model">')
+    model = json.loads(page[page.index(">", start) + 1 : page.index("</script>", start)])
+    found = model["statistics"]
+    assert set(found["states"]) <= {node["path"] for node in model["nodes"]}
+    assert found["states"]["sm/A"]["outcomes"] == {"ok": 2}
+    assert found["transitions"] == 8
+    assert found["never"][0] == {"path": "sm/A", "text": "sm/A: bad -> sm:lost"}
+    assert len(found["never"]) == 5
+    assert main(["stats", "main.yml", "run.jsonl", "--format", "html", "--success", "done"]) == 2
+    assert "--success has no effect" in capsys.readouterr().err
+
+
 def test_a_prediction(recorded: Path, capsys: pytest.CaptureFixture[str]) -> None:
     assert main(["stats", "main.yml", "run.jsonl"]) == 0
     shown = capsys.readouterr().out.splitlines()

@@ -176,6 +176,30 @@ def test_view_follows_a_trace(script: Path, tmp_path: Path, start: Callable[...,
     assert "2 lines are no event of a trace" in err
 
 
+@pytest.mark.parametrize(
+    ("path", "message"),
+    [
+        ("other", "this is the trace of the machine `other`, not of `sm`"),
+        ("sm/GONE", "the script has no state sm/GONE: it is not the version that ran"),
+    ],
+)
+def test_a_trace_of_another_machine_is_named(
+    script: Path, tmp_path: Path, start: Callable[..., Viewed], path: str, message: str
+) -> None:
+    trace = tmp_path / "run.jsonl"
+    trace.write_text(json.dumps({"seq": 1, "event": "enter", "path": path, "t": 0.0}) + "\n")
+    view = start("view", script, "--attach", trace, "--no-browser")
+    assert view.lines[0] == f"{trace}: {message}\n"
+    view.until(lambda each: each["kind"] == "trace")
+
+
+def test_a_database_of_a_sweep_is_no_trace(script: Path, tmp_path: Path) -> None:
+    (tmp_path / "sweep.db").write_bytes(b"SQLite format 3\0")
+    found = smachac("view", script, "--attach", tmp_path / "sweep.db")
+    assert found.returncode == 2
+    assert "is the database of a sweep, which has no events: use `smachac stats`" in found.stderr
+
+
 def test_view_opens_the_page_of_a_run(script: Path, start: Callable[..., Viewed]) -> None:
     view = start("run", script, "--view", "--view-paused", "-q")
     words = ["view", "--attach", str(view.port), "--no-browser"]
@@ -205,6 +229,9 @@ def smachac(*words: object) -> subprocess.CompletedProcess[str]:
         (["view", "."], ". is a folder: name a script"),
         (["view", "SCRIPT", "--attach", "none.jsonl"], "there is no trace none.jsonl"),
         (["view", "--attach", "70000"], "70000 is no port"),
+        (["view", "SCRIPT", "--film", "SCRIPT"], "--film needs the trace of the run"),
+        (["view", "SCRIPT", "--attach", "SCRIPT", "--film", "SCRIPT"], "main.yml is no film"),
+        (["view", "SCRIPT", "--attach", "SCRIPT", "--film", "x.gif"], "x.gif cannot be read"),
         (["view", "SCRIPT", "--port", "x"], "must be a port"),
         (["run", "SCRIPT", "--view-paused"], "--view-paused needs --view"),
         (["run", "--view", "SCRIPT"], "must be a port"),

@@ -11,7 +11,15 @@ from typing import Any
 import pytest
 
 from smachac.view.feed import Feed
-from smachac.view.server import HOST, LONGEST_BODY, MOST_READERS, TOKEN, ActionError, ViewServer
+from smachac.view.server import (
+    HOST,
+    LONGEST_BODY,
+    MOST_READERS,
+    TOKEN,
+    ActionError,
+    Film,
+    ViewServer,
+)
 
 PAGE = "<!DOCTYPE html><title>é</title>"
 
@@ -217,3 +225,22 @@ def test_a_reader_that_takes_nothing_does_not_hold_up_the_others(server: Server)
 def test_a_port_that_is_in_use_is_an_error(server: Server) -> None:
     with pytest.raises(OSError, match="in use"):
         ViewServer(server.port, lambda: PAGE, Feed())
+
+
+def test_a_film_is_served_where_there_is_one(server: Server) -> None:
+    assert answer(server, path="/film")[0] == 404
+    server.film = Film("video/mp4", lambda: b"film")
+    status, content, response = answer(server, path="/film")
+    assert (status, content) == (200, "film")
+    assert response.headers["Content-Type"] == "video/mp4"
+    assert answer(server, path="/film", headers={"Origin": "http://other"})[0] == 403
+
+    def gone() -> bytes:
+        raise FileNotFoundError(2, "No such file or directory")
+
+    server.film = Film("video/mp4", gone)
+    status, content, _ = answer(server, path="/film")
+    assert (status, json.loads(content)) == (
+        404,
+        {"error": "the film cannot be read: No such file or directory"},
+    )

@@ -4,7 +4,7 @@ import { html, svg } from "./dom";
 import type { Area, Box, PlacedLine, PlacedPiece, Point, Scene } from "./layout";
 import type { Graph, Path, StateNode } from "./model";
 import { isContainer, kindInWords, nearest } from "./model";
-import { LINE_HEIGHT, TITLE_HEIGHT, boxDetail, exitsInWords } from "./pieces";
+import { LINE_HEIGHT, TITLE_HEIGHT, boxDetail, exitId, exitsInWords } from "./pieces";
 import { fitting, width } from "./text";
 
 /** What a run of the machine marks in the picture. `taken` are ids of edges (see `edgeId`). */
@@ -50,7 +50,8 @@ function drawState(graph: Graph, node: StateNode, box: Box): SVGGElement {
     role: "treeitem",
     tabindex: "-1",
     "data-path": node.path,
-    "aria-label": spoken(node, box),
+    "aria-label": spoken(node, box).join("; "),
+    "data-words": spoken(node, box)[0],
     "aria-level": box.level + 1,
     "aria-setsize": siblings.length,
     "aria-posinset": siblings.indexOf(node.path) + 1,
@@ -86,13 +87,13 @@ export function addTooltip(element: Element, node: StateNode): void {
   element.prepend(svg("title", {}, text));
 }
 
-/** The name of a state for screen readers: the words of its box, then what only signs show. */
-function spoken(node: StateNode, box: Box): string {
+/** The name of a state for screen readers in parts: the words of its box, then what only signs show. */
+function spoken(node: StateNode, box: Box): string[] {
   const words = box.open ? kindInWords(node) : boxDetail(node, node.children.length);
   const parts = [[node.name, words, exitsInWords(box.written)].filter(Boolean).join(" ")];
   if (node.outcomes.length) parts.push(`outcomes: ${node.outcomes.map((each) => each.name).join(", ")}`);
   if (node.findings.length) parts.push(`findings: ${node.findings.length}`);
-  return parts.join("; ");
+  return parts;
 }
 
 function drawTitle(graph: Graph, group: SVGGElement, node: StateNode, box: Box): void {
@@ -148,7 +149,13 @@ function badge(graph: Graph, node: StateNode, x: number, y: number): SVGElement 
 }
 
 function drawPiece(graph: Graph, { piece, container, x, y, width, height }: PlacedPiece): SVGElement {
-  const group = svg("g", { class: `piece ${piece.what}`, transform: `translate(${x} ${y})` });
+  const exit = piece.what === "exit" ? piece.id.slice(exitId("").length) : null;
+  const group = svg("g", {
+    class: `piece ${piece.what}`,
+    transform: `translate(${x} ${y})`,
+    "data-exit": exit,
+    "data-of": exit === null ? null : container,
+  });
   group.append(svg("title", {}, piece.label));
   switch (piece.what) {
     case "start":
@@ -218,8 +225,16 @@ function drawLine({ line, points }: PlacedLine): SVGGElement {
     const turn = (Math.atan2(end.y - before.y, end.x - before.x) * 180) / Math.PI;
     const transform = `translate(${end.x} ${end.y}) rotate(${turn})`;
     group.append(svg("path", { class: "head", d: "M0 0L-7.5-4Q-5.9 0-7.5 4Z", transform }));
+    const [only, ...others] = line.edges;
+    if (only !== undefined && !others.length) group.append(svg("circle", { class: "grip", cx: end.x, cy: end.y, r: 7, ...origin(only) }));
   }
   return group;
+}
+
+/** The state and the outcome at which an edge starts, as attributes. */
+function origin(edge: string): Record<string, string> {
+  const [path = "", outcome = ""] = edge.split("\n");
+  return { "data-from": path, "data-outcome": outcome };
 }
 
 function drawLabel(line: PlacedLine["line"], label: Area | null, ground: string): SVGElement | null {
@@ -229,7 +244,9 @@ function drawLabel(line: PlacedLine["line"], label: Area | null, ground: string)
   line.labels.forEach((text, index) => {
     const y = label.y + 2 + LINE_HEIGHT * index + 10.5;
     const x = label.x + label.width / 2;
-    group.append(svg("text", { x, y, "text-anchor": "middle" }, fitting(text, "label")));
+    const edge = line.edges.find((each) => each.split("\n")[1] === text);
+    const from = edge === undefined ? {} : origin(edge);
+    group.append(svg("text", { x, y, "text-anchor": "middle", ...from }, fitting(text, "label")));
   });
   return group;
 }
@@ -289,6 +306,7 @@ function setBreakpoint(element: SVGGElement, is: boolean): void {
 function setVisits(element: SVGGElement, count: number): void {
   element.classList.toggle("visited", count > 0);
   let mark = element.querySelector<SVGTextElement>(":scope > .visits");
+  speakVisits(element, count < 2 ? "" : ` ×${count}`);
   if (count < 2) {
     mark?.remove();
     return;
@@ -298,9 +316,19 @@ function setVisits(element: SVGGElement, count: number): void {
     const body = element.querySelector(":scope > .body")!;
     mark.setAttribute("x", String(Number(body.getAttribute("width")) - 8));
     mark.setAttribute("y", "-4");
-    element.append(mark);
+    element.append(" ", mark);
   }
   mark.textContent = `×${count}`;
+}
+
+/** Put the visits of a state behind the words of its box in its name for screen readers. */
+function speakVisits(element: SVGGElement, visits: string): void {
+  const words = element.dataset["words"] ?? "";
+  const before = element.dataset["visits"] ?? "";
+  if (before === visits) return;
+  const rest = (element.getAttribute("aria-label") ?? "").slice(words.length + before.length);
+  element.dataset["visits"] = visits;
+  element.setAttribute("aria-label", words + visits + rest);
 }
 
 /** A legend of the signs of the picture. */

@@ -3,9 +3,10 @@
 import { post, takeToken } from "./connection";
 import { button, html } from "./dom";
 import type { EditForm, Planned, StateType } from "./edit_fields";
-import { formsOf, labelled } from "./edit_fields";
-import type { Finding, Graph, Model, StateNode } from "./model";
+import { TRANSITION, formsOf, labelled } from "./edit_fields";
+import type { Finding, Graph, Model, Path, StateNode } from "./model";
 import { findings } from "./panel";
+import { drawTransitions } from "./transition_drag";
 import type { Viewer } from "./viewer";
 
 interface Preview {
@@ -61,6 +62,16 @@ class Editor {
     this.forget();
     viewer.addSection({ id: "edit", title: "Edit", first: true, fill: (node) => this.fill(node) });
     document.addEventListener("keydown", (event) => this.key(event));
+    drawTransitions(viewer, (path, outcome, target) => void this.propose(path, outcome, target));
+  }
+
+  /** Show what a transition that was drawn changes. */
+  private async propose(path: Path, outcome: string, target: string): Promise<void> {
+    await this.viewer.select(path);
+    this.kinds.value = TRANSITION;
+    this.showFields();
+    this.chosen()?.fill?.(outcome, target);
+    await this.look();
   }
 
   /** The form of the selected state; what is typed in stays while the state and the machine stay. */

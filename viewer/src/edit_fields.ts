@@ -3,6 +3,7 @@
 import { html } from "./dom";
 import type { Graph, Path, StateNode } from "./model";
 import { isContainer } from "./model";
+import { hasTransitions } from "./transition_drag";
 
 export type Arguments = Record<string, string | string[]>;
 
@@ -30,9 +31,14 @@ export interface EditForm {
   title: string;
   fields: HTMLElement[];
   planned(): Planned;
+  /** Set the fields of a transition. */
+  fill?(outcome: string, target: string): void;
 }
 
 const NOWHERE = "";
+
+/** The name of the form of a transition. */
+export const TRANSITION = "Change a transition";
 
 /** A control with its label. */
 export function labelled(text: string, control: HTMLElement): HTMLElement {
@@ -59,7 +65,7 @@ export function formsOf(graph: Graph, node: StateNode | null, types: Promise<Sta
   const parent = state.parent === null ? undefined : graph.nodes.get(state.parent);
   const forms: EditForm[] = [];
   if (parent) {
-    if (state.outcomes.length && parent.kind !== "concurrence") forms.push(transition(graph, state, parent));
+    if (hasTransitions(graph, state)) forms.push(transition(graph, state, parent));
     forms.push(rename(state));
   }
   if (parent) forms.push(add("Add a state behind it", parent, types, state));
@@ -109,8 +115,12 @@ function transition(graph: Graph, state: StateNode, parent: StateNode): EditForm
   outcome.addEventListener("change", showTarget);
   showTarget();
   return {
-    title: "Change a transition",
+    title: TRANSITION,
     fields: [outcomeLabel, targetLabel],
+    fill(name, to) {
+      outcome.value = name;
+      target.value = to;
+    },
     planned() {
       const led: Arguments = target.value === NOWHERE ? {} : { target: target.value };
       return { edit: { operation: "transition", path: state.path, arguments: { outcome: outcome.value, ...led } }, then: state.path };
@@ -122,6 +132,8 @@ function add(title: string, parent: StateNode, types: Promise<StateType[]>, afte
   const [nameLabel, name] = textField("Name of the new state");
   const [typeLabel, type] = choice("State type", []);
   const doc = html("p", { class: "help" });
+  const outcomes = after && parent.kind === "machine" ? after.outcomes.map(({ name }): [string, string] => [name, name]) : [];
+  const [onLabel, on] = choice("Outcome that leads to it", [[NOWHERE, "(none yet)"], ...outcomes]);
   void types.then((known) => {
     const describe = (): void => {
       doc.textContent = known.find((each) => each.name === type.value)?.doc ?? "";
@@ -132,10 +144,11 @@ function add(title: string, parent: StateNode, types: Promise<StateType[]>, afte
   });
   return {
     title,
-    fields: [nameLabel, typeLabel, doc],
+    fields: [nameLabel, typeLabel, doc, ...(outcomes.length ? [onLabel] : [])],
     planned() {
       const given: Arguments = { name: name.value.trim(), type: type.value };
       if (after) given["after"] = lastName(after.path);
+      if (on.value !== NOWHERE) given["on"] = on.value;
       return { edit: { operation: "add", path: parent.path, arguments: given }, then: `${parent.path}/${name.value.trim()}` };
     },
   };

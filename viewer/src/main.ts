@@ -3,6 +3,7 @@
 import { showEdits } from "./edit";
 import type { Model } from "./model";
 import { showRuns } from "./run_view";
+import { showStatistics } from "./statistics";
 import { createViewer } from "./viewer";
 import { startLayout } from "./worker";
 
@@ -12,8 +13,9 @@ async function main(): Promise<void> {
   const model = JSON.parse(textOf("smachac-model")) as Model;
   if (model.version !== VERSION) throw new Error(`the model has version ${model.version}, not ${VERSION}`);
   const viewer = await createViewer(document.body, model, startLayout(textOf("smachac-layout")));
-  showRuns(viewer, textOf("smachac-trace"));
+  showRuns(viewer, textOf("smachac-trace"), textOf("smachac-film"));
   showEdits(viewer);
+  showStatistics(viewer);
   document.documentElement.dataset["ready"] = "true";
 }
 

@@ -82,6 +82,22 @@ export interface Property {
   states: Path[];
 }
 
+/** The visits of a state in many runs; times in seconds. */
+export interface StateStatistics {
+  visits: number;
+  unfinished: number;
+  mean: number;
+  longest: number;
+  outcomes: Record<string, number>;
+}
+
+/** Statistics of many runs, by the path of a state. `never` are the transitions that no run took. */
+export interface Statistics {
+  states: Record<Path, StateStatistics>;
+  transitions: number;
+  never: { path: Path; text: string }[];
+}
+
 export interface Model {
   version: number;
   name: string;
@@ -96,6 +112,18 @@ export interface Model {
   edges: ModelEdge[];
   findings: Finding[];
   properties: Property[];
+  statistics?: Statistics;
+}
+
+/** How often a state ended with an outcome. */
+export function countOf(state: StateStatistics | undefined, outcome: string): number {
+  return state && Object.hasOwn(state.outcomes, outcome) ? state.outcomes[outcome]! : 0;
+}
+
+/** The frequency of an outcome of a state, as text. */
+export function shareOf(state: StateStatistics, outcome: string): string {
+  const ended = Object.values(state.outcomes).reduce((sum, each) => sum + each, 0);
+  return `${ended ? Number(((100 * countOf(state, outcome)) / ended).toFixed(1)) : 0} %`;
 }
 
 /** A model with its look-ups. `byShown` finds a state by the path that scripts and traces show. */

@@ -1,7 +1,7 @@
 // The content of an open container as a graph for the layout: nodes with sizes, lines with labels.
 
 import type { Graph, ModelEdge, Path, StateNode } from "./model";
-import { edgeId, isContainer, kindInWords } from "./model";
+import { edgeId, isContainer, kindInWords, shareOf } from "./model";
 import { fitting, width } from "./text";
 
 /** A drawn node: a state, an outcome of the container, its start, or the join of a rule. */
@@ -146,10 +146,17 @@ export function contentOf(
   for (const edge of graph.inside.get(path) ?? []) {
     if (written.has(edge)) continue;
     for (const line of linesOf(container, edge, joined)) {
-      add(line, edgeId(edge), labelOf(container, edge, line));
+      add(line, edgeId(edge), withShare(graph, edge, labelOf(container, edge, line)));
     }
   }
   return { path, pieces, lines: [...lines.values()] };
+}
+
+/** A label with the frequency of the outcome of its edge, where that is known. */
+function withShare(graph: Graph, edge: ModelEdge, label: string): string {
+  const state = edge.source === null ? undefined : graph.model.statistics?.states[edge.source];
+  if (!state || !edge.outcome) return label;
+  return `${label} ${shareOf(state, edge.outcome)}`.trim();
 }
 
 function startPiece(container: StateNode): Piece {

@@ -27,6 +27,16 @@ export function highlightOf(graph: Graph, state: RunState, control: ControlStatu
   };
 }
 
+/** What shows that a run is one of another machine, or of another version of it; else empty. */
+export function foreignPlace(graph: Graph, state: RunState): string {
+  const place = [...state.visited.keys()].find((path) => !nodeAt(graph, path));
+  if (place === undefined) return "";
+  const [machine = ""] = place.split("/");
+  const { root } = graph.model;
+  if (machine !== root) return `This is the trace of the machine ${machine}, not of ${root}.`;
+  return `The script has no state ${place}: it is not the version that ran.`;
+}
+
 function known(graph: Graph, paths: string[]): Path[] {
   return paths.map((path) => nodeAt(graph, path)?.path).filter((path) => path !== undefined);
 }

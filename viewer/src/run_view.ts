@@ -5,8 +5,10 @@ import { connect, takeToken } from "./connection";
 import { Control } from "./control";
 import { button, html } from "./dom";
 import type { Finding, StateNode } from "./model";
+import type { FilmData } from "./film";
+import { Film } from "./film";
 import { Recording } from "./recording";
-import { highlightOf, inWords, inline, keyValues, nodeAt, placeOf, seconds } from "./run_marks";
+import { foreignPlace, highlightOf, inWords, inline, keyValues, nodeAt, placeOf, seconds } from "./run_marks";
 import type { RunState, TraceEvent } from "./run_state";
 import { activeLeaves } from "./run_state";
 import { Timeline } from "./timeline";
@@ -19,13 +21,15 @@ const FOLLOW_APART = 400;
 const LOG_LINES = 200;
 const KEY_ROWS = 60;
 
-/** Show runs: those of a server if the model is live, and the recorded one of `trace` (JSON lines). */
-export function showRuns(viewer: Viewer, trace: string): void {
+/** Show runs: those of a server if the model is live, and the recorded one of `trace` (JSON). `film` is
+ * the data of a film of it (JSON), or empty. */
+export function showRuns(viewer: Viewer, trace: string, film: string): void {
   const { live } = viewer.graph.model;
   const token = live ? takeToken() : null;
   if (!live && !trace) return;
   const view = new RunView(viewer, token, live);
   if (trace) view.replay(JSON.parse(trace) as TraceEvent[]);
+  if (film) view.addFilm(new Film(JSON.parse(film) as FilmData));
   if (live) view.connect();
 }
 
@@ -34,6 +38,7 @@ class RunView {
   private readonly timeline: Timeline;
   private readonly control: Control;
   private readonly status = html("p", { class: "run-status", role: "status" });
+  private readonly foreign = html("p", { class: "run-foreign", role: "status" });
   private readonly log = html("ol", { class: "log", tabindex: "0", "aria-label": "Log" });
   private readonly keys = html("div", { class: "values", tabindex: "0", "aria-label": "Values of keys" });
   private readonly bar: HTMLElement;
@@ -53,7 +58,8 @@ class RunView {
   constructor(private readonly viewer: Viewer, token: string | null, private readonly live: boolean) {
     this.timeline = new Timeline(this.recording, () => this.draw());
     this.control = new Control(token, () => this.controlled(), (reason) => viewer.notice(reason));
-    this.bar = html("div", { class: "run-bar" }, this.status, this.control.element, this.follow, this.timeline.element);
+    this.bar = html("div", { class: "run-bar" },
+      this.foreign, this.status, this.control.element, this.follow, this.timeline.element);
     this.details = html("div", { class: "run-details", hidden: true }, this.log, this.keys);
     viewer.footer.append(this.bar, this.details);
     viewer.addSection({ id: "run", title: "Run", first: true, fill: (node) => this.fill(node) });
@@ -67,6 +73,13 @@ class RunView {
     this.recording.add(events);
     this.timeline.update();
     this.draw();
+  }
+
+  /** Show a film in step with the time line. */
+  addFilm(film: Film): void {
+    this.details.classList.add("filmed");
+    this.details.append(film.element);
+    this.timeline.timeShown = (t) => film.show(t);
   }
 
   connect(): void {
@@ -163,6 +176,8 @@ class RunView {
     const control = this.timeline.follows ? this.control.status : null;
     this.viewer.highlight(any ? highlightOf(this.viewer.graph, state, control) : null);
     this.status.textContent = this.inWords(state);
+    const foreign = foreignPlace(this.viewer.graph, this.recording.at(Infinity));
+    if (this.foreign.textContent !== foreign) this.foreign.textContent = foreign;
     this.drawLog();
     this.drawKeys(state);
     this.fillPart(this.shownNode);

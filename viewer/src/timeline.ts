@@ -13,6 +13,8 @@ export class Timeline {
   readonly element: HTMLElement;
   /** The number of events before the position. */
   position = 0;
+  /** Called with the time of the run that is shown, in seconds; in a replay also between events. */
+  timeShown: (t: number) => void = () => {};
   /** Whether the position moves with the run. */
   follows = true;
   private playing = false;
@@ -111,5 +113,6 @@ export class Timeline {
     this.play.textContent = this.playing ? "Stop" : "Play";
     this.play.setAttribute("aria-label", this.playing ? "Stop the replay" : "Play");
     this.latest.setAttribute("aria-pressed", String(this.follows));
+    if (end) this.timeShown(this.playing && this.timed ? this.clock : this.timeAt(this.position));
   }
 }

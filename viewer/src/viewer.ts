@@ -24,6 +24,9 @@ export interface Viewer {
   /** Places for the elements of other modules: in the bar at the top, and below the picture. */
   readonly toolbar: HTMLElement;
   readonly footer: HTMLElement;
+  /** The picture: its frame, and the part of it that zoom and pan move. */
+  readonly frame: SVGSVGElement;
+  readonly world: SVGGElement;
   /** Select a state, open the containers around it and show it. */
   select(path: Path | null): Promise<void>;
   /** Mark active states and transitions that were taken; null removes the marks. */
@@ -42,6 +45,8 @@ export interface Viewer {
   notice(text: string): void;
   /** Call a function after each selection. */
   onSelect(listener: (path: Path | null) => void): void;
+  /** Call a function now, and after the picture was drawn or another state was selected. */
+  onMark(listener: (picture: Picture) => void): void;
 }
 
 /** The number of states that are shown at first, if the machine has more. */
@@ -70,6 +75,7 @@ export async function createViewer(page: HTMLElement, model: Model, compute: Com
   let expected: { path: Path; old: Path | undefined } | null = null;
   const sections: Section[] = [];
   const listeners: ((path: Path | null) => void)[] = [];
+  const markers: ((picture: Picture) => void)[] = [];
 
   const world = svg("g", {});
   const frame = svg("svg", { class: "picture", role: "group", "aria-label": "State graph" }, world);
@@ -183,6 +189,7 @@ export async function createViewer(page: HTMLElement, model: Model, compute: Com
     markSelection(picture, selected);
     if (selected === null) picture.states.get(graph.model.root)?.setAttribute("tabindex", "0");
     markRun(graph, picture, run);
+    for (const each of markers) each(picture);
   }
 
   function focusSelected(): void {
@@ -357,6 +364,8 @@ export async function createViewer(page: HTMLElement, model: Model, compute: Com
     },
     toolbar,
     footer,
+    frame,
+    world,
     select,
     highlight(next) {
       run = next;
@@ -375,6 +384,10 @@ export async function createViewer(page: HTMLElement, model: Model, compute: Com
     },
     onSelect(listener) {
       listeners.push(listener);
+    },
+    onMark(listener) {
+      markers.push(listener);
+      mark();
     },
   };
 }

@@ -19,7 +19,9 @@ _ESCAPES = {ord("<"): "\\u003c", ord(">"): "\\u003e", ord("&"): "\\u0026"}
 _NONE, _SELF = "'none'", "'self'"
 
 LAYOUT_ID, MODEL_ID, TRACE_ID = "smachac-layout", "smachac-model", "smachac-trace"
-"""The ids of the elements with the program that computes layouts, the model, and a trace."""
+FILM_ID = "smachac-film"
+"""The ids of the elements with the program that computes layouts, the model, a trace, and the data
+of a film."""
 
 
 def render_page(
@@ -42,6 +44,7 @@ def render_page(
             f"style-src {_hash(style)}",
             "worker-src blob:",
             f"connect-src {_SELF if connect else _NONE}",
+            *(["media-src blob:"] if connect else []),
             "base-uri 'none'",
             "form-action 'none'",
         ]

@@ -64,6 +64,13 @@
   }
 
   // src/model.ts
+  function countOf(state, outcome) {
+    return state && Object.hasOwn(state.outcomes, outcome) ? state.outcomes[outcome] : 0;
+  }
+  function shareOf(state, outcome) {
+    const ended = Object.values(state.outcomes).reduce((sum, each) => sum + each, 0);
+    return `${ended ? Number((100 * countOf(state, outcome) / ended).toFixed(1)) : 0} %`;
+  }
   function indexed(model) {
     const graph = {
       model,
@@ -144,8 +151,123 @@ ${target2}`;
     });
   }
 
+  // src/transition_drag.ts
+  var FAR_ENOUGH = 4;
+  var HANDLE_RADIUS = 6;
+  function drawTransitions(viewer, drawn) {
+    const { frame, world } = viewer;
+    frame.classList.add("editable");
+    viewer.onMark((picture) => addHandles(viewer.graph, picture, viewer.selected));
+    frame.addEventListener("pointerdown", (event) => {
+      const origin2 = originAt(viewer.graph, event.target);
+      if (!origin2 || event.button !== 0) return;
+      event.stopPropagation();
+      event.preventDefault();
+      drag(viewer.graph, frame, world, event, origin2, {
+        dropped: (target2) => drawn(origin2.path, origin2.outcome, target2),
+        clicked: () => void viewer.select(origin2.path)
+      });
+    }, { capture: true });
+  }
+  function hasTransitions(graph, node) {
+    const parent = node.parent === null ? void 0 : graph.nodes.get(node.parent);
+    return parent !== void 0 && parent.kind !== "concurrence" && node.outcomes.length > 0;
+  }
+  function originAt(graph, element) {
+    const found = element.closest("[data-from]");
+    const path = found?.getAttribute("data-from") ?? "";
+    const outcome = found?.getAttribute("data-outcome") ?? "";
+    const node = graph.nodes.get(path);
+    if (!node || !hasTransitions(graph, node)) return null;
+    return node.outcomes.some(({ name }) => name === outcome) ? { path, outcome } : null;
+  }
+  function addHandles(graph, { root, states }, selected) {
+    root.querySelector(":scope > .handles")?.remove();
+    const element = selected === null ? void 0 : states.get(selected);
+    const node = selected === null ? void 0 : graph.nodes.get(selected);
+    const body = element?.querySelector(":scope > .body");
+    if (!element || !node || !body || !hasTransitions(graph, node)) return;
+    const apart = Number(body.getAttribute("width")) / (node.outcomes.length + 1);
+    const handles = node.outcomes.map(({ name, failure }, index) => svg("circle", {
+      class: failure ? "failure" : null,
+      "data-from": node.path,
+      "data-outcome": name,
+      cx: apart * (index + 1),
+      cy: body.getAttribute("height"),
+      r: Math.min(HANDLE_RADIUS, apart / 2)
+    }, svg("title", {}, `${name}: draw it to a state or an outcome`)));
+    root.append(svg("g", {
+      class: "handles",
+      "aria-hidden": "true",
+      transform: element.getAttribute("transform")
+    }, ...handles));
+  }
+  function drag(graph, frame, world, start, origin2, ends) {
+    const from = place(world, start);
+    const path = svg("path", { class: "stroke" });
+    const text = svg("text", { class: "words", x: 0, y: 0 });
+    const line = svg("g", { class: "drawn", "aria-hidden": "true" }, path, text);
+    let target2 = null;
+    let moving = false;
+    const move = (event) => {
+      if (!moving && Math.hypot(event.clientX - start.clientX, event.clientY - start.clientY) < FAR_ENOUGH) return;
+      if (!moving) world.append(line);
+      moving = true;
+      const to = place(world, event);
+      target2?.element.classList.remove("drop");
+      target2 = targetAt(graph, origin2, event);
+      target2?.element.classList.add("drop");
+      path.setAttribute("d", `M${from.x} ${from.y}L${to.x} ${to.y}`);
+      text.setAttribute("x", String(to.x + 14));
+      text.setAttribute("y", String(to.y - 8));
+      text.textContent = target2 ? `${origin2.outcome} \u2192 ${target2.name}` : origin2.outcome;
+    };
+    const end2 = (event) => {
+      line.remove();
+      target2?.element.classList.remove("drop");
+      const listeners = { pointermove: move, pointerup: end2, pointercancel: end2 };
+      for (const [name, listener] of Object.entries(listeners)) window.removeEventListener(name, listener);
+      document.removeEventListener("keydown", escape, { capture: true });
+      if (event.type === "pointerup") {
+        frame.addEventListener("click", stop, { capture: true, once: true });
+        window.setTimeout(() => frame.removeEventListener("click", stop, { capture: true }));
+      }
+      if (event.type !== "pointerup") return;
+      if (!moving) ends.clicked();
+      else if (target2) ends.dropped(target2.name);
+    };
+    const stop = (event) => event.stopPropagation();
+    const escape = (event) => {
+      if (event.key !== "Escape") return;
+      event.stopPropagation();
+      end2(event);
+    };
+    window.addEventListener("pointermove", move);
+    window.addEventListener("pointerup", end2);
+    window.addEventListener("pointercancel", end2);
+    document.addEventListener("keydown", escape, { capture: true });
+  }
+  function place(world, event) {
+    const matrix = world.getScreenCTM();
+    return matrix ? new DOMPoint(event.clientX, event.clientY).matrixTransform(matrix.inverse()) : { x: 0, y: 0 };
+  }
+  function targetAt(graph, origin2, event) {
+    const container = graph.nodes.get(origin2.path)?.parent;
+    const shown = document.elementsFromPoint(event.clientX, event.clientY).find((each) => !each.closest(".drawn, .handles, .line, .label") && each.closest("[data-path], [data-exit]"));
+    const element = shown?.closest("[data-path], [data-exit]");
+    if (!element || !container) return null;
+    const exit = element.getAttribute("data-exit");
+    if (exit !== null) return element.getAttribute("data-of") === container ? { name: exit, element } : null;
+    const path = element.getAttribute("data-path") ?? "";
+    if (!path.startsWith(`${container}/`)) return null;
+    const name = path.slice(container.length + 1).split("/")[0];
+    const state = document.querySelector(`.state[data-path="${CSS.escape(`${container}/${name}`)}"]`);
+    return state && { name, element: state };
+  }
+
   // src/edit_fields.ts
   var NOWHERE = "";
+  var TRANSITION = "Change a transition";
   function labelled(text, control) {
     control.id = `edit-${text.toLowerCase().replaceAll(" ", "-")}`;
     return html("p", { class: "field" }, html("label", { for: control.id }, text), control);
@@ -166,7 +288,7 @@ ${target2}`;
     const parent = state.parent === null ? void 0 : graph.nodes.get(state.parent);
     const forms = [];
     if (parent) {
-      if (state.outcomes.length && parent.kind !== "concurrence") forms.push(transition(graph, state, parent));
+      if (hasTransitions(graph, state)) forms.push(transition(graph, state, parent));
       forms.push(rename(state));
     }
     if (parent) forms.push(add("Add a state behind it", parent, types, state));
@@ -210,8 +332,12 @@ ${target2}`;
     outcome.addEventListener("change", showTarget);
     showTarget();
     return {
-      title: "Change a transition",
+      title: TRANSITION,
       fields: [outcomeLabel, targetLabel],
+      fill(name, to) {
+        outcome.value = name;
+        target2.value = to;
+      },
       planned() {
         const led = target2.value === NOWHERE ? {} : { target: target2.value };
         return { edit: { operation: "transition", path: state.path, arguments: { outcome: outcome.value, ...led } }, then: state.path };
@@ -222,6 +348,8 @@ ${target2}`;
     const [nameLabel, name] = textField("Name of the new state");
     const [typeLabel, type] = choice("State type", []);
     const doc = html("p", { class: "help" });
+    const outcomes2 = after && parent.kind === "machine" ? after.outcomes.map(({ name: name2 }) => [name2, name2]) : [];
+    const [onLabel, on] = choice("Outcome that leads to it", [[NOWHERE, "(none yet)"], ...outcomes2]);
     void types.then((known2) => {
       const describe = () => {
         doc.textContent = known2.find((each) => each.name === type.value)?.doc ?? "";
@@ -232,10 +360,11 @@ ${target2}`;
     });
     return {
       title,
-      fields: [nameLabel, typeLabel, doc],
+      fields: [nameLabel, typeLabel, doc, ...outcomes2.length ? [onLabel] : []],
       planned() {
         const given = { name: name.value.trim(), type: type.value };
         if (after) given["after"] = lastName(after.path);
+        if (on.value !== NOWHERE) given["on"] = on.value;
         return { edit: { operation: "add", path: parent.path, arguments: given }, then: `${parent.path}/${name.value.trim()}` };
       }
     };
@@ -390,10 +519,15 @@ ${target2}`;
     for (const edge of graph.inside.get(path) ?? []) {
       if (written.has(edge)) continue;
       for (const line of linesOf(container, edge, joined)) {
-        add2(line, edgeId(edge), labelOf(container, edge, line));
+        add2(line, edgeId(edge), withShare(graph, edge, labelOf(container, edge, line)));
       }
     }
     return { path, pieces, lines: [...lines.values()] };
+  }
+  function withShare(graph, edge, label) {
+    const state = edge.source === null ? void 0 : graph.model.statistics?.states[edge.source];
+    if (!state || !edge.outcome) return label;
+    return `${label} ${shareOf(state, edge.outcome)}`.trim();
   }
   function startPiece(container) {
     if (container.kind === "concurrence") {
@@ -476,7 +610,8 @@ ${target2}`;
       role: "treeitem",
       tabindex: "-1",
       "data-path": node.path,
-      "aria-label": spoken(node, box),
+      "aria-label": spoken(node, box).join("; "),
+      "data-words": spoken(node, box)[0],
       "aria-level": box.level + 1,
       "aria-setsize": siblings.length,
       "aria-posinset": siblings.indexOf(node.path) + 1,
@@ -511,7 +646,7 @@ ${target2}`;
     const parts = [[node.name, words, exitsInWords(box.written)].filter(Boolean).join(" ")];
     if (node.outcomes.length) parts.push(`outcomes: ${node.outcomes.map((each) => each.name).join(", ")}`);
     if (node.findings.length) parts.push(`findings: ${node.findings.length}`);
-    return parts.join("; ");
+    return parts;
   }
   function drawTitle(graph, group, node, box) {
     const name = fitting(node.name, "title");
@@ -564,7 +699,13 @@ ${target2}`;
     );
   }
   function drawPiece(graph, { piece, container, x, y, width: width2, height }) {
-    const group = svg("g", { class: `piece ${piece.what}`, transform: `translate(${x} ${y})` });
+    const exit = piece.what === "exit" ? piece.id.slice(exitId("").length) : null;
+    const group = svg("g", {
+      class: `piece ${piece.what}`,
+      transform: `translate(${x} ${y})`,
+      "data-exit": exit,
+      "data-of": exit === null ? null : container
+    });
     group.append(svg("title", {}, piece.label));
     switch (piece.what) {
       case "start":
@@ -627,8 +768,14 @@ ${target2}`;
       const turn = Math.atan2(end2.y - before.y, end2.x - before.x) * 180 / Math.PI;
       const transform = `translate(${end2.x} ${end2.y}) rotate(${turn})`;
       group.append(svg("path", { class: "head", d: "M0 0L-7.5-4Q-5.9 0-7.5 4Z", transform }));
+      const [only, ...others] = line.edges;
+      if (only !== void 0 && !others.length) group.append(svg("circle", { class: "grip", cx: end2.x, cy: end2.y, r: 7, ...origin(only) }));
     }
     return group;
+  }
+  function origin(edge) {
+    const [path = "", outcome = ""] = edge.split("\n");
+    return { "data-from": path, "data-outcome": outcome };
   }
   function drawLabel(line, label, ground2) {
     if (!label) return null;
@@ -637,7 +784,9 @@ ${target2}`;
     line.labels.forEach((text, index) => {
       const y = label.y + 2 + LINE_HEIGHT * index + 10.5;
       const x = label.x + label.width / 2;
-      group.append(svg("text", { x, y, "text-anchor": "middle" }, fitting(text, "label")));
+      const edge = line.edges.find((each) => each.split("\n")[1] === text);
+      const from = edge === void 0 ? {} : origin(edge);
+      group.append(svg("text", { x, y, "text-anchor": "middle", ...from }, fitting(text, "label")));
     });
     return group;
   }
@@ -688,6 +837,7 @@ ${target2}`;
   function setVisits(element, count2) {
     element.classList.toggle("visited", count2 > 0);
     let mark = element.querySelector(":scope > .visits");
+    speakVisits(element, count2 < 2 ? "" : ` \xD7${count2}`);
     if (count2 < 2) {
       mark?.remove();
       return;
@@ -697,9 +847,17 @@ ${target2}`;
       const body = element.querySelector(":scope > .body");
       mark.setAttribute("x", String(Number(body.getAttribute("width")) - 8));
       mark.setAttribute("y", "-4");
-      element.append(mark);
+      element.append(" ", mark);
     }
     mark.textContent = `\xD7${count2}`;
+  }
+  function speakVisits(element, visits) {
+    const words = element.dataset["words"] ?? "";
+    const before = element.dataset["visits"] ?? "";
+    if (before === visits) return;
+    const rest = (element.getAttribute("aria-label") ?? "").slice(words.length + before.length);
+    element.dataset["visits"] = visits;
+    element.setAttribute("aria-label", words + visits + rest);
   }
   function legend() {
     const sign = (name) => svg(
@@ -906,6 +1064,7 @@ ${target2}`;
       this.forget();
       viewer.addSection({ id: "edit", title: "Edit", first: true, fill: (node) => this.fill(node) });
       document.addEventListener("keydown", (event) => this.key(event));
+      drawTransitions(viewer, (path, outcome, target2) => void this.propose(path, outcome, target2));
     }
     viewer;
     token;
@@ -931,6 +1090,14 @@ ${target2}`;
     previewed = null;
     /** The state that each edit changed the path of: selected again when it is undone. */
     done = [];
+    /** Show what a transition that was drawn changes. */
+    async propose(path, outcome, target2) {
+      await this.viewer.select(path);
+      this.kinds.value = TRANSITION;
+      this.showFields();
+      this.chosen()?.fill?.(outcome, target2);
+      await this.look();
+    }
     /** The form of the selected state; what is typed in stays while the state and the machine stay. */
     fill(node) {
       const { graph } = this.viewer;
@@ -1108,6 +1275,108 @@ ${target2}`;
       this.pause.setAttribute("aria-label", paused ? "Resume" : "Pause");
       this.step.disabled = !this.status?.at.length;
       this.stop.disabled = this.status?.stopping ?? false;
+    }
+  };
+
+  // src/film.ts
+  var Film = class {
+    constructor(data) {
+      this.data = data;
+      this.film = this.load();
+      void this.update();
+    }
+    data;
+    caption = html("figcaption", {}, "The film is loaded");
+    frame = html("div", { class: "frame" });
+    element = html("figure", { class: "film", "aria-label": "Film of the run" }, this.frame, this.caption);
+    film;
+    wanted = 0;
+    shown = -1;
+    busy = false;
+    /** Show the frame of a time of the run, in seconds. */
+    show(t) {
+      this.wanted = Math.max(0, Math.floor(t * this.data.rate + 1e-6));
+      void this.update();
+    }
+    async load() {
+      try {
+        const answer = await fetch("film");
+        if (!answer.ok) throw new Error("the server has no film");
+        const content = await answer.blob();
+        return this.data.type === "image/gif" ? await this.gif(content) : await this.video(content);
+      } catch (error) {
+        this.caption.textContent = `The film cannot be shown: ${error instanceof Error ? error.message : String(error)}`;
+        return null;
+      }
+    }
+    /** Show the latest frame that is wanted; those that were wanted in the meantime are left out. */
+    async update() {
+      if (this.busy) return;
+      this.busy = true;
+      const film = await this.film;
+      while (film && this.shown !== this.wanted) {
+        const index = this.wanted;
+        const frame = await film(index);
+        this.shown = index;
+        this.element.dataset["frame"] = String(frame);
+        this.caption.textContent = `Film at ${(frame / this.data.rate).toFixed(1)} s`;
+      }
+      this.busy = false;
+    }
+    async gif(content) {
+      if (typeof ImageDecoder === "undefined") {
+        throw new Error("this browser shows single frames of .mp4 only, not of .gif");
+      }
+      const decoder = new ImageDecoder({ data: await content.arrayBuffer(), type: this.data.type });
+      await decoder.tracks.ready;
+      await decoder.completed;
+      const starts = await this.starts(decoder);
+      if (starts.length < 2) throw new Error("it has no image");
+      const last = starts.pop() - 1;
+      const canvas = html("canvas", {});
+      this.frame.replaceChildren(canvas);
+      return async (wanted) => {
+        const index = Math.min(wanted, last);
+        const { image } = await decoder.decode({ frameIndex: starts.filter((each) => each <= index).length - 1 });
+        if (canvas.width !== image.displayWidth) canvas.width = image.displayWidth;
+        if (canvas.height !== image.displayHeight) canvas.height = image.displayHeight;
+        canvas.getContext("2d")?.drawImage(image, 0, 0);
+        image.close();
+        return index;
+      };
+    }
+    /** The number of the first frame that each image of a GIF stands for, and their count: equal frames are
+     * one image, which is shown longer. The last frame is shown for two seconds (`Gif` in sim/video.py). */
+    async starts(decoder) {
+      const count2 = decoder.tracks.selectedTrack?.frameCount ?? 0;
+      const frame = Math.floor(1e3 / this.data.speed);
+      const starts = [0];
+      for (let index = 0; index < count2; index += 1) {
+        const { image } = await decoder.decode({ frameIndex: index });
+        const shown = (image.duration ?? 0) / 1e3 - (index === count2 - 1 ? 2e3 - frame : 0);
+        image.close();
+        starts.push(starts[index] + Math.max(1, Math.round(shown / frame)));
+      }
+      return starts;
+    }
+    async video(content) {
+      const video = html("video", { muted: true, playsinline: true, preload: "auto" });
+      this.frame.replaceChildren(video);
+      const failed = () => new Error("this browser cannot play it");
+      await new Promise((resolve, reject) => {
+        video.addEventListener("loadeddata", () => resolve(), { once: true });
+        video.addEventListener("error", () => reject(failed()), { once: true });
+        video.src = URL.createObjectURL(content);
+      });
+      return async (wanted) => {
+        const last = Math.max(0, Math.round(video.duration * this.data.speed) - 1);
+        const index = Math.min(wanted, last);
+        await new Promise((resolve) => {
+          video.addEventListener("seeked", () => resolve(), { once: true });
+          video.currentTime = (index + 0.5) / this.data.speed;
+        });
+        return index;
+      };
     }
   };
 
@@ -1304,6 +1573,14 @@ ${key}`, { path, key, value: event.value, t: state.t, order: state.writes });
       breakpoints: known(graph, control?.breakpoints.map((each) => each.path) ?? [])
     };
   }
+  function foreignPlace(graph, state) {
+    const place2 = [...state.visited.keys()].find((path) => !nodeAt(graph, path));
+    if (place2 === void 0) return "";
+    const [machine = ""] = place2.split("/");
+    const { root } = graph.model;
+    if (machine !== root) return `This is the trace of the machine ${machine}, not of ${root}.`;
+    return `The script has no state ${place2}: it is not the version that ran.`;
+  }
   function known(graph, paths) {
     return paths.map((path) => nodeAt(graph, path)?.path).filter((path) => path !== void 0);
   }
@@ -1347,11 +1624,11 @@ ${target2}`);
     for (const written of state.written.values()) {
       const node = nodeAt(graph, written.path);
       if (!node) continue;
-      const place = placeOf(graph, node, written.key);
-      const id = `${place.scope}
-${place.key}`;
+      const place2 = placeOf(graph, node, written.key);
+      const id = `${place2.scope}
+${place2.key}`;
       const before = found.get(id);
-      if (!before || before.written.order < written.order) found.set(id, { ...place, written });
+      if (!before || before.written.order < written.order) found.set(id, { ...place2, written });
     }
     return [...found.values()].sort((a, b) => b.written.order - a.written.order);
   }
@@ -1445,6 +1722,9 @@ ${place.key}`;
     element;
     /** The number of events before the position. */
     position = 0;
+    /** Called with the time of the run that is shown, in seconds; in a replay also between events. */
+    timeShown = () => {
+    };
     /** Whether the position moves with the run. */
     follows = true;
     playing = false;
@@ -1527,6 +1807,7 @@ ${place.key}`;
       this.play.textContent = this.playing ? "Stop" : "Play";
       this.play.setAttribute("aria-label", this.playing ? "Stop the replay" : "Play");
       this.latest.setAttribute("aria-pressed", String(this.follows));
+      if (end2) this.timeShown(this.playing && this.timed ? this.clock : this.timeAt(this.position));
     }
   };
 
@@ -1535,12 +1816,13 @@ ${place.key}`;
   var FOLLOW_APART = 400;
   var LOG_LINES = 200;
   var KEY_ROWS = 60;
-  function showRuns(viewer, trace) {
+  function showRuns(viewer, trace, film) {
     const { live } = viewer.graph.model;
     const token = live ? takeToken() : null;
     if (!live && !trace) return;
     const view = new RunView(viewer, token, live);
     if (trace) view.replay(JSON.parse(trace));
+    if (film) view.addFilm(new Film(JSON.parse(film)));
     if (live) view.connect();
   }
   var RunView = class {
@@ -1549,7 +1831,15 @@ ${place.key}`;
       this.live = live;
       this.timeline = new Timeline(this.recording, () => this.draw());
       this.control = new Control(token, () => this.controlled(), (reason) => viewer.notice(reason));
-      this.bar = html("div", { class: "run-bar" }, this.status, this.control.element, this.follow, this.timeline.element);
+      this.bar = html(
+        "div",
+        { class: "run-bar" },
+        this.foreign,
+        this.status,
+        this.control.element,
+        this.follow,
+        this.timeline.element
+      );
       this.details = html("div", { class: "run-details", hidden: true }, this.log, this.keys);
       viewer.footer.append(this.bar, this.details);
       viewer.addSection({ id: "run", title: "Run", first: true, fill: (node) => this.fill(node) });
@@ -1564,6 +1854,7 @@ ${place.key}`;
     timeline;
     control;
     status = html("p", { class: "run-status", role: "status" });
+    foreign = html("p", { class: "run-foreign", role: "status" });
     log = html("ol", { class: "log", tabindex: "0", "aria-label": "Log" });
     keys = html("div", { class: "values", tabindex: "0", "aria-label": "Values of keys" });
     bar;
@@ -1583,6 +1874,12 @@ ${place.key}`;
       this.recording.add(events);
       this.timeline.update();
       this.draw();
+    }
+    /** Show a film in step with the time line. */
+    addFilm(film) {
+      this.details.classList.add("filmed");
+      this.details.append(film.element);
+      this.timeline.timeShown = (t) => film.show(t);
     }
     connect() {
       connect({
@@ -1670,6 +1967,8 @@ ${place.key}`;
       const control = this.timeline.follows ? this.control.status : null;
       this.viewer.highlight(any ? highlightOf(this.viewer.graph, state, control) : null);
       this.status.textContent = this.inWords(state);
+      const foreign = foreignPlace(this.viewer.graph, this.recording.at(Infinity));
+      if (this.foreign.textContent !== foreign) this.foreign.textContent = foreign;
       this.drawLog();
       this.drawKeys(state);
       this.fillPart(this.shownNode);
@@ -1794,10 +2093,10 @@ ${place.key}`;
       const values = new Map(keyValues(graph, state).map((each) => [`${each.scope}
 ${each.key}`, each]));
       for (const key of new Set([...node.inputs, ...node.outputs].map((each) => each.name))) {
-        const place = placeOf(graph, node, key);
-        const found = values.get(`${place.scope}
-${place.key}`);
-        if (found) row(key, place.secret || found.secret ? "(secret)" : inline(found.written.value, 500));
+        const place2 = placeOf(graph, node, key);
+        const found = values.get(`${place2.scope}
+${place2.key}`);
+        if (found) row(key, place2.secret || found.secret ? "(secret)" : inline(found.written.value, 500));
       }
       return html("ul", { class: "rows facts" }, ...rows);
     }
@@ -1818,6 +2117,78 @@ ${place.key}`);
       actions[event.key]?.();
     }
   };
+
+  // src/statistics.ts
+  function showStatistics(viewer) {
+    const { statistics } = viewer.graph.model;
+    if (!statistics) return;
+    const { graph } = viewer;
+    const visits = new Map(Object.entries(statistics.states).map(([path, each]) => [path, each.visits]));
+    visits.delete(graph.model.root);
+    const taken = graph.model.edges.filter((edge) => isTaken(graph, statistics, edge)).map(edgeId);
+    viewer.highlight({ active: [], taken, visits });
+    viewer.onMark((picture) => markNever(graph, statistics, picture));
+    viewer.addSection({
+      id: "statistics",
+      title: "Statistics",
+      first: true,
+      fill: (node) => html(
+        "div",
+        {},
+        figures(statistics, node?.path ?? graph.model.root),
+        node ? null : neverTaken(viewer, statistics)
+      )
+    });
+  }
+  function isTaken(graph, statistics, edge) {
+    if (edge.source === null) return typeof edge.target === "string" && edge.target in statistics.states;
+    const kind = graph.nodes.get(edge.container)?.kind;
+    const known2 = kind === "machine" || kind === "sequence";
+    return known2 && countOf(statistics.states[edge.source], edge.outcome) > 0;
+  }
+  function markNever(graph, statistics, picture) {
+    for (const [path, element] of picture.states) {
+      element.classList.toggle("never", path !== graph.model.root && !(path in statistics.states));
+    }
+    for (const { line, element } of picture.lines) {
+      const never = line.line.edges.length > 0 && line.line.edges.every((id) => {
+        const [source = "", outcome = ""] = id.split("\n");
+        const start = outcome === "" && source === line.container;
+        return !start && !countOf(statistics.states[source], outcome);
+      });
+      element.classList.toggle("never", never);
+    }
+  }
+  function figures(statistics, path) {
+    const found = statistics.states[path];
+    const row = (name, value) => html("li", {}, html("span", { class: "key" }, name), html("code", {}, value));
+    if (!found) return html("ul", { class: "rows" }, row("visits", "0: no run entered it"));
+    const outcomes2 = Object.entries(found.outcomes).map(([name, count2]) => row(name, `${count2} (${shareOf(found, name)})`));
+    const unfinished = found.unfinished ? [row("not ended", String(found.unfinished))] : [];
+    return html(
+      "ul",
+      { class: "rows" },
+      row("visits", String(found.visits)),
+      row("mean time", seconds(found.mean)),
+      row("longest", seconds(found.longest)),
+      ...outcomes2,
+      ...unfinished
+    );
+  }
+  function neverTaken(viewer, { never, transitions }) {
+    const taken = transitions - never.length;
+    const rows = never.map(({ path, text }) => {
+      const link2 = html("button", { type: "button", class: "link" }, text);
+      link2.addEventListener("click", () => void viewer.select(path));
+      return html("li", {}, link2);
+    });
+    return html(
+      "div",
+      {},
+      html("p", {}, `${taken} of ${transitions} transitions taken; grey and dotted: never`),
+      rows.length ? html("ul", { class: "rows never-taken", "aria-label": "Transitions never taken" }, ...rows) : null
+    );
+  }
 
   // src/camera.ts
   var LEAST = 0.02;
@@ -1851,10 +2222,10 @@ ${place.key}`);
       this.apply();
     }
     /** Show the upper part of a picture around a place, at a scale: no space is left of a wide picture. */
-    start(place, width2, scale) {
+    start(place2, width2, scale) {
       const half = this.frame.clientWidth / 2;
       this.scale = scale;
-      this.x = half - Math.max(place.x, Math.min(width2 / 2, half / scale)) * scale;
+      this.x = half - Math.max(place2.x, Math.min(width2 / 2, half / scale)) * scale;
       this.y = MARGIN;
       this.apply();
     }
@@ -1933,26 +2304,26 @@ ${place.key}`);
   var RATIO = 1.5;
   var lengthOf = (each, down) => (down ? each.width : each.height) ?? 0;
   var depthOf = (each, down) => (down ? each.height : each.width) ?? 0;
-  function inRows(graph, down, origin) {
+  function inRows(graph, down, origin2) {
     const cells = cellsOf(graph.children ?? [], down);
     const edges = graph.edges ?? [];
-    const grid = placeCells(cells, edges, down, down ? [origin.x, origin.y] : [origin.y, origin.x]);
+    const grid = placeCells(cells, edges, down, down ? [origin2.x, origin2.y] : [origin2.y, origin2.x]);
     const ports = portsOf(cells, down);
     const stacked = /* @__PURE__ */ new Map();
-    const place = (along, across) => down ? { x: along, y: across } : { x: across, y: along };
+    const place2 = (along, across) => down ? { x: along, y: across } : { x: across, y: along };
     return {
       id: graph.id,
       ...down ? { width: grid.size.along, height: grid.size.across } : { width: grid.size.across, height: grid.size.along },
-      children: [...cells.values()].map(({ node, along, across }) => ({ ...node, ...place(along, across) })),
+      children: [...cells.values()].map(({ node, along, across }) => ({ ...node, ...place2(along, across) })),
       edges: edges.map((edge) => {
         const route = routeOf(edge, grid, ports);
-        const points = route.map(([along, across]) => place(along, across));
+        const points = route.map(([along, across]) => place2(along, across));
         return {
           ...edge,
           sections: [{ id: edge.id, startPoint: points[0], bendPoints: points.slice(1, -1), endPoint: points.at(-1) }],
           labels: (edge.labels ?? []).map((label) => {
             const [along, across] = labelPlace(edge, label, route, grid, stacked);
-            return { ...label, ...place(along - lengthOf(label, down) / 2, across) };
+            return { ...label, ...place2(along - lengthOf(label, down) / 2, across) };
           })
         };
       })
@@ -2570,6 +2941,7 @@ ${name}`;
     let expected = null;
     const sections = [];
     const listeners = [];
+    const markers = [];
     const world = svg("g", {});
     const frame = svg("svg", { class: "picture", role: "group", "aria-label": "State graph" }, world);
     const panel = html("aside", { "aria-label": "Details" });
@@ -2672,6 +3044,7 @@ ${name}`;
       markSelection(picture, selected);
       if (selected === null) picture.states.get(graph.model.root)?.setAttribute("tabindex", "0");
       markRun(graph, picture, run);
+      for (const each of markers) each(picture);
     }
     function focusSelected() {
       picture?.states.get(selected ?? graph.model.root)?.focus({ preventScroll: true });
@@ -2832,6 +3205,8 @@ ${name}`;
       },
       toolbar,
       footer,
+      frame,
+      world,
       select,
       highlight(next) {
         run = next;
@@ -2850,6 +3225,10 @@ ${name}`;
       },
       onSelect(listener) {
         listeners.push(listener);
+      },
+      onMark(listener) {
+        markers.push(listener);
+        mark();
       }
     };
   }
@@ -2895,8 +3274,9 @@ ${name}`;
     const model = JSON.parse(textOf("smachac-model"));
     if (model.version !== VERSION) throw new Error(`the model has version ${model.version}, not ${VERSION}`);
     const viewer = await createViewer(document.body, model, startLayout(textOf("smachac-layout")));
-    showRuns(viewer, textOf("smachac-trace"));
+    showRuns(viewer, textOf("smachac-trace"), textOf("smachac-film"));
     showEdits(viewer);
+    showStatistics(viewer);
     document.documentElement.dataset["ready"] = "true";
   }
   function textOf(id) {
