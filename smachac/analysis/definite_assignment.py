@@ -14,7 +14,7 @@ from collections import Counter
 from collections.abc import Callable, Iterable, Iterator, Mapping
 from collections.abc import Set as AbstractSet
 from dataclasses import dataclass
-from typing import Any, TypeAlias
+from typing import Protocol, TypeVar
 
 from smachac.analysis.accesses import (
     ANYTHING,
@@ -38,6 +38,8 @@ from smachac.ir import nodes
 from smachac.ir.graph import START, Vertex, edges, exit_vertex, stopped_endings
 from smachac.ir.nodes import Concurrence, Container, Expression, Leaf, Machine, Node, OutcomeRule
 from smachac.ir.traversal import PREEMPTED, containers, ends_preempted, outcome_names, remapping
+
+T = TypeVar("T")
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -70,8 +72,14 @@ class UserdataScope:
     again: frozenset[Vertex]
 
 
-FactOf: TypeAlias = "Callable[[Callable[[UserdataScope], Any], str, UserdataScope], Any]"
-"""Computes a fact about the userdata of a container, by its path, or takes a known one."""
+class FactOf(Protocol):
+    """Computes a fact about the userdata of a container, by its path, or takes a known one."""
+
+    def __call__(
+        self, fact: Callable[[UserdataScope], T], path: str, container: UserdataScope
+    ) -> T:
+        """The fact."""
+        ...
 
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False)

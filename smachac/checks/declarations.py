@@ -72,7 +72,7 @@ def dead_key(context: Context) -> Iterator[Finding]:
         unset.setdefault(each.scope.path, set()).add(each.key)
     for scope in flow.scopes.values():
         container = scope.container
-        if container.sugar or context.of_container(_sees_everything, scope.path, scope):
+        if context.of_container(_sees_everything, scope.path, scope) or container.sugar:
             continue
         read = context.of_container(_used_in, scope.path, scope)
         for key, node, span in context.of_container(_set_by_the_script, scope.path, scope):
@@ -199,7 +199,7 @@ def unused_declaration(context: Context) -> Iterator[Finding]:
     yield from context.at_containers(_unused_in)
     for scope in flow.scopes.values():
         container = scope.container
-        if container.sugar or context.of_container(_sees_everything, scope.path, scope):
+        if context.of_container(_sees_everything, scope.path, scope) or container.sugar:
             continue
         used = context.of_container(_used_in, scope.path, scope)
         for key in container.inputs:
