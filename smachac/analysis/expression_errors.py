@@ -179,7 +179,8 @@ class _Judge:
             case Unary(word, operand) if word != "not":
                 type_ = self.type(operand)
                 if not can_be_negated(type_):
-                    yield self.fault(expr, f"uses `{type_text(type_)}` as a number", operand)
+                    does = f"uses `{type_text(type_)}` as a number"
+                    yield self.fault(expr, does, operand, help=f"remove the `{word}`")
             case Binary(word, left, right):
                 yield from self.binary(expr, word, left, right)
             case Compare(first, rest):
@@ -197,7 +198,9 @@ class _Judge:
     def attribute(self, expr: Expr, value: Expr, name: str) -> Iterator[Fault]:
         type_ = self.type(value)
         if not has_attribute(type_, name):
-            help = None
+            help: str | None = f"remove `.{name}`, or use a value of another type"
+            if ATTRIBUTES.get(type_.name):
+                help = None  # the nearest of its attributes
             if kinds(type_) == {"mapping"}:
                 entry = print_expression(Index(value, Constant(name)))
                 help = f"write `{entry}` for the entry of the mapping"
@@ -216,7 +219,7 @@ class _Judge:
         owner, place = self.type(value), self.type(index)
         if not can_be_indexed(owner, place):
             found = kinds(owner)
-            help = None
+            help = "remove the index: the value is not a list"
             does = f"reads an item of `{type_text(owner)}`, which has no items"
             if found & {"text", "list", "mapping"}:
                 does = f"uses `{type_text(place)}` as an index of `{type_text(owner)}`"
@@ -246,7 +249,7 @@ class _Judge:
     def binary(self, expr: Expr, word: str, left: Expr, right: Expr) -> Iterator[Fault]:
         one, other = self.type(left), self.type(right)
         if word in ("/", "//", "%") and _is_zero(right) and "text" not in kinds(one):
-            yield self.fault(expr, "divides by zero", left, help="divide by another number")
+            yield self.fault(expr, "divides by zero", left, help="divide by a number other than 0")
         elif fails(word, one, other):
             does = _DOES[word].format(type_text(one), type_text(other))
             yield self.fault(expr, does, left, right, help=_cure(word, one, other))
@@ -283,7 +286,10 @@ class _Judge:
                 choices=tuple(map(str, chosen.args)),
             )
         text += f"`{type_text(one)}` never equals `{type_text(other)}`"
-        return Fault(kind="comparison", expr=expr, what=text, keys=keys)
+        help = f"compare with a value of the type `{type_text(one)}`"
+        if {*kinds(one), *kinds(other)} == {"number", "text"}:
+            help += ", or convert one of them: `float(...)` gives a number, `str(...)` text"
+        return Fault(kind="comparison", expr=expr, what=text, keys=keys, help=help)
 
     def units(self, expr: Expr, one: Type, other: Type, left: Expr, right: Expr) -> Iterator[Fault]:
         if {one.name, other.name} <= {"int", "float"}:
@@ -306,7 +312,8 @@ class _Judge:
                 return
             if not can_be_called(type_):
                 does = f"calls `{type_text(type_)}`, which is not a function"
-                yield self.fault(expr, does, expr.function)
+                help = f"remove the parentheses: write `{print_expression(expr.function)}`"
+                yield self.fault(expr, does, expr.function, help=help)
             return
         signature = SIGNATURES.get(text)
         if signature is None:
@@ -316,7 +323,7 @@ class _Judge:
         unknown = [name for name, _ in expr.keywords if name not in keywords]
         if unknown:
             does = f"passes the argument `{unknown[0]}` to `{text}`, which does not accept it"
-            yield self.fault(expr, does)
+            yield self.fault(expr, does, help=f"remove `{unknown[0]}=`")
         elif given > most or (given < least and not expr.keywords):
             count = f"{given} argument{'s' if given != 1 else ''}"
             due = (
@@ -326,13 +333,16 @@ class _Judge:
                 if given > most
                 else f"{least}"
             )
-            yield self.fault(expr, f"passes {count} to `{text}`, which accepts {due}")
+            help = f"pass {due} argument{'s' if due != '1' else ''} to `{text}`"
+            yield self.fault(expr, f"passes {count} to `{text}`, which accepts {due}", help=help)
         elif given:
             type_ = self.type(expr.arguments[0])
             found, wanted = kinds(type_), alone if given == 1 else many
             if found and wanted and found.isdisjoint(wanted):
                 does = f"passes `{type_text(type_)}` to `{text}`, which does not accept it"
-                yield self.fault(expr, does, expr.arguments[0])
+                kind_words = " or ".join(sorted(_KIND_WORDS[kind] for kind in wanted))
+                help = f"pass {kind_words} to `{text}`"
+                yield self.fault(expr, does, expr.arguments[0], help=help)
 
 
 _EQUAL = ("==", "!=", "in", "not in")
@@ -369,7 +379,11 @@ def _cure(word: str, one: Type, other: Type) -> str | None:
         return "convert the text to a number with `float(...)`"
     if "nothing" in both:
         return "give it a value: the script sets it only to nothing (`null`)"
-    return None
+    if word == "+" and both > {"list"}:
+        return "write the value as a list as well, in brackets: `[...]`"
+    if both > {"list"}:
+        return "use an item of the list, such as the first one: `[0]`"
+    return f"use two values of one type: `{type_text(one)}` or `{type_text(other)}`"
 
 
 Kinds = frozenset[str]
@@ -384,6 +398,15 @@ _KINDS: Mapping[str, Kinds] = {
     **dict.fromkeys(("list", "array", "tuple"), frozenset(["list"])),
     **dict.fromkeys(("dict", "mapping", "record"), frozenset(["mapping"])),
     **dict.fromkeys(ATTRIBUTES, frozenset(["struct"])),
+}
+
+_KIND_WORDS: Mapping[str, str] = {
+    "number": "a number",
+    "text": "text",
+    "nothing": "None",
+    "list": "a list",
+    "mapping": "a mapping",
+    "struct": "a message",
 }
 
 _BUILT_IN: Mapping[str, tuple[type, ...]] = {

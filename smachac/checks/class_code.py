@@ -51,7 +51,12 @@ def _used_here(leaf: Leaf) -> tuple[Related, ...]:
     return other_place(leaf.span, f"`{leaf.name}` is of the type `{leaf.type}`")
 
 
-@rule("SM309", "undeclared-return", Severity.ERROR)
+@rule(
+    "SM309",
+    "undeclared-return",
+    Severity.ERROR,
+    effect="SMACH accepts only declared outcomes: the machine stops with an error",
+)
 def undeclared_return(context: Context) -> Iterator[Finding]:
     """The Python code of a state type returns a value that is not one of its outcomes, or no value.
 
@@ -187,7 +192,12 @@ def _first_of_each(words: Iterable[Word], known: Iterable[str]) -> list[Word]:
     return [word for word in found.values() if word.text in left]
 
 
-@rule("SM314", "unwritten-output", Severity.WARNING)
+@rule(
+    "SM314",
+    "unwritten-output",
+    Severity.WARNING,
+    effect="a state that reads the key afterwards gets an old value, or fails with KeyError",
+)
 def unwritten_output(context: Context) -> Iterator[Finding]:
     """The class of a state type returns an outcome without setting an output key that its
     interface promises for that outcome.
@@ -302,7 +312,12 @@ def _unwritten(
         )
 
 
-@rule("SM315", "never-returned", Severity.WARNING)
+@rule(
+    "SM315",
+    "never-returned",
+    Severity.WARNING,
+    effect="a transition for this outcome is never taken",
+)
 def never_returned(context: Context) -> Iterator[Finding]:
     """The class of a state type never returns an outcome that its interface declares.
 

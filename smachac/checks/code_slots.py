@@ -3,7 +3,8 @@
 from __future__ import annotations
 
 import ast
-from collections.abc import Iterable, Iterator
+from collections.abc import Iterable, Iterator, Mapping
+from typing import NamedTuple
 
 from smachac.analysis.accesses import USERDATA
 from smachac.analysis.code_slots import (
@@ -32,7 +33,7 @@ from smachac.diagnostics.spelling import guesser, in_quotes
 from smachac.diagnostics.wording import listed
 from smachac.ir.code_places import node_place, node_range, place_in
 from smachac.ir.message_types import TEXTS, FieldType
-from smachac.ir.nodes import Expression, Leaf, Node
+from smachac.ir.nodes import Expression, Leaf, Node, VariableRole
 from smachac.ir.traversal import outcome_names
 from smachac.ir.types import ANY, Type
 
@@ -47,7 +48,12 @@ def _slots(context: Context) -> Iterator[tuple[str, Node, CodeSlot, ast.expr]]:
                 yield path, node, slot, tree
 
 
-@rule("SM316", "not-a-function", Severity.ERROR)
+@rule(
+    "SM316",
+    "not-a-function",
+    Severity.ERROR,
+    effect="the program stops when it makes the state, or the state fails at its first visit",
+)
 def not_a_function(context: Context) -> Iterator[Finding]:
     """Code of the script gives a value where the state calls a function.
 
@@ -177,7 +183,15 @@ def _as_function(slot: CodeSlot, name: str) -> tuple[Edit, ...]:
     return (Edit(span=Span(start.source, start.start, start.start), text=head),)
 
 
-@rule("SM317", "wrong-arguments", Severity.ERROR)
+MIXED_ARGUMENTS = "the state passes them by position, so each name has the value of another one"
+
+
+@rule(
+    "SM317",
+    "wrong-arguments",
+    Severity.ERROR,
+    effect="the call raises TypeError at the first visit of the state",
+)
 def wrong_arguments(context: Context) -> Iterator[Finding]:
     """A function of the script has other arguments than the state passes to it.
 
@@ -221,17 +235,22 @@ def wrong_arguments(context: Context) -> Iterator[Finding]:
         if accepts(tree, len(due)):
             found = _swapped(tree, due)
             what = f"has the arguments {_names(found)}, but the state passes {_names(due)}"
+            effect: str | None = (
+                "the arguments are passed in that order: each name has a wrong value"
+            )
             if not found:
                 continue
         else:
             own = len(parameters(tree))
             what = f"has {own or 'no'} argument{'s' * (own != 1)}, but the state passes {len(due)}"
             what += f": {_names(due)}"
+            effect = None
         yield Finding(
             span=_head(slot, tree),
             message=f"the function of {_owner(slot, node)} {what}",
             arguments=(slot.name, slot.code.text),
             help=_head_help(tree, due),
+            effect=effect,
             related=calls(node, slot.code.span),
             node=path,
         )
@@ -351,12 +370,13 @@ def wrong_result(context: Context) -> Iterator[Finding]:
                 fault = _value_fault(context, path, node, slot, result)
             if fault is None:
                 continue
-            what, help, sure = fault
+            what, help, sure, effect = fault
             yield Finding(
                 span=node_place(slot.code, result),
                 message=f"the function of {_owner(slot, node)} returns {what}",
                 arguments=(slot.name, ast.unparse(result)),
                 help=help,
+                effect=effect,
                 related=(
                     *(
                         place
@@ -372,20 +392,45 @@ def wrong_result(context: Context) -> Iterator[Finding]:
 
 SECONDS = Type("float", ("s",))
 
-Fault = tuple[str, str | None, bool]
-"""What a function returns, the help, and whether it is certain."""
+WAIT_FAILS = "the state fails when it begins to wait"
+
+OUTCOME_EFFECT = "no other outcome is accepted: the state ends with `aborted`, or the machine stops"
+
+NONE_EFFECTS: Mapping[VariableRole, str] = {
+    "callbacks": "the key of this name gets the value None",
+    "conditions": "the condition is never true",
+    "duration": WAIT_FAILS,
+}
+"""What happens with None as the result of code of a role."""
+
+RESULT_HELP: Mapping[VariableRole, str] = {
+    "conditions": "return a comparison, as in `lambda ud: ud.n > 0`",
+    "duration": "return a number of seconds, as in `lambda ud: 2.5`",
+}
+"""The help for code of a role that returns None."""
+
+
+class Fault(NamedTuple):
+    """What a function returns, the help, whether it is certain, and what happens then; an empty
+    effect is in `what`."""
+
+    what: str
+    help: str
+    sure: bool
+    effect: str
 
 
 def _value_fault(
     context: Context, path: str, node: Node, slot: CodeSlot, result: ast.expr
 ) -> Fault | None:
     """The fault of a result that must be a value."""
+    nothing = NONE_EFFECTS.get(slot.role, "")
+    a_value = RESULT_HELP.get(slot.role, "return a value")
     match result:
         case ast.Constant(value=None) if slot.role != "callbacks":
-            what = "None, which is never true" if slot.role == "conditions" else "None"
-            return what, "return a value", True
+            return Fault("None", a_value, True, nothing)
         case ast.Call(func=ast.Name(id="print")) if slot.role != "callbacks":
-            return "None: `print` returns nothing", "return a value", True
+            return Fault("None: `print` returns nothing", a_value, True, nothing)
         case ast.Call(func=ast.Attribute(value=value, attr=method)):
             type_ = _type(context, path, node, slot, value)
             known = next(iter(kinds(type_)), "") if len(kinds(type_)) == 1 else ""
@@ -394,17 +439,19 @@ def _value_fault(
             if not known and (method not in ALWAYS_NOTHING or type_ != ANY):
                 return None
             what = f"None: `{method}` changes the value and returns nothing"
-            return what, _instead(result, value, method), bool(known)
+            return Fault(what, _instead(result, value, method), bool(known), nothing)
         case ast.Attribute(value=value, attr=method) if slot.role != "callbacks":
             if is_method(_type(context, path, node, slot, value), method):
                 always = ", which is always true" if slot.role == "conditions" else ""
                 what = f"the method `{method}` without a call{always}"
-                return what, f"call it: `{ast.unparse(result)}()`", True
+                effect = WAIT_FAILS if slot.role == "duration" else ""
+                return Fault(what, f"call it: `{ast.unparse(result)}()`", True, effect)
     if slot.role == "duration":
         type_ = _type(context, path, node, slot, result)
         if kinds(type_) and "number" not in kinds(type_):
             what = f"`{type_text(type_)}`, but a duration is a number of seconds"
-            return what, _number_help(_presets(context, path, slot, result)), True
+            help = _number_help(_presets(context, path, slot, result))
+            return Fault(what, help, True, WAIT_FAILS)
     return None
 
 
@@ -467,12 +514,12 @@ def _outcome_fault(context: Context, node: Node, slot: CodeSlot, result: ast.exp
         if not wanted:
             return None
         what = f"`{ast.unparse(result)}`, a `{wanted}`, which is not an outcome of `{node.name}`"
-        return what, help, True
+        return Fault(what, help, True, OUTCOME_EFFECT)
     if result.value is None or result.value in names:
         return None
     guess = guesser(names)(result.value) if isinstance(result.value, str) else None
     what = f"`{result.value!r}`, which is not an outcome of `{node.name}`"
-    return what, did_you_mean(guess) or help, True
+    return Fault(what, did_you_mean(guess) or help, True, OUTCOME_EFFECT)
 
 
 def _field_type(context: Context, leaf: Leaf, slot: CodeSlot, result: ast.expr) -> str:

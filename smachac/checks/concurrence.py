@@ -87,10 +87,13 @@ def dead_rule(context: Context) -> Iterator[Finding]:
             yield from _rules_for_both(each)
 
 
+UNKNOWN_BRANCH = "SMACH refuses a rule with an unknown state or outcome: the program does not start"
+
+
 def _dead_rules(path: str, container: Concurrence) -> Iterator[Finding]:
     children = {child.name: child for child in container.children}
     guess = guesser(children)
-    states = f"its states are {listed(children)}" if children else "the concurrence has no states"
+    states = f"use one of its states: {listed(children)}" if children else "add states to it"
     for entry in container.rules:
         for word in entry.ignored:
             if word.text not in children:
@@ -99,6 +102,7 @@ def _dead_rules(path: str, container: Concurrence) -> Iterator[Finding]:
                     message=f"`{word.text}` is not a state of `{container.name}`",
                     arguments=(entry.outcome, word.text),
                     help=did_you_mean(guess(word.text)) or states,
+                    effect=UNKNOWN_BRANCH,
                     related=calls(container, word.span),
                     node=path,
                 )
@@ -107,7 +111,9 @@ def _dead_rules(path: str, container: Concurrence) -> Iterator[Finding]:
                 span=entry.span,
                 message=f"the rule for `{entry.outcome}` has no conditions",
                 arguments=(entry.outcome,),
-                help="list states and their outcomes in the rule, or remove it",
+                help=f"write conditions, as in `{entry.outcome}: {{{_example(container)}}}`, or"
+                " remove the rule",
+                effect="the versions of SMACH disagree about a rule without conditions",
                 related=calls(container, entry.span),
                 node=path,
             )
@@ -128,14 +134,23 @@ def _dead_rules(path: str, container: Concurrence) -> Iterator[Finding]:
                 message=message,
                 arguments=(entry.outcome, condition.child, condition.outcome),
                 help=help,
+                effect=UNKNOWN_BRANCH,
                 related=related,
                 node=path,
             )
 
 
+def _example(container: Concurrence) -> str:
+    """A condition on the first branch of a concurrence, as an example."""
+    for child in container.children:
+        for name in outcome_names(child):
+            return f"{child.name}: {name}"
+    return "STATE: OUTCOME"
+
+
 def _other_outcome(child: Node, outcome: str) -> str:
     names = outcome_names(child)
-    known = f"its outcomes are {listed(names)}" if names else "it has no outcomes"
+    known = f"use one of its outcomes: {listed(names)}" if names else "it has no outcomes"
     return did_you_mean(guesser(names)(outcome)) or known
 
 
@@ -160,6 +175,7 @@ def _shadowed_rules(each: Judged) -> Iterator[Finding]:
             f" for {listed(outcomes)}, always wins",
             arguments=(entry.outcome, *outcomes),
             help="remove the rule, or add conditions to it",
+            effect="",
             related=(
                 *(part for one in winners[:3] for part in other_place(one.span, "this rule wins")),
                 *calls(concurrence.node, entry.span),
@@ -187,6 +203,7 @@ def _rules_for_both(each: Judged) -> Iterator[Finding]:
             f" `{node.name}` preempts the others when the first of them ends",
             arguments=(entry.outcome, *_names(needed)),
             help="write `join: all`, or list only one of them in the rule",
+            effect="",
             related=calls(node, entry.span),
             severity=Severity.WARNING,
             node=each.path,
@@ -229,13 +246,21 @@ def _dead_renames(path: str, container: nodes.Iterator) -> Iterator[Finding]:
             message=f"the final outcome map of `{container.name}` renames `{name}`, but its state"
             " never ends with that outcome",
             arguments=(name,),
-            help=f"the outcomes of its state are {listed(endings)}",
+            help=did_you_mean(guesser(endings)(name))
+            or f"use one of the outcomes of its state: {listed(endings)}",
+            effect="the entry has no effect",
             related=calls(container, container.span),
             node=path,
         )
 
 
-@rule("SM408", "empty-concurrence", Severity.ERROR, firm=True)
+@rule(
+    "SM408",
+    "empty-concurrence",
+    Severity.ERROR,
+    firm=True,
+    effect="SMACH for ROS 2 waits forever for the first state to end, and SMACH for Noetic fails",
+)
 def empty_concurrence(context: Context) -> Iterator[Finding]:
     """A concurrence has no states.
 
@@ -273,7 +298,8 @@ def empty_concurrence(context: Context) -> Iterator[Finding]:
                 span=container.span,
                 message=f"the concurrence `{container.name}` has no states",
                 arguments=(container.name,),
-                help="add states to it, or remove it",
+                help="add a state under `states`, as in `- NAME: {template: ...}`, or remove the"
+                f" concurrence `{container.name}`",
                 related=calls(container, container.span),
                 node=path,
             )
@@ -284,7 +310,13 @@ def written(combination: Mapping[str, str]) -> str:
     return ", ".join(f"`{child}: {outcome}`" for child, outcome in combination.items())
 
 
-@rule("SM401", "uncovered-combination", Severity.ERROR, firm=True)
+@rule(
+    "SM401",
+    "uncovered-combination",
+    Severity.ERROR,
+    firm=True,
+    effect="the concurrence has no outcome for this combination, so no program is generated",
+)
 def uncovered_combination(context: Context) -> Iterator[Finding]:
     """A combination of outcomes has neither a rule in the outcome map nor a default outcome.
 
@@ -346,7 +378,11 @@ def uncovered_combination(context: Context) -> Iterator[Finding]:
         else:
             severity, span = Severity.ERROR, node.span
             message = f"no rule of `{node.name}` matches {shown}, and `default_outcome` is missing"
-            help = "add a rule for it, or a `default_outcome` for all other combinations"
+            bad = (outcome_names(node) or ["failed"])[-1]
+            rule = ", ".join(f"{child}: {end}" for child, end in needed.items())
+            help = f"write `default_outcome: {bad}` for all combinations without a rule"
+            if rule:
+                help += f", or add a rule, as in `{bad}: {{{rule}}}`"
         yield Finding(
             span=span,
             message=message,

@@ -31,7 +31,12 @@ from smachac.ir.nodes import Container, Key, Leaf, Machine, Node, StateType, Str
 from smachac.ir.traversal import remapping
 
 
-@rule("SM305", "dead-key", Severity.WARNING)
+@rule(
+    "SM305",
+    "dead-key",
+    Severity.WARNING,
+    effect="the value has no effect: a state that should read it uses another key",
+)
 def dead_key(context: Context) -> Iterator[Finding]:
     """A userdata key is set, but nothing in its container reads it.
 
@@ -216,11 +221,17 @@ def unused_declaration(context: Context) -> Iterator[Finding]:
 def _unused(path: str, node: Node, key: Key, role: Literal["input", "output"]) -> Finding:
     span = key.span if not isinstance(node, Leaf) else place_of(node, key)
     use = "reads" if role == "input" else "sets"
+    effect = "a state that reads the key afterwards finds it unset, or with an older value"
+    other = f"let a state inside set `{key.name}`"
+    if role == "input":
+        effect = "the caller must provide a key that has no effect"
+        other = f"let a state inside read `{key.name}`"
     return Finding(
         span=span,
         message=f"`{key.name}` is declared as an {role} key, but nothing inside {use} it",
         arguments=(role, key.name),
-        help=f"remove it from the `{role}_keys`",
+        help=f"remove `{key.name}` from the `{role}_keys`, or {other}",
+        effect=effect,
         related=calls(node, span),
         node=path,
     )
@@ -235,6 +246,7 @@ def _unused_by_the_script(machine: Machine) -> Iterator[Finding]:
             message=f"the {what} `{word.text}` is defined, but nothing uses it",
             arguments=(what, word.text),
             help="remove it, or correct its name",
+            effect="its value has no effect" if what == "param" else None,
             related=tuple(Related(span=call, message=CALLED_HERE) for call in outside),
             node=machine.root.name,
         )
@@ -278,7 +290,9 @@ def _unused_outcomes(path: str, leaf: Leaf, conditions: Iterable[str]) -> Iterat
                 span=outcome.span,
                 message=f"`{outcome.name}` is declared as an outcome, but no condition leads to it",
                 arguments=("outcome", outcome.name),
-                help="add a condition for it to `callbacks`, or remove it from `outcomes`",
+                help=f"add a condition for it, as in `{outcome.name}: 'lambda ud: True'`, or remove"
+                " it from `outcomes`",
+                effect="a transition for this outcome is never taken",
                 related=calls(leaf, outcome.span),
                 node=path,
             )
@@ -397,7 +411,12 @@ def _place_of_write(leaf: Leaf, key: str) -> Span:
     return steps.value.span
 
 
-@rule("SM310", "undeclared-access", Severity.ERROR)
+@rule(
+    "SM310",
+    "undeclared-access",
+    Severity.ERROR,
+    effect="SMACH lets a state read only its input keys: the read stops the machine with an error",
+)
 def undeclared_access(context: Context) -> Iterator[Finding]:
     """The code of a state reads a userdata key that is not one of its input keys.
 

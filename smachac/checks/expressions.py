@@ -33,7 +33,13 @@ MAX_LEVELS = 500
 """The most levels of an expression; Python compiles no more than about 1,000 frames deep."""
 
 
-@rule("SM016", "bad-expression", Severity.ERROR, firm=True)
+@rule(
+    "SM016",
+    "bad-expression",
+    Severity.ERROR,
+    firm=True,
+    effect="the generated program would stop at this code with an error",
+)
 def bad_expression(context: Context) -> Iterator[Finding]:
     """Code in the script is not a valid expression, or there is no code where code is required.
 
@@ -156,6 +162,7 @@ def unknown_endings(path: str, leaf: Leaf) -> Iterator[Finding]:
                 message=f"{what} `{word.text}`, which is not one of its outcomes",
                 arguments=(word.text,),
                 help=meant or f"use one of its outcomes: {listed(outcomes)}",
+                effect="SMACH accepts only declared outcomes: the machine stops with an error",
                 related=calls(leaf, word.span),
                 node=path,
             )
@@ -184,7 +191,12 @@ MOST_SOURCES = 3
 """Limit on the origins of values that a finding shows."""
 
 
-@rule("SM311", "impossible-operation", Severity.ERROR)
+@rule(
+    "SM311",
+    "impossible-operation",
+    Severity.ERROR,
+    effect="Python raises an exception there: the state fails, or the machine stops",
+)
 def impossible_operation(context: Context) -> Iterator[Finding]:
     """Code in the script contains an operation that the type of a value does not support.
 

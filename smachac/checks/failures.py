@@ -39,7 +39,12 @@ from smachac.ir.outcome_names import (
 from smachac.ir.traversal import leads_to_child, outcome_names
 
 
-@rule("SM404", "masked-failure", Severity.WARNING)
+@rule(
+    "SM404",
+    "masked-failure",
+    Severity.WARNING,
+    effect="the task continues as if nothing had failed",
+)
 def masked_failure(context: Context) -> Iterator[Finding]:
     """A branch or an item fails, and the concurrence or the loop ends with a success.
 
@@ -113,7 +118,10 @@ def _masked(context: Context, each: Judged, around: Container) -> Iterator[Findi
     good = _good_results(concurrence, around, [space for space, _ in spaces])
     if node.default_outcome in good:
         hidden = _hidden_failures(concurrence, spaces, {}, concurrence.rules.all)
-        help = "use an outcome of failure as default outcome, and write a rule for each success"
+        bad = next((name for name in outcome_names(node) if fails(node, name)), "failed")
+        help = f"write `default_outcome: {bad}`, and a rule for each success"
+        if bad not in outcome_names(node):
+            help += f"; add `{bad}` to the outcomes of `{node.name}`"
         yield from _masked_finding(
             context, each, node.default_outcome, node.default_span, {}, hidden, help
         )
@@ -297,7 +305,12 @@ class _Propagation(NamedTuple):
     then: _Propagation | None
 
 
-@rule("SM206", "unhandled-failure", Severity.WARNING)
+@rule(
+    "SM206",
+    "unhandled-failure",
+    Severity.WARNING,
+    effect="the caller of the machine takes the task as done",
+)
 def unhandled_failure(context: Context) -> Iterator[Finding]:
     """A state fails, and the machine ends with a success without entering another state.
 
@@ -412,7 +425,8 @@ def _unhandled_failure(root: StateMachine, found: list[_Propagation]) -> Finding
             masking.outcome,
             *sorted({each.node.name for each in found}),
         ),
-        help="write a transition to a state that recovers, or to an outcome such as `failed`",
+        help=f"lead `{masking.outcome}` of `{masking.node.name}` to a state that recovers, or to an"
+        " outcome that does not mean success, such as `failed`",
         related=(
             *(other_place(first.node.span, "this state fails") if masking is not first else ()),
             *calls(masking.node, masking.span),

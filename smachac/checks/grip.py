@@ -19,7 +19,12 @@ MOST_VISITS = 200_000
 """The most events that the searches of one machine visit; beyond them nothing more is found."""
 
 
-@rule("SM513", "closed-gripper", Severity.WARNING)
+@rule(
+    "SM513",
+    "closed-gripper",
+    Severity.WARNING,
+    effect="the closed fingers push the body away, and the grasp fails",
+)
 def closed_gripper(context: Context) -> Iterator[Finding]:
     """The tool comes to a body with a closed gripper, which then closes again.
 

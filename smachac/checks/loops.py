@@ -42,7 +42,12 @@ SCALARS = NUMBERS | {"bool", "str"}
 """The names of the types whose values cannot be changed in place."""
 
 
-@rule("SM202", "trap", Severity.ERROR)
+@rule(
+    "SM202",
+    "trap",
+    Severity.ERROR,
+    effect="the robot repeats the same states, or waits in one, until somebody stops the program",
+)
 def trap(context: Context) -> Iterator[Finding]:
     """From this state no outcome of the container can be reached.
 
@@ -89,7 +94,9 @@ def _trapped(
     path: str, container: Linear, child: Node, region: list[str], witness: list[PathStep]
 ) -> Finding:
     what = f"no outcome of `{container.name}` can be reached from {listed(region)}"
-    help = f"add a transition to an outcome of `{container.name}`"
+    help = f"lead an outcome of `{child.name}` to an outcome of `{container.name}`"
+    if container.outcomes:
+        help += f", such as `{container.outcomes[0].name}`"
     once = [step.node for step in witness].count(f"{path}/{child.name}") == 1
     if once and isinstance(child, Leaf):
         what = f"`{child.name}` has no outcomes, so `{container.name}` never ends after entering it"
@@ -350,13 +357,19 @@ def _spins(path: str, container: Linear, spin: list[PathStep]) -> Finding:
         message=f"the loop of {names} has no end and contains no state that waits",
         arguments=tuple(sorted({step.label for step in spin[::2]})),
         help="add a state that waits to the loop, such as a SleepState",
+        effect="the loop uses all the time of a processor core",
         related=calls(child, child.span),
         path=tuple(spin),
         node=f"{path}/{child.name}",
     )
 
 
-@rule("SM213", "unchanging-condition", Severity.WARNING)
+@rule(
+    "SM213",
+    "unchanging-condition",
+    Severity.WARNING,
+    effect="the machine leaves the loop in the first round or never",
+)
 def unchanging_condition(context: Context) -> Iterator[Finding]:
     """The condition of a loop reads only keys that nothing in the loop sets.
 
@@ -512,7 +525,7 @@ def _unchanged(
         message=f"the condition of `{child.name}` never changes in the loop of {listed(names)}:"
         f" nothing in the loop sets {listed(keys)}",
         arguments=(own_name(child, child.span), *sorted(keys)),
-        help="set the key in the loop, or move the condition out of the loop",
+        help=f"set {listed(keys)} in a state of the loop, or move the condition out of the loop",
         related=calls(child, child.span),
         path=tuple(circle(path, names, steps)),
         node=f"{path}/{child.name}",

@@ -5,7 +5,7 @@ from __future__ import annotations
 import ast
 import re
 import warnings
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from typing import NamedTuple
 
 from smachac.analysis.code_slots import CodeSlot, code_slots
@@ -23,8 +23,12 @@ from smachac.diagnostics.wording import listed
 from smachac.ir.code_places import attribute_place, node_place
 from smachac.ir.leaf import key_names, type_text, variable, variable_of
 from smachac.ir.message_types import (
+    FLOATS,
+    INTEGERS,
     PARTS,
+    TEXTS,
     Definitions,
+    FieldType,
     Message,
     MissingDefinitions,
     userdata_type,
@@ -57,7 +61,12 @@ class _Use(NamedTuple):
     key: bool
 
 
-@rule("SM512", "unknown-field", Severity.ERROR)
+@rule(
+    "SM512",
+    "unknown-field",
+    Severity.ERROR,
+    effect="the program fails when it uses this name or value",
+)
 def unknown_field(context: Context) -> Iterator[Finding]:
     """A state uses a field or type of a message that does not exist, or a value of another type.
 
@@ -248,7 +257,8 @@ def _wrong_values(
     if isinstance(data, tuple) and all(len(data) != len(each.fields) for each in messages):
         first = messages[0]
         counts = f"{len(data)} values, but {_described(first)} has {len(first.fields)} fields"
-        help = "write a mapping of the fields"
+        form = ", ".join(f"{each.name}: ..." for each in first.fields)
+        help = f"write a mapping of the fields: `{{{form}}}`"
         yield _finding(path, leaf, Word("", span), f"the list has {counts}", help, messages)
         return
     faults = [list(value_faults(data, each, found)) for each in messages]
@@ -258,12 +268,22 @@ def _wrong_values(
             continue
         text = f"the value of `{names[-1]}` does not fit: the field of {_described(message)} is"
         word = Word(names[-1], _value_span(_field_word(names, span).span, span))
-        yield _finding(path, leaf, word, f"{text} `{wanted}`", None, (message,))
+        help = f"write a value of the type `{wanted}`"
+        yield _finding(path, leaf, word, f"{text} `{wanted}`", help + _example(wanted), (message,))
+
+
+EXAMPLES: Mapping[str, str] = {
+    **dict.fromkeys(INTEGERS, "3"),
+    **dict.fromkeys(FLOATS, "1.5"),
+    **dict.fromkeys(TEXTS, "text"),
+    "bool": "true",
+}
+"""A value of each primitive type, as a script writes it."""
 
 
 def _unknown_field(path: str, leaf: Leaf, word: Word, messages: Sequence[Message]) -> Finding:
     names = sorted({each.name for message in messages for each in message.fields})
-    known = f"its fields are {listed(names)}" if names else "it has no fields"
+    known = f"use one of its fields: {listed(names)}" if names else "remove it: it has no fields"
     help = did_you_mean(guesser(names)(word.text)) or known
     message = f"{_described(messages[0])} has no field `{word.text}`"
     return _finding(path, leaf, word, message, help, messages)
@@ -383,3 +403,10 @@ def _word(name: str, span: Span, after: str = "") -> Word:
     if found is None:
         return Word(name, span)
     return Word(name, Span(span.source, span.start + found.start(), span.start + found.end()))
+
+
+def _example(wanted: FieldType) -> str:
+    """A value of a primitive type, as the end of a help line; empty for a message or a list."""
+    if wanted.array or wanted.name not in EXAMPLES:
+        return ""
+    return f", such as `{EXAMPLES[wanted.name]}`"

@@ -18,7 +18,12 @@ from smachac.ir.nodes import Key, Leaf, Node
 from smachac.ir.traversal import remapping
 
 
-@rule("SM510", "too-fast", Severity.WARNING)
+@rule(
+    "SM510",
+    "too-fast",
+    Severity.WARNING,
+    effect="the driver of the arm refuses the motion, or the arm is slower than the script assumes",
+)
 def too_fast(context: Context) -> Iterator[Finding]:
     """A speed is larger than the speed limit of every joint of the robot.
 
@@ -69,7 +74,12 @@ def too_fast(context: Context) -> Iterator[Finding]:
             yield at(flow, message, f"write a speed of at most {most:g} rad/s")
 
 
-@rule("SM511", "wrong-frame", Severity.WARNING)
+@rule(
+    "SM511",
+    "wrong-frame",
+    Severity.WARNING,
+    effect="nothing transforms the pose: the hand moves to a place measured from the wrong frame",
+)
 def wrong_frame(context: Context) -> Iterator[Finding]:
     """A pose is given in one frame and read in another.
 

@@ -2,7 +2,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Collection, Iterator
+from itertools import count
 from typing import NamedTuple
 
 from smachac.analysis.context import Context
@@ -134,6 +135,7 @@ def _nowhere(fault: _Lost, elsewhere: str | None) -> Finding:
             *(() if step.target else (step.outcome,)),
         ),
         help=help or f"use a state or an outcome of `{container.name}`: {_targets(container)}",
+        effect="SMACH refuses to run such a container: none of its states runs",
         related=calls(child, step.target_span),
         node=f"{path}/{child.name}",
         edits=respelt(Word(step.target, step.target_span), sure),
@@ -167,7 +169,13 @@ def _idle_transitions(path: str, container: Container) -> Iterator[Finding]:
                 )
 
 
-@rule("SM102", "unknown-outcome", Severity.ERROR, firm=True)
+@rule(
+    "SM102",
+    "unknown-outcome",
+    Severity.ERROR,
+    firm=True,
+    effect="SMACH refuses such a transition: the program stops with InvalidTransitionError",
+)
 def unknown_outcome(context: Context) -> Iterator[Finding]:
     """A transition is for an outcome that its state does not have.
 
@@ -270,12 +278,19 @@ def _unknown_loops(path: str, container: nodes.Iterator) -> Iterator[Finding]:
                 arguments=(container.name, name),
                 help=did_you_mean(guesser(sorted(known))(name))
                 or f"use one of {listed(sorted(known))}",
+                effect="an entry that is no outcome of the child has no effect",
                 related=calls(container, container.span),
                 node=path,
             )
 
 
-@rule("SM106", "duplicate-state", Severity.ERROR, firm=True)
+@rule(
+    "SM106",
+    "duplicate-state",
+    Severity.ERROR,
+    firm=True,
+    effect="a transition to this name leads to only one of the two, and SMACH refuses the other",
+)
 def duplicate_state(context: Context) -> Iterator[Finding]:
     """Two states of one container have the same name.
 
@@ -307,7 +322,7 @@ def duplicate_state(context: Context) -> Iterator[Finding]:
                     span=child.span,
                     message=f"`{container.name}` already has a state `{child.name}`",
                     arguments=(child.name,),
-                    help="rename one of the two states",
+                    help=f"rename one of the two, for example to `{_new_name(child.name, first)}`",
                     related=(
                         *other_place(known.span, "the first state of this name"),
                         *calls(child, child.span),
@@ -345,7 +360,9 @@ def name_clash(context: Context) -> Iterator[Finding]:
                 span=node.span,
                 message=f"{node.name!r} is not a valid name of a state",
                 arguments=(node.name,),
-                help="use a name of one or more characters, without `/` and control characters",
+                help="write a name without `/` and control characters, such as"
+                f" `{_valid(node.name)}`",
+                effect="in paths such as `sm/PICK`, `/` separates the names of states",
                 related=calls(node, node.span),
                 node=path,
             )
@@ -357,7 +374,9 @@ def name_clash(context: Context) -> Iterator[Finding]:
                     span=child.span,
                     message=f"`{child.name}` is both a state and an outcome of `{container.name}`",
                     arguments=(child.name,),
-                    help="rename one of them: a transition to that name leads to the state",
+                    help="rename one of them, for example the state to"
+                    f" `{_new_name(child.name, exits)}`",
+                    effect="a transition to this name leads to the state, so the container goes on",
                     related=(
                         *other_place(exits[child.name].span, "the outcome of this name"),
                         *calls(child, child.span),
@@ -366,7 +385,12 @@ def name_clash(context: Context) -> Iterator[Finding]:
                 )
 
 
-@rule("SM108", "shadowed-name", Severity.WARNING)
+@rule(
+    "SM108",
+    "shadowed-name",
+    Severity.WARNING,
+    effect="traces, pictures and messages show one name for two states",
+)
 def shadowed_name(context: Context) -> Iterator[Finding]:
     """A state has the same name as its container.
 
@@ -404,10 +428,21 @@ def shadowed_name(context: Context) -> Iterator[Finding]:
                     span=child.span,
                     message=f"state `{child.name}` has the same name as its container",
                     arguments=(child.name,),
-                    help="rename one of them",
+                    help="rename one of them, for example the state to"
+                    f" `{_new_name(child.name, ())}`",
                     related=(
                         *other_place(container.span, "the container"),
                         *calls(child, child.span),
                     ),
                     node=f"{path}/{child.name}",
                 )
+
+
+def _new_name(name: str, taken: Collection[str]) -> str:
+    """A name that is like another one and not taken."""
+    return next(new for number in count(2) if (new := f"{name}_{number}") not in taken)
+
+
+def _valid(name: str) -> str:
+    """A valid name that is near an invalid one."""
+    return "".join(c if c.isprintable() and c != "/" else "_" for c in name) or "STATE"

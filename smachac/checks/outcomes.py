@@ -15,7 +15,13 @@ from smachac.ir.outcome_names import PREEMPTED, fails
 from smachac.ir.traversal import outcome_names
 
 
-@rule("SM103", "undeclared-container-outcome", Severity.ERROR, firm=True)
+@rule(
+    "SM103",
+    "undeclared-container-outcome",
+    Severity.ERROR,
+    firm=True,
+    effect="SMACH accepts only declared outcomes: the program stops with an error",
+)
 def undeclared_container_outcome(context: Context) -> Iterator[Finding]:
     """A concurrence or iterator can end with an outcome that it does not declare.
 
@@ -116,7 +122,13 @@ def _undeclared_endings(path: str, container: nodes.Iterator) -> Iterator[Findin
         )
 
 
-@rule("SM104", "unhandled-outcome", Severity.ERROR, firm=True)
+@rule(
+    "SM104",
+    "unhandled-outcome",
+    Severity.ERROR,
+    firm=True,
+    effect="SMACH refuses to run such a container: none of its states runs",
+)
 def unhandled_outcome(context: Context) -> Iterator[Finding]:
     """An outcome of a state has no transition, and its container has no outcome of that name.
 

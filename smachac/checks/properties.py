@@ -163,7 +163,12 @@ def _replayed(shown: Replay, number: int) -> str:
     return f"to replay this path: `smachac run SCRIPT --mock FILE{turns}`, with {text} in FILE"
 
 
-@rule("SM702", "property-vacuous", Severity.WARNING)
+@rule(
+    "SM702",
+    "property-vacuous",
+    Severity.WARNING,
+    effect="a change of the script that breaks the intention is not noticed",
+)
 def property_vacuous(context: Context) -> Iterator[Finding]:
     """A property holds only because what it is about cannot happen.
 
@@ -233,7 +238,12 @@ def _premise(given: Property) -> str:
     return "it"
 
 
-@rule("SM703", "unknown-event", Severity.ERROR)
+@rule(
+    "SM703",
+    "unknown-event",
+    Severity.ERROR,
+    effect="a property whose names are not clear is not checked",
+)
 def unknown_event(context: Context) -> Iterator[Finding]:
     """A property names no state of the script, or several, or an outcome that the state never has.
 

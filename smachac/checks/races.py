@@ -12,12 +12,18 @@ from smachac.checks.rule import rule
 from smachac.diagnostics.diagnostic import Finding, Related, Severity
 from smachac.diagnostics.wording import listed
 from smachac.ir.nodes import Concurrence, Node
+from smachac.ir.traversal import remapping
 
 MOST_PLACES = 4
 """Limit on the other branches that a finding shows."""
 
 
-@rule("SM405", "data-race", Severity.ERROR)
+@rule(
+    "SM405",
+    "data-race",
+    Severity.ERROR,
+    effect="the value depends on which branch is faster",
+)
 def data_race(context: Context) -> Iterator[Finding]:
     """Two branches of a concurrence write the same key, or one writes a key that another reads.
 
@@ -89,6 +95,12 @@ def _races(path: str, container: Concurrence, known: Mapping[str, Accesses]) -> 
             yield _race(path, container, key, writing, reading)
 
 
+def _own_key(writer: Node, key: str) -> str:
+    """The name that a branch has for a key that it writes."""
+    names = remapping(writer)
+    return next((each.name for each in writer.outputs if names.get(each.name) == key), key)
+
+
 def _race(
     path: str,
     container: Concurrence,
@@ -112,7 +124,8 @@ def _race(
         span=span,
         message=f"{message}: they are branches of `{container.name}`",
         arguments=(key, *names),
-        help="remap the key so that each branch has its own, or run one branch after the other",
+        help=f"write `remapping: {{{_own_key(here[0], key)}: {key}_2}}` at `{here[0].name}`, for a"
+        " key of its own, or run one branch after the other",
         related=(
             *_places("writes", key, [one for one in writing if one is not here]),
             *_places("reads", key, reading),
@@ -136,7 +149,12 @@ def _inner(branch: Node, origin: Node, verb: str) -> tuple[Related, ...]:
     return other_place(origin.span, f"in `{branch.name}`, `{origin.name}` {verb} it")
 
 
-@rule("SM406", "resource-clash", Severity.ERROR)
+@rule(
+    "SM406",
+    "resource-clash",
+    Severity.ERROR,
+    effect="two commands reach one part of the robot at the same time",
+)
 def resource_clash(context: Context) -> Iterator[Finding]:
     """Two branches of a concurrence claim the same resource.
 
@@ -223,7 +241,7 @@ def _clashes(path: str, container: Concurrence, held: Held) -> Iterator[Finding]
             message=f"{listed(names)} claim `{resource}` at the same time: they are branches of"
             f" `{container.name}`",
             arguments=(_as_written(own, origin), *names),
-            help="run one branch after the other",
+            help=f"put {listed(names)} into one StateMachine, one after the other",
             related=(*places, *_inner(child, origin, "claims"), *calls(child, child.span)),
             node=f"{path}/{child.name}",
         )

@@ -27,7 +27,12 @@ from smachac.ir.script_paths import name_in_script
 from smachac.ir.traversal import ends_preempted, outcome_names
 
 
-@rule("SM201", "unreachable-state", Severity.ERROR)
+@rule(
+    "SM201",
+    "unreachable-state",
+    Severity.ERROR,
+    effect="the robot never does this part of its task",
+)
 def unreachable_state(context: Context) -> Iterator[Finding]:
     """No path leads to this state from the initial state of its container.
 
@@ -128,7 +133,12 @@ def _why_unreachable(container: Linear, child: Node, before: list[str]) -> str:
     return f"add a transition to `{child.name}`, or remove `{child.name}`"
 
 
-@rule("SM203", "impossible-outcome", Severity.WARNING)
+@rule(
+    "SM203",
+    "impossible-outcome",
+    Severity.WARNING,
+    effect="a transition for this outcome is never taken",
+)
 def impossible_outcome(context: Context) -> Iterator[Finding]:
     """A container declares an outcome with which it can never end.
 
@@ -251,13 +261,20 @@ def _impossible(path: str, container: Container, outcome: Outcome) -> Finding:
         message=f"`{name}` can never end with its outcome `{outcome.name}`",
         arguments=(own_name(container, outcome.span), outcome.name),
         help=help,
+        effect=None if severity is None else "",
         related=calls(container, outcome.span),
         severity=severity,
         node=path,
     )
 
 
-@rule("SM205", "no-initial", Severity.ERROR, firm=True)
+@rule(
+    "SM205",
+    "no-initial",
+    Severity.ERROR,
+    firm=True,
+    effect="SMACH refuses to run such a container: none of its states runs",
+)
 def no_initial(context: Context) -> Iterator[Finding]:
     """A container has no states, or its initial state does not exist.
 

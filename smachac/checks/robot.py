@@ -30,7 +30,12 @@ JOINT_TOLERANCE = 1e-4
 """Tolerance for joint limits in rad: they are given with four decimals."""
 
 
-@rule("SM501", "wrong-length", Severity.ERROR)
+@rule(
+    "SM501",
+    "wrong-length",
+    Severity.ERROR,
+    effect="the state cannot use a list of this length: it fails, or moves to a wrong place",
+)
 def wrong_length(context: Context) -> Iterator[Finding]:
     """A list has more or fewer items than its reader requires.
 
@@ -74,11 +79,17 @@ def wrong_length(context: Context) -> Iterator[Finding]:
                 have = " or ".join(map(str, lengths))
                 message = f"`{flow.origin.cell.key}` has {len(flow.value)} numbers, but the arm has"
                 help = decimal_commas(flow.origin.span.text, lengths)
-                help = help or "write one number for each joint"
+                zeros = ", ".join(["0.0"] * lengths[0])
+                help = help or f"write one number for each joint, as in `[{zeros}]`"
                 yield at(flow, f"{message} {have} joints", help)
 
 
-@rule("SM502", "joint-limit", Severity.ERROR)
+@rule(
+    "SM502",
+    "joint-limit",
+    Severity.ERROR,
+    effect="the arm stops at its limit, and the skill fails",
+)
 def joint_limit(context: Context) -> Iterator[Finding]:
     """A joint position is outside the limits of the joint.
 
@@ -205,7 +216,12 @@ def moves_arm(flow: TypeFlow) -> bool:
     return shape is not None and isinstance(flow.value, shape)
 
 
-@rule("SM503", "not-a-rotation", Severity.WARNING)
+@rule(
+    "SM503",
+    "not-a-rotation",
+    Severity.WARNING,
+    effect="some programs use the nearest rotation, others fail or distort the pose",
+)
 def not_a_rotation(context: Context) -> Iterator[Finding]:
     """A quaternion does not have the length 1, so it is not a rotation.
 
@@ -283,7 +299,12 @@ HOLDERS = frozenset(["Pose", "Transform", "Quaternion", "optional", "list", "arr
 """Types that a rotation may be in."""
 
 
-@rule("SM504", "unit-mismatch", Severity.ERROR)
+@rule(
+    "SM504",
+    "unit-mismatch",
+    Severity.ERROR,
+    effect="nothing converts the number, so it is wrong by the ratio of the two units",
+)
 def unit_mismatch(context: Context) -> Iterator[Finding]:
     """A number is written in one unit and read in another.
 
@@ -371,7 +392,12 @@ USUAL = frozenset(["base", "base_footprint", "base_link", "earth", "map", "odom"
 STAMPED = frozenset(["PoseStamped", "geometry_msgs/PoseStamped", "geometry_msgs/msg/PoseStamped"])
 
 
-@rule("SM505", "unknown-frame", Severity.WARNING)
+@rule(
+    "SM505",
+    "unknown-frame",
+    Severity.WARNING,
+    effect="a state that uses this name fails, or waits for it in vain",
+)
 def unknown_frame(context: Context) -> Iterator[Finding]:
     """A value names a frame or a joint that the robot does not have.
 

@@ -22,13 +22,19 @@ class Rule:
 
 
 def rule(
-    code: str, name: str, severity: Severity, *, firm: bool = False
+    code: str, name: str, severity: Severity, *, firm: bool = False, effect: str = ""
 ) -> Callable[[RuleFunction], Rule]:
     """Make a rule of a function. Its docstring is the explanation of the code."""
 
     def declare(function: RuleFunction) -> Rule:
-        text = function.__doc__ or ""
-        entry = Code(code=code, name=name, severity=severity, explanation=text, firm=firm)
+        entry = Code(
+            code=code,
+            name=name,
+            severity=severity,
+            explanation=function.__doc__ or "",
+            firm=firm,
+            effect=effect,
+        )
         return Rule(code=entry, function=function)
 
     return declare

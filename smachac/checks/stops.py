@@ -20,12 +20,17 @@ from smachac.diagnostics.diagnostic import Finding, PathStep, Related, Severity,
 from smachac.diagnostics.wording import listed
 from smachac.ir import nodes
 from smachac.ir.graph import stopped_endings
-from smachac.ir.nodes import Leaf
+from smachac.ir.nodes import Container, Leaf
 from smachac.ir.outcome_names import PREEMPTED
 from smachac.ir.traversal import outcome_names
 
 
-@rule("SM209", "ignored-stop", Severity.WARNING)
+@rule(
+    "SM209",
+    "ignored-stop",
+    Severity.WARNING,
+    effect="the stop request is lost: the robot continues its work",
+)
 def ignored_stop(context: Context) -> Iterator[Finding]:
     """After a preempt request the state that was stopped starts again.
 
@@ -138,8 +143,7 @@ def stop_as_success(context: Context) -> Iterator[Finding]:
             message=f"after a preempt request in `{child.name}`, `{container.name}` ends with"
             f" `{found.end}`, as if its task were done",
             arguments=(own_name(child, step.span), step.outcome, found.end),
-            help=f"lead `{step.outcome}` to an outcome of `{container.name}` that does not mean"
-            " success, such as `preempted`",
+            help=_led_out(container, step.outcome),
             related=(*answered_here(found), *calls(child, step.span)),
             path=witness(found),
             node=f"{path}/{child.name}",
@@ -212,7 +216,12 @@ def _other_ends(container: nodes.Iterator, name: str, end: str) -> str:
     return f"{add}write `exhausted_outcome: exhausted` and `final_outcome_map: {ends}`"
 
 
-@rule("SM211", "task-after-stop", Severity.WARNING)
+@rule(
+    "SM211",
+    "task-after-stop",
+    Severity.WARNING,
+    effect="the robot can move although somebody stopped it",
+)
 def task_after_stop(context: Context) -> Iterator[Finding]:
     """After a preempt request the robot continues its task with a state that holds a resource.
 
@@ -273,7 +282,7 @@ def task_after_stop(context: Context) -> Iterator[Finding]:
             message=f"after a preempt request in `{child.name}` the task continues: `{mover.name}`"
             f" holds {listed(held)}",
             arguments=(own_name(child, step.span), step.outcome, mover.name),
-            help=f"lead `{step.outcome}` to an outcome of `{container.name}`, or to a state that"
+            help=f"{_led_out(container, step.outcome)}, or lead `{step.outcome}` to a state that"
             " only makes the robot safe",
             related=(
                 *answered_here(found),
@@ -303,11 +312,19 @@ def way_out(found: Resumed) -> str:
     """What to do where a state starts again after a request."""
     _, container, child, step, _ = found.stop
     if step.outcome == PREEMPTED:
-        return f"lead `preempted` to an outcome of `{container.name}`"
+        return _led_out(container, PREEMPTED)
     return (
         f"let `{child.name}` end with an outcome of its own after a preempt request, such as"
         f" `preempted`, and lead that to an outcome of `{container.name}`"
     )
+
+
+def _led_out(container: Container, outcome: str) -> str:
+    """The help that leads an outcome of a stopped state out of its container."""
+    written = f"write `{outcome}: {PREEMPTED}`"
+    if PREEMPTED in outcome_names(container):
+        return written
+    return f"add `{PREEMPTED}` to the outcomes of `{container.name}`, and {written}"
 
 
 def witness(found: Resumed) -> tuple[PathStep, ...]:

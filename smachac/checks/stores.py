@@ -16,7 +16,12 @@ MOST_PLACES = 3
 """Limit on the related places of a finding."""
 
 
-@rule("SM320", "dead-store", Severity.WARNING)
+@rule(
+    "SM320",
+    "dead-store",
+    Severity.WARNING,
+    effect="the first value has no effect on the task",
+)
 def dead_store(context: Context) -> Iterator[Finding]:
     """A state sets a key that every path sets again before a state reads it.
 

@@ -102,6 +102,7 @@ def no_timeout(context: Context) -> Iterator[Finding]:
                 help=f"write a time limit, as in `timeout: 20s`, for `{node.name}`"
                 if answers
                 else f"add an outcome `preempted` or `timeout` to the state type `{node.type}`",
+                effect=None if answers or not timed else "the task waits until the state ends",
                 related=calls(node, node.span),
                 severity=Severity.WARNING if outer is not None else None,
                 node=path,
@@ -150,7 +151,12 @@ def _time_limits(types: Mapping[str, StateType]) -> dict[str, list[VariableType]
     }
 
 
-@rule("SM407", "never-ends", Severity.WARNING)
+@rule(
+    "SM407",
+    "never-ends",
+    Severity.WARNING,
+    effect="the concurrence does not end, and the task does not continue",
+)
 def never_ends(context: Context) -> Iterator[Finding]:
     """A branch of a concurrence never ends, and nothing in the concurrence stops it.
 
@@ -272,7 +278,12 @@ def _starting_again(context: Context) -> Iterator[Finding]:
         )
 
 
-@rule("SM208", "no-way-to-stop", Severity.INFO)
+@rule(
+    "SM208",
+    "no-way-to-stop",
+    Severity.INFO,
+    effect="the outcome has no transition: the machine then stops with an error",
+)
 def no_way_to_stop(context: Context) -> Iterator[Finding]:
     """After a preempt request an iterator ends with an outcome that it does not declare.
 
@@ -341,7 +352,12 @@ def undeclared_stops(container: nodes.Iterator) -> list[str]:
     return [] if container.catches else [each for each, result in ends.items() if result not in own]
 
 
-@rule("SM212", "short-time-limit", Severity.WARNING)
+@rule(
+    "SM212",
+    "short-time-limit",
+    Severity.WARNING,
+    effect="the time limit ends the state first; with equal times, either can be first",
+)
 def short_time_limit(context: Context) -> Iterator[Finding]:
     """A time limit is over before the state inside it can end.
 

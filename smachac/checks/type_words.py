@@ -13,14 +13,19 @@ from smachac.analysis.type_lattice import (
     present,
     widened,
 )
-from smachac.ir.types import Type
+from smachac.ir.types import EXAMPLES, Type
 
-HELP = {
-    "Pose": "write a pose as `[[x, y, z], [qx, qy, qz, qw]]`",
-    "Transform": "write a transform as `[[x, y, z], [qx, qy, qz, qw]]`",
-    "Point": "write a point as `[x, y, z]`",
-    "Quaternion": "write a rotation as `[qx, qy, qz, qw]`",
+FORMS = {
+    "Pose": "[[x, y, z], [qx, qy, qz, qw]]",
+    "Transform": "[[x, y, z], [qx, qy, qz, qw]]",
+    "Point": "[x, y, z]",
+    "Quaternion": "[qx, qy, qz, qw]",
 }
+"""How a script writes a value of a type, with names in place of numbers."""
+
+NOUNS = {"Pose": "pose", "Transform": "transform", "Point": "point", "Quaternion": "rotation"}
+
+HELP = {name: f"write a {NOUNS[name]} as `{form}`" for name, form in FORMS.items()}
 
 
 def in_words(type_: Type) -> str:
@@ -36,9 +41,6 @@ def in_words(type_: Type) -> str:
             return f"a list of {count} number{'s' if count != 1 else ''}"
     return f"`{widened(type_)}`"
 
-
-EXAMPLES = {"float": "1.5", "int": "3", "bool": "true", "str": "text"}
-"""How a script writes a value of a type."""
 
 MOST_ITEMS = 8
 """The most items of a list that is shown as an example."""
@@ -60,3 +62,8 @@ def example(wanted: Type) -> str:
         whole = ", ".join(f"{name}: {part}" for name, part in parts.items())
         return f"{{{whole}}}" if all(parts.values()) and len(parts) <= MOST_ITEMS else ""
     return ""
+
+
+def placeholder(wanted: Type) -> str:
+    """A value of a type as a script writes it; `...` if there is no short one."""
+    return FORMS.get(present(wanted).name) or example(wanted) or "..."

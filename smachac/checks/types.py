@@ -35,7 +35,12 @@ from smachac.ir.nodes import Expression, Leaf, StateType, Struct
 from smachac.ir.traversal import outcome_names
 
 
-@rule("SM304", "type-mismatch", Severity.ERROR)
+@rule(
+    "SM304",
+    "type-mismatch",
+    Severity.ERROR,
+    effect="the state that reads the value fails, or uses it with a wrong meaning",
+)
 def type_mismatch(context: Context) -> Iterator[Finding]:
     """A value does not fit the type with which it is read.
 

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Iterator, Mapping
 from functools import cache
 
 from smachac.analysis.context import Context
@@ -19,6 +19,7 @@ from smachac.analysis.unset_reads import (
 from smachac.checks.edits import with_input, with_output
 from smachac.checks.messages import calls, did_you_mean, other_place
 from smachac.checks.rule import rule
+from smachac.checks.type_words import placeholder
 from smachac.diagnostics.diagnostic import Edit, Finding, Related, Severity
 from smachac.diagnostics.source import Word
 from smachac.diagnostics.spelling import Guesser, guesser, respelt
@@ -26,12 +27,20 @@ from smachac.diagnostics.wording import listed
 from smachac.ir import nodes
 from smachac.ir.nodes import Container, Node
 from smachac.ir.script_paths import name_in_script
+from smachac.ir.types import ANY, Type
 
 MOST_RELATED = 3
 """Limit on the related places of one kind in a finding."""
 
+UNSET = "the state cannot read an unset key: it fails, or the machine stops with KeyError"
 
-@rule("SM301", "read-before-write", Severity.ERROR)
+
+@rule(
+    "SM301",
+    "read-before-write",
+    Severity.ERROR,
+    effect=UNSET,
+)
 def read_before_write(context: Context) -> Iterator[Finding]:
     """A state reads a userdata key that is unset on at least one path to the state.
 
@@ -82,7 +91,7 @@ def read_before_write(context: Context) -> Iterator[Finding]:
     for missing in context.missing_keys("unset", "nowhere"):
         for witness in searches.witnesses(missing):
             users = used(missing.scope.path).get(missing.key, [])
-            yield _unset(missing, witness, users, guesses)
+            yield _unset(missing, witness, users, guesses, context.types.inputs)
 
 
 def _item_help(container: Container, reader: Node) -> str | None:
@@ -109,11 +118,23 @@ class _Guesses:
         return self._known[scope.path]
 
 
-def _unset(missing: Missing, witness: Witness, users: list[Use], guesses: _Guesses) -> Finding:
+def _unset(
+    missing: Missing,
+    witness: Witness,
+    users: list[Use],
+    guesses: _Guesses,
+    types: Mapping[tuple[str, str], Type],
+) -> Finding:
     scope, reader, name = missing.scope, witness.reader, missing.scope.container.name
     why = f"which is unset on {'every path' if witness.always else 'some paths'}"
-    value = f"`userdata: {{{missing.key}: ...}}`"
-    help = f"set `{missing.key}` on every path, or give it an initial value in `{name}`: {value}"
+    value = (
+        f"`userdata: {{{missing.key}: {placeholder(types.get((reader.path, reader.key), ANY))}}}`"
+    )
+    where = "on every path" if witness.always else "on this path too,"
+    help = (
+        f"set `{missing.key}` {where} before `{reader.node.name}`, or give it an initial value in"
+    )
+    help += f" `{name}`: {value}"
     if missing.cause == "nowhere":
         why = f"which nothing in {container_name(scope, reader.span)} sets"
         guess = guesses.of(scope)(missing.key)
@@ -224,6 +245,7 @@ def _unknown_remaps(path: str, node: Node) -> Iterator[Finding]:
             message=f"`{node.name}` has no userdata key `{remap.key}` to remap to `{remap.to}`",
             arguments=(remap.key, remap.to),
             help=did_you_mean(meant) or known,
+            effect="SMACH ignores the entry: the state uses the keys under its own names",
             related=calls(node, remap.span),
             node=path,
             edits=respelt(Word(remap.key, remap.span), certain),
@@ -245,13 +267,20 @@ def _remapped(missing: Missing, guesses: _Guesses) -> Iterator[Finding]:
                 f" {container_name(scope, remap.span)} sets",
                 arguments=(remap.key, key),
                 help=did_you_mean(guess)
-                or f"set `{key}` before this state, or give it an initial value in `{around}`",
+                or f"set `{key}` before this state, or give it an initial value in `{around}`:"
+                f" `userdata: {{{key}: ...}}`",
+                effect=UNSET,
                 related=calls(child, remap.span),
                 node=f"{scope.path}/{child.name}",
             )
 
 
-@rule("SM303", "undeclared-container-key", Severity.ERROR)
+@rule(
+    "SM303",
+    "undeclared-container-key",
+    Severity.ERROR,
+    effect="only `input_keys` are copied into a container: the state finds the key unset",
+)
 def undeclared_container_key(context: Context) -> Iterator[Finding]:
     """A state reads a key of an outer container, but it is not an input of its own container.
 

@@ -29,7 +29,12 @@ from smachac.ir.robot import MODELS, Robot
 from smachac.ir.types import Type
 
 
-@rule("SM520", "out-of-limits", Severity.ERROR)
+@rule(
+    "SM520",
+    "out-of-limits",
+    Severity.ERROR,
+    effect="the state type is not made for such a value: the state can fail, or never end",
+)
 def out_of_limits(context: Context) -> Iterator[Finding]:
     """A number is outside the limits that the interface of a state type gives.
 
@@ -127,7 +132,9 @@ def _out_of(flow: TypeFlow, limits: Limits) -> Iterator[Finding]:
         yield at(
             flow,
             f"{message} {in_words(limits)}",
-            f"write a number {in_words(limits)}" + (f", in {unit}" if unit else ""),
+            ("write " if limits.choices else "write a number ")
+            + in_words(limits)
+            + (f", in {unit}" if unit else ""),
             (str(number),),
         )
 
@@ -167,7 +174,12 @@ def _wrong_defaults(type_: StateType) -> Iterator[Finding]:
             )
 
 
-@rule("SM521", "unknown-name", Severity.WARNING)
+@rule(
+    "SM521",
+    "unknown-name",
+    Severity.WARNING,
+    effect="the state fails at its first visit",
+)
 def unknown_name(context: Context) -> Iterator[Finding]:
     """A value names a limb, a model or a body that does not exist.
 
@@ -256,7 +268,12 @@ FARTHEST = 10.0
 POINTS = frozenset(["Point", "Pose", "Transform"])
 
 
-@rule("SM522", "doubtful-unit", Severity.WARNING)
+@rule(
+    "SM522",
+    "doubtful-unit",
+    Severity.WARNING,
+    effect="the arm stops at a limit, or cannot reach the point",
+)
 def doubtful_unit(context: Context) -> Iterator[Finding]:
     """A number is so large that it seems to be in degrees or millimetres.
 

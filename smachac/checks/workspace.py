@@ -33,7 +33,12 @@ class Reach:
     grasp: bool
 
 
-@problem("SM506", "out-of-reach", Severity.WARNING)
+@problem(
+    "SM506",
+    "out-of-reach",
+    Severity.WARNING,
+    effect="the state ends with `aborted`, and the arm does not move there",
+)
 def out_of_reach(flow: TypeFlow, point: str) -> Finding:
     """The simulated arm cannot move its tool to a pose.
 

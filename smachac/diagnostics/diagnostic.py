@@ -36,6 +36,7 @@ class Code:
     """A kind of finding: permanent code, name of the fault, usual severity, explanation.
 
     `firm`: its errors leave no machine that a target could print, so nothing silences them.
+    `effect`: what happens if the fault is left; empty if the messages contain it.
     """
 
     code: str
@@ -43,6 +44,7 @@ class Code:
     severity: Severity
     explanation: str
     firm: bool = False
+    effect: str = ""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -90,6 +92,8 @@ class Finding:
     `arguments` are the names that the finding is about, in an order fixed for its code, as written
     where it stands: they do not depend on who calls a sub-script. Identity, fingerprints and
     baselines use them instead of the message.
+    `effect` is what happens if the fault is left; it overrides that of the code, and an empty one
+    leaves it out, for a message that contains it.
     `path` is a witness: the states that are entered, in order, and the outcomes between them.
     `severity` overrides that of the code. `node` is the path of the state that it is about.
     `edits` correct the fault, all of them together; empty if the correction is not certain.
@@ -100,6 +104,7 @@ class Finding:
     message: str
     arguments: tuple[str, ...] = ()
     help: str | None = None
+    effect: str | None = None
     related: tuple[Related, ...] = ()
     path: tuple[PathStep, ...] = ()
     severity: Severity | None = None
@@ -146,6 +151,11 @@ class Diagnostic:
         return self.finding.help
 
     @property
+    def effect(self) -> str:
+        """What happens if the fault is left; empty if the message contains it."""
+        return self.kind.effect if self.finding.effect is None else self.finding.effect
+
+    @property
     def related(self) -> tuple[Related, ...]:
         """Other places, each with a message."""
         return self.finding.related
@@ -172,7 +182,7 @@ class Problem(Generic[P]):
 
 
 def problem(
-    code: str, name: str, severity: Severity
+    code: str, name: str, severity: Severity, *, effect: str = ""
 ) -> Callable[[Callable[P, Finding]], Problem[P]]:
     """Make a problem of the function that makes its finding.
 
@@ -186,6 +196,7 @@ def problem(
             severity=severity,
             explanation=function.__doc__ or "",
             firm=severity is Severity.ERROR,
+            effect=effect,
         )
         return Problem(entry, function)
 

@@ -41,14 +41,14 @@ def kind_of(tree: Tree) -> str:
 
 
 SHAPES = {
-    "name": ("a name", None),
+    "name": ("a name", "write one name, such as `READY`"),
     "names": ("a list of names", "write it as `[a, b]`"),
     "outcomes": ("a list of outcomes", "write it as `[a, b]` or `{a: {}, b: {failure: true}}`"),
     "keys": ("a list of keys", "write it as `[a, b]` or `{a: float}`"),
     "items": ("a list or the name of a key", "write it as `[a, b]`, or name a key with a list"),
     "map": ("a mapping", "write it as `{name: value}`"),
-    "text": ("a text", None),
-    "flag": ("`true` or `false`", None),
+    "text": ("a text", "write it in quotes: `'...'`"),
+    "flag": ("`true` or `false`", "write `true` or `false`, without quotes"),
     "duration": ("a duration", "write it as `20s`, `500ms`, `1.5min` or `1h`"),
     "state": ("a state", "write it as `- NAME: {template: ...}`"),
     "states": ("a list of states", "write each state as `- NAME: {...}`"),

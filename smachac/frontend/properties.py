@@ -37,6 +37,7 @@ if TYPE_CHECKING:
 FORMS = ("never", "before", "after", "whenever", "at_most", "always_ends")
 OPTIONS = ("name", "exceptions", "stops")
 EXCEPTIONS = ("caught", "all", "none")
+STOPS = "write `stops: false` to leave stop requests out, or `stops: true`"
 
 EXAMPLES: Mapping[str, str] = {
     "never": "`never: {after: CLOSE, until: OPEN, enter: MOVE}`",
@@ -158,7 +159,7 @@ class _Reader:
             if isinstance(tree, Scalar) and isinstance(tree.value, bool):
                 found["stops"] = tree.value
             else:
-                self.fault(tree, "`stops` must be `true` or `false`", None, "stops")
+                self.fault(tree, "`stops` must be `true` or `false`", STOPS, "stops")
         return found
 
     def entries(self, tree: Tree, form: str) -> tuple[Entry, ...]:

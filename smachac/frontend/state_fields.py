@@ -23,7 +23,7 @@ from smachac.frontend.unquoted import check_name, check_unquoted
 from smachac.frontend.values import as_value, as_written
 from smachac.frontend.yaml_tree import Entry, Map, Scalar, Tree, is_known_wrong
 from smachac.ir.nodes import Key, Outcome, StateType, Struct, Value, Variable
-from smachac.ir.types import ANY
+from smachac.ir.types import ANY, EXAMPLES
 
 Entries = Mapping[str, Entry]
 """Fields by long name, as written; the entry's key is the name as written."""
@@ -154,7 +154,9 @@ def _check_required(
             related: tuple[Related, ...] = ()
             if inner is not None:
                 related = (Related(span=inner.span, message="the sub-script does not set it"),)
-            report.append(missing_variable(name.span, key, whose, related))
+            variable = type_.variables.get(key)
+            example = EXAMPLES.get(variable.type.name, "") if variable is not None else ""
+            report.append(missing_variable(name.span, key, whose, related, example))
 
 
 def _check_interface(read: Mapping[str, Any], type_: StateType, report: Report) -> None:

@@ -112,7 +112,9 @@ class _Reader:
         except expat.ExpatError as error:
             words = expat.ErrorString(error.code)
             raise UrdfError(
-                f"the file is not valid XML: {words}", self.at(error.lineno, error.offset)
+                f"the file is not valid XML: {words}",
+                self.at(error.lineno, error.offset),
+                help="correct the tags there: each `<link>` needs its `</link>`, or `<link/>`",
             ) from None
 
     def at(self, line: int, column: int) -> Span:

@@ -245,6 +245,7 @@ def _closed_list(stop: _Stop, column: int) -> int | None:
 _NOT_A_START = re.compile(r"found character '(.*)' that cannot start any token")
 _ESCAPE = re.compile(r"found unknown escape character (.*)")
 _QUOTED = "put the value in quotes"
+_TEXT_BESIDE = re.compile(r"expected (?:chomping|a comment or a line break)")
 
 
 def _value(stop: _Stop) -> _Fault | None:
@@ -259,6 +260,12 @@ def _value(stop: _Stop) -> _Fault | None:
         return _Fault(
             "a value is missing before this `,`", "write the value, or remove the `,`", stop.at
         )
+    if found is not None and found[1] == ":" and stop.context == "while parsing a flow node":
+        help = "write the name before the `:`, or put text that begins with `:` in quotes"
+        return _Fault("a name is missing before this `:`", help, stop.at)
+    if "'<stream end>'" in stop.problem and stop.context == "while parsing a flow node":
+        help = "close each `[` with `]`, and each `{` with `}`"
+        return _Fault("the text ends inside brackets", help, stop.at)
     if found is not None and found[1] == "-" and stop.context == "while parsing a flow node":
         help = "write `[a, b]`, or write each item on a line of its own without the brackets"
         return _Fault("a list in brackets has no `-`", help, stop.at)
@@ -272,7 +279,7 @@ def _value(stop: _Stop) -> _Fault | None:
     if _ESCAPE.fullmatch(stop.problem) is not None:
         help = f"write `\\\\{here}`, or put the text in single quotes"
         return _Fault(f"unknown escape character `{here}`", help, stop.at)
-    if stop.context == "while scanning a block scalar" and "chomping" in stop.problem:
+    if stop.context == "while scanning a block scalar" and _TEXT_BESIDE.match(stop.problem):
         message = "the text cannot begin in the line of its `|` or `>`"
         return _Fault(message, "begin the text in the next line, indented", stop.at)
     return None

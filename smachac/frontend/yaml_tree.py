@@ -440,7 +440,12 @@ class _Builder:
         around.size = whole = around.size + size
         if whole > self.most:
             message = f"the script has more than {self.most:,} values"
-            self._stop(node.span.start, message, "read large data when the program runs", "nodes")
+            self._stop(
+                node.span.start,
+                message,
+                "put large data into a file that a state reads when the program runs",
+                "nodes",
+            )
 
     def _stop(self, at: int, message: str, help: str, limit: str) -> None:
         span = Span(self.source, at, at + 1)

@@ -183,3 +183,7 @@ class _TypeBuilder:
 
     def string(self, found: list[Any]) -> str:
         return str(json.loads(found[0]))
+
+
+EXAMPLES = {"float": "1.5", "int": "3", "bool": "true", "str": "text"}
+"""A value of each simple type, as a script writes it."""

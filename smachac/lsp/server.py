@@ -148,7 +148,7 @@ class Server(LanguageServer):
 
     def diagnostic(self, item: Diagnostic) -> lsp.Diagnostic:
         span = item.span
-        help = f"\n{item.help}" if item.help else ""
+        texts = filter(None, (item.message, item.effect, item.help))
         related = [(each.span, each.message) for each in item.related]
         related += [(at, f"on the path: {step.label}")
                     for step, at in zip(item.finding.path, item.steps, strict=False)
@@ -158,7 +158,7 @@ class Server(LanguageServer):
             severity=SEVERITIES[item.severity],
             code=item.code,
             source="smachac",
-            message=f"{item.message}{help}",
+            message="\n".join(texts),
             related_information=[
                 lsp.DiagnosticRelatedInformation(location=self.location(at), message=message)
                 for at, message in related

@@ -42,6 +42,8 @@ def _words(item: Diagnostic) -> str:
         else f"{related.span}: {related.message}"
         for related in finding.related
     ]
+    if item.effect:
+        lines.append(f"note: {item.effect}")
     if finding.path:
         lines.append(f"path: {''.join(steps(finding.path_labels))}")
     if finding.help:

@@ -9,7 +9,7 @@ from smachac.diagnostics.diagnostic import Diagnostic, Report, Severity
 from smachac.diagnostics.source import NOWHERE, Span
 from smachac.report.terminal import COMMAND
 
-VERSION = 2
+VERSION = 3
 """The version of the schema; it increases with every change."""
 
 
@@ -40,6 +40,7 @@ def diagnostic_data(item: Diagnostic) -> dict[str, Any]:
         "name": item.kind.name,
         "severity": item.severity.value,
         "message": finding.message,
+        "effect": item.effect or None,
         "help": finding.help,
         "place": place(finding.span),
         "related": [

@@ -12,7 +12,7 @@ from smachac.ir.traversal import walk
 from smachac.report.terminal import visible
 from smachac.report.text import render_text, summary
 
-COLUMNS = ("severity", "code", "place", "message", "help")
+COLUMNS = ("severity", "code", "place", "message", "effect", "help")
 
 MOST_SECONDS = 20
 """Limit on the time of Graphviz; a machine of 1,000 states takes about a tenth of it."""
@@ -34,7 +34,8 @@ class Findings(list[Diagnostic]):
 
 
 def _cells(item: Diagnostic) -> Iterator[str]:
-    texts = (item.severity.value, item.code, str(item.span), item.message, item.help or "")
+    place, help = str(item.span), item.help or ""
+    texts = (item.severity.value, item.code, place, item.message, item.effect, help)
     for text in texts:
         shown = escape(visible(text)).replace("\n", "<br>")
         yield f'<td style="text-align: left">{shown}</td>'

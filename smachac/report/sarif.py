@@ -64,7 +64,7 @@ def _rule(code: Code) -> dict[str, Any]:
 
 def _result(item: Diagnostic, rule: int, mark: str) -> dict[str, Any]:
     finding = item.finding
-    text = finding.message if not finding.help else f"{finding.message}\n{finding.help}"
+    text = "\n".join(filter(None, (finding.message, item.effect, finding.help)))
     node = finding.node
     logical = [{"name": node.rpartition("/")[2], "fullyQualifiedName": node}] if node else []
     result: dict[str, Any] = {

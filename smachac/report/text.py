@@ -54,13 +54,25 @@ PLAIN = Layout()
 
 def render_text(report: Report, layout: Layout = PLAIN) -> str:
     """The findings, separated by empty lines; empty for no findings. At most MOST_FINDINGS are
-    printed. Texts of the user cannot control the terminal.
+    printed. An effect is printed once for each code. Texts of the user cannot control the terminal.
     """
-    texts = [_rendered(item, layout) for item in report[:MOST_FINDINGS]]
+    texts = [
+        _rendered(item, effect, layout)
+        for item, effect in zip(report[:MOST_FINDINGS], effects(report), strict=False)
+    ]
     more = len(report) - len(texts)
     if more:
         texts.append(f"... and {more:,} findings more: `--format json` has all\n")
     return "\n".join(texts)
+
+
+def effects(report: Report) -> Iterator[str]:
+    """The effect of each finding; empty where an earlier finding of its code has the same."""
+    seen: set[tuple[str, str]] = set()
+    for item in report:
+        effect = item.effect
+        yield "" if (item.code, effect) in seen else effect
+        seen.add((item.code, effect))
 
 
 def summary(report: Report) -> str:
@@ -107,17 +119,17 @@ def shortened(path: tuple[str, ...]) -> list[str]:
     return [*parts[:half], f" -> ... {left_out} more ...", *parts[-half:]]
 
 
-def _rendered(item: Diagnostic, layout: Layout) -> str:
+def _rendered(item: Diagnostic, effect: str, layout: Layout) -> str:
     def paint(style: str, text: str) -> str:
         if not layout.colour or not text:
             return text
         kind = item.severity.value if style == "primary" else style
         return f"\x1b[{COLOURS[kind]}m{text}\x1b[0m"
 
-    return "\n".join([*_lines(item, layout, paint), ""])
+    return "\n".join([*_lines(item, effect, layout, paint), ""])
 
 
-def _lines(item: Diagnostic, layout: Layout, paint: Paint) -> Iterator[str]:
+def _lines(item: Diagnostic, effect: str, layout: Layout, paint: Paint) -> Iterator[str]:
     finding = item.finding
     head = f"{item.severity.value}[{item.code}]"
     first, *more = _labelled(head, on_one_line(finding.message), layout)
@@ -131,11 +143,11 @@ def _lines(item: Diagnostic, layout: Layout, paint: Paint) -> Iterator[str]:
         if not _nowhere(span)
     ]
     yield from _snippets(marks, layout, paint)
-    for label, style, span in places:
-        if _nowhere(span) and style == "related":
-            first, *more = _labelled("note", on_one_line(label), layout)
-            yield paint("related", "note") + first
-            yield from more
+    notes = [label for label, style, span in places if _nowhere(span) and style == "related"]
+    for note in (*notes, effect) if effect else notes:
+        first, *more = _labelled("note", on_one_line(note), layout)
+        yield paint("related", "note") + first
+        yield from more
     if finding.path:
         yield from _path(finding.path_labels, layout.width, paint)
     if finding.help:

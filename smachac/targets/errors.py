@@ -4,13 +4,19 @@ classes of the user."""
 from __future__ import annotations
 
 from collections.abc import Sequence
+from typing import NamedTuple
 
 from smachac.diagnostics.diagnostic import Finding, Problem, Related, Severity, problem
 from smachac.diagnostics.source import Span, Word
 from smachac.ir.class_facts import ClassFault
 
 
-@problem("SM601", "unsupported-by-target", Severity.ERROR)
+@problem(
+    "SM601",
+    "unsupported-by-target",
+    Severity.ERROR,
+    effect="no program is generated for this target; other targets are not affected",
+)
 def unsupported_by_target(
     span: Span, target: str, message: str, help: str | None = None, names: tuple[str, ...] = ()
 ) -> Finding:
@@ -45,7 +51,12 @@ def unsupported_by_target(
     return Finding(span=span, message=message, arguments=(target, *names), help=help)
 
 
-@problem("SM602", "no-code-for-target", Severity.ERROR)
+@problem(
+    "SM602",
+    "no-code-for-target",
+    Severity.ERROR,
+    effect="a program for this target could not run the state, so none is generated",
+)
 def no_code_for_target(
     span: Span, target: str, option: str, state_type: str, states: int
 ) -> Finding:
@@ -76,9 +87,21 @@ def no_code_for_target(
     return Finding(span=span, message=message, arguments=(target, state_type), help=help)
 
 
-@problem("SM603", "interfaces-differ", Severity.ERROR)
+class Difference(NamedTuple):
+    """A difference between a class and its interface, at its place, and what to do."""
+
+    word: Word
+    help: str
+
+
+@problem(
+    "SM603",
+    "interfaces-differ",
+    Severity.ERROR,
+    effect="the rules check the interface, but the robot runs the class",
+)
 def interfaces_differ(
-    span: Span, target: str, state_type: str, name: str, differences: Sequence[Word]
+    span: Span, target: str, state_type: str, name: str, differences: Sequence[Difference]
 ) -> Finding:
     """The class of a state type and its interface have different outcomes or keys.
 
@@ -130,19 +153,24 @@ def interfaces_differ(
                 return "done"
     """
     others = f" (and {len(differences) - 1} more)" if differences[1:] else ""
-    first = differences[0].text
+    first = differences[0].word.text
     return Finding(
         span=span,
         message=f"the class `{name}` does not match `{state_type}.yml`: {first}{others}",
         arguments=(target, state_type, name),
         related=_places(differences),
-        help=f"correct the class, or the interface in `{state_type}.yml`",
+        help=differences[0].help,
     )
 
 
-@problem("SM604", "stale-code", Severity.ERROR)
+@problem(
+    "SM604",
+    "stale-code",
+    Severity.ERROR,
+    effect="a C++ compiler refuses the class: it has the number of another interface",
+)
 def stale_code(
-    span: Span, state_type: str, name: str, number: Word, differences: Sequence[Word]
+    span: Span, state_type: str, name: str, number: Word, differences: Sequence[Difference]
 ) -> Finding:
     """A C++ class was written for another version of its interface.
 
@@ -202,8 +230,8 @@ def stale_code(
     )
 
 
-def _places(differences: Sequence[Word]) -> tuple[Related, ...]:
-    return tuple(Related(span=word.span, message=word.text) for word in differences)
+def _places(differences: Sequence[Difference]) -> tuple[Related, ...]:
+    return tuple(Related(span=each.word.span, message=each.word.text) for each in differences)
 
 
 @problem("SM606", "old-python", Severity.WARNING)
@@ -257,11 +285,16 @@ def python_2_code(span: Span, old: str, new: str) -> Finding:
         span=span,
         message=f"`{old}` is Python 2; it is printed as `{new}`",
         arguments=(old,),
-        help="change this line in the template",
+        help=f"write `{new}` in the template",
     )
 
 
-@problem("SM607", "defined-twice", Severity.WARNING)
+@problem(
+    "SM607",
+    "defined-twice",
+    Severity.WARNING,
+    effect="the last definition counts, also for the states that need the other one",
+)
 def defined_twice(
     span: Span, what: str, name: str, states: tuple[tuple[str, Span], tuple[str, Span]]
 ) -> Finding:
@@ -329,7 +362,12 @@ def defined_twice(
     )
 
 
-@problem("SM608", "code-not-found", Severity.ERROR)
+@problem(
+    "SM608",
+    "code-not-found",
+    Severity.ERROR,
+    effect="the generated program stops when it starts",
+)
 def code_not_found(
     fault: ClassFault, target: str, state_type: str, name: str, used: tuple[Related, ...]
 ) -> Finding:
@@ -401,11 +439,17 @@ def code_not_found(
         message=message,
         arguments=(target, state_type, fault.kind, word.text),
         help=help,
+        effect="the C++ compiler does not find it" if target == "cpp" else None,
         related=used,
     )
 
 
-@problem("SM609", "unusable-class", Severity.ERROR)
+@problem(
+    "SM609",
+    "unusable-class",
+    Severity.ERROR,
+    effect="the generated program stops with an error when it makes the state or runs it",
+)
 def bad_class(
     fault: ClassFault, target: str, state_type: str, name: str, used: tuple[Related, ...]
 ) -> Finding:
@@ -471,8 +515,16 @@ def bad_class(
         message=message,
         arguments=(target, state_type, fault.kind, fault.name.text),
         help=help,
+        effect=_class_effect(fault, target),
         related=used,
     )
+
+
+def _class_effect(fault: ClassFault, target: str) -> str | None:
+    """The effect of a fault of a class; empty if its message contains it."""
+    if fault.kind in ("defined twice", "undefined name", "undefined method"):
+        return ""
+    return "the C++ compiler refuses the class" if target == "cpp" else None
 
 
 def _about_class(fault: ClassFault, state_type: str, name: str) -> tuple[str, str]:

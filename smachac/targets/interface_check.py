@@ -16,7 +16,13 @@ from smachac.frontend.loader import Library
 from smachac.ir.class_facts import ClassFault
 from smachac.ir.nodes import Leaf, Machine, StateType
 from smachac.ir.traversal import walk
-from smachac.targets.errors import bad_class, code_not_found, interfaces_differ, stale_code
+from smachac.targets.errors import (
+    Difference,
+    bad_class,
+    code_not_found,
+    interfaces_differ,
+    stale_code,
+)
 
 NOT_FOUND = ("no module", "no class", "syntax")
 """The kinds of faults for which there is no class (SM608)."""
@@ -125,7 +131,7 @@ def type_faults(
         yield interfaces_differ(leaf.span, target.name, type_.name, found.name, differences)
 
 
-def _differences(type_: StateType, found: Declared) -> Iterator[Word]:
+def _differences(type_: StateType, found: Declared) -> Iterator[Difference]:
     parts = (
         ("outcome", found.outcomes, type_.outcomes),
         ("input key", found.inputs, type_.input_keys),
@@ -135,16 +141,24 @@ def _differences(type_: StateType, found: Declared) -> Iterator[Word]:
         left_to_the_script = f"{what.replace(' ', '_')}s" in type_.given
         if words is None or left_to_the_script or (what == "outcome" and type_.optional):
             continue
-        yield from _unlike(what, words, [each.name for each in wanted], found.span)
-    yield from found.others
+        names = [each.name for each in wanted]
+        yield from _unlike(f"`{type_.name}.yml`", what, words, names, found.span)
+    for word in found.others:
+        yield Difference(word, f"correct the class, or the interface in `{type_.name}.yml`")
 
 
-def _unlike(what: str, words: Words, wanted: Iterable[str], span: Span) -> Iterator[Word]:
+def _unlike(
+    file: str, what: str, words: Words, wanted: Iterable[str], span: Span
+) -> Iterator[Difference]:
     names = [word.text for word in words]
     for name in wanted:
         if name not in names:
-            yield Word(f"the {what} `{name}` is missing", words[0].span if words else span)
+            help = f"add `{name}` to the {what}s of the class, or remove it from {file}"
+            place = words[0].span if words else span
+            yield Difference(Word(f"the {what} `{name}` is missing", place), help)
     known = set(wanted)
     for word in words:
         if word.text not in known:
-            yield Word(f"the {what} `{word.text}` is not in the interface", word.span)
+            help = f"add `{word.text}` to the {what}s in {file}, or remove it from the class"
+            text = f"the {what} `{word.text}` is not in the interface"
+            yield Difference(Word(text, word.span), help)

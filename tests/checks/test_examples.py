@@ -21,6 +21,13 @@ TARGETS = {"SM601": "cpp", "SM602": "cpp", "SM604": "cpp"}
 """What the examples of a code are built for, where that is not Python."""
 
 
+IN_THE_MESSAGE = {
+    "SM105", "SM204", "SM207", "SM210", "SM307", "SM308", "SM312", "SM313", "SM402",
+    "SM606", "SM610", "SM701", "SM704",
+}  # fmt: skip
+"""Codes whose messages contain what happens if the fault is left."""
+
+
 def judged(files: Mapping[str, str], folder: Path, target_name: str = "python") -> Report:
     """What check and then build say of a script with the files around it."""
     for name, text in files.items():
@@ -53,6 +60,8 @@ def shown(report: Report) -> list[str]:
 def test_wrong_gives_exactly_its_code(code: Code, tmp_path: Path) -> None:
     report = above_info(judged(explanation(code).wrong, tmp_path, TARGETS.get(code.code, "python")))
     assert {item.code for item in report} == {code.code}, shown(report)
+    assert all(item.help for item in report), shown(report)
+    assert (code.code in IN_THE_MESSAGE) != all(item.effect for item in report), shown(report)
 
 
 @pytest.mark.parametrize("code", EVERY)

@@ -103,7 +103,7 @@ def test_the_message_has_the_field_and_its_type() -> None:
             "wide",
             "the value of `width` does not fit: the field of the request of `my_msgs/Grip` is "
             "`float32`",
-            None,
+            "write a value of the type `float32`, such as `1.5`",
         )
     ]
     assert [text for _, text, _, _ in action("goal: {x: far, y: [1]}")] == ["far", "[1]"]

@@ -112,7 +112,7 @@ def test_properties_in_a_file() -> None:
         ("- whenever: {B: C, within: soon}", "SM004 soon | write it like `3 states`"),
         ("- whenever: {within: 3 states}", "SM004 {within: 3 states} | write it like"),
         ("- {before: {B: A}, exceptions: al}", "SM004 al | did you mean `all`?"),
-        ("- {before: {B: A}, stops: sometimes}", "SM004 sometimes | None"),
+        ("- {before: {B: A}, stops: sometimes}", "SM004 sometimes | write `stops: false`"),
         ("- before: {B: A b}", "SM004 A b | write a state"),
         ("- before: {B: 'A:'}", "SM004 'A:' | write a state"),
         ("- before: {B: AA}", "SM703 AA | did you mean `A`?"),

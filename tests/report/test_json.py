@@ -36,6 +36,7 @@ FULL = diagnostic(
         span=Span(SCRIPT, 26, 27),
         message="`B` is nothing",
         help="did you mean `A`?",
+        effect="no program is generated",
         related=(Related(span=Span(SCRIPT, 6, 9), message="of this machine"),),
         path=(entered("sm", "sm"), entered("A", "sm/A"), ended("a")),
         node="sm/A",
@@ -56,6 +57,7 @@ def test_a_report_in_full() -> None:
             {
               "code": "SM101",
               "edits": [],
+              "effect": "no program is generated",
               "help": "did you mean `A`?",
               "message": "`B` is nothing",
               "name": "unknown-target",
@@ -91,7 +93,7 @@ def test_a_report_in_full() -> None:
               "severity": "error"
             }
           ],
-          "version": 2
+          "version": 3
         }
         """)
 
@@ -99,7 +101,7 @@ def test_a_report_in_full() -> None:
 def test_what_is_not_there_is_null() -> None:
     data = json.loads(render_json([BARE]))
     (item,) = data["diagnostics"]
-    assert [item["place"], item["help"], item["node"]] == [None, None, None]
+    assert [item[name] for name in ("place", "effect", "help", "node")] == [None] * 4
     assert data["counts"] == {"error": 0, "info": 0, "warning": 1}
 
 
@@ -122,7 +124,7 @@ def test_an_empty_report_is_a_report() -> None:
 def test_reports_fit_the_schema_and_others_do_not() -> None:
     data = json.loads(render_json([FULL, BARE]))
     assert faults(data, SCHEMA) == []
-    assert faults(data | {"version": 1}, SCHEMA) == ["$.version: not 2"]
+    assert faults(data | {"version": 1}, SCHEMA) == ["$.version: not 3"]
     data["diagnostics"][0]["place"]["line"] = 0
     del data["diagnostics"][1]["name"]
     assert faults(data, SCHEMA) == [

@@ -47,15 +47,40 @@ def finding(
     related: tuple[Related, ...] = (),
     path: tuple[str, ...] = (),
     hint: str | None = None,
+    effect: str | None = None,
+    usual: str = "",
 ) -> Diagnostic:
-    code = Code(code="SM101", name="unknown-target", severity=severity, explanation="")
+    code = Code(
+        code="SM101", name="unknown-target", severity=severity, explanation="", effect=usual
+    )
     steps = tuple(map(PathStep, path))
-    found = Finding(span=span, message=message, related=related, path=steps, help=hint)
+    found = Finding(
+        span=span, message=message, related=related, path=steps, help=hint, effect=effect
+    )
     return Diagnostic(kind=code, severity=severity, finding=found)
 
 
 def shown(*report: Diagnostic, width: int = 100) -> str:
     return render_text(list(report), Layout(width=width))
+
+
+def test_an_effect_is_a_note_before_the_help_and_printed_once() -> None:
+    item = finding(NOWHERE, hint="do it", usual="the robot stops")
+    other = finding(NOWHERE, "again", effect="the robot waits", usual="the robot stops")
+    without = finding(NOWHERE, "still", effect="", usual="the robot stops")
+    assert shown(item, item, other, without) == dedent("""\
+        error[SM101]: a fault
+        note: the robot stops
+        help: do it
+
+        error[SM101]: a fault
+        help: do it
+
+        error[SM101]: again
+        note: the robot waits
+
+        error[SM101]: still
+        """)
 
 
 def test_a_finding_is_what_where_and_what_to_do() -> None:

@@ -21,16 +21,22 @@ from smachac.diagnostics.spelling import guesser, guesser_of, respelt
 from smachac.diagnostics.wording import listed
 
 
-def _where(word: Word, searched: Sequence[str], known: Sequence[str]) -> str:
+def _where(word: Word, file: str, searched: Sequence[str], known: Sequence[str]) -> str:
     """The help for a file that was not found: the folders that were searched, and a near name."""
     folders = ", ".join(f"`{folder}`" for folder in dict.fromkeys(searched))
-    where = f"put it in one of the folders that were searched: {folders}"
+    what = "it" if "/" in file else f"`{file}`"
+    where = f"put {what} in one of the folders that were searched: {folders}"
     where = where if folders else "add a folder for it to the project file"
     guess = did_you_mean(word.text, known)
     return f"{guess} (searched in {folders})" if guess and folders else guess or where
 
 
-@problem("SM011", "script-not-found", Severity.ERROR)
+@problem(
+    "SM011",
+    "script-not-found",
+    Severity.ERROR,
+    effect="a part of the task is missing without the sub-script, so no program is generated",
+)
 def script_not_found(word: Word, searched: Sequence[str], known: Iterable[str]) -> Finding:
     """A state calls a sub-script that is in none of the searched folders.
 
@@ -59,12 +65,17 @@ def script_not_found(word: Word, searched: Sequence[str], known: Iterable[str]) 
         span=word.span,
         message=f"the sub-script `{word.text}` was not found",
         arguments=(word.text,),
-        help=_where(word, searched, names),
+        help=_where(word, f"{word.text}.yml", searched, names),
         edits=respelt(word, guesser_of(tuple(names)).sure(word.text)),
     )
 
 
-@problem("SM012", "recursive-include", Severity.ERROR)
+@problem(
+    "SM012",
+    "recursive-include",
+    Severity.ERROR,
+    effect="each call is replaced by its sub-script, so the machine would be infinitely large",
+)
 def recursive_include(chain: Sequence[tuple[str, Span]]) -> Finding:
     """A script calls itself, directly or through other sub-scripts.
 
@@ -114,7 +125,12 @@ def recursive_include(chain: Sequence[tuple[str, Span]]) -> Finding:
     )
 
 
-@problem("SM013", "template-not-found", Severity.ERROR)
+@problem(
+    "SM013",
+    "template-not-found",
+    Severity.ERROR,
+    effect="there is no code for this state, so no program is generated",
+)
 def template_not_found(word: Word, searched: Sequence[str], known: Iterable[str]) -> Finding:
     """The type of a state has neither an interface nor a template in any folder.
 
@@ -139,12 +155,17 @@ def template_not_found(word: Word, searched: Sequence[str], known: Iterable[str]
         span=word.span,
         message=f"the template `{word.text}` was not found",
         arguments=(word.text,),
-        help=_where(word, searched, names),
+        help=_where(word, f"{word.text}.yml", searched, names),
         edits=respelt(word, guesser_of(tuple(names)).sure(word.text)),
     )
 
 
-@problem("SM014", "bad-sub-script", Severity.ERROR)
+@problem(
+    "SM014",
+    "bad-sub-script",
+    Severity.ERROR,
+    effect="a call stands for exactly one state",
+)
 def bad_sub_script(
     span: Span, message: str, call: Span, help: str, *, arguments: tuple[str, ...]
 ) -> Finding:
@@ -185,7 +206,12 @@ def bad_sub_script(
     )
 
 
-@problem("SM015", "unresolved-look-up", Severity.ERROR)
+@problem(
+    "SM015",
+    "unresolved-look-up",
+    Severity.ERROR,
+    effect="the value is unknown, so no program is generated",
+)
 def unresolved_look_up(word: Word, scope: Iterable[str]) -> Finding:
     """A look-up names a param that is not in scope.
 
@@ -251,7 +277,12 @@ def look_up_of_call(item: Diagnostic, script: Word, given: Sequence[Word]) -> Di
     return replace(item, finding=replace(found, related=(call,)))
 
 
-@problem("SM018", "bad-robot", Severity.ERROR)
+@problem(
+    "SM018",
+    "bad-robot",
+    Severity.ERROR,
+    effect="without a description, joint limits, lengths and frames are not checked",
+)
 def bad_robot(
     word: Word,
     message: str,
@@ -302,7 +333,12 @@ def bad_robot(
     return Finding(span=word.span, message=message, arguments=arguments, help=help, related=related)
 
 
-@problem("SM605", "template-error", Severity.ERROR)
+@problem(
+    "SM605",
+    "template-error",
+    Severity.ERROR,
+    effect="no program is generated while a template fails",
+)
 def template_error(
     span: Span, message: str, help: str | None = None, names: tuple[str, ...] = ()
 ) -> Finding:

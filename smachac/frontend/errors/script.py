@@ -5,7 +5,7 @@ The arguments of a code with several faults begin with a word for the fault, whi
 
 from __future__ import annotations
 
-from collections.abc import Iterable
+from collections.abc import Iterable, Mapping
 from difflib import SequenceMatcher
 from typing import NamedTuple
 
@@ -33,7 +33,12 @@ class Owner(NamedTuple):
     part: str = "variable"
 
 
-@problem("SM001", "yaml-syntax", Severity.ERROR)
+@problem(
+    "SM001",
+    "yaml-syntax",
+    Severity.ERROR,
+    effect="smachac builds no program from a text that is not YAML",
+)
 def yaml_syntax(
     span: Span, message: str, help: str | None = None, *, arguments: tuple[str, ...] = ()
 ) -> Finding:
@@ -64,7 +69,12 @@ def yaml_syntax(
     )
 
 
-@problem("SM002", "duplicate-key", Severity.ERROR)
+@problem(
+    "SM002",
+    "duplicate-key",
+    Severity.ERROR,
+    effect="most YAML parsers keep only the last entry: the first one has no effect",
+)
 def duplicate_key(key: Word, first: Span) -> Finding:
     """A mapping or a list of names has the same name twice.
 
@@ -122,7 +132,12 @@ FOREIGN = {
 """Fields of SMACH and FlexBE that scripts lack, each with the help for it."""
 
 
-@problem("SM003", "unknown-variable", Severity.ERROR)
+@problem(
+    "SM003",
+    "unknown-variable",
+    Severity.ERROR,
+    effect="nothing reads a variable of this name, so its value has no effect",
+)
 def unknown_variable(
     word: Word,
     owner: Owner,
@@ -223,7 +238,12 @@ def _number_before(word: Word) -> str:
     return digits if word.text.isdigit() and before != text else ""
 
 
-@problem("SM004", "wrong-shape", Severity.ERROR)
+@problem(
+    "SM004",
+    "wrong-shape",
+    Severity.ERROR,
+    effect="the meaning is not clear here, so no program is generated",
+)
 def wrong_shape(
     span: Span,
     message: str,
@@ -263,12 +283,18 @@ def wrong_shape(
     )
 
 
-@problem("SM005", "missing-variable", Severity.ERROR)
+@problem(
+    "SM005",
+    "missing-variable",
+    Severity.ERROR,
+    effect="the state is incomplete without it, so no program is generated",
+)
 def missing_variable(
     span: Span,
     name: str,
     owner: Owner,
     related: tuple[Related, ...] = (),
+    example: str = "",
     *,
     instead: Word | None = None,
 ) -> Finding:
@@ -290,14 +316,29 @@ def missing_variable(
         states:
           - PICK: {template: ScriptedState, outcomes: [done], transitions: {done: done}}
     """
+    help = f"add `{name}: {example or MISSING.get(name, '...')}`"
+    if name == "template":
+        help += "; `smachac states` lists the types"
     return Finding(
         span=span if instead is None else instead.span,
         message=f"the variable `{name}` is missing: {owner.text} requires it",
         arguments=(name, owner.name),
-        help=f"write `{name}:` in place of `{instead.text}:`" if instead else f"add `{name}:` here",
+        help=f"write `{name}:` in place of `{instead.text}:`" if instead else help,
         related=related,
     )
 
+
+MISSING: Mapping[str, str] = {
+    "name": "my_task",
+    "template": "TYPE",
+    "outcomes": "[succeeded, aborted]",
+    "states": "[...]",
+    "on": "[aborted]",
+    "max": "3",
+    "in": "items",
+    "time": "1.5",
+}
+"""An example value of each field that can be missing."""
 
 OTHER_NAMES = {
     "array": "list",
@@ -370,10 +411,16 @@ def bad_type(place: Word, known: Iterable[str], unknown: str = "") -> Finding:
         message=f"`{place.text}` is not a valid type",
         arguments=(place.text,),
         help=help or "write it like `float`, `float<rad>[7]`, `list[Pose]`, `one_of[open, close]`",
+        effect="values of an unknown type cannot be checked, so no program is generated",
     )
 
 
-@problem("SM006", "too-big", Severity.ERROR)
+@problem(
+    "SM006",
+    "too-big",
+    Severity.ERROR,
+    effect="the limit keeps every check short; no program is generated beyond it",
+)
 def too_big(span: Span, message: str, help: str, *, arguments: tuple[str, ...]) -> Finding:
     """The text, its nesting, or its aliases and look-ups exceed a limit of smachac.
 
@@ -406,7 +453,12 @@ def too_big(span: Span, message: str, help: str, *, arguments: tuple[str, ...]) 
     return Finding(span=span, message=message, arguments=arguments, help=help)
 
 
-@problem("SM007", "unreadable-file", Severity.ERROR)
+@problem(
+    "SM007",
+    "unreadable-file",
+    Severity.ERROR,
+    effect="nothing is generated before this is corrected",
+)
 def unreadable_file(
     span: Span,
     message: str,
@@ -446,6 +498,7 @@ def unreadable_file(
         message=message,
         arguments=arguments,
         help=help or "check the path, and check that the file is text in UTF-8",
+        effect=None if severity is None else "",
         severity=severity,
     )
 
@@ -459,7 +512,12 @@ class NameFix(NamedTuple):
     edits: tuple[Edit, ...] = ()
 
 
-@problem("SM019", "undefined-name", Severity.ERROR)
+@problem(
+    "SM019",
+    "undefined-name",
+    Severity.ERROR,
+    effect="Python would stop at this name with a NameError",
+)
 def undefined_name(
     span: Span, name: str, code: str, by_look: bool, fix: NameFix | None = None
 ) -> Finding:

@@ -21,7 +21,12 @@ _COMMENT = re.compile(r"#[^\S\n]*smachac:\s*allow(?P<codes>(?:[^\S\n]+[A-Za-z]{2
 _BEHIND = re.compile(r"[,:]?[^\S\n]*")
 
 
-@problem("SM021", "unused-allowance", Severity.WARNING)
+@problem(
+    "SM021",
+    "unused-allowance",
+    Severity.WARNING,
+    effect="the comment would hide the next finding of this code here",
+)
 def unused_allowance(code: Word, edits: tuple[Edit, ...] = ()) -> Finding:
     """A comment allows a finding that does not occur on its line.
 
@@ -89,7 +94,9 @@ def _without(codes: list[Span]) -> tuple[Edit, ...]:
 
 
 @problem("SM022", "bad-allowance", Severity.WARNING)
-def bad_allowance(span: Span, message: str, help: str, arguments: tuple[str, ...]) -> Finding:
+def bad_allowance(
+    span: Span, message: str, help: str, arguments: tuple[str, ...], effect: str = ""
+) -> Finding:
     """A comment for smachac has no reason, is misspelt, or allows a finding that it must not allow.
 
     Without a reason, the next reader cannot decide whether the robot is safe. A finding that makes
@@ -113,28 +120,34 @@ def bad_allowance(span: Span, message: str, help: str, arguments: tuple[str, ...
           # smachac: allow SM201 the operator starts here after a stop
           - PLACE: {template: ScriptedState, outcomes: [ok], transitions: {ok: done}}
     """
-    return Finding(span=span, message=message, arguments=arguments, help=help)
+    return Finding(span=span, message=message, arguments=arguments, help=help, effect=effect)
+
+
+VAIN = "the comment allows nothing"
 
 
 def unfounded_allowance(span: Span, *, named: bool) -> Diagnostic:
     """SM022 for a comment without a reason or, if no code is `named`, without a code."""
     missing = "reason" if named else "code"
     help = f"add the {missing}: `# smachac: allow SM201 the operator starts it`"
-    return bad_allowance(span, f"this comment has no {missing}", help, ("missing", missing))
+    effect = (
+        "without a reason, nobody can decide later whether the robot is safe" if named else VAIN
+    )
+    return bad_allowance(span, f"this comment has no {missing}", help, ("missing", missing), effect)
 
 
 def bad_comment(verb: Word) -> Diagnostic:
     """SM022 for a comment with another word than `allow`."""
     help = did_you_mean(verb.text, ["allow"]) or "write `# smachac: allow CODE reason`"
     message = f"a comment for smachac must begin with `allow`, not with `{verb.text}`"
-    return bad_allowance(verb.span, message, help, ("verb", verb.text))
+    return bad_allowance(verb.span, message, help, ("verb", verb.text), VAIN)
 
 
 def unknown_code(code: Word, known: Iterable[str]) -> Diagnostic:
     """SM022 for a code that does not exist."""
     help = did_you_mean(code.text, known) or "use one of the codes in docs/rules.md"
     message = f"the code `{code.text}` does not exist"
-    return bad_allowance(code.span, message, help, ("code", code.text))
+    return bad_allowance(code.span, message, help, ("code", code.text), VAIN)
 
 
 def vain_allowance(code: Word) -> Diagnostic:

@@ -224,7 +224,8 @@ class _BuiltInLeaf:
         for key in sorted(callbacks):
             if not self.writes(key):
                 raise UnportableError(
-                    f"the state writes `{key}`, which is not one of its output keys"
+                    f"the state writes `{key}`, which is not one of its output keys",
+                    help=f"add `{key}` to its `output_keys`",
                 )
             code = callbacks[key]
             found += self.write(key, lambda type_, code=code: self.function(code, type_).text)  # type: ignore[misc]

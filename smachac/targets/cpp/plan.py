@@ -21,6 +21,9 @@ from smachac.targets.cpp.identifiers import clashes, identifier, outermost
 from smachac.targets.cpp.types import UnportableError, cpp_literal, cpp_type, plain
 from smachac.targets.errors import unsupported_by_target
 
+OTHERWISE = "change this part of the script, or write a class in C++ for the state"
+"""The help for a refusal without a help of its own."""
+
 OWN = "own_"
 """The field of a `UserdataView` with the userdata of the container itself; no key has this name."""
 
@@ -94,7 +97,8 @@ class Plan:
     def refuse(self, span: Span, error: UnportableError, *names: str) -> None:
         """Add a refusal to the report; `names` are the state or the keys that it is about."""
         names = (*names, *error.names)
-        self.report.append(unsupported_by_target(span, "C++", str(error), error.help, names))
+        help = error.help or OTHERWISE
+        self.report.append(unsupported_by_target(span, "C++", str(error), help, names))
 
 
 def plan(machine: Machine) -> Plan:

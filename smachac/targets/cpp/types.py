@@ -28,6 +28,8 @@ from smachac.ir.types import STRUCTS, Type
 SMALLEST, LARGEST = -(2**63), 2**63 - 1
 """The range of `std::int64_t`."""
 
+BIG = f"write a number from {SMALLEST} to {LARGEST}"
+
 EXACT = 2**53
 """Up to this size a `double` represents every integer."""
 
@@ -236,7 +238,10 @@ def _computed(expression: Expression) -> Data:
     try:
         return script_data(evaluate(tree, {}))
     except EvaluationError as error:
-        raise UnportableError(f"`{expression.text}` is not a constant: {error}") from error
+        message = f"`{expression.text}` is not a constant: {error}"
+        raise UnportableError(
+            message, help="write the value, such as a number or a list"
+        ) from error
 
 
 def script_data(value: object) -> Data:
@@ -268,7 +273,7 @@ def cpp_bool(value: bool) -> str:
 def cpp_int(value: int) -> str:
     """C++ text of an integer. Raises UnportableError beyond 64 bits."""
     if not SMALLEST <= value <= LARGEST:
-        raise UnportableError(f"{value} does not fit into an integer of 64 bits")
+        raise UnportableError(f"{value} does not fit into an integer of 64 bits", help=BIG)
     return str(value) if value != SMALLEST else f"({SMALLEST + 1} - 1)"
 
 
