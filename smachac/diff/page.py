@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterator, Mapping
+from pathlib import PurePath
 from typing import Any
 
 from smachac.diff.comparison import Comparison
@@ -23,7 +24,7 @@ def render_difference_page(comparison: Comparison, machine: Machine) -> str:
     model = {
         "version": VERSION,
         "name": union.shown[root].name,
-        "source": comparison.name or comparison.was,
+        "source": PurePath(comparison.name or comparison.was).name,
         "digest": machine.digest,
         "root": root,
         "live": False,
@@ -33,7 +34,7 @@ def render_difference_page(comparison: Comparison, machine: Machine) -> str:
         "properties": [],
         "differences": {
             "summary": summary(comparison),
-            "changes": list(_changes(comparison)),
+            "changes": [*_changes(comparison), *_findings(comparison, root)],
         },
     }
     return render_page(machine, model)
@@ -45,6 +46,18 @@ def _changes(comparison: Comparison) -> Iterator[dict[str, str]]:
         gone = each.kind == REMOVED and each.what == "state"
         path = comparison.place[each.path] if gone else each.path
         yield {"path": path, "kind": each.kind, "text": change_text(each)}
+
+
+def _findings(comparison: Comparison, root: str) -> Iterator[dict[str, str]]:
+    """The findings that are new, or gone, at their states."""
+    places = ({}, comparison.after), (comparison.place, comparison.before)
+    reports = (ADDED, "+", comparison.added), (REMOVED, "-", comparison.removed)
+    for (kind, sign, report), (place, states) in zip(reports, places, strict=True):
+        for each in report:
+            node = each.finding.node or ""
+            path = place.get(node, node) if node in states else root
+            text = f"{sign} {each.severity.value}[{each.code}] {each.message}"
+            yield {"path": path, "kind": kind, "text": text}
 
 
 def _node(union: Union, path: str) -> dict[str, Any]:

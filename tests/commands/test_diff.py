@@ -218,7 +218,12 @@ def test_a_page(capsys: pytest.CaptureFixture[str]) -> None:
     assert edges["sm/PICK", "lost", "sm/PARK"] == "added"
     assert edges["sm/PICK", "lost", "{'outcome': 'lost'}"] == "removed"
     assert edges["sm/PICK", "done", "sm/PARK"] == "same"
-    assert all(each["path"] in nodes for each in model["differences"]["changes"])
+    changes = model["differences"]["changes"]
+    assert all(each["path"] in nodes for each in changes)
+    assert model["source"] == "new.yml"
+    write("new.yml", SCRIPT.replace("1.0", "x"))
+    assert diff("main.yml", "new.yml", "--format", "html") == 1
+    assert '"path":"sm/PICK","kind":"added","text":"+ error[SM' in capsys.readouterr().out
     assert diff("main.yml", "main.yml", "--format", "html") == 0
     write("bad.yml", "name: [")
     capsys.readouterr()
