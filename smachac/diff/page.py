@@ -50,7 +50,10 @@ def _changes(comparison: Comparison) -> Iterator[dict[str, str]]:
 
 def _findings(comparison: Comparison, root: str) -> Iterator[dict[str, str]]:
     """The findings that are new, or gone, at their states."""
-    places = ({}, comparison.after), (comparison.place, comparison.before)
+    places: tuple[tuple[Mapping[str, str], States], ...] = (
+        ({}, comparison.after),
+        (comparison.place, comparison.before),
+    )
     reports = (ADDED, "+", comparison.added), (REMOVED, "-", comparison.removed)
     for (kind, sign, report), (place, states) in zip(reports, places, strict=True):
         for each in report:
